@@ -22,7 +22,7 @@ def draw_benchmark(programs: pd.DataFrame, scaling: pd.DataFrame) -> Figure:
     Parameters
     ----------
     programs
-        Columns ``bodies``, ``program``, ``histories_per_s_core``, ``histories``, ``wrong_verdicts``.
+        Columns ``bodies``, ``program``, ``histories_per_s_core``, ``histories``, ``wrong_outcomes``.
     scaling
         Columns ``bodies``, ``histories``, ``seconds``.
     """
@@ -44,7 +44,7 @@ def draw_benchmark(programs: pd.DataFrame, scaling: pd.DataFrame) -> Figure:
         ticks = [t for t in 10.0 ** np.arange(-1, 7) if t <= 10 * fastest]
         left.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
         left.minorticks_off()
-        columns = ("histories_per_s_core", "wrong_verdicts", "histories")
+        columns = ("histories_per_s_core", "wrong_outcomes", "histories")
         for y, (rate, wrong, count) in enumerate(
             zip(*(table[column].tolist() for column in columns), strict=True)
         ):

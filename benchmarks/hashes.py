@@ -4,7 +4,7 @@
     … change the kernels …
     python benchmarks/hashes.py | diff before.txt -
 
-Verdicts and peaks of 10⁴ random blocks and 10⁴ random stacks, of uneven bodies with measured restitution, and
+Outcomes and peaks of 10⁴ random blocks and 10⁴ random stacks, of uneven bodies with measured restitution, and
 whole histories; ensembles on one and on two threads.
 """
 
@@ -71,7 +71,7 @@ def histories(bodies: list[Body], count: int, **settings: Any) -> str:
             energy = energy.assign(lost_contact_0=0.0)
             energy = energy[[*energy.columns[:4], "lost_contact_0", *energy.columns[4:-1]]]
         arrays += [energy.to_numpy(), response.normal_force]
-        arrays += [response.events[["time", "energy_after"]].to_numpy()]
+        arrays += [response.contact_events[["time", "energy_after"]].to_numpy()]
         arrays += [np.array([response.unstable_distance, response.impacts, response.grazings])]
     return digest(arrays)
 

@@ -53,7 +53,7 @@ def all_cases(cases: Cases, threads: int = 1, **settings: float) -> Outcomes:
 
 
 def converged(cases: Cases) -> NDArray[np.bool_]:
-    """Verdicts with an eighth of the step."""
+    """Outcomes with an eighth of the step."""
     dense = []
     for values in cases.accelerations:
         closed = np.append(values, 0.0)
@@ -62,18 +62,18 @@ def converged(cases: Cases) -> NDArray[np.bool_]:
     return overturns(cases.bodies, dense, cases.dt / 8, cases.scales, step=0.1 / 8).overturned
 
 
-def followed_share(cases: Cases, count: int) -> float:
-    """Share of ``count`` verdicts that differ from ``simulate``, which follows every impact."""
-    verdicts = all_cases(cases).overturned
+def followed_fraction(cases: Cases, count: int) -> float:
+    """Fraction of ``count`` outcomes that differ from ``simulate``, which follows every impact."""
+    outcomes = all_cases(cases).overturned
     differing = [
-        simulate(body, values, cases.dt).overturned != verdicts[at]
+        simulate(body, values, cases.dt).overturned != outcomes[at]
         for at, body, values in cases.each(count, seed=4)
     ]
     return sum(differing) / count
 
 
-def nudged_share(cases: Cases, by: float = 1e-9) -> float:
-    """Share of verdicts that change when every amplitude grows by one part in a billion."""
+def nudged_fraction(cases: Cases, by: float = 1e-9) -> float:
+    """Fraction of outcomes that change when every amplitude grows by one part in a billion."""
     nudged = replace(cases, scales=cases.scales * (1.0 + by))
     return float((all_cases(nudged).overturned != all_cases(cases).overturned).mean())
 
@@ -163,11 +163,11 @@ def over_limit(kind: str, cases: Cases) -> tuple[float, float]:
 
 # where the ensembles find their entry kernels
 _ENTRY: dict[str, tuple[Any, str]] = {
-    "lone": (block, "march_blocks"),
-    "stack": (scheduler, "march_stacks"),
+    "lone": (block, "integrate_blocks"),
+    "stack": (scheduler, "integrate_stacks"),
 }
 
-# the kernels of the lanes, and what a lane steps on with for ever: no event, no division by zero
+# the kernels of the lanes, and what a lane steps on with for ever: no contact event, no division by zero
 _SMOOTH: dict[str, list[tuple[Any, int, Any, dict[str, float]]]] = {
     "lone": [
         (
@@ -202,7 +202,7 @@ def separately(*arguments: object, cache: Path | None = None) -> float:
 
 
 def start_up(kind: str) -> tuple[float, float]:
-    """Seconds to the first verdict of a new process, with an empty and with a filled cache."""
+    """Seconds to the first outcome of a new process, with an empty and with a filled cache."""
     cold, warm = math.inf, math.inf
     for _ in range(3):
         with tempfile.TemporaryDirectory() as folder:

@@ -23,7 +23,7 @@ from rockfrag.figure_style import save_figure
 from rockfrag.files import write_table, write_text
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.parquet import stream_overturns
-from rockfrag.rocking.step_sensitivity import fragile_verdicts
+from rockfrag.rocking.step_sensitivity import find_step_size_sensitive
 from rockfrag.system.blocks import Block, Body, Stack
 
 # the random cases and the other programs lie with the oracles of the tests
@@ -33,8 +33,8 @@ from measures import (
     all_cases,
     converged,
     cpu_seconds,
-    followed_share,
-    nudged_share,
+    followed_fraction,
+    nudged_fraction,
     over_limit,
     separately,
     start_up,
@@ -44,13 +44,16 @@ from measures import (
     wall_seconds,
 )  # fmt: skip
 from tests.oracle.cases import Cases, cases, motions
-from tests.oracle.competitors import mujoco_verdict, numpy_lone, scipy_lone
+from tests.oracle.competitors import mujoco_outcome, numpy_lone, scipy_lone
 from tests.oracle.scipy_stack import scipy_stack
 
 BEGIN, END = "<!-- results of make bench -->", "<!-- end of results -->"
 NAMES = {"lone": "single block", "stack": "two blocks"}
 SLIDING = "friction of 0.2 to 0.8"
-BY_EVENT, BY_SAMPLE = "solve_ivp from event to event", "solve_ivp from sample to sample"
+BY_CONTACT_EVENT, BY_SAMPLE = (
+    "solve_ivp from contact event to contact event",
+    "solve_ivp from sample to sample",
+)
 
 
 def machine() -> dict[str, object]:
@@ -72,7 +75,7 @@ def machine() -> dict[str, object]:
 
 
 def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
-    """Histories per second and core, and wrong verdicts, of the package and its competitors.
+    """Histories per second and core, and wrong outcomes, of the package and its competitors.
 
     The package runs again and again between the histories of a competitor, so that a machine that changes its
     speed changes both.
@@ -84,19 +87,19 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
     rows = [row(kind, "rockfrag", set_.count, seconds, wrong, set_.count / seconds)]
     if kind == "lone":
         few = cases("lone", 300 if quick else 2000)
-        verdicts: list[np.ndarray] = []
+        outcomes: list[np.ndarray] = []
         seconds = cpu_seconds(
-            lambda: verdicts.append(numpy_lone(few.bodies, few.accelerations, few.scales, few.dt)),
+            lambda: outcomes.append(numpy_lone(few.bodies, few.accelerations, few.scales, few.dt)),
             1,
         )
-        wrong = int((verdicts[0] != converged(few)).sum())
+        wrong = int((outcomes[0] != converged(few)).sum())
         own = set_.count / cpu_seconds(lambda: all_cases(set_))
-        rows.append(row(kind, "numpy, no event location", few.count, seconds, wrong, own))
-    scipy_verdict = scipy_lone if kind == "lone" else scipy_stack
+        rows.append(row(kind, "numpy, no contact event location", few.count, seconds, wrong, own))
+    scipy_outcome = scipy_lone if kind == "lone" else scipy_stack
     count = 3 if quick else 20
     competitors: list[tuple[str, Callable[..., bool], int]] = [
-        (BY_EVENT, scipy_verdict, count),
-        (BY_SAMPLE, lambda *a: scipy_verdict(*a, by_sample=True), count),
+        (BY_CONTACT_EVENT, scipy_outcome, count),
+        (BY_SAMPLE, lambda *a: scipy_outcome(*a, by_sample=True), count),
     ]
     try:
         import mujoco  # noqa: F401
@@ -105,10 +108,10 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
     else:
         count = 5 if quick else 60
         competitors += [
-            ("MuJoCo 1 ms, stiffest contacts", mujoco_verdict, count),
-            ("MuJoCo 1 ms, default contacts", lambda *a: mujoco_verdict(*a, stiff=False), count),
+            ("MuJoCo 1 ms, stiffest contacts", mujoco_outcome, count),
+            ("MuJoCo 1 ms, default contacts", lambda *a: mujoco_outcome(*a, stiff=False), count),
         ]
-    for name, verdict, count in competitors:
+    for name, outcome, count in competitors:
         wrong, seconds, runs, own_seconds = 0, 0.0, 0, 0.0
         for n, (at, body, values) in enumerate(set_.each(count)):
             if n % max(1, count // 10) == 0:
@@ -116,7 +119,7 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
                 runs += 1
             found: list[bool] = []
             seconds += cpu_seconds(
-                lambda v=verdict, b=body, a=values, f=found: f.append(v(b, a, set_.dt)), 1
+                lambda v=outcome, b=body, a=values, f=found: f.append(v(b, a, set_.dt)), 1
             )
             wrong += found[0] != reference[at]
         rows.append(row(kind, name, count, seconds, wrong, runs * set_.count / own_seconds))
@@ -126,20 +129,20 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
 def friction_rows(kind: str, whole: Cases, quick: bool) -> list[dict[str, object]]:
     """Rows of bodies that may slide, with the same friction at every interface: the package and MuJoCo.
 
-    Each body has its own coefficient, from 0.2 to 0.8.  Verdicts are held against those at a tenth of the step.
+    Each body has its own coefficient, from 0.2 to 0.8.  Outcomes are held against those at a tenth of the step.
     """
     bodies = whole.bodies[:: 1 + len(whole.bodies) // 10]
     set_ = Cases(bodies, whole.accelerations, whole.scales[:, :: 1 + whole.scales.shape[1] // 4])
     mus = np.random.default_rng(5).uniform(0.2, 0.8, len(bodies)).tolist()
 
-    def verdicts(step: float = STEP) -> np.ndarray:
+    def outcomes(step: float = STEP) -> np.ndarray:
         return overturns(
             bodies, set_.accelerations, set_.dt, set_.scales, friction=mus, step=step, threads=1
         ).overturned
 
-    finest = verdicts(0.1 * STEP)
-    seconds = cpu_seconds(verdicts, 3)
-    wrong = int((verdicts() != finest).sum())
+    finest = outcomes(0.1 * STEP)
+    seconds = cpu_seconds(outcomes, 3)
+    wrong = int((outcomes() != finest).sum())
     own = set_.count / seconds
     rows = [row(kind, f"{SLIDING}, rockfrag", set_.count, seconds, wrong, own)]
     try:
@@ -150,12 +153,12 @@ def friction_rows(kind: str, whole: Cases, quick: bool) -> list[dict[str, object
     count = min(set_.count, 20 if quick else 200)
     for n, (at, body, values) in enumerate(set_.each(count)):
         if n % max(1, count // 4) == 0:
-            ours += cpu_seconds(verdicts, 1)
+            ours += cpu_seconds(outcomes, 1)
             runs += 1
         found: list[bool] = []
         theirs += cpu_seconds(
             lambda b=body, a=values, f=found, mu=mus[at[0]]: f.append(
-                mujoco_verdict(b, a, set_.dt, friction=mu)
+                mujoco_outcome(b, a, set_.dt, friction=mu)
             ),
             1,
         )
@@ -171,8 +174,8 @@ def row(
     """Row of a program; ``own``: histories per second of the package meanwhile."""
     made = {
         "bodies": NAMES[kind], "program": name, "histories": count,
-        "histories_per_s_core": count / seconds, "wrong_verdicts": wrong,
-        "wrong_share": wrong / count, "rockfrag_times_as_fast": own * seconds / count,
+        "histories_per_s_core": count / seconds, "wrong_outcomes": wrong,
+        "wrong_fraction": wrong / count, "rockfrag_times_as_fast": own * seconds / count,
     }  # fmt: skip
     print(
         f"{NAMES[kind]:13s} {name:32s} {count / seconds:12.4g} /s {100 * wrong / count:6.2f} % wrong"
@@ -227,9 +230,9 @@ def wide_study(folder: Path) -> float:
                 bodies.append(Block(body.width * grow, body.height, body.mass))
                 restitution.append(e)
             else:
-                tower = body.statue
-                statue = Block(tower.width * grow, tower.height, tower.mass)
-                bodies.append(Stack(body.pedestal, statue))
+                tower = body.upper
+                upper = Block(tower.width * grow, tower.height, tower.mass)
+                bodies.append(Stack(body.lower, upper))
                 restitution.append(None)
     made = motions(100, 9)
     return wall_seconds(
@@ -249,7 +252,12 @@ def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[
     def add(what: str, target: str, value: float, met: bool) -> None:
         rows.append((what, target, value, met))
 
-    add(f"times as fast as {BY_EVENT}", "≥ 20000", times[BY_EVENT], times[BY_EVENT] >= 20_000)
+    add(
+        f"times as fast as {BY_CONTACT_EVENT}",
+        "≥ 20000",
+        times[BY_CONTACT_EVENT],
+        times[BY_CONTACT_EVENT] >= 20_000,
+    )
     peers = times[times.index.str.startswith("MuJoCo")]
     if len(peers):
         add("times as fast as MuJoCo at 1 ms", "≥ 2000", peers.min(), peers.min() >= 2000)
@@ -278,17 +286,17 @@ def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[
     add("memory over that of a tenth of them", "≤ 1.1", memory / other[f"{kind}_memory_tenth_MiB"],
         memory <= 1.1 * other[f"{kind}_memory_tenth_MiB"])  # fmt: skip
     add(
-        "first verdict, warm cache [s]", "< 1", other[f"{kind}_warm_s"], other[f"{kind}_warm_s"] < 1
+        "first outcome, warm cache [s]", "< 1", other[f"{kind}_warm_s"], other[f"{kind}_warm_s"] < 1
     )
     cold = 4 if kind == "lone" else 8
     add(
-        "first verdict, cold cache [s]",
+        "first outcome, cold cache [s]",
         f"≤ {cold}",
         other[f"{kind}_cold_s"],
         other[f"{kind}_cold_s"] <= cold,
     )
-    gate, share = 0.001 if kind == "lone" else 0.005, other[f"{kind}_fragile_share"]
-    add("share of verdicts changed by halving the step", f"< {gate}", share, share < gate)
+    gate, fraction = 0.001 if kind == "lone" else 0.005, other[f"{kind}_sensitive_fraction"]
+    add("fraction of outcomes changed by halving the step", f"< {gate}", fraction, fraction < gate)
     columns = ("what", "target", "measured", "met")
     return [{"bodies": NAMES[kind], **dict(zip(columns, values, strict=True))} for values in rows]
 
@@ -300,12 +308,12 @@ def summary(about: dict[str, Any], programs: pd.DataFrame, goals: pd.DataFrame) 
         f"Machine: {m['processor']}, {m['cores']} cores, {m['system']}; Python {m['python']}, "
         f"numba {m['numba']}, numpy {m['numpy']}, scipy {m['scipy']}.",
         "" if not about["quick"] else "\nA quick run, with too few cases to quote.\n",
-        "| bodies | program | histories | per second and core | times that rockfrag is as fast | wrong verdicts |",
+        "| bodies | program | histories | per second and core | times that rockfrag is as fast | wrong outcomes |",
         "|---|---|---:|---:|---:|---:|",
     ]
     lines += [
         f"| {r.bodies} | {r.program} | {r.histories} | {r.histories_per_s_core:.4g} "
-        f"| {r.rockfrag_times_as_fast:,.0f} | {100 * r.wrong_share:.2f} % |"
+        f"| {r.rockfrag_times_as_fast:,.0f} | {100 * r.wrong_fraction:.2f} % |"
         for r in programs.itertuples()
     ]
     lines += ["", "| bodies | what | target | measured | |", "|---|---|---|---:|---|"]
@@ -313,14 +321,14 @@ def summary(about: dict[str, Any], programs: pd.DataFrame, goals: pd.DataFrame) 
         f"| {r.bodies} | {r.what} | {r.target} | {r.measured:.4g} | {'met' if r.met else '**not met**'} |"
         for r in goals.itertuples()
     ]
-    lines += ["", "| bodies | what changes | verdicts that change |", "|---|---|---:|"]
+    lines += ["", "| bodies | what changes | outcomes that change |", "|---|---|---:|"]
     changes = {
         "fragile": "half the step",
         "nudged": "amplitudes greater by 1e-9 of themselves",
         "followed": "every impact followed (`simulate`)",
     }
     lines += [
-        f"| {name} | {words} | {100 * about['measured'][f'{kind}_{key}_share']:.2f} % |"
+        f"| {name} | {words} | {100 * about['measured'][f'{kind}_{key}_fraction']:.2f} % |"
         for kind, name in NAMES.items()
         for key, words in changes.items()
     ]
@@ -346,12 +354,12 @@ def main() -> None:
         rows += speeds(kind, set_, given.quick)
         rows += friction_rows(kind, set_, given.quick)
         other[f"{kind}_limit"], other[f"{kind}_steps_per_history"] = over_limit(kind, set_)
-        fragile = fragile_verdicts(
+        fragile = find_step_size_sensitive(
             set_.bodies, set_.accelerations, set_.dt, set_.scales, sample=set_.count
         )
-        other[f"{kind}_fragile_share"] = fragile.share
-        other[f"{kind}_nudged_share"] = nudged_share(set_)
-        other[f"{kind}_followed_share"] = followed_share(set_, 100 if given.quick else 1000)
+        other[f"{kind}_sensitive_fraction"] = fragile.fraction
+        other[f"{kind}_nudged_fraction"] = nudged_fraction(set_)
+        other[f"{kind}_followed_fraction"] = followed_fraction(set_, 100 if given.quick else 1000)
         # enough cases that the lanes that run dry at the end do not matter
         speed = next(r for r in rows if r["bodies"] == NAMES[kind])["histories_per_s_core"]
         other[f"{kind}_threads"] = two_thread_ratio(more(set_, round(3 * speed / set_.count) or 1))

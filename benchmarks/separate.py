@@ -7,8 +7,8 @@ import time
 from pathlib import Path
 
 
-def first_verdict(kind: str) -> float:
-    """Seconds from importing the package to the first verdict."""
+def first_outcome(kind: str) -> float:
+    """Seconds from importing the package to the first outcome."""
     start = time.perf_counter()
     import numpy as np
 
@@ -48,4 +48,4 @@ def streamed_memory(kind: str, count: int) -> float:
 
 if __name__ == "__main__":
     what, kind, *count = sys.argv[1:]
-    print(first_verdict(kind) if what == "first" else streamed_memory(kind, int(count[0])))
+    print(first_outcome(kind) if what == "first" else streamed_memory(kind, int(count[0])))

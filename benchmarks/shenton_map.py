@@ -31,7 +31,7 @@ def first_mode(block: Block, acceleration: float, friction: float) -> int:
 
 def demand(block: Block, acceleration: np.ndarray) -> np.ndarray:
     """Friction that the start of pure rocking needs, docs/contact.md (14)."""
-    turning = block.mass * (acceleration * block.h - G * block.b) / block.pole_inertia()
+    turning = block.mass * (acceleration * block.h - G * block.b) / block.pivot_inertia()
     return (acceleration - block.h * turning) / (G + block.b * turning)
 
 

@@ -54,8 +54,8 @@ def mujoco_falls(ground: Array, friction: float = 1.0) -> bool:
     each = round(DT / model.opt.timestep)
     for k in range(len(ground) - 1):
         for part in range(each):
-            share = (part + 0.5) / each
-            pull = -(ground[k] * (1 - share) + ground[k + 1] * share)
+            fraction = (part + 0.5) / each
+            pull = -(ground[k] * (1 - fraction) + ground[k + 1] * fraction)
             model.opt.gravity[:] = (pull[0], pull[1], pull[2] - G)
             mujoco.mj_step(model, data)
         if data.xmat[1][8] <= 0.2:
@@ -66,7 +66,7 @@ def mujoco_falls(ground: Array, friction: float = 1.0) -> bool:
 def main(count: int) -> None:
     """Run both and print."""
     made = motions(count)
-    shaken = [GroundMotion(*(Motion(component, DT) for component in one.T)) for one in made]
+    shaken = [GroundMotion(*(Motion(component, DT) for component in item.T)) for item in made]
     body = Block(SIZE[0], SIZE[2], 300.0, depth=SIZE[1])
     run_in_space([body], shaken[:1], [0.1])
     start = time.process_time()
@@ -79,7 +79,7 @@ def main(count: int) -> None:
     print(f"engine in space: {ours:.1f} cases/s, overturned {first.overturned[0].mean(axis=0)}")
     print(f"one and two threads give the same bits: {equal}")
     start = time.process_time()
-    fallen = np.array([[mujoco_falls(one * scale) for scale in SCALES] for one in made])
+    fallen = np.array([[mujoco_falls(item * scale) for scale in SCALES] for item in made])
     theirs = fallen.size / (time.process_time() - start)
     print(f"MuJoCo, 1 ms: {theirs:.2f} cases/s, overturned {fallen.mean(axis=0)}")
     print(f"ratio {ours / theirs:.0f}, outcomes equal {(fallen == first.overturned[0]).mean():.2f}")

@@ -75,7 +75,10 @@ SUBPACKAGES = {
         "filter, scale, rotate, measure; spectra, pulses, synthetic motions",
     ),
     "rockfrag.building": ("Buildings", "motions of the floors of a building"),
-    "rockfrag.fragility": ("Fragility", "curves with intervals, choice of the measure, exports"),
+    "rockfrag.fragility": (
+        "Fragility",
+        "curves with intervals, intensity-measure selection, exports",
+    ),
     "rockfrag.pedestal": ("Paired comparisons", "the effect of a pedestal, tested"),
     "rockfrag.shaketable": ("Shaking tables", "limits, protocols and tables of tests"),
     "rockfrag.campaign": ("Campaigns", "a laboratory's tests, simulated one by one"),
@@ -238,10 +241,10 @@ def _schema_tables() -> str:
 
 
 def _keys(schema: dict, above: str):
-    for name, one in schema.get("properties", {}).items():
-        words = str(one.get("description", "")).replace("|", "\\|")
+    for name, item in schema.get("properties", {}).items():
+        words = str(item.get("description", "")).replace("|", "\\|")
         yield f"{above}{name}", words
-        yield from _keys(one, f"{above}{name}.")
+        yield from _keys(item, f"{above}{name}.")
 
 
 def _write_live(path: Path) -> None:

@@ -24,7 +24,7 @@ BUILDING = ("setuptools", "wheel")
 
 def main() -> int:
     """Write both files; return 0."""
-    packages = sorted(_packages(), key=lambda one: one["metadata"]["name"].lower())
+    packages = sorted(_packages(), key=lambda item: item["metadata"]["name"].lower())
     hashes = ROOT / "hashes" / f"{platform_name()}.txt"
     hashes.parent.mkdir(exist_ok=True)
     hashes.write_text("".join(_pins(packages)), encoding="utf-8")
@@ -49,14 +49,14 @@ def _packages() -> list[dict[str, Any]]:
         ]
         subprocess.run(command, check=True)
         found: list[dict[str, Any]] = json.loads(report.read_text())["install"]
-    return [one for one in found if "archive_info" in one["download_info"]]
+    return [item for item in found if "archive_info" in item["download_info"]]
 
 
 def _pins(packages: Sequence[dict[str, Any]]) -> Iterator[str]:
     yield f"# Wheels of {platform_name()} that were tested together; made by maintenance/pins.py.\n"
-    for one in packages:
-        about = one["metadata"]
-        digest = one["download_info"]["archive_info"]["hashes"]["sha256"]
+    for package in packages:
+        about = package["metadata"]
+        digest = package["download_info"]["archive_info"]["hashes"]["sha256"]
         yield f"{about['name']}=={about['version']} --hash=sha256:{digest}\n"
 
 
@@ -67,8 +67,8 @@ def _licences(packages: Sequence[dict[str, Any]]) -> Iterator[str]:
         "licence\nand copies no code of theirs; tools of development are among them.\n\n"
         "| package | version | licence |\n|---|---|---|\n"
     )
-    for one in packages:
-        about = one["metadata"]
+    for package in packages:
+        about = package["metadata"]
         name = about["name"]
         yield f"| {name} | {about['version']} | {licence_of(name)} |\n"
 
@@ -80,9 +80,9 @@ def licence_of(package: str) -> str:
     except PackageNotFoundError:
         return "MIT" if package in BUILDING else "not installed here"
     classes = [
-        one.rpartition(" :: ")[2]
-        for one in about.get_all("Classifier", [])
-        if one.startswith("License :: ")
+        item.rpartition(" :: ")[2]
+        for item in about.get_all("Classifier", [])
+        if item.startswith("License :: ")
     ]
     text = str(about.get("License") or "").strip().splitlines()
     said = about.get("License-Expression") or ", ".join(classes) or (text[0] if text else "")

@@ -24,7 +24,7 @@ WHOLE_STUDIES = ("workflow", "end_to_end", "test_readme.py")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Whole studies come first: one that starts last would leave the other processors waiting for it."""
     first = tuple(ROOT / "tests" / name for name in WHOLE_STUDIES)
-    items.sort(key=lambda item: not any(item.path.is_relative_to(one) for one in first))
+    items.sort(key=lambda item: not any(item.path.is_relative_to(each_item) for each_item in first))
 
 
 @pytest.fixture(scope="session")

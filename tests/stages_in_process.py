@@ -9,10 +9,10 @@ from rockfrag.report import stages as reports
 from rockfrag.stages import (
     campaign,
     fragility,
+    ida,
     measured_tests,
     motions,
     pedestal,
-    sweep,
     tests,
 )
 from rockfrag.stages.job import Job, Results
@@ -20,7 +20,7 @@ from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import AnyStudy
 from rockfrag.study.study import Study
 from rockfrag_thesis.settings import settings_of
-from rockfrag_thesis.stages import explanation, sensitivity, statements
+from rockfrag_thesis.stages import hypotheses, sensitivity, sensitivity_analysis
 
 Stage = Callable[[Job], Results]
 
@@ -33,10 +33,10 @@ def stages_of(study: AnyStudy) -> list[Stage]:
         return [reports.measured_table]
     optional = (
         (pedestal.run, study.has_pairs),
-        (explanation.run, settings_of(study).explanation),
+        (sensitivity_analysis.run, settings_of(study).sensitivity_analysis),
         (sensitivity.run, settings_of(study).sensitivity),
         (measured_tests.run, study.more.measured_tests),
-        (statements.run, settings_of(study).compares),
+        (hypotheses.run, settings_of(study).compares),
         (reports.report, True),
     )
     asked = [stage for stage, wanted in optional if wanted]
@@ -44,9 +44,9 @@ def stages_of(study: AnyStudy) -> list[Stage]:
 
 
 def _swept(job: Job[Study]) -> Results:
-    for part in range(job.study.sweep_jobs):
-        yield from sweep.run_part(replace(job, part=part))
-    yield from sweep.run_as_recorded(job)
+    for part in range(job.study.ida_jobs):
+        yield from ida.run_part(replace(job, part=part))
+    yield from ida.run_as_recorded(job)
 
 
 def run_stages(study: AnyStudy, folder: Path, stages: list[Stage] | None = None) -> Path:

@@ -175,7 +175,7 @@ def test_help_shows_the_public_classes():
 
 def test_a_reader_that_has_had_enough_is_no_error(record: Path):
     command = [sys.executable, "-m", "rockfrag.cli", "simulate", str(record), "--unit", "g"]
-    body = ["--body", "0.05", "0.5", "3", "--pga", "0.8", "--all-events"]
+    body = ["--body", "0.05", "0.5", "3", "--pga", "0.8", "--all-contact-events"]
     with subprocess.Popen(
         [*command, *body], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as run:

@@ -15,7 +15,7 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     validate = pytest.importorskip("numpydoc.validate", reason="numpydoc is not installed").validate
 
-ROOMS = (
+SUBPACKAGES = (
     *("", ".assess", ".rocking", ".motions", ".building", ".shaketable", ".fragility"),
     *(".pedestal", ".records", ".campaign"),
 )
@@ -26,8 +26,8 @@ PARAMETERS = "PR01"
 def public() -> list[str]:
     """Full names of the functions and classes that the package and its rooms export."""
     names = set()
-    for room in ROOMS:
-        package = importlib.import_module(f"rockfrag{room}")
+    for subpackage in SUBPACKAGES:
+        package = importlib.import_module(f"rockfrag{subpackage}")
         for name in getattr(package, "__all__", ()):
             value = getattr(package, name)
             if inspect.isfunction(value) or (
@@ -63,9 +63,9 @@ def test_help_shows_the_public_names():
 
 def test_every_module_says_what_it_is_for():
     modules = [
-        one.name
+        item.name
         for package in (rockfrag, rockfrag_thesis)
-        for one in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+        for item in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
     ]
     silent = [name for name in modules if not importlib.import_module(name).__doc__]
     assert not silent

@@ -74,8 +74,8 @@ def test_the_first_screen_has_one_heading_one_picture_and_three_commands(site):
     article = page.partition("<article")[2].partition("</article>")[0]
     assert article.count("<img") == 1
     commands = [
-        re.sub("<[^>]+>", "", one)
-        for one in re.findall(r"<pre[^>]*>(.*?)</pre>", article, re.DOTALL)
+        re.sub("<[^>]+>", "", item)
+        for item in re.findall(r"<pre[^>]*>(.*?)</pre>", article, re.DOTALL)
     ]
     first = [command.split()[:2] for command in commands]
     assert first == [

@@ -11,7 +11,7 @@ import pytest
 import rockfrag
 from rockfrag import Block, Motion, Stack, find_thresholds, overturns, read_motion, simulate
 from rockfrag.errors import InputError
-from rockfrag.rocking.inputs import UnitDoubt
+from rockfrag.rocking.inputs import UnitWarning
 from rockfrag.system.blocks import UnlikelyBlock
 
 SUBPACKAGES = (
@@ -20,7 +20,7 @@ SUBPACKAGES = (
 )
 SHOWN_FIRST = (
     *("Block", "Stack", "simulate", "overturns", "find_thresholds", "rocking_spectrum"),
-    *("fragile_verdicts", "verdict_sureness"),
+    *("find_step_size_sensitive", "outcome_robustness"),
 )
 TIME = np.arange(0, 2, 0.01)
 PULSE = np.sin(2 * np.pi * TIME) * (TIME < 1)
@@ -86,7 +86,7 @@ RESULTS = {
     "Response of a stack": lambda: simulate(STACK, 4 * PULSE, 0.01),
     "Outcomes": lambda: overturns([STATUE, STACK], PULSE, 0.01, np.arange(2.5, 8, 0.1)),
     "Thresholds": lambda: find_thresholds(
-        [STATUE] * 9, PULSE, 0.01, 8.0, tolerance=0.1, smallest_window=0.5
+        [STATUE] * 9, PULSE, 0.01, 8.0, tolerance=0.1, narrowest_resurrection=0.5
     ),
     "RockingSpectrum": lambda: rockfrag.rocking_spectrum(Motion(4 * PULSE, 0.01), [1, 2, 3], 0.2),
     "ResponseSpectrum": lambda: rockfrag.response_spectrum(
@@ -127,7 +127,9 @@ def test_a_file_name_in_place_of_a_motion_is_answered_with_how_to_read_it(motion
         lambda: simulate(STATUE, motion),
         lambda: overturns(STATUE, motion),
         lambda: overturns(STATUE, [motion, motion], 0.01),
-        lambda: find_thresholds(STATUE, motion, None, 8.0, tolerance=0.1, smallest_window=0.5),
+        lambda: find_thresholds(
+            STATUE, motion, None, 8.0, tolerance=0.1, narrowest_resurrection=0.5
+        ),
     ):
         with pytest.raises(InputError, match=r"rockfrag\.read_motion") as caught:
             call()
@@ -137,9 +139,9 @@ def test_a_file_name_in_place_of_a_motion_is_answered_with_how_to_read_it(motion
 @pytest.mark.parametrize("body", [STATUE, STACK])
 @pytest.mark.parametrize("peak", [0.26, 0.34, 1.0, 2.0])
 def test_accelerations_in_g_are_warned_of_by_what_they_would_lift(body, peak):
-    with pytest.warns(UnitDoubt, match=r"less than the 2\.45 m/s² that start rocking"):
+    with pytest.warns(UnitWarning, match=r"less than the 2\.45 m/s² that start rocking"):
         assert not simulate(body, peak * PULSE, 0.01).overturned
-    with pytest.warns(UnitDoubt, match=r"multiply it by 9\.81"):
+    with pytest.warns(UnitWarning, match=r"multiply it by 9\.81"):
         overturns([body], [peak * PULSE], 0.01, [0.5, 1.0])
 
 
@@ -154,7 +156,9 @@ def test_accelerations_in_g_are_warned_of_by_what_they_would_lift(body, peak):
         lambda: overturns(STATUE, Motion(PULSE, 0.01)),
         # in g it would lift nothing either
         lambda: simulate(STATUE, 0.2 * PULSE, 0.01),
-        lambda: find_thresholds(STATUE, PULSE, 0.01, 8.0, tolerance=0.01, smallest_window=0.5),
+        lambda: find_thresholds(
+            STATUE, PULSE, 0.01, 8.0, tolerance=0.01, narrowest_resurrection=0.5
+        ),
     ],
 )
 def test_what_is_in_the_right_unit_is_not_doubted(call):

@@ -8,25 +8,25 @@ import pytest
 
 SOURCE = Path(__file__).resolve().parents[1] / "src" / "rockfrag"
 THESIS = SOURCE.parents[1] / "thesis" / "src"
-ROOMS = (
+SUBPACKAGES = (
     *("records", "motions", "building", "system", "outcomes", "engines", "rocking"),
     *("shaketable", "fragility", "campaign", "pedestal"),
     *("study", "stages", "report", "assess", "survival"),
 )
 """From left to right; a room imports from those before it."""
 
-LIBRARY = ROOMS[: ROOMS.index("study")]
+LIBRARY = SUBPACKAGES[: SUBPACKAGES.index("study")]
 SPECIMENS = {"T1", "T2", "T3", "P&T1", "P&T2", "P&T3"}
 FLOORS = {"GF", "F3", "F5"}
 TEXTS = (".py", ".pyi", ".json", ".j2", ".css", ".js")
 STATEMENT = re.compile(r"C[1-9]\d?")
 
 
-def sources(room: str) -> list[Path]:
-    return sorted((SOURCE / room).rglob("*.py"))
+def sources(subpackage: str) -> list[Path]:
+    return sorted((SOURCE / subpackage).rglob("*.py"))
 
 
-def imported_rooms(path: Path) -> set[str]:
+def imported_subpackages(path: Path) -> set[str]:
     """Rooms that a file imports from, at its top or in a function."""
     names = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -38,21 +38,21 @@ def imported_rooms(path: Path) -> set[str]:
     return {parts[1] for parts in split if parts[0] == "rockfrag" and len(parts) > 1}
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_room_imports_from_the_left_only(room):
-    allowed = set(ROOMS[: ROOMS.index(room) + 1])
+@pytest.mark.parametrize("subpackage", SUBPACKAGES)
+def test_subpackage_imports_from_the_left_only(subpackage):
+    allowed = set(SUBPACKAGES[: SUBPACKAGES.index(subpackage) + 1])
     looked_at = 0
-    for path in sources(room):
-        beyond = (imported_rooms(path) & set(ROOMS)) - allowed
+    for path in sources(subpackage):
+        beyond = (imported_subpackages(path) & set(SUBPACKAGES)) - allowed
         assert not beyond, f"{path.relative_to(SOURCE)} imports from {', '.join(sorted(beyond))}"
         looked_at += 1
     assert looked_at > 3
 
 
-@pytest.mark.parametrize("room", LIBRARY)
-def test_room_of_the_library_names_no_specimen_floor_or_statement_of_a_study(room):
+@pytest.mark.parametrize("subpackage", LIBRARY)
+def test_subpackage_of_the_library_names_no_specimen_floor_or_statement_of_a_study(subpackage):
     looked_at = 0
-    for path in sources(room):
+    for path in sources(subpackage):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 words = {node.value, *re.findall(r"``([^`]+)``", node.value)}

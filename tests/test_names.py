@@ -61,7 +61,7 @@ def test_names_that_are_taken_show_in_tables_and_are_no_formula(name: str):
 @given(st.lists(HOSTILE, min_size=1, max_size=6), st.lists(HOSTILE, max_size=6))
 def test_no_cell_of_a_csv_file_is_a_formula(names: list[str], titles: list[str]):
     # no table of ours holds what the reader of this test would stumble over
-    names, titles = ([re.sub("[\0\r]", "", one) for one in texts] for texts in (names, titles))
+    names, titles = ([re.sub("[\0\r]", "", text) for text in texts] for texts in (names, titles))
     table = pd.DataFrame({"name": names, **{title: "-x" for title in titles if title != "name"}})
     for row in csv.reader(io.StringIO(csv_text(table))):
         for cell in row:
@@ -84,7 +84,7 @@ def test_every_name_that_is_taken_is_text_in_html(name: str):
         root = ElementTree.fromstring(page)
         assert root.find("figcaption").text == name  # type: ignore[union-attr]
         assert next(root.iter("td")).text == name
-        assert {one.tag for one in root.iter()} == {
+        assert {item.tag for item in root.iter()} == {
             *("figure", "figcaption", "table", "thead", "tbody", "tr", "th", "td")
         }
 
@@ -105,7 +105,7 @@ def test_every_name_is_text_in_a_figure(tmp_path: Path, name: str):
     svg = inline_svg((tmp_path / "f.svg").read_text(encoding="utf-8"), file_name(name), name)
     root = ElementTree.fromstring(str(svg))
     assert root.get("aria-label") == name
-    texts = ["".join(one.itertext()) for one in root.iter("{http://www.w3.org/2000/svg}text")]
+    texts = ["".join(item.itertext()) for item in root.iter("{http://www.w3.org/2000/svg}text")]
     assert texts.count(name) == 2
     assert not list(root.iter("{http://www.w3.org/2000/svg}script"))
 
@@ -114,6 +114,6 @@ def test_every_name_is_text_in_a_figure(tmp_path: Path, name: str):
 def test_other_programs_tell_configurations_apart(names: list[str]):
     made = identifiers((name.encode("utf-8", "replace").decode() for name in names), "_-:")
     assert len(set(made.values())) == len(made)
-    for one in made.values():
-        assert len(one) <= 75
-        assert all(c.isascii() and (c.isalnum() or c in "_-:") for c in one)
+    for item in made.values():
+        assert len(item) <= 75
+        assert all(c.isascii() and (c.isalnum() or c in "_-:") for c in item)

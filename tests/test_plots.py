@@ -36,5 +36,7 @@ def test_a_response_shows_rotations_over_the_critical_angle_and_every_impact() -
     lines = {line.get_label(): line for line in rotation.lines}
     statue = np.asarray(lines["upper body"].get_ydata())
     assert statue == pytest.approx(response.theta[:, 1] / STATUE.alpha)
-    assert len(lines["impact"].get_xdata()) == (response.events["kind"] == "impact").sum() > 0
+    assert (
+        len(lines["impact"].get_xdata()) == (response.contact_events["kind"] == "impact").sum() > 0
+    )
     assert ground.get_ylabel() == "Ground [g]"

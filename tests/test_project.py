@@ -54,7 +54,7 @@ def test_the_wheel_of_the_library_has_no_word_of_the_thesis(tmp_path):
 def test_every_dependency_is_pinned():
     project = PROJECT["project"]
     lists = [project["dependencies"], *project["optional-dependencies"].values()]
-    names = {plain(one) for some in lists for one in some}
+    names = {plain(item) for some in lists for item in some}
     assert len(names) > 20
     assert not names - set(PINNED)
 
@@ -89,7 +89,7 @@ def test_every_public_name_is_listed_and_loads(package):
 
 @pytest.mark.parametrize(
     "name",
-    ["find_thresholds", "rocking_spectrum", "fragile_verdicts", "fit_lognormal", "fit_cloud", "assess"],
+    ["find_thresholds", "rocking_spectrum", "find_step_size_sensitive", "fit_lognormal", "fit_cloud", "assess"],
 )  # fmt: skip
 def test_what_researchers_use_most_stands_at_the_top(name):
     assert name in dir(rockfrag)
@@ -133,9 +133,9 @@ def test_hosted_checks_and_the_makefile_agree():
 def test_every_supported_version_of_python_is_checked():
     tested = hosted("ci.yml")["jobs"]["test"]["strategy"]["matrix"]["python"]
     said = [
-        one.rpartition(" :: ")[2]
-        for one in PROJECT["project"]["classifiers"]
-        if re.search(r"Python :: 3\.\d", one)
+        classifier.rpartition(" :: ")[2]
+        for classifier in PROJECT["project"]["classifiers"]
+        if re.search(r"Python :: 3\.\d", classifier)
     ]
     assert tested == said == ["3.11", "3.12", "3.13"]
 
@@ -170,7 +170,7 @@ def test_forms_for_issues_ask_for_something():
         content = yaml.safe_load(form.read_text(encoding="utf-8"))
         if form.name != "config.yml":
             assert {"name", "description", "body"} <= set(content)
-            assert any(one.get("validations", {}).get("required") for one in content["body"])
+            assert any(item.get("validations", {}).get("required") for item in content["body"])
 
 
 def test_what_only_the_owner_can_fill_in_is_listed_and_still_missing():

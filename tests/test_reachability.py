@@ -19,7 +19,7 @@ REGISTERING = (
     "intensity_measure",
     "declare",
     "statement",
-    "order_statement",
+    "order_hypothesis",
     "limit_state",
     "register",
     "unbox",
@@ -58,9 +58,9 @@ def imported(tree: ast.AST, package: str) -> dict[str, str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
             home = absolute(package, node)
-            names |= {one.asname or one.name: f"{home}.{one.name}" for one in node.names}
+            names |= {name.asname or name.name: f"{home}.{name.name}" for name in node.names}
         elif isinstance(node, ast.Import):
-            names |= {one.asname: one.name for one in node.names if one.asname}
+            names |= {name.asname: name.name for name in node.names if name.asname}
     return names
 
 
@@ -77,10 +77,11 @@ def defined(node: ast.stmt) -> list[str]:
 def is_registered(node: ast.stmt) -> bool:
     """Whether a decorator, or what makes its value, enters the definition into a table."""
     made_by = [*getattr(node, "decorator_list", ()), getattr(node, "value", None)]
-    calls = (one for one in made_by if isinstance(one, ast.Call))
-    functions = [one.func for one in calls]
+    calls = (item for item in made_by if isinstance(item, ast.Call))
+    functions = [call.func for call in calls]
     names = {
-        one.attr if isinstance(one, ast.Attribute) else getattr(one, "id", "") for one in functions
+        function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+        for function in functions
     }
     return bool(names & set(REGISTERING))
 
@@ -138,7 +139,7 @@ class Graph:
         """Note what a piece of source names; methods of a class are read by themselves."""
         inner = list(ast.iter_child_nodes(node))
         if isinstance(node, CLASS):
-            inner = [one for one in inner if not isinstance(one, FUNCTION)]
+            inner = [item for item in inner if not isinstance(item, FUNCTION)]
         if isinstance(node, ast.Name):
             full = self.aliases.get(node.id, node.id)
             self.names[reader].add(full)
@@ -152,14 +153,14 @@ class Graph:
                 self.attributes[reader].add(node.attr)
         elif isinstance(node, ast.ImportFrom):
             self.names[reader] |= {
-                self.aliases.get(one.asname or one.name, "") for one in node.names
+                self.aliases.get(name.asname or name.name, "") for name in node.names
             }
         elif isinstance(node, ast.Import):
-            self.names[reader] |= {one.name for one in node.names}
+            self.names[reader] |= {name.name for name in node.names}
         elif isinstance(node, ast.Constant) and isinstance(node.value, str):
             self._read_text(reader, node.value)
-        for one in inner:
-            self._read(reader, one)
+        for item in inner:
+            self._read(reader, item)
 
     def _read_text(self, reader: str, text: str) -> None:
         """A name in quotes: an annotation that is not evaluated, or a function that is named by its module."""
@@ -197,7 +198,7 @@ class Graph:
             left |= {name.rpartition(".")[0]} - seen - {""}
             if not left:
                 left |= {
-                    full for one in used for home, full in methods[one] if home in seen & objects
+                    full for item in used for home, full in methods[item] if home in seen & objects
                 } - seen
         return seen
 
@@ -216,7 +217,7 @@ def exported(known: Iterable[str]) -> Iterator[str]:
             for full in names.values():
                 yield full
                 yield from (
-                    one for one in known if re.fullmatch(re.escape(full) + r"\.[a-z]\w*", one)
+                    item for item in known if re.fullmatch(re.escape(full) + r"\.[a-z]\w*", item)
                 )
 
 
@@ -225,7 +226,7 @@ def started() -> Iterator[str]:
     for file in ("pyproject.toml", "thesis/pyproject.toml"):
         project = tomllib.loads((ROOT / file).read_text(encoding="utf-8"))["project"]
         groups = [project.get("scripts", {}), *project.get("entry-points", {}).values()]
-        yield from (one.replace(":", ".") for group in groups for one in group.values())
+        yield from (item.replace(":", ".") for group in groups for item in group.values())
     rules = [path for folder in (ROOT / "workflow", *SOURCES) for path in folder.rglob("*.smk")]
     for path in (
         *rules,
@@ -234,7 +235,7 @@ def started() -> Iterator[str]:
         ROOT / "Makefile",
     ):
         text = path.read_text(encoding="utf-8")
-        yield from (one.replace(":", ".") for one in ENTRY.findall(text))
+        yield from (item.replace(":", ".") for item in ENTRY.findall(text))
         for home, names in re.findall(r"^ *from (rockfrag[\w.]*) import (.*)$", text, re.MULTILINE):
             yield from (f"{home}.{name.strip()}" for name in names.split(","))
         # what the rules ask of the study

@@ -160,8 +160,8 @@ def test_files_that_are_named_exist():
 def keys_of(schema: dict) -> set[str]:
     """Names of the keys of a mapping and of the mappings in it, those of laws of materials aside."""
     found = set()
-    for name, one in schema.get("properties", {}).items():
-        found |= {name} | (keys_of(one) if name != "masonry" else set())
+    for name, item in schema.get("properties", {}).items():
+        found |= {name} | (keys_of(item) if name != "masonry" else set())
     return found
 
 

@@ -24,9 +24,9 @@ pga = np.linspace(0.2, 1.6, 141)
 fallen = overturns([statue, stack], motions, scales=pga).overturned
 
 figure, panels = plt.subplots(1, 2, figsize=(7, 3.2), sharex=True, sharey=True)
-for panel, title, verdicts in zip(panels, ("alone", "on a pedestal"), fallen, strict=True):
+for panel, title, outcomes in zip(panels, ("alone", "on a pedestal"), fallen, strict=True):
     panel.pcolormesh(
-        pga, np.arange(1, 11), verdicts, cmap="Blues", vmin=0, vmax=1.3, shading="nearest"
+        pga, np.arange(1, 11), outcomes, cmap="Blues", vmin=0, vmax=1.3, shading="nearest"
     )
     panel.set(title=title, xlabel="peak ground acceleration [g]")
 panels[0].set(ylabel="synthetic motion", yticks=range(1, 11))

@@ -32,7 +32,7 @@ outcomes = Outcomes(
     overturned=fallen.ravel().astype(float),
     trials=np.ones(fallen.size),
     motion=names,
-    event=names,
+    earthquake=names,
     name="PGV",
     unit="cm/s",
 )

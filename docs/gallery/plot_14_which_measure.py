@@ -31,10 +31,10 @@ figure, panels = plt.subplots(1, 2, figsize=(7, 2.6), sharey=True)
 names = np.array([f"motion {number}" for number in range(100)], dtype=object)
 height = np.random.default_rng(0).uniform(-0.25, 0.25, 100)
 for panel, (name, values) in zip(panels, measures.items(), strict=True):
-    for verdict, colour in ((False, "#0072B2"), (True, "#D55E00")):
+    for outcome, colour in ((False, "#0072B2"), (True, "#D55E00")):
         panel.plot(
-            values[fallen == verdict],
-            height[fallen == verdict] + verdict,
+            values[fallen == outcome],
+            height[fallen == outcome] + outcome,
             "o",
             markersize=4,
             color=colour,

@@ -14,7 +14,7 @@ from rockfrag import fit_lognormal
 from rockfrag.fragility import Outcomes, overturning_rate
 
 # %%
-# Verdicts of 300 tests drawn from a curve with a median of 0.5 g, and a hazard curve made up for this page.
+# Outcomes of 300 tests drawn from a curve with a median of 0.5 g, and a hazard curve made up for this page.
 
 draw = np.random.default_rng(2)
 pga = draw.uniform(0.1, 1.2, 300)

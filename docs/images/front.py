@@ -64,14 +64,14 @@ def draw_fragility(axes: plt.Axes) -> None:
     fallen = overturns([STATUE, Stack(PEDESTAL, STATUE)], motions, scales=PGV / 100).overturned
     names = np.repeat([f"motion {number}" for number in range(40)], PGV.size).astype(object)
     at = np.geomspace(25, 200, 200)
-    for verdicts, label, colour, mark in (
+    for outcomes, label, colour, mark in (
         (fallen[0], "alone", ORANGE, "o"),
         (fallen[1], "on its pedestal", BLUE, "s"),
     ):
-        tests = np.tile(PGV, 40), verdicts.ravel().astype(float), np.ones(verdicts.size)
+        tests = np.tile(PGV, 40), outcomes.ravel().astype(float), np.ones(outcomes.size)
         fit = fit_lognormal(Outcomes(*tests, names, names, "PGV", "cm/s"))
         axes.plot(at, fit.probability(at), color=colour, label=label)
-        axes.plot(PGV, verdicts.mean(axis=0), mark, color=colour, markersize=4)
+        axes.plot(PGV, outcomes.mean(axis=0), mark, color=colour, markersize=4)
     axes.set(xlabel="peak ground velocity [cm/s]", ylabel="probability of falling [-]")
     axes.set(xscale="log", ylim=(0, 1.02))
     axes.set_xticks([25, 50, 100, 200], ["25", "50", "100", "200"])

@@ -66,7 +66,7 @@ def narrowing(pairs: list[tuple[Estimate, Estimate]]) -> float:
 
 def line_of(name: str, pairs: list[tuple[Estimate, Estimate]]) -> str:
     """A row of the table."""
-    cells = [estimate_words(one) for pair in pairs for one in pair]
+    cells = [estimate_words(item) for pair in pairs for item in pair]
     return f"| {' | '.join([name, *cells])} |"
 
 

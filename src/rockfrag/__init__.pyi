@@ -38,8 +38,8 @@ from .rocking.spectra import (
     RockingSpectrum as RockingSpectrum,
     rocking_spectrum as rocking_spectrum,
 )
-from .rocking.step_sensitivity import fragile_verdicts as fragile_verdicts
-from .rocking.sureness import verdict_sureness as verdict_sureness
+from .rocking.step_sensitivity import find_step_size_sensitive as find_step_size_sensitive
+from .rocking.robustness import outcome_robustness as outcome_robustness
 from .rocking.thresholds import Thresholds as Thresholds, find_thresholds as find_thresholds
 from .rocking.worst_direction import worst_direction as worst_direction
 from .system.blocks import Block as Block, Column as Column, Stack as Stack

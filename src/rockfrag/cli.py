@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rockfrag.rocking import Block, Body, Response
     from rockfrag.rocking.options import FrictionInput
 
-MOST_EVENTS = 30
+MOST_CONTACT_EVENTS = 30
 """Lines of the pattern history that are printed unless all are asked for."""
 
 
@@ -65,20 +65,22 @@ def make_parser() -> argparse.ArgumentParser:
     add_survival_commands(commands)
     add_record_commands(commands)
 
-    one = commands.add_parser("simulate", help="shake one body by one record")
-    _add_case(one)
-    one.add_argument("--pga", type=float, metavar="G", help="scale the record to this peak [g]")
-    one.add_argument("--restitution", type=float, help="measured ratio of angular velocities")
-    one.add_argument(
+    command = commands.add_parser("simulate", help="shake one body by one record")
+    _add_case(command)
+    command.add_argument("--pga", type=float, metavar="G", help="scale the record to this peak [g]")
+    command.add_argument("--restitution", type=float, help="measured ratio of angular velocities")
+    command.add_argument(
         "--friction", nargs="+", type=float, metavar="MU",
         help="coefficient of friction of all contacts, or of each from the ground up",
     )  # fmt: skip
-    one.add_argument(
+    command.add_argument(
         "--vertical", metavar="RECORD", help="file with the vertical component of the record"
     )
-    one.add_argument("--plot", metavar="IMAGE", help="draw the response, as .png or .svg")
-    one.add_argument("--all-events", action="store_true", help="print the whole pattern history")
-    one.set_defaults(run=_simulate)
+    command.add_argument("--plot", metavar="IMAGE", help="draw the response, as .png or .svg")
+    command.add_argument(
+        "--all-contact-events", action="store_true", help="print the whole pattern history"
+    )
+    command.set_defaults(run=_simulate)
 
     play = commands.add_parser(
         "play", help="write a page in which one body rocks under one record, live, in any browser"
@@ -126,8 +128,8 @@ def _simulate(options: argparse.Namespace) -> int:
         if options.pga <= 0:
             raise InputError(f"--pga: expected a number of g above 0, got {options.pga}.")
         acceleration = scale_to_pga(motion, options.pga).acceleration
-    if doubt := _acceleration_doubt(float(abs(acceleration).max()), body):
-        print(f"warning: {options.record}: {doubt}", file=sys.stderr)
+    if quality_flag := _acceleration_flag(float(abs(acceleration).max()), body):
+        print(f"warning: {options.record}: {quality_flag}", file=sys.stderr)
     up = _vertical(options, acceleration.max() / motion.acceleration.max())
     restitution = options.restitution
     if restitution is not None and options.pedestal:
@@ -152,7 +154,7 @@ def _simulate(options: argparse.Namespace) -> int:
     print(f"impacts: {response.impacts}")
     for line in _contacts(response, options.friction is not None):
         print(line)
-    print(_history(response.events, options.all_events))
+    print(_history(response.contact_events, options.all_contact_events))
     if options.plot:
         from rockfrag.figure_style import save_figure
 
@@ -203,7 +205,7 @@ def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
     """Return the body and the motion that the options tell."""
     from rockfrag.system.blocks import stacked
 
-    below = [_block("--pedestal", one) for one in reversed(options.pedestal or [])]
+    below = [_block("--pedestal", item) for item in reversed(options.pedestal or [])]
     body = stacked([*below, _block("--body", options.body)])
     return body, _motion(options.record, options, options.channel)
 
@@ -225,8 +227,8 @@ def _play(options: argparse.Namespace) -> int:
     if not options.output.endswith(".html"):
         raise InputError(f"--output: expected a name that ends in .html, got {options.output}.")
     body, motion = _case(options)
-    if doubt := _acceleration_doubt(motion.pga, body):
-        print(f"warning: {options.record}: {doubt}", file=sys.stderr)
+    if quality_flag := _acceleration_flag(motion.pga, body):
+        print(f"warning: {options.record}: {quality_flag}", file=sys.stderr)
     write_play_page(body, motion, options.output)
     print(f"open {options.output} in a browser; it needs no network")
     return 0
@@ -251,12 +253,12 @@ def _block(option: str, given: Sequence[str]) -> "Block":
         block = Block(width, height, mass)
     except InputError as error:
         raise InputError(f"{option}: {error}") from None
-    if doubt := size_warning(width, height):
-        print(f"warning: {option}: {doubt}", file=sys.stderr)
+    if quality_flag := size_warning(width, height):
+        print(f"warning: {option}: {quality_flag}", file=sys.stderr)
     return block
 
 
-def _acceleration_doubt(peak: float, body: "Body") -> str:
+def _acceleration_flag(peak: float, body: "Body") -> str:
     """Say that the motion looks as if it were in another unit, or return an empty text."""
     from rockfrag.plausibility import peak_warning
     from rockfrag.system.system import uplift_ratios
@@ -265,17 +267,17 @@ def _acceleration_doubt(peak: float, body: "Body") -> str:
     return peak_warning(peak, GRAVITY * min(uplift_ratios(body.system())))
 
 
-def _history(events, everything: bool) -> str:  # type: ignore[no-untyped-def]
-    if events.empty:
+def _history(contact_events, everything: bool) -> str:  # type: ignore[no-untyped-def]
+    if contact_events.empty:
         return "it never rocked"
-    shown = events if everything else events.head(MOST_EVENTS)
+    shown = contact_events if everything else contact_events.head(MOST_CONTACT_EVENTS)
     lines = [
         f"{row['time']:9.4f} s  {row['kind']:<10} {row['from']:>4} → {row['to']}"
         for row in shown.to_dict("records")
     ]
-    hidden = len(events) - len(shown)
+    hidden = len(contact_events) - len(shown)
     if hidden:
-        lines.append(f"… and {hidden} more (--all-events)")
+        lines.append(f"… and {hidden} more (--all-contact-events)")
     return "\n".join(["pattern history:", *lines])
 
 
@@ -292,9 +294,11 @@ def _check_config(options: argparse.Namespace) -> int:
 
     study = load_any(options.file)
     folder = results_folder(study)
-    doubts = [*study.doubts(), *check_records(study)] if isinstance(study, Study) else []
-    for doubt in doubts:
-        print(f"warning: {doubt}", file=sys.stderr)
+    quality_flags = (
+        [*study.quality_flags(), *check_records(study)] if isinstance(study, Study) else []
+    )
+    for quality_flag in quality_flags:
+        print(f"warning: {quality_flag}", file=sys.stderr)
     if options.quiet:
         return 0
     print(

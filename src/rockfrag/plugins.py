@@ -48,7 +48,7 @@ class Plugin:
 @cache
 def plugins() -> dict[str, Plugin]:
     """Return the installed plugins by name."""
-    return {one.name: one.load() for one in sorted(entry_points(group=GROUP))}
+    return {point.name: point.load() for point in sorted(entry_points(group=GROUP))}
 
 
 def plugins_asked(content: Mapping[str, Any]) -> dict[str, Plugin]:

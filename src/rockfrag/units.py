@@ -125,7 +125,7 @@ def quantity(given: object, to: str, unit: str | None) -> float:
     if found is None:
         raise InputError(f"{expected}, found {given!r:.60} without a unit.")
     if found not in units:
-        known = ", ".join(_as_written(one) for one in units)
+        known = ", ".join(_as_written(unit) for unit in units)
         raise InputError(f"{expected} in one of the units {known}, found {given!r:.60}.")
     return convert(value, found, to)
 
@@ -156,7 +156,7 @@ def other_names(name: str) -> dict[str, str | None]:
     """
     stem, unit = split_name(name)
     units = DIMENSIONS[dimension_of(unit)]
-    return {stem: None, **{f"{stem}_{one}": one for one in units}}
+    return {stem: None, **{f"{stem}_{unit}": unit for unit in units}}
 
 
 def split_name(name: str) -> tuple[str, str]:

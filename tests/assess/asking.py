@@ -130,15 +130,15 @@ def contradictions(status: int, out: str, err: str) -> list[str]:
 
 def _within(answer: dict[str, Any]) -> list[str]:
     rocking, toppling, likely = (
-        answer[key] for key in ("share_rocking", "share_toppling", "probability")
+        answer[key] for key in ("fraction_rocking", "fraction_toppling", "probability")
     )
     amplitudes = answer["amplitude_toppling"]
     wrong = [
-        f"{name}: {one}"
-        for name, one in {
+        f"{name}: {item}"
+        for name, item in {
             "rocking": rocking, "toppling": toppling, "probability": likely, **amplitudes
         }.items()
-        if one is not None and not _ordered(one)
+        if item is not None and not _ordered(item)
     ]  # fmt: skip
     checks = {
         "toppling is likelier than rocking": rocking is None
@@ -149,7 +149,7 @@ def _within(answer: dict[str, Any]) -> list[str]:
         "lines": _lines_agree(answer),
         "what helps": _helps(answer),
         "shares fall with the level of none": all(
-            0 <= p <= 1 for p in answer["fragility"]["share"]
+            0 <= p <= 1 for p in answer["fragility"]["fraction"]
         ),
     }
     return wrong + [name for name, right in checks.items() if not right]
@@ -159,11 +159,11 @@ def _of(estimate: dict[str, Any]) -> float:
     return math.inf if estimate["value"] is None else estimate["value"]
 
 
-def _ordered(one: dict[str, Any]) -> bool:
+def _ordered(item: dict[str, Any]) -> bool:
     """Limits hold the value; a level that none reaches is null."""
-    low = 0.0 if one["lower"] is None else one["lower"]
-    high = math.inf if one["upper"] is None else one["upper"]
-    return low <= _of(one) * (1 + 1e-9) and _of(one) <= high * (1 + 1e-9)
+    low = 0.0 if item["lower"] is None else item["lower"]
+    high = math.inf if item["upper"] is None else item["upper"]
+    return low <= _of(item) * (1 + 1e-9) and _of(item) <= high * (1 + 1e-9)
 
 
 def _counts_agree(answer: dict[str, Any]) -> bool:
@@ -172,19 +172,19 @@ def _counts_agree(answer: dict[str, Any]) -> bool:
         return True
     if not counts["topple"] <= counts["rock"] <= counts["motions"]:
         return False
-    shares = answer["share_toppling"]["value"], answer["share_rocking"]["value"]
+    fractions = answer["fraction_toppling"]["value"], answer["fraction_rocking"]["value"]
     expected = (counts[key] / counts["motions"] for key in ("topple", "rock"))
-    return all(abs(a - b) < 1e-9 for a, b in zip(shares, expected, strict=True))
+    return all(abs(a - b) < 1e-9 for a, b in zip(fractions, expected, strict=True))
 
 
 def _at_rest(answer: dict[str, Any]) -> bool:
     """Below the level at which it starts to rock, nothing rocks and the line says so."""
     level, starts = answer["level"], answer["rocks_from"]
-    if level is None or answer["share_rocking"] is None:
+    if level is None or answer["fraction_rocking"] is None:
         return True
     if starts is not None and level >= starts:
         return not answer["does_not_move"]
-    still = answer["share_rocking"]["value"] == 0 == answer["share_toppling"]["value"]
+    still = answer["fraction_rocking"]["value"] == 0 == answer["fraction_toppling"]["value"]
     words = answer["lines"][0]
     return still and ("does not move" in words or "is not expected to move" in words)
 
@@ -195,8 +195,8 @@ def _lines_agree(answer: dict[str, Any]) -> bool:
     text = "\n".join(lines)
     if len(lines) != 5 or _EMPTY.search(text):
         return False
-    toppling = answer["share_toppling"]
-    if toppling and toppling["value"] == 0 and answer["share_rocking"]["value"] > 0:
+    toppling = answer["fraction_toppling"]
+    if toppling and toppling["value"] == 0 and answer["fraction_rocking"]["value"] > 0:
         return "none of" in lines[0] and "upper limit" in lines[0]
     if toppling and toppling["lower"] < 0.01 and toppling["upper"] > 0.5 and toppling["value"] > 0:
         return "not decidable" in lines[0]
@@ -206,12 +206,12 @@ def _lines_agree(answer: dict[str, Any]) -> bool:
 def _helps(answer: dict[str, Any]) -> bool:
     """What is printed as help makes nothing worse, and only that which helps is printed."""
     line = answer["lines"][3].lower()
-    amplitude = answer["share_toppling"] is None and answer["probability"] is None
-    for one in answer["remedies"]:
-        factor = one["factor"]
+    amplitude = answer["fraction_toppling"] is None and answer["probability"] is None
+    for mitigation in answer["mitigations"]:
+        factor = mitigation["factor"]
         better = factor is None or (factor > 1 if amplitude else factor < 1)
-        if one["helps"] and not better:
+        if mitigation["helps"] and not better:
             return False
-        if one["name"].lower() in line and not one["helps"]:
+        if mitigation["name"].lower() in line and not mitigation["helps"]:
             return False
     return True

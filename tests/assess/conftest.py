@@ -9,16 +9,16 @@ from rockfrag.assess.motions import MotionSet
 from rockfrag.motions import bandpass, scale_to_pga
 from rockfrag.records.motion import Motion
 
-EVENTS = 6
+EARTHQUAKES = 6
 
 
 def made_motions(noise, count: int = 24) -> tuple[Motion, ...]:
     """Motions of several earthquakes, each with its own frequencies."""
     found = []
     for i in range(count):
-        about = {"event": f"earthquake {i % EVENTS}", "station": f"station {i // 2}"}
+        about = {"earthquake": f"earthquake {i % EARTHQUAKES}", "station": f"station {i // 2}"}
         raw = noise(i, 1500, tapered=True, name=f"motion {i}", metadata=about)
-        filtered = bandpass(raw, 0.2, 1.0 + 0.5 * (i % EVENTS))
+        filtered = bandpass(raw, 0.2, 1.0 + 0.5 * (i % EARTHQUAKES))
         found.append(scale_to_pga(filtered, 0.2 + 0.01 * i))
     return tuple(found)
 
@@ -34,7 +34,7 @@ def motions(noise) -> MotionSet:
 def own_records(noise, tmp_path_factory) -> Path:
     """A folder of records that are texts of seconds and g, with a catalogue."""
     folder = tmp_path_factory.mktemp("records")
-    rows = ["name,event,station,file,unit"]
+    rows = ["name,earthquake,station,file,unit"]
     for motion in made_motions(noise, 12):
         file = f"{motion.name.replace(' ', '')}.txt"
         lines = [
@@ -42,7 +42,7 @@ def own_records(noise, tmp_path_factory) -> Path:
         ]
         (folder / file).write_text("\n".join(lines) + "\n")
         rows.append(
-            f"{motion.name},{motion.metadata['event']},{motion.metadata['station']},{file},g"
+            f"{motion.name},{motion.metadata['earthquake']},{motion.metadata['station']},{file},g"
         )
     (folder / "catalogue.csv").write_text("\n".join(rows) + "\n")
     return folder

@@ -12,7 +12,7 @@ from rockfrag.assess.as_json import as_json
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.request import make_request, read_request
 from rockfrag.assess.risk import Estimate
-from rockfrag.assess.words import doubts, estimate_words, five_lines, headline
+from rockfrag.assess.words import estimate_words, five_lines, headline, quality_flags
 from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.rocking import Block
@@ -36,14 +36,14 @@ def test_below_b_over_h_nothing_rocks_and_far_above_everything_topples(motions):
     # a uniform block rocks from b/h g on
     weak = assess_with(asked(**FIGURE, pga="0.28 g"), motions, brief=True)
     strong = assess_with(asked(**FIGURE, pga="1.4 g"), motions, brief=True)
-    assert (weak.rocking.value, weak.share.value) == (0, 0)
-    assert strong.share.value > 0.5
+    assert (weak.rocking.value, weak.fraction.value) == (0, 0)
+    assert strong.fraction.value > 0.5
     # an edge that is 2 % further in, or a centre of gravity 5 % higher, would let it rock at 0.28 g
     assert "not expected to move" in headline(weak)
-    assert 0 < weak.share.upper <= weak.rocking.upper == 1
+    assert 0 < weak.fraction.upper <= weak.rocking.upper == 1
     rest = assess_with(asked(**FIGURE, pga="0.25 g"), motions, brief=True)
     assert "does not move at PGA 0.25 g" in headline(rest)
-    assert rest.share.upper == rest.rocking.upper == 0
+    assert rest.fraction.upper == rest.rocking.upper == 0
     assert "starts to rock at PGA 0.29 g" in five_lines(rest)[0]
 
 
@@ -54,7 +54,7 @@ def test_what_a_pedestal_changes_and_what_helps(on_plinth):
         "fixed to its pedestal",
         "on the floor",
     ]
-    helps = {remedy.name: remedy.factor for remedy in found.remedies}
+    helps = {mitigation.name: mitigation.factor for mitigation in found.mitigations}
     assert len(helps) == 7 or len(helps) == 6
     assert helps["a centre of gravity 20 % lower"] < 1
     assert helps["fixing the object to its pedestal"] == pytest.approx(
@@ -69,7 +69,7 @@ def test_what_a_pedestal_changes_and_what_helps(on_plinth):
 
 def test_without_shaking_it_says_which_amplitude_topples_it(motions):
     found = assess_with(asked(width="35 cm", height="120 cm"), motions)
-    assert found.probability is None and found.share is None
+    assert found.probability is None and found.fraction is None
     assert 0.29 < found.amplitudes[0.1].value <= found.amplitudes[0.5].value
     assert "one in ten" in five_lines(found)[0]
 
@@ -90,13 +90,13 @@ def test_the_narrower_side_decides(motions):
 
 def test_answers_are_json_with_all_that_an_independent_computation_needs(on_plinth):
     answer = json.loads(as_json(on_plinth))
-    x, share = (np.array(answer["fragility"][key]) for key in ("levels", "share"))
+    x, fraction = (np.array(answer["fragility"][key]) for key in ("levels", "fraction"))
     assert answer["probability"]["value"] == on_plinth.probability.value
     # H ~ x^-3 and P straight in ln x, by a plain sum over very fine steps
     fine = np.geomspace(x[0], x[-1], 400_001)
     rates = (0.5 / fine) ** 3 / 475
-    middle = np.interp(np.log(np.sqrt(fine[1:] * fine[:-1])), np.log(x), share)
-    rate = (middle * -np.diff(rates)).sum() + share[-1] * rates[-1]
+    middle = np.interp(np.log(np.sqrt(fine[1:] * fine[:-1])), np.log(x), fraction)
+    rate = (middle * -np.diff(rates)).sum() + fraction[-1] * rates[-1]
     assert answer["probability"]["value"] == pytest.approx(-math.expm1(-50 * rate), abs=1e-6)
 
 
@@ -131,9 +131,9 @@ def test_what_makes_no_sense_is_refused_in_a_sentence(settings, words):
 
 def test_a_density_of_no_common_material_is_doubted():
     light, heavy = (asked(**FIGURE | {"depth": depth}) for depth in ("3 m", "3 cm"))
-    assert any("kg/m³" in doubt for doubt in heavy.objects.doubts)
-    assert any("kg/m³" in doubt for doubt in light.objects.doubts)
-    assert not asked(**FIGURE, depth="30 cm").objects.doubts
+    assert any("kg/m³" in quality_flag for quality_flag in heavy.objects.quality_flags)
+    assert any("kg/m³" in quality_flag for quality_flag in light.objects.quality_flags)
+    assert not asked(**FIGURE, depth="30 cm").objects.quality_flags
 
 
 def test_a_hazard_in_another_unit_is_doubted(motions, tmp_path):
@@ -141,7 +141,7 @@ def test_a_hazard_in_another_unit_is_doubted(motions, tmp_path):
     found = assess_with(
         make_request(FIGURE | {"hazard": ["h.csv"]}, "test", tmp_path), motions, brief=True
     )
-    assert any("unusual" in doubt for doubt in doubts(found))
+    assert any("unusual" in quality_flag for quality_flag in quality_flags(found))
 
 
 def test_a_file_says_what_the_command_line_says(tmp_path):
@@ -190,7 +190,7 @@ def test_default_motions_are_those_of_the_wide_study(default_records):
     assert {motion.name for motion in found.ground} == set(wide.index)
     for motion in found.ground:
         row = wide.loc[motion.name]
-        assert motion.metadata["event"] == row["event"]
+        assert motion.metadata["earthquake"] == row["earthquake"]
         assert motion.metadata["magnitude"] == row["magnitude"]
         assert motion.metadata["distance_km"] == row["distance_km"]
     near = motion_set(Records(magnitude=7.5, distance_km=5), Place(), default_records)
@@ -231,6 +231,6 @@ def test_with_much_friction_sliding_changes_little_and_on_ice_nothing_topples(mo
         assess_with(asked(**FIGURE, pga="0.9 g", friction=friction), few)
         for friction in (1.5, 0.05)
     )
-    assert ice.sliding_share == 0
-    assert abs(rough.sliding_share - rough.share.value) <= 0.26
-    assert rough.share.value == ice.share.value > 0
+    assert ice.sliding_fraction == 0
+    assert abs(rough.sliding_fraction - rough.fraction.value) <= 0.26
+    assert rough.fraction.value == ice.fraction.value > 0

@@ -9,10 +9,10 @@ import pytest
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.measure import PGA
 from rockfrag.assess.inventory import assess_inventory, inventory_table, joint_lines
+from rockfrag.assess.mitigations import mitigations_of, on_plate, with_ballast
 from rockfrag.assess.motions import motion_set
-from rockfrag.assess.remedies import on_plate, remedies_of, with_ballast
+from rockfrag.assess.outcomes import make_intensity_levels, on_pad, outcomes_of
 from rockfrag.assess.request import make_request
-from rockfrag.assess.verdicts import make_ladder, on_pad, verdicts_of
 from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.system.blocks import Block
@@ -37,13 +37,13 @@ def gallery(own_records, tmp_path_factory):
 
 def test_objects_among_others_are_as_they_are_alone(gallery):
     found, _ = gallery
-    for one in found.found:
-        motions = motion_set(one.request.records, one.request.place, ".")
-        alone = assess_with(one.request, motions, brief=True)
-        assert np.array_equal(alone.counted.overturned, one.counted.overturned)
-        assert alone.probability == one.probability
-        assert alone.share == one.share
-        assert alone.remedies == one.remedies
+    for item in found.found:
+        motions = motion_set(item.request.records, item.request.place, ".")
+        alone = assess_with(item.request, motions, brief=True)
+        assert np.array_equal(alone.counted.overturned, item.counted.overturned)
+        assert alone.probability == item.probability
+        assert alone.fraction == item.fraction
+        assert alone.mitigations == item.mitigations
 
 
 def test_twins_on_one_floor_topple_together_and_others_less(gallery):
@@ -90,7 +90,7 @@ def test_the_mean_number_is_the_sum_of_the_fractions(own_records, tmp_path):
     )
     numbers = found.joint.numbers.set_index("at_least")
     assert {1, 2, 3, 5} <= set(numbers.index)
-    sums = sum(one.share.value for one in found.found)
+    sums = sum(item.fraction.value for item in found.found)
     assert numbers.loc[1, "at_the_site"] <= sums <= 6 * numbers.loc[1, "at_the_site"]
 
 
@@ -119,7 +119,7 @@ def test_mitigations_are_bodies():
         {"width": "30 cm", "height": "1.2 m", "pedestal": {"width": "50 cm", "height": "80 cm"}},
         "test",
     )
-    names = " ".join(remedies_of(on_plinth.objects))
+    names = " ".join(mitigations_of(on_plinth.objects))
     for what in ("plate", "ballast", "centre of gravity", "another pedestal", "fixing"):
         assert what in names
 
@@ -128,14 +128,14 @@ def test_a_pad_lets_it_slide_instead(motions):
     """Friction below b/h never lets it rock; a rough pad is as none."""
     request = make_request({"width": "35 cm", "height": "1.2 m"}, "test")
     few = replace(motions, ground=motions.ground[:8], base=motions.base[:8], pairs=())
-    ladder = make_ladder(few, PGA, count=8)
-    smooth, slip = on_pad(request.objects, 0.15, few, ladder)
-    assert not smooth.overturned[ladder.allowed].any()
-    assert slip[ladder.allowed].max() > 0.01
-    rough, _ = on_pad(request.objects, 2.0, few, ladder)
-    bare = verdicts_of(request.objects, {"": request.objects.body}, few, ladder)[""]
+    intensity_levels = make_intensity_levels(few, PGA, count=8)
+    smooth, slip = on_pad(request.objects, 0.15, few, intensity_levels)
+    assert not smooth.overturned[intensity_levels.allowed].any()
+    assert slip[intensity_levels.allowed].max() > 0.01
+    rough, _ = on_pad(request.objects, 2.0, few, intensity_levels)
+    bare = outcomes_of(request.objects, {"": request.objects.body}, few, intensity_levels)[""]
     differs = rough.overturned != bare.overturned
-    assert differs[ladder.allowed].mean() < 0.05
+    assert differs[intensity_levels.allowed].mean() < 0.05
 
 
 def test_pad_and_gallery_from_the_command_line(own_records, tmp_path, capsys):

@@ -34,8 +34,8 @@ def test_random_requests_are_answered_without_contradiction_or_refused_in_a_sent
 @pytest.mark.parametrize(
     ("change", "found"),
     [
-        ({"share_toppling": {"value": 0.2, "lower": 0.3, "upper": 0.4}}, "toppling"),
-        ({"share_rocking": {"value": 0.01, "lower": 0.0, "upper": 0.02}}, "likelier"),
+        ({"fraction_toppling": {"value": 0.2, "lower": 0.3, "upper": 0.4}}, "toppling"),
+        ({"fraction_rocking": {"value": 0.01, "lower": 0.0, "upper": 0.02}}, "likelier"),
         ({"level": 0.01}, "below uplift"),
         ({"counts": {"motions": 6, "rock": 1, "topple": 2}}, "counts"),
     ],
@@ -47,4 +47,4 @@ def test_the_checker_sees_contradictions(change, found, few_records, tmp_path):
     status, out, err = answered(options, tmp_path)
     assert contradictions(status, out, err) == []
     wrong = json.dumps(json.loads(out) | change)
-    assert any(found in one for one in contradictions(0, wrong, ""))
+    assert any(found in contradiction for contradiction in contradictions(0, wrong, ""))

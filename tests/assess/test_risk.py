@@ -9,15 +9,15 @@ from scipy import integrate, stats
 
 from rockfrag.assess.hazard.curve import HazardCurve, curve_of_one_level
 from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.risk import (
     amplitude_target,
     estimate,
+    fraction_target,
     probability_in,
     risk_target,
-    share_target,
     toppling_rate,
 )
-from rockfrag.assess.verdicts import Ladder, Verdicts
 
 LEVELS = np.geomspace(0.02, 3.0, 80)
 BENT = HazardCurve(
@@ -28,13 +28,16 @@ BENT = HazardCurve(
 )
 
 
-def verdicts_from(capacities, events) -> Verdicts:
-    """Verdicts of motions that topple from a level on."""
+def outcomes_from(capacities, earthquakes) -> ObjectOutcomes:
+    """Outcomes of motions that topple from a level on."""
     fell = np.asarray(capacities)[:, None] <= LEVELS
     allowed = np.ones(fell.shape, dtype=bool)
     scales = np.broadcast_to(LEVELS, fell.shape)
-    return Verdicts(
-        Ladder(PGA, LEVELS, scales, allowed), fell, fell, np.array(events, dtype=object)
+    return ObjectOutcomes(
+        IntensityLevels(PGA, LEVELS, scales, allowed),
+        fell,
+        fell,
+        np.array(earthquakes, dtype=object),
     )
 
 
@@ -43,10 +46,10 @@ def verdicts_from(capacities, events) -> Verdicts:
 def test_probability_agrees_with_plain_integration_over_every_motion(hazard, seed):
     random = np.random.default_rng(seed)
     capacities = 0.5 * np.exp(0.5 * random.standard_normal(30))
-    verdicts = verdicts_from(capacities, range(30))
+    outcomes = outcomes_from(capacities, range(30))
 
     def of_one_motion(fell) -> float:
-        """∫ P |dH| of one motion, whose verdicts are joined by straight lines in ln level."""
+        """∫ P |dH| of one motion, whose outcomes are joined by straight lines in ln level."""
 
         def integrand(x: float) -> float:
             step = 1e-5
@@ -63,28 +66,33 @@ def test_probability_agrees_with_plain_integration_over_every_motion(hazard, see
         )
         return inside + float(hazard.rate(LEVELS[-1])) * float(fell[-1])
 
-    rate = np.mean([of_one_motion(fell.astype(float)) for fell in verdicts.overturned])
-    found = toppling_rate(LEVELS, verdicts.shares(), hazard)
+    rate = np.mean([of_one_motion(fell.astype(float)) for fell in outcomes.overturned])
+    found = toppling_rate(LEVELS, outcomes.fractions(), hazard)
     assert probability_in(found, 50) == pytest.approx(1 - math.exp(-50 * rate), abs=1e-6)
     assert found == pytest.approx(rate, rel=2e-5)
 
 
 def test_an_object_that_bears_more_topples_less_often():
-    shares = verdicts_from([0.3, 0.5, 0.9], "abc").shares()
-    plain = toppling_rate(LEVELS, shares, BENT)
+    fractions = outcomes_from([0.3, 0.5, 0.9], "abc").fractions()
+    plain = toppling_rate(LEVELS, fractions, BENT)
     assert (
-        toppling_rate(LEVELS, shares, BENT, 0.2) < plain < toppling_rate(LEVELS, shares, BENT, -0.2)
+        toppling_rate(LEVELS, fractions, BENT, 0.2)
+        < plain
+        < toppling_rate(LEVELS, fractions, BENT, -0.2)
     )
     # a power law shifted is a power law times a factor
     power = curve_of_one_level(PGA, 0.25, 475)
-    ratio = toppling_rate(LEVELS, shares, power, 0.2) / toppling_rate(LEVELS, shares, power)
+    ratio = toppling_rate(LEVELS, fractions, power, 0.2) / toppling_rate(LEVELS, fractions, power)
     assert ratio == pytest.approx(math.exp(-3 * 0.2), rel=1e-9)
 
 
 def test_where_nothing_topples_there_is_a_bound_and_no_zero():
-    verdicts = verdicts_from(np.full(20, 100.0), range(20))
-    rocks = Verdicts(
-        verdicts.ladder, verdicts.overturned, verdicts.overturned | True, verdicts.events
+    outcomes = outcomes_from(np.full(20, 100.0), range(20))
+    rocks = ObjectOutcomes(
+        outcomes.intensity_levels,
+        outcomes.overturned,
+        outcomes.overturned | True,
+        outcomes.earthquakes,
     )
     found = estimate(risk_target(BENT, 50), rocks, {}, {}, {"model": 0.2})
     assert found.value == 0
@@ -96,9 +104,11 @@ def test_one_earthquake_that_topples_leaves_more_open_than_none():
     limits = []
     for toppling in range(4):
         capacities = np.where(np.arange(20) < toppling, 0.3, 100.0)
-        fell = verdicts_from(capacities, range(20))
-        verdicts = Verdicts(fell.ladder, fell.overturned, fell.overturned | True, fell.events)
-        found = estimate(share_target(0.5), verdicts, {}, {}, {"model": 0.2})
+        fell = outcomes_from(capacities, range(20))
+        outcomes = ObjectOutcomes(
+            fell.intensity_levels, fell.overturned, fell.overturned | True, fell.earthquakes
+        )
+        found = estimate(fraction_target(0.5), outcomes, {}, {}, {"model": 0.2})
         assert found.lower <= found.value <= found.upper
         # the exact binomial limit of 5 % on that side (Clopper and Pearson 1934)
         exact = stats.beta.ppf(0.95, toppling + 1, 20 - toppling)
@@ -108,14 +118,16 @@ def test_one_earthquake_that_topples_leaves_more_open_than_none():
 
 
 def test_share_at_a_level_and_level_of_a_share_are_inverse():
-    verdicts = verdicts_from(np.geomspace(0.1, 1.5, 40), range(40))
-    level = estimate(amplitude_target(0.5), verdicts, {}, {}, {}).value
-    assert estimate(share_target(level), verdicts, {}, {}, {}).value == pytest.approx(0.5, abs=1e-9)
+    outcomes = outcomes_from(np.geomspace(0.1, 1.5, 40), range(40))
+    level = estimate(amplitude_target(0.5), outcomes, {}, {}, {}).value
+    assert estimate(fraction_target(level), outcomes, {}, {}, {}).value == pytest.approx(
+        0.5, abs=1e-9
+    )
 
 
 def test_one_earthquake_alone_gives_no_finite_interval():
-    verdicts = verdicts_from([0.3, 0.4, 0.5], ["one"] * 3)
-    found = estimate(risk_target(BENT, 50), verdicts, {}, {}, {})
+    outcomes = outcomes_from([0.3, 0.4, 0.5], ["one"] * 3)
+    found = estimate(risk_target(BENT, 50), outcomes, {}, {}, {})
     assert (found.lower, found.upper) == (0, 1)
 
 
@@ -128,23 +140,23 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
     # ∫ Φ(ln(x/θ)/β) k H0 x^(-k-1) dx = H(θ) exp(k²β²/2)
     truth = float(hazard.rate(theta)) * math.exp(0.5 * (3 * beta) ** 2)
     random = np.random.default_rng(11)
-    held, runs, events, each = 0, 600, 19, 5
+    held, runs, earthquakes, each = 0, 600, 19, 5
     for _ in range(runs):
         error = of_width * random.standard_normal() + of_model * random.standard_normal()
         capacities = theta * np.exp(
             error
-            + between * np.repeat(random.standard_normal(events), each)
-            + within * random.standard_normal(events * each)
+            + between * np.repeat(random.standard_normal(earthquakes), each)
+            + within * random.standard_normal(earthquakes * each)
         )
-        names = np.repeat(np.arange(events), each)
-        verdicts = verdicts_from(capacities, names)
+        names = np.repeat(np.arange(earthquakes), each)
+        outcomes = outcomes_from(capacities, names)
         moved = {
             "width": tuple(
-                verdicts_from(capacities * math.exp(sign * of_width), names) for sign in (-1, 1)
+                outcomes_from(capacities * math.exp(sign * of_width), names) for sign in (-1, 1)
             )
         }
-        found = estimate(risk_target(hazard, 50), verdicts, moved, {}, {"model": of_model})
+        found = estimate(risk_target(hazard, 50), outcomes, moved, {}, {"model": of_model})
         held += found.lower <= probability_in(truth, 50) <= found.upper
-    share = held / runs
-    assert 0.85 < share < 0.95
+    fraction = held / runs
+    assert 0.85 < fraction < 0.95
     assert stats.binomtest(held, runs, 0.9).pvalue > 1e-4

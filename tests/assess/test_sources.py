@@ -30,7 +30,7 @@ def set_of(records: int, rng: np.random.Generator, noise) -> tuple[MotionSet, np
             noise(0, 20),
             name=f"{i}",
             metadata={
-                "event": f"e{i // 3}", "station": f"s{i}", "magnitude": float(m),
+                "earthquake": f"e{i // 3}", "station": f"s{i}", "magnitude": float(m),
                 "distance_km": math.exp(r), "vs30_m_s": math.exp(v),
             },
         )
@@ -85,7 +85,7 @@ def test_both_components_count_for_a_rectangular_base_only(motions):
         assess_with(asked(width="35 cm", height="1.2 m", pga="0.6 g", **more), motions, brief=True)
         for more in ({}, {"round": True})
     )
-    assert "space" in square.share.sources and "space" not in rounded.share.sources
+    assert "space" in square.fraction.sources and "space" not in rounded.fraction.sources
     assert pytest.approx(math.log(0.54 / 0.47), abs=0.01) == SPACE
 
 
@@ -116,10 +116,10 @@ def test_how_a_scan_stands_is_a_source_until_it_is_measured(on_feet, motions):
     measured = of(contact_tolerance="2 mm", edge_retreat="0 mm", direction_deg=0)
     assert measured.objects.statue.width == pytest.approx(0.3, rel=1e-3)
 
-    def sources(one):
-        return assess_with(one, motions, brief=True).amplitudes[0.5].sources
+    def sources(item):
+        return assess_with(item, motions, brief=True).amplitudes[0.5].sources
 
-    blind, known, faced = (sources(one) for one in (request, measured, of(direction_deg=0)))
+    blind, known, faced = (sources(item) for item in (request, measured, of(direction_deg=0)))
     assert blind["contact"] > 0.1 and "facing" not in faced
     ways = ("contact", "retreat", "facing")
     assert math.hypot(*(known.get(name, 0.0) for name in ways)) < 0.02

@@ -13,10 +13,10 @@ from rockfrag.assess.conversion import Conversion, OfTwoCurves, SiteVelocity
 from rockfrag.assess.hazard.curve import make_curve
 from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.request import make_request
 from rockfrag.assess.risk import toppling_rate
-from rockfrag.assess.verdicts import Ladder, Verdicts
-from rockfrag.assess.words import doubts, five_lines
+from rockfrag.assess.words import five_lines, quality_flags
 from rockfrag.errors import InputError
 
 K, K0 = 2.5, 1e-4
@@ -32,13 +32,15 @@ def power_law(measure, at_a_tenth=K0, slope=K, middle=0.1):
     return make_curve(measure, list(levels), list(at_a_tenth * (levels / middle) ** -slope), "test")
 
 
-def topples_from(pgv: float, logs: np.ndarray) -> Verdicts:
+def topples_from(pgv: float, logs: np.ndarray) -> ObjectOutcomes:
     """An object that topples exactly from a PGV on, under motions with these ln PGV/PGA."""
     levels = np.geomspace(0.02, 8.0, 400)
     fell = levels * np.exp(logs)[:, np.newaxis] * VELOCITY_PER_G >= pgv
-    ladder = Ladder(PGA, levels, np.ones(fell.shape), np.ones(fell.shape, dtype=bool))
-    events = np.array([f"e{i}" for i in range(logs.size)], dtype=object)
-    return Verdicts(ladder, fell, np.ones(fell.shape, dtype=bool), events)
+    intensity_levels = IntensityLevels(
+        PGA, levels, np.ones(fell.shape), np.ones(fell.shape, dtype=bool)
+    )
+    earthquakes = np.array([f"e{i}" for i in range(logs.size)], dtype=object)
+    return ObjectOutcomes(intensity_levels, fell, np.ones(fell.shape, dtype=bool), earthquakes)
 
 
 def conversion_of(logs, known, weight=1.0):
@@ -54,15 +56,17 @@ def test_an_object_that_velocity_topples_has_the_rate_of_that_velocity(random):
     known = OfTwoCurves.of(acceleration, velocity, 0.4)
     assert known.log_ratio(np.array([0.05, 1.0])) == pytest.approx(math.log(0.07), abs=1e-9)
     at_site = conversion_of(logs, known).at_site(outcomes)
-    rate = toppling_rate(at_site.ladder.levels, at_site.shares(), acceleration)
+    rate = toppling_rate(at_site.intensity_levels.levels, at_site.fractions(), acceleration)
     assert rate == pytest.approx(float(velocity.rate(30.0)), rel=0.03)
     # as recorded the motions say something else, and how PGA and PGV occur together matters little
-    as_recorded = toppling_rate(outcomes.ladder.levels, outcomes.shares(), acceleration)
+    as_recorded = toppling_rate(
+        outcomes.intensity_levels.levels, outcomes.fractions(), acceleration
+    )
     assert as_recorded > 1.5 * rate
     for side in conversion_of(logs, known).sides(outcomes):
-        assert toppling_rate(side.ladder.levels, side.shares(), acceleration) == pytest.approx(
-            rate, rel=0.06
-        )
+        assert toppling_rate(
+            side.intensity_levels.levels, side.fractions(), acceleration
+        ) == pytest.approx(rate, rel=0.06)
 
 
 def test_velocity_says_nothing_of_an_object_that_acceleration_topples(random):
@@ -70,7 +74,7 @@ def test_velocity_says_nothing_of_an_object_that_acceleration_topples(random):
     logs = math.log(0.1) + 0.5 * random.standard_normal(40)
     known = SiteVelocity(lambda x: np.full(x.shape, math.log(0.3)), 0.3)
     at_site = conversion_of(logs, known, weight=0.0).at_site(outcomes)
-    assert at_site.shares() == pytest.approx(outcomes.shares(), abs=1e-12)
+    assert at_site.fractions() == pytest.approx(outcomes.fractions(), abs=1e-12)
 
 
 def test_what_differs_between_earthquakes_is_in_the_fraction(random):
@@ -78,10 +82,10 @@ def test_what_differs_between_earthquakes_is_in_the_fraction(random):
     logs = math.log(0.1) + 0.5 * random.standard_normal(200)
     known = SiteVelocity(lambda x: np.full(x.shape, math.log(0.07)), 0.3)
     at_site = conversion_of(logs, known).at_site(topples_from(30.0, logs))
-    x = at_site.ladder.levels
+    x = at_site.intensity_levels.levels
     exact = stats.norm.cdf(np.log(x * 0.07 * VELOCITY_PER_G / 30.0) / 0.3)
-    assert np.abs(at_site.shares() - exact).max() < 0.06
-    assert abs(at_site.shares() - exact).mean() < 0.01
+    assert np.abs(at_site.fractions() - exact).max() < 0.06
+    assert abs(at_site.fractions() - exact).mean() < 0.01
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +108,7 @@ def test_faster_ground_topples_more_often(found):
 
 
 def test_what_is_known_of_velocity_is_no_longer_a_source(found):
-    assert found["nothing"].share.sources["conversion"] > 0
+    assert found["nothing"].fraction.sources["conversion"] > 0
     for name in ("slow", "fast"):
         sources = found[name].probability.sources
         # what is left of it is the error of the weight of velocity
@@ -114,9 +118,9 @@ def test_what_is_known_of_velocity_is_no_longer_a_source(found):
 
 
 def test_nothing_known_leaves_counted_fractions(found):
-    one = found["nothing"]
-    assert one.verdicts is one.counted
-    assert one.counts is not None
+    item = found["nothing"]
+    assert item.outcomes is item.counted
+    assert item.counts is not None
 
 
 def test_the_level_is_given_in_both(motions):
@@ -124,7 +128,7 @@ def test_the_level_is_given_in_both(motions):
     assert "PGA 0.6 g and PGV 40 cm/s" in five_lines(found)[0]
     assert found.conversion.known.spread == 0
     # the made motions are quicker than that
-    assert any("PGV of 66.7 cm/s per g" in doubt for doubt in doubts(found))
+    assert any("PGV of 66.7 cm/s per g" in quality_flag for quality_flag in quality_flags(found))
     with pytest.raises(InputError, match="key pga and key sa"):
         asked(pga="0.6 g", sa=["0.3 s", "0.6 g"])
 

@@ -11,14 +11,14 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.measure import PGA
 from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.inventory import read_inventory
+from rockfrag.assess.mitigations import compare
 from rockfrag.assess.narrowing import is_wide, narrowed
+from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.page import page_of
 from rockfrag.assess.place import PERIOD_FACTORS
-from rockfrag.assess.remedies import compare
 from rockfrag.assess.request import make_request, read_request
-from rockfrag.assess.risk import Estimate, estimate, share_target
+from rockfrag.assess.risk import Estimate, estimate, fraction_target
 from rockfrag.assess.scale import step_of
-from rockfrag.assess.verdicts import Ladder, Verdicts
 from rockfrag.assess.words import assumptions, five_lines
 from rockfrag.building.floors import floor_motions
 from rockfrag.cli import main
@@ -50,22 +50,22 @@ def on_pedestal(motions):
     return assess_with(request, motions.at(request.place))
 
 
-def only_one_earthquake_topples() -> Verdicts:
+def only_one_earthquake_topples() -> ObjectOutcomes:
     """Six motions of as many earthquakes, all of which rock and one of which topples."""
     levels = np.geomspace(0.1, 1.0, 10)
     rocked = np.ones((6, 10), dtype=bool)
     fell = np.zeros((6, 10), dtype=bool)
     fell[0, 4:] = True
-    ladder = Ladder(PGA, levels, np.broadcast_to(levels, (6, 10)), rocked)
-    return Verdicts(ladder, fell, rocked, np.arange(6).astype(object))
+    intensity_levels = IntensityLevels(PGA, levels, np.broadcast_to(levels, (6, 10)), rocked)
+    return ObjectOutcomes(intensity_levels, fell, rocked, np.arange(6).astype(object))
 
 
 def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
-    verdicts = only_one_earthquake_topples()
-    target = share_target(float(verdicts.ladder.levels[5]))
-    (change,) = compare(target, verdicts, {"a change": verdicts})
+    outcomes = only_one_earthquake_topples()
+    target = fraction_target(float(outcomes.intensity_levels.levels[5]))
+    (change,) = compare(target, outcomes, {"a change": outcomes})
     assert change.factor == 1 and not change.helps
-    found = estimate(target, verdicts, {}, {}, {})
+    found = estimate(target, outcomes, {}, {}, {})
     # one of six: an exact binomial interval of 90 % runs from 0.9 to 58 %
     assert 0.005 < found.lower < found.value < found.upper < 0.75
 
@@ -99,18 +99,18 @@ def test_each_joint_of_a_column_may_be_fixed(motions):
     assert [block.width for block in request.objects.body.blocks] == [0.8, 0.6, 0.42]
     few = replace(motions, ground=motions.ground[:6], base=motions.base[:6], pairs=())
     found = assess_with(request, few)
-    names = {remedy.name for remedy in found.remedies}
+    names = {mitigation.name for mitigation in found.mitigations}
     assert {"fixing the object to pedestal 1", "fixing pedestal 1 to pedestal 2"} <= names
     held = request.objects.body.rigidly_joined()
     assert held.mass == pytest.approx(request.objects.body.mass)
-    assert found.share.lower <= found.share.value <= found.share.upper
+    assert found.fraction.lower <= found.fraction.value <= found.fraction.upper
 
 
 def test_friction_and_a_measured_restitution_go_together(motions):
     few = replace(motions, ground=motions.ground[:6], base=motions.base[:6], pairs=())
     request = asked(**STATUE, pga="0.9 g", friction=1.5, restitution=0.93)
     found = assess_with(request, few)
-    assert abs(found.sliding_share - found.share.value) <= 0.34
+    assert abs(found.sliding_fraction - found.fraction.value) <= 0.34
 
 
 def test_what_a_list_of_pedestals_gets_wrong_is_named(capsys):
@@ -131,7 +131,7 @@ def test_below_uplift_it_says_from_which_level_it_rocks(motions):
     # b/h = 0.21 / 0.75
     assert "does not move at PGA 0.13 g; it starts to rock at PGA 0.28 g" in line
     assert "No change is needed" in five_lines(found)[3]
-    assert found.share.upper == 0
+    assert found.fraction.upper == 0
 
 
 def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(on_pedestal):
@@ -144,7 +144,7 @@ def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(on
     logits = np.log([0.05 / 0.95, 0.74 / 0.26])
     expected = 1 / (1 + np.exp(-(logits[0] + ratio * (logits[1] - logits[0]))))
     assert better.estimate.upper == pytest.approx(expected)
-    line = five_lines(replace(on_pedestal, share=wide))[0]
+    line = five_lines(replace(on_pedestal, fraction=wide))[0]
     assert "not decidable with what was given" in line
     assert "the ground velocity (PGV) of the site and the building's first period to 5 %" in line
 
@@ -171,7 +171,7 @@ def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(own_records,
 
 def test_none_of_n_motions_is_said_as_that_and_bounds_are_called_bounds(on_pedestal):
     none = replace(
-        on_pedestal, share=Estimate(0.0, 0.0, 0.11, {}), counts=(24, 12, 0), directions=None
+        on_pedestal, fraction=Estimate(0.0, 0.0, 0.11, {}), counts=(24, 12, 0), directions=None
     )
     line = five_lines(none)[0]
     assert "none of 24 motions topples it (upper limit 11 %)" in line
@@ -366,7 +366,7 @@ def test_what_would_have_no_effect_or_no_sense_is_refused(settings, words):
 def test_a_centre_of_gravity_off_the_middle_is_answered(motions):
     request = asked(width="20 cm", height="1.2 m", cg_offset="5 cm", pga="0.2 g")
     found = assess_with(request, motions, brief=True)
-    assert found.share.lower <= found.share.value <= found.share.upper
+    assert found.fraction.lower <= found.fraction.value <= found.fraction.upper
     assert "restitution" in {effect.name for effect in found.effects}
     # b/h on the nearer side: 0.05 / 0.6
     assert found.rocks_from == pytest.approx(0.05 / 0.6)
@@ -387,14 +387,14 @@ def test_a_round_base_of_an_inventory(tmp_path):
     path.write_text("name,width,height,round\nvase,18 cm,60 cm,yes\nbox,18 cm,60 cm,\n")
     requests, faults = read_inventory(path, {})
     assert not faults
-    assert [one.objects.round for one in requests] == [True, False]
+    assert [request.objects.round for request in requests] == [True, False]
 
 
 def test_the_page_offers_several_motions_by_their_earthquake_and_no_false_digits(on_pedestal):
     page = page_of(on_pedestal)
     data = json.loads(re.search(r'id="live-data">(.*?)</script>', page, re.DOTALL)[1])
     assert len(data["motions"]) >= 4
-    assert all(one["name"].startswith("earthquake") for one in data["motions"])
+    assert all(motion["name"].startswith("earthquake") for motion in data["motions"])
     assert "cgHeight" in page
     table = page[page.index("Return period [years]") :]
     periods = re.findall(r'data-title="Return period \[years\]">([^<]*)<', table)

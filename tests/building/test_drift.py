@@ -9,7 +9,7 @@ from rockfrag.building.settings import make_building
 
 @pytest.fixture(scope="module")
 def shaken(noise):
-    """Verdict on a building under noise of a peak acceleration [m/s²]."""
+    """Outcome on a building under noise of a peak acceleration [m/s²]."""
     shaking = noise(5, 1000)
 
     def judge(building, pga):
@@ -21,13 +21,15 @@ def shaken(noise):
 
 def test_an_elastic_building_is_believed_up_to_its_strength(settings, shaken):
     building = make_building(settings)
-    verdicts = [shaken(building, pga) for pga in (0.1, 0.5, 1.0, 2.0, 10.0)]
-    shares = [v.strength_share for v in verdicts]
-    assert shares == pytest.approx([shares[0] * pga / 0.1 for pga in (0.1, 0.5, 1.0, 2.0, 10.0)])
-    assert [v.credible for v in verdicts] == [share <= 1 for share in shares]
-    assert verdicts[0].state == "uncracked"
-    assert verdicts[-1].state == "beyond strength"
-    assert "cannot break" in verdicts[-1].statement
+    outcomes = [shaken(building, pga) for pga in (0.1, 0.5, 1.0, 2.0, 10.0)]
+    fractions = [v.strength_fraction for v in outcomes]
+    assert fractions == pytest.approx(
+        [fractions[0] * pga / 0.1 for pga in (0.1, 0.5, 1.0, 2.0, 10.0)]
+    )
+    assert [v.credible for v in outcomes] == [fraction <= 1 for fraction in fractions]
+    assert outcomes[0].state == "uncracked"
+    assert outcomes[-1].state == "beyond strength"
+    assert "cannot break" in outcomes[-1].statement
 
 
 def test_the_strength_share_is_the_base_shear_over_the_weight(settings):
@@ -37,9 +39,9 @@ def test_the_strength_share_is_the_base_shear_over_the_weight(settings):
     drift = np.zeros((6, 2))
     drift[0, 1] = 0.12 * weight / building.stiffnesses[0] / building.heights[0]
     response = BuildingResponse(np.zeros(2), np.zeros((7, 2)), drift)
-    verdict = judge_drift(building, response)
-    assert verdict.strength_share == pytest.approx(1)
-    assert verdict.storey == 1
+    outcome = judge_drift(building, response)
+    assert outcome.strength_fraction == pytest.approx(1)
+    assert outcome.storey == 1
 
 
 @pytest.mark.parametrize(
@@ -56,6 +58,6 @@ def test_masonry_is_judged_by_the_drift_limits(settings, drift, state, credible)
     building = make_building(settings | {"model": "hysteretic"})
     drifts = np.zeros((6, 2))
     drifts[2, 1] = -drift
-    verdict = judge_drift(building, BuildingResponse(np.zeros(2), np.zeros((7, 2)), drifts))
-    assert (verdict.storey, verdict.state, verdict.credible) == (3, state, credible)
-    assert verdict.statement.endswith(".")
+    outcome = judge_drift(building, BuildingResponse(np.zeros(2), np.zeros((7, 2)), drifts))
+    assert (outcome.storey, outcome.state, outcome.credible) == (3, state, credible)
+    assert outcome.statement.endswith(".")

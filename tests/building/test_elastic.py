@@ -103,7 +103,7 @@ def test_damping_matrix_gives_every_mode_its_ratio():
 
 def test_modes_take_up_the_whole_mass_and_every_floor_moves_with_the_ground():
     modes = find_modes(reference())
-    assert modes.mass_share.sum() == pytest.approx(1, rel=1e-12)
+    assert modes.mass_fraction.sum() == pytest.approx(1, rel=1e-12)
     assert modes.shape @ modes.participation == pytest.approx(np.ones(6), rel=1e-12)
 
 
@@ -130,4 +130,4 @@ def test_floor_motions_say_where_they_come_from(noise):
     assert third.metadata["ground_motion"] == "noise"
     assert third.provenance[-1]["step"] == "floor_motion"
     assert third.provenance[-1]["model"] == "elastic"
-    assert third.provenance[-1]["verdict"].startswith("building, elastic: storey")
+    assert third.provenance[-1]["outcome"].startswith("building, elastic: storey")

@@ -83,13 +83,13 @@ def test_below_cracking_the_storeys_dissipate_nothing_and_the_building_is_elasti
     building, motion = masonry(base_shear=0.3), strong_motion(peak=0.3)
     found = respond_hysteretically(building, motion)
     exact = respond_elastically(building, motion)
-    ledger = found.energy
-    assert ledger.hysteretic.max() < 1e-9 * ledger.input.max()
+    energy_balance = found.energy
+    assert energy_balance.hysteretic.max() < 1e-9 * energy_balance.input.max()
     assert np.abs(found.acceleration - exact.acceleration).max() < 2e-4 * motion.pga
     assert np.abs(found.drift - exact.drift).max() < 2e-4 * exact.peak_drift.max()
 
 
-def test_the_energy_ledger_closes_beyond_yield(masonry):
+def test_the_energy_energy_balance_closes_beyond_yield(masonry):
     found = respond_hysteretically(masonry(), strong_motion())
     assert found.peak_drift.max() > 0.002
     assert found.energy.gap < 1e-6

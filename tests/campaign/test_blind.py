@@ -56,7 +56,7 @@ def test_what_ways_to_stand_explain_is_not_counted_twice_nor_is_luck_a_proof():
 def test_a_cut_block_leaves_less_open_than_a_scan():
     scan, cut = unknowns_of(SCAN), unknowns_of(CUT)
     for name in cut:
-        width = [one[name].quantile(0.95) - one[name].quantile(0.05) for one in (scan, cut)]
+        width = [item[name].quantile(0.95) - item[name].quantile(0.05) for item in (scan, cut)]
         assert width[1] < width[0]
     stated = unknowns_of(SCAN, 0.5)["contact_tolerance_mm"].quantile
     guessed = scan["contact_tolerance_mm"].quantile

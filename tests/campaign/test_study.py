@@ -75,7 +75,7 @@ def run(path: Path, folder: Path) -> dict[str, pd.DataFrame]:
     study = load_any(path)
     assert isinstance(study, CampaignStudy)
     run_stages(study, folder)
-    return {one.stem: pd.read_parquet(one) for one in folder.glob("*.parquet")}
+    return {path.stem: pd.read_parquet(path) for path in folder.glob("*.parquet")}
 
 
 def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(

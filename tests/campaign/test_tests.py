@@ -17,7 +17,7 @@ def table(folder: Path, text: str, name: str = "tests.csv") -> Path:
     return path
 
 
-def test_a_table_of_verdicts_is_read(tmp_path: Path):
+def test_a_table_of_outcomes_is_read(tmp_path: Path):
     campaign = read_campaign(table(tmp_path, GOOD), COLUMNS, {"pga_m_s2": ["pga_g", 9.81]})
     assert list(campaign.tests["overturned"]) == [True, False, True]
     assert list(campaign.tests["group"]) == ["x", "x", "y"]
@@ -35,7 +35,7 @@ def test_an_amplitude_of_overturning_makes_one_test_survived_and_one_overturned(
     assert tests["test"].iloc[2] == "A at 0.33 g"
 
 
-def test_verdicts_of_other_programs_follow_the_tests(tmp_path: Path):
+def test_outcomes_of_other_programs_follow_the_tests(tmp_path: Path):
     codes = table(tmp_path, "test,dem,fem\nC,1,0\nA,0,0\nB,0,1\n", "codes.csv")
     found = read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes).codes
     assert found.to_dict("list") == {"dem": [0, 0, 1], "fem": [0, 1, 0]}
@@ -45,10 +45,10 @@ def test_verdicts_of_other_programs_follow_the_tests(tmp_path: Path):
     ("wrong", "right", "sentence"),
     [
         ("B,2,x,0,0.1", "A,2,x,0,0.1", "test A stands twice"),
-        ("B,2,x,0,0.1", "B,2,x,perhaps,0.1", "no verdict"),
+        ("B,2,x,0,0.1", "B,2,x,perhaps,0.1", "no outcome"),
         ("B,2,x,0,0.1", "B,2,x,0,-1", "above zero"),
         ("B,2,x,0,0.1", "B,,x,0,0.1", "label is missing"),
-        ("fell", "verdict", "there is no column 'fell'"),
+        ("fell", "outcome", "there is no column 'fell'"),
     ],
 )
 def test_a_bad_table_ends_in_one_sentence(tmp_path: Path, wrong: str, right: str, sentence: str):

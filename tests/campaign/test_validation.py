@@ -48,19 +48,19 @@ def test_the_true_trial_is_found_and_votes_well():
     trials = RNG.random((200, 300)) < 0.4
     trials[17] = truth ^ (RNG.random(300) < 0.05)
     found = cross_validate(trials, truth, groups, folds=5, repeats=3, seed=1)
-    assert (found.verdicts == truth).mean() == pytest.approx(0.95, abs=0.03)
+    assert (found.outcomes == truth).mean() == pytest.approx(0.95, abs=0.03)
     assert (found.plausible == 1).all()
 
 
 def test_noise_is_not_rewarded_by_the_choice():
-    # verdicts that know nothing: the best of many looks good on the tests that chose it, and only there
+    # outcomes that know nothing: the best of many looks good on the tests that chose it, and only there
     truth = RNG.random(200) < 0.5
     groups = np.arange(200) % 40
     trials = RNG.random((2000, 200)) < 0.5
     in_sample = (trials == truth).mean(axis=1).max()
     found = cross_validate(trials, truth, groups, folds=5, repeats=5, seed=1)
     assert in_sample > 0.6
-    assert (found.verdicts == truth).mean() == pytest.approx(0.5, abs=0.06)
+    assert (found.outcomes == truth).mean() == pytest.approx(0.5, abs=0.06)
 
 
 def test_plausible_trials_are_within_two_standard_errors_of_the_best():
@@ -82,8 +82,8 @@ def test_thresholds_are_judged_by_other_motions_too():
     measure = np.exp(RNG.standard_normal(300))
     groups = RNG.integers(0, 30, 300)
     fell = RNG.random(300) < 0.5
-    verdicts = cross_validated_threshold(measure, fell, groups, folds=5, repeats=4, seed=2)
-    assert (verdicts == fell).mean() == pytest.approx(0.5, abs=0.08)
+    outcomes = cross_validated_threshold(measure, fell, groups, folds=5, repeats=4, seed=2)
+    assert (outcomes == fell).mean() == pytest.approx(0.5, abs=0.08)
 
 
 def test_two_measures_find_a_border_that_neither_has_alone():
@@ -104,10 +104,10 @@ def test_both_kinds_of_error_are_counted():
     assert row["lower"] < 0.25 < row["upper"]
 
 
-def test_a_rival_with_the_same_verdicts_is_as_good():
+def test_a_rival_with_the_same_outcomes_is_as_good():
     measured = RNG.random(100) < 0.5
-    verdicts = RNG.random(100) < 0.5
-    row = paired_row(verdicts, verdicts, measured, np.arange(100) % 20, 0.9, 1)
+    outcomes = RNG.random(100) < 0.5
+    row = paired_row(outcomes, outcomes, measured, np.arange(100) % 20, 0.9, 1)
     assert (row["better"], row["p"]) == (0, 1)
 
 
@@ -123,7 +123,7 @@ def test_the_paired_test_keeps_its_level_when_tests_share_a_motion():
     assert rejected / 120 < 0.18
 
 
-def test_the_same_verdicts_have_the_same_fragility():
+def test_the_same_outcomes_have_the_same_fragility():
     measure = np.exp(RNG.normal(0, 0.7, 400))
     fell = measure * np.exp(RNG.normal(0, 0.3, 400)) > 1
     table = fragility_beside(

@@ -42,23 +42,23 @@ def random_block(rng: np.random.Generator) -> Block:
 
 def random_stack(rng: np.random.Generator) -> Stack:
     """General stack: centres of gravity off the middle, an uneven base, an offset."""
-    pedestal = Block(
+    lower = Block(
         rng.uniform(0.3, 0.6),
         rng.uniform(0.2, 0.8),
         rng.uniform(20, 200),
         cg_offset=rng.uniform(-0.02, 0.02),
         lean=rng.uniform(-0.01, 0.01),
     )
-    width = rng.uniform(0.3, 0.9) * pedestal.width
+    width = rng.uniform(0.3, 0.9) * lower.width
     height = width * rng.uniform(1.5, 5)
-    statue = Block(
+    upper = Block(
         width,
         height,
         rng.uniform(5, 100),
         cg_height=height * rng.uniform(0.35, 0.6),
         cg_offset=rng.uniform(-0.1, 0.1) * width,
     )
-    return Stack(pedestal, statue, offset=rng.uniform(-0.01, 0.01))
+    return Stack(lower, upper, offset=rng.uniform(-0.01, 0.01))
 
 
 def random_frictions(rng: np.random.Generator, body: Body) -> tuple[float, ...]:

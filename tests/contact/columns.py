@@ -7,7 +7,7 @@ import numpy as np
 from rockfrag.engines.planar.integrate import (
     Book,
     Shaking,
-    event_columns,
+    contact_event_columns,
     history_columns,
     integrate,
 )
@@ -28,7 +28,7 @@ class Found(NamedTuple):
     velocity: np.ndarray
     slip: np.ndarray
     residual: np.ndarray
-    events: np.ndarray
+    contact_events: np.ndarray
     fallen: int
     when: float
     work: np.void
@@ -94,9 +94,14 @@ def run(
     start = posed(p, theta or [0.0] * n, [0.0] * n)
     up = np.zeros(0) if vertical is None else vertical
     history = np.zeros((motion.size + free, history_columns(n)))
-    events = np.zeros((100_000, event_columns(n)))
+    contact_events = np.zeros((100_000, contact_event_columns(n)))
     done, count, when = integrate(
-        p, Shaking(motion, up, dt, 1.0, substeps, free), start, closing, Book(history, events), w
+        p,
+        Shaking(motion, up, dt, 1.0, substeps, free),
+        start,
+        closing,
+        Book(history, contact_events),
+        w,
     )
     history = history[:done]
     q, v = history[:, : 3 * n], history[:, 3 * n : 6 * n]
@@ -107,5 +112,5 @@ def run(
     unit = max(G * float(p["mass"][:n] @ p["standing"][1 : 3 * n : 3]), float(np.abs(work).max()))
     return Found(
         system, np.arange(done) * dt, q, v, history[:, 6 * n : 7 * n], (total - total[0]) / unit,
-        events[:count], int(w["fallen"]), float(when), w,
+        contact_events[:count], int(w["fallen"]), float(when), w,
     )  # fmt: skip

@@ -28,7 +28,7 @@ def modes_of(touching: np.ndarray, moves: np.ndarray, impact: bool) -> np.ndarra
             closed = (code & 1) + (code >> 1)
             choices += [((code + 4 * (way + 1)) << (4 * k), closed) for way in ways]
         listed = [(n + a, c + b) for n, c in listed for a, b in choices]
-    return np.array([number for number, _ in sorted(listed, key=lambda one: one[1])])
+    return np.array([number for number, _ in sorted(listed, key=lambda item: item[1])])
 
 
 @entry_kernel

@@ -1,4 +1,4 @@
-"""The fast kernel beside a plain event-driven integrator and beside time stepping with complementarity."""
+"""The fast kernel beside a plain contact event-driven integrator and beside time stepping with complementarity."""
 
 import math
 from typing import NamedTuple
@@ -19,14 +19,14 @@ def case(rng: np.random.Generator, stacks: bool) -> tuple:
 
 
 LENGTH = 3.2
-"""How long the reference marches, a little more than the motions last [s]."""
+"""How long the reference integrates, a little more than the motions last [s]."""
 
 
 def compare_with_reference(cases: int, stacks: bool, seed: int) -> tuple[int, int]:
-    """Check histories up to the eighth event; number of verdicts that differ, and of eventful cases.
+    """Check histories up to the eighth contact event; number of outcomes that differ, and of eventful cases.
 
-    The reference, which takes a second for a hundred events, stops soon after the last event up to which
-    histories are compared; verdicts are those up to then.
+    The reference, which takes a second for a hundred contact events, stops soon after the last contact event up
+    to which histories are compared; outcomes are those up to then.
     """
     rng = np.random.default_rng(seed)
     differing = eventful = 0
@@ -35,10 +35,10 @@ def compare_with_reference(cases: int, stacks: bool, seed: int) -> tuple[int, in
         kwargs = {"friction": as_friction(mus), "vertical": up}
         fast = simulate_with_friction(body, motion, DT, **kwargs)
         length = LENGTH
-        if len(fast.events) > 10:
-            length = min(LENGTH, fast.events["time"].iloc[10] + 2 * DT)
+        if len(fast.contact_events) > 10:
+            length = min(LENGTH, fast.contact_events["time"].iloc[10] + 2 * DT)
         plain = simulate_reference(body, motion, DT, duration=length, friction=mus, vertical=up)
-        times = [event.time for event in plain.events]
+        times = [contact_event.time for contact_event in plain.contact_events]
         assert len(times) > 8 or length == LENGTH
         until = times[8] if len(times) > 8 else math.inf
         n = min(np.searchsorted(plain.time, until), len(plain.time) - 1, len(fast.time) - 1)
@@ -56,11 +56,11 @@ class Comparison(NamedTuple):
     Attributes
     ----------
     differing, fallen
-        Verdicts that differ, and falls.
+        Outcomes that differ, and falls.
     slips
         Differences of the residual slip of those that stand [m].
     turns
-        Largest differences of rotation up to the fourth event of each case [rad].
+        Largest differences of rotation up to the fourth contact event of each case [rad].
     """
 
     differing: int
@@ -79,7 +79,7 @@ def compare_with_stepping(cases: int, stacks: bool, seed: int, step: float) -> C
         fast = simulate_with_friction(body, motion, DT, friction=as_friction(mus), vertical=up)
         fell, _, _, rows = time_stepping(body, motion, DT, mus, step=step, vertical=up)
         fallen += fast.overturned
-        times = fast.events["time"].tolist()
+        times = fast.contact_events["time"].tolist()
         until = np.searchsorted(fast.time, times[3] if len(times) > 3 else math.inf)
         n = min(int(until), len(rows), len(fast.time))
         rotation = rows[:n, [3 * k + 2 for k in range(len(mus))]]
@@ -107,7 +107,7 @@ def test_many_histories_are_those_of_the_reference(stacks: bool) -> None:
 
 
 @pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
-def test_verdicts_are_those_of_time_stepping(stacks: bool) -> None:
+def test_outcomes_are_those_of_time_stepping(stacks: bool) -> None:
     found = compare_with_stepping(5 if stacks else 8, stacks, seed=25, step=1e-4)
     assert found.differing <= 1
     assert found.fallen >= 1
@@ -122,7 +122,7 @@ def test_two_hundred_cases_are_those_of_time_stepping(stacks: bool) -> None:
     assert found.differing <= 6
     assert 20 <= found.fallen <= 180
     assert np.median(np.abs(found.slips)) < 1e-5
-    # some graze: there the time of an event hangs on a root, and the stepping's error is as large
+    # some graze: there the time of a contact event hangs on a root, and the stepping's error is as large
     turns = np.array(found.turns)
     assert np.median(turns) < 1e-5
     assert (turns > 1e-3).sum() <= 4
@@ -130,7 +130,7 @@ def test_two_hundred_cases_are_those_of_time_stepping(stacks: bool) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
-def test_histories_of_time_stepping_converge_to_those_of_events(stacks: bool) -> None:
+def test_histories_of_time_stepping_converge_to_those_of_contact_events(stacks: bool) -> None:
     coarse, fine = (compare_with_stepping(15, stacks, 29, step).turns for step in (8e-5, 1e-5))
     moving = np.array(coarse) > 1e-6
     assert moving.sum() > 5

@@ -63,7 +63,7 @@ def test_a_block_on_a_plane_tilted_slowly_slides_or_topples_at_the_lesser_angle(
     response = simulate_with_friction(
         T1, G * np.sin(slope), 0.01, friction=mu, vertical=G * (np.cos(slope) - 1)
     )
-    start = response.events.iloc[0]
+    start = response.contact_events.iloc[0]
     assert start["modes"][0].startswith(first)
     at = np.interp(start["time"], np.arange(slope.size) * 0.01, slope)
     assert math.tan(at) == pytest.approx(min(mu, T1.b / T1.h), rel=1e-5)
@@ -77,7 +77,7 @@ def test_from_rest_a_block_does_what_the_map_of_shenton_says() -> None:
         block = Block(0.5, 0.5 * rng.uniform(0.8, 5), 10.0)
         a, mu = G * rng.uniform(0.05, 1.5), rng.uniform(0.05, 1.2)
         ratio = block.b / block.h
-        turning = block.mass * (a * block.h - G * block.b) / block.pole_inertia()
+        turning = block.mass * (a * block.h - G * block.b) / block.pivot_inertia()
         demand = (a - block.h * turning) / (G + block.b * turning)
         if a <= min(mu, ratio) * G:
             expected = "stands"
@@ -120,7 +120,7 @@ def test_a_block_that_turns_in_flight_lands_on_a_corner() -> None:
     response = simulate_with_friction(
         SQUAT, np.zeros(drop.size), DT, friction=0.5, vertical=drop, omega0=0.3
     )
-    first = response.events[response.events.kind == "impact"].iloc[0]
+    first = response.contact_events[response.contact_events.kind == "impact"].iloc[0]
     assert first["from"] == "flight"
     flight = response.time[response.mode[:, 0] == "flies"]
     k = np.searchsorted(response.time, flight[5])
@@ -150,13 +150,15 @@ def test_a_statue_slides_off_its_pedestal() -> None:
     response = simulate_with_friction(body, pulse(3.0, 1.0), DT, friction=(1.0, 0.05))
     assert response.overturned_body == "upper body"
     assert response.slip[-2, 1] < -0.1
-    start = response.events[response.events["modes"].map(lambda to: "slides" in to[1])].iloc[0]
+    start = response.contact_events[
+        response.contact_events["modes"].map(lambda to: "slides" in to[1])
+    ].iloc[0]
     assert start["time"] < 0.1
 
 
 def test_a_still_block_stays_where_it_is() -> None:
     response = simulate_with_friction(T1, STILL, 0.01, friction=0.3)
-    assert response.events.empty
+    assert response.contact_events.empty
     assert not response.overturned and np.abs(response.slip).max() < 1e-15
 
 
@@ -165,7 +167,7 @@ def test_a_statue_as_wide_as_its_pedestal_rocks_on_the_edge_without_leaving_it()
     motion = 5.0 * np.sin(np.linspace(0.0, 2 * math.pi, 101))
     response = simulate_with_friction(body, motion, 0.01, friction=5.0)
     # at 1.5 s it is lying down and does slide off
-    early = response.events[response.events["time"] < 1.0]
+    early = response.contact_events[response.contact_events["time"] < 1.0]
     modes = {mode for modes in early["modes"] for mode in modes}
     assert "rocks left" in modes
     assert "flies" not in modes

@@ -53,9 +53,9 @@ def test_restitution_and_friction_go_together() -> None:
 
 def test_thresholds_and_streams_take_columns(tmp_path: Path) -> None:
     found = find_thresholds(
-        COLUMN, [MOTION], DT, 4.0, tolerance=0.05, smallest_window=0.5, friction=0.6
+        COLUMN, [MOTION], DT, 4.0, tolerance=0.05, narrowest_resurrection=0.5, friction=0.6
     )
-    assert "body" in str(found.windows.columns.tolist())
+    assert "body" in str(found.resurrections.columns.tolist())
     assert stream_overturns([COLUMN], [MOTION], DT, [0.2, 1.5], tmp_path / "o.parquet") == 2
 
 
@@ -86,7 +86,7 @@ def test_an_arrangement_names_another_one_as_its_counterpart(tmp_path: Path) -> 
 @pytest.mark.parametrize("row", ["all,venus,base|plinth", "all,venus | base | plinth,"])
 def test_an_arrangement_names_its_blocks_from_above(tmp_path: Path, row: str) -> None:
     (found,) = arrangements(tmp_path, row)
-    assert labels_of(found) == {"configuration": "all", "object": "venus", "pedestal": "P"}
+    assert labels_of(found) == {"configuration": "all", "object": "venus", "lower": "P"}
     assert [body.width for body in found.bodies] == [0.8, 0.5, 0.3]
     assert fallen_names(found) == ("", "plinth", "base", "venus")
 

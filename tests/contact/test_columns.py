@@ -16,21 +16,23 @@ from .cases import DT, random_motion
 from .columns import Found, random_column, run, with_contacts
 
 
-def early(found: Found, events: int = 6) -> int:
-    """Number of samples before an event."""
-    times = found.events[:, 0]
+def early(found: Found, contact_events: int = 6) -> int:
+    """Number of samples before a contact event."""
+    times = found.contact_events[:, 0]
     return (
-        int(np.searchsorted(found.time, times[events])) if len(times) > events else len(found.time)
+        int(np.searchsorted(found.time, times[contact_events]))
+        if len(times) > contact_events
+        else len(found.time)
     )
 
 
 def opening(found: Found) -> float:
     """Return the instant at which a joint opens or slides first: a column that falls throws its bodies off."""
-    for event in found.events:
-        number = int(event[3]) >> 4
+    for contact_event in found.contact_events:
+        number = int(contact_event[3]) >> 4
         while number:
             if number & 15 != 3 + 4:
-                return float(event[0])
+                return float(contact_event[0])
             number >>= 4
     return math.inf
 
@@ -83,7 +85,7 @@ def test_a_light_body_on_top_changes_what_is_below_in_proportion_to_its_mass() -
             found = run(with_contacts(taller, [*mus, 0.5]), motion)
             m = min(n, len(found.time))
             differences.append(float(np.abs(found.theta[:m, :2] - bare.theta[:m]).max()))
-        if len(bare.events) < 4:
+        if len(bare.contact_events) < 4:
             continue
         compared += 1
         assert differences[2] < 1e-4
@@ -92,7 +94,7 @@ def test_a_light_body_on_top_changes_what_is_below_in_proportion_to_its_mass() -
 
 
 @pytest.mark.parametrize("bodies", [3, 4, 8])
-def test_the_ledger_of_energy_of_a_column_closes(bodies: int) -> None:
+def test_the_energy_balance_of_energy_of_a_column_closes(bodies: int) -> None:
     rng = np.random.default_rng(bodies)
     for _ in range(6):
         column = with_contacts(random_column(rng, bodies), list(rng.uniform(0.2, 0.9, bodies)))
@@ -145,7 +147,7 @@ def test_without_a_motion_a_column_rests_for_ever() -> None:
         column = with_contacts(random_column(rng, bodies), [0.3] * bodies)
         found = run(column, np.zeros(50))
         assert (found.velocity == 0).all() and found.fallen == 0
-        assert len(found.events) <= 1
+        assert len(found.contact_events) <= 1
 
 
 def test_a_column_tilted_as_one_falls_as_one_until_a_joint_opens() -> None:
@@ -155,7 +157,7 @@ def test_a_column_tilted_as_one_falls_as_one_until_a_joint_opens() -> None:
     many = run(drums.system(), np.zeros(300), theta=[tilt] * 6)
     single = run(whole.system(), np.zeros(300), theta=[tilt])
     assert many.fallen == 1 and single.fallen == 1
-    n = int(np.searchsorted(many.time, many.events[0, 0]))
+    n = int(np.searchsorted(many.time, many.contact_events[0, 0]))
     assert n > 50
     for k in range(6):
         np.testing.assert_allclose(many.theta[:n, k], single.theta[:n, 0], atol=1e-9)
@@ -168,7 +170,7 @@ def test_histories_of_three_bodies_are_those_of_the_plain_reference() -> None:
         column, mus = random_column(rng, 3), list(rng.uniform(0.3, 0.8, 3))
         motion, up = random_motion(rng), 0.3 * random_motion(rng)
         found = run(with_contacts(column, mus), motion, vertical=up)
-        times = found.events[:, 0]
+        times = found.contact_events[:, 0]
         length = float(times[7]) if len(times) > 7 else 3.0
         plain = simulate_reference(
             column, motion, DT, friction=mus, vertical=up, duration=length + DT

@@ -115,7 +115,7 @@ def jumps(at: list[float], outcome: object, scale: float) -> int:
 
 
 def survey(number: int, seed: int) -> dict[str, int]:
-    """Look at random impacts of one to four bodies under every law and a ladder of values."""
+    """Look at random impacts of one to four bodies under every law and a series of values."""
     rng = np.random.default_rng(seed)
     counts = dict.fromkeys(
         ("gains", "stops", "jumps in e", "jumps in mu", "gives way", "several"), 0
@@ -179,7 +179,7 @@ def test_with_much_friction_impacts_are_those_of_pure_rocking(stacks: bool, law:
         )
         motion = random_motion(rng)
         slow, fast = run(system, motion), simulate(body, motion, DT, restitution=measured)
-        times = fast.events["time"].to_numpy()
+        times = fast.contact_events["time"].to_numpy()
         if len(times) < 5 or fast.lost_contact < times[4] or slow.work["given_way"]:
             continue
         n = int(np.searchsorted(fast.time, times[4]))

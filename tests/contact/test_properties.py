@@ -34,13 +34,13 @@ def random_case(seed: int) -> tuple[Block | Stack, np.ndarray, np.ndarray, objec
 
 def energies(body: Block | Stack) -> float:
     """Weight times height: unit of energy [J]."""
-    blocks = (body,) if isinstance(body, Block) else (body.pedestal, body.statue)
+    blocks = (body,) if isinstance(body, Block) else (body.lower, body.upper)
     return 9.81 * sum(block.mass * block.h for block in blocks)
 
 
-def until_the_eighth_event(response: Response) -> int:
-    """Number of samples before the eighth event; all if there are fewer."""
-    times = response.events["time"].tolist()
+def until_the_eighth_contact_event(response: Response) -> int:
+    """Number of samples before the eighth contact event; all if there are fewer."""
+    times = response.contact_events["time"].tolist()
     return int(np.searchsorted(response.time, times[7] if len(times) > 7 else math.inf))
 
 
@@ -60,7 +60,7 @@ def test_energy_is_what_the_ground_gave_less_what_impacts_and_friction_took(seed
     # the largest of 10 000 cases leaves 1.5e-8, the next one 9.6e-9
     assert table["residual"].abs().max() < 2e-8 * unit
     assert np.diff(table["lost_friction"]).min() > -1e-9 * unit
-    hits = response.events[response.events["kind"] == "impact"]
+    hits = response.contact_events[response.contact_events["kind"] == "impact"]
     assert ((hits["energy_before"] - hits["energy_after"]) > -1e-9 * unit).all()
 
 
@@ -82,11 +82,11 @@ def test_the_mirror_image_moves_as_the_mirror_image(seed: int) -> None:
     block = Block(0.3, rng.uniform(0.4, 1.2), 10.0, cg_offset=rng.uniform(-0.03, 0.03))
     mirrored = Block(0.3, block.height, 10.0, cg_offset=-block.cg_offset)
     motion, up, mu = random_motion(rng), 0.5 * random_motion(rng), rng.uniform(0.2, 0.8)
-    one = simulate_with_friction(block, motion, DT, friction=mu, vertical=up)
+    first = simulate_with_friction(block, motion, DT, friction=mu, vertical=up)
     other = simulate_with_friction(mirrored, -motion, DT, friction=mu, vertical=up)
-    n = until_the_eighth_event(one)
-    np.testing.assert_allclose(one.theta[:n], -other.theta[:n], atol=1e-9)
-    np.testing.assert_allclose(one.slip[:n], -other.slip[:n], atol=1e-9)
+    n = until_the_eighth_contact_event(first)
+    np.testing.assert_allclose(first.theta[:n], -other.theta[:n], atol=1e-9)
+    np.testing.assert_allclose(first.slip[:n], -other.slip[:n], atol=1e-9)
 
 
 @settings(max_examples=15, deadline=None)
@@ -103,13 +103,13 @@ def test_a_larger_model_moves_alike_in_longer_time(seed: int, ratio: float) -> N
             Block(0.2 * factor, 0.6 * factor, 9 * factor**3),
         )
 
-    one = simulate_with_friction(scaled(1.0), motion, DT, friction=mus, vertical=up)
+    first = simulate_with_friction(scaled(1.0), motion, DT, friction=mus, vertical=up)
     other = simulate_with_friction(
         scaled(ratio), motion, DT * math.sqrt(ratio), friction=mus, vertical=up
     )
-    n = min(until_the_eighth_event(one), len(other.time))
-    np.testing.assert_allclose(one.theta[:n], other.theta[:n], atol=1e-7)
-    np.testing.assert_allclose(one.slip[:n], other.slip[:n] / ratio, atol=1e-7)
+    n = min(until_the_eighth_contact_event(first), len(other.time))
+    np.testing.assert_allclose(first.theta[:n], other.theta[:n], atol=1e-7)
+    np.testing.assert_allclose(first.slip[:n], other.slip[:n] / ratio, atol=1e-7)
 
 
 @settings(max_examples=15, deadline=None)
@@ -117,12 +117,12 @@ def test_a_larger_model_moves_alike_in_longer_time(seed: int, ratio: float) -> N
 def test_a_later_motion_is_followed_later(seed: int) -> None:
     body, motion, up, friction = random_case(seed)
     wait = np.zeros(37)
-    one = simulate_with_friction(body, motion, DT, friction=friction, vertical=up)
+    first = simulate_with_friction(body, motion, DT, friction=friction, vertical=up)
     other = simulate_with_friction(
         body, np.append(wait, motion), DT, friction=friction, vertical=np.append(wait, up)
     )
-    n = until_the_eighth_event(one)
-    np.testing.assert_allclose(one.theta[:n], other.theta[37 : n + 37], atol=1e-9)
+    n = until_the_eighth_contact_event(first)
+    np.testing.assert_allclose(first.theta[:n], other.theta[37 : n + 37], atol=1e-9)
 
 
 @settings(max_examples=30, deadline=None)
@@ -145,7 +145,7 @@ def test_a_stack_on_a_ground_below_b_over_h_never_rocks(seed: int) -> None:
     rng = np.random.default_rng(seed)
     stack = Stack(Block(0.5, rng.uniform(0.2, 0.8), 80.0), Block(0.3, rng.uniform(0.2, 1.0), 20.0))
     joined = stack.rigidly_joined()
-    slope = min(math.tan(stack.statue.alpha), math.tan(joined.critical_angle(1)))
+    slope = min(math.tan(stack.upper.alpha), math.tan(joined.critical_angle(1)))
     ground = rng.uniform(0.3, 0.999) * slope
     mus = (ground, ground * rng.uniform(1.0, 2.0))
     response = simulate_with_friction(stack, 30 * rng.standard_normal(200), DT, friction=mus)
@@ -185,21 +185,21 @@ def test_the_slenderest_motion_of_the_thesis_cannot_rock_t1_at_a_friction_of_thr
     assert not result.overturned.any()
 
 
-def test_verdicts_do_not_depend_on_the_number_of_threads() -> None:
+def test_outcomes_do_not_depend_on_the_number_of_threads() -> None:
     rng = np.random.default_rng(4)
     bodies = [random_block(rng), random_stack(rng), Stack(P, T1)]
     motions = [random_motion(rng) for _ in range(3)]
     kwargs = {"friction": [0.4, (0.4, 0.6), (0.5, 0.5)], "vertical": motions[::-1]}
-    one, two = (
+    first, two = (
         overturns(bodies, motions, DT, [0.7, 1.0, 1.4], threads=threads, **kwargs)
         for threads in (1, 2)
     )
-    np.testing.assert_array_equal(one.overturning_time, two.overturning_time)
-    np.testing.assert_array_equal(one.slip, two.slip)
-    assert one.overturned.any() and not one.overturned.all()
+    np.testing.assert_array_equal(first.overturning_time, two.overturning_time)
+    np.testing.assert_array_equal(first.slip, two.slip)
+    assert first.overturned.any() and not first.overturned.all()
 
 
-def test_verdicts_of_an_ensemble_are_those_of_the_histories() -> None:
+def test_outcomes_of_an_ensemble_are_those_of_the_histories() -> None:
     rng = np.random.default_rng(8)
     bodies = [random_block(rng) for _ in range(4)] + [random_stack(rng) for _ in range(4)]
     motions = [random_motion(rng) for _ in range(3)]

@@ -23,11 +23,11 @@ class Comparison(NamedTuple):
     Attributes
     ----------
     differ
-        Whether the verdicts differ.
+        Whether the outcomes differ.
     fell
         Whether it falls in pure rocking.
     flagged
-        Whether pure rocking says that a pole would have to pull (``lost_contact``).
+        Whether pure rocking says that a pivot would have to pull (``lost_contact``).
     """
 
     differ: np.ndarray
@@ -35,7 +35,7 @@ class Comparison(NamedTuple):
     flagged: np.ndarray
 
 
-def compare_verdicts(stacks: bool, bodies: int, seed: int) -> Comparison:
+def compare_outcomes(stacks: bool, bodies: int, seed: int) -> Comparison:
     """Random bodies under twenty random motions at ten scales."""
     rng = np.random.default_rng(seed)
     drawn: list[Block | Stack] = [
@@ -49,29 +49,29 @@ def compare_verdicts(stacks: bool, bodies: int, seed: int) -> Comparison:
 
 
 @pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
-def test_verdicts_are_those_of_pure_rocking(stacks: bool) -> None:
-    found = compare_verdicts(stacks, 2, seed=1)
+def test_outcomes_are_those_of_pure_rocking(stacks: bool) -> None:
+    found = compare_outcomes(stacks, 2, seed=1)
     assert not found.differ.any()
     assert 0.05 < found.fell.mean() < 0.95
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
-def test_ten_thousand_verdicts_are_those_of_pure_rocking_but_where_that_lifts_off(
+def test_ten_thousand_outcomes_are_those_of_pure_rocking_but_where_that_lifts_off(
     stacks: bool,
 ) -> None:
-    """In pure rocking a pole may pull; bodies in contact lift off there, and go their own way."""
-    found = compare_verdicts(stacks, 50, seed=2)
+    """In pure rocking a pivot may pull; bodies in contact lift off there, and go their own way."""
+    found = compare_outcomes(stacks, 50, seed=2)
     assert found.differ.size == 10_000 and found.fell.sum() > 900
     assert not (found.differ & ~found.flagged).any()
     differing, flagged = int(found.differ.sum()), int(found.flagged.sum())
-    print(f"{differing} of 10 000 verdicts differ, of {flagged} in which pure rocking lifts off")
+    print(f"{differing} of 10 000 outcomes differ, of {flagged} in which pure rocking lifts off")
     assert differing <= (10 if stacks else 0)
     assert differing <= flagged < 0.15 * found.differ.size
 
 
 def test_where_the_ground_takes_weight_away_pure_rocking_says_that_it_may_be_wrong() -> None:
-    """Verdicts that flight changes are among the cases that are marked; where little weight goes, none changes."""
+    """Outcomes that flight changes are among the cases that are marked; where little weight goes, none changes."""
     rng = np.random.default_rng(5)
     drawn = [draw(rng) for draw in (random_block, random_stack) for _ in range(10)]
     motions, ups = ([random_motion(rng) for _ in range(6)] for _ in range(2))
@@ -103,8 +103,8 @@ def test_where_nothing_slides_the_answer_is_that_of_pure_rocking_to_the_bit() ->
             continue
         np.testing.assert_array_equal(pure.theta, rough.theta)
         assert (rough.slip == 0).all()
-        assert len(rough.events) == len(pure.events)
-        same += len(pure.events) > 1
+        assert len(rough.contact_events) == len(pure.contact_events)
+        same += len(pure.contact_events) > 1
         smooth = simulate(body, motion, DT, friction=0.9 * float(pure.friction_demand.max()))
         assert (smooth.slides != 0).any()
     assert same > 3
@@ -119,9 +119,9 @@ def test_histories_are_those_of_pure_rocking(stacks: bool) -> None:
         motion = random_motion(rng)
         pure = simulate(body, motion, DT)
         general = simulate_with_friction(body, motion, DT, friction=np.inf)
-        if len(pure.events) < 5:
+        if len(pure.contact_events) < 5:
             continue
-        n = np.searchsorted(pure.time, pure.events["time"][4])
+        n = np.searchsorted(pure.time, pure.contact_events["time"][4])
         np.testing.assert_allclose(general.theta[:n], pure.theta[:n], atol=1e-7)
         compared += 1
     assert compared > 5

@@ -19,7 +19,7 @@ from .checked_report import check_first_page, check_report
 from .studies import Foreign, run_stages, write
 
 NAMES = ("vase", "Büste", "saint on a plinth", "rack 3", "x_1", "50 % marble", "<b>urn</b>")
-EVENTS = ("Irpinia", "Friuli", "quake & co", "L'Aquila")
+EARTHQUAKES = ("Irpinia", "Friuli", "quake & co", "L'Aquila")
 MEASURES = ("pga_g", "pgv_cm_s", "pgd_cm", "arias_m_s", "sa_0_3s_g", "sa_1_0s_g", "housner_cm")
 PAIRS = (["pga_g", "pgv_over_pga_s"], ["pga_g", "pgv_cm_s"], ["pga_g", "mean_period_s"])
 FLOORS: tuple[dict[str, int] | None, ...] = (
@@ -33,13 +33,13 @@ SHAKER = {
     "start": "off-centre",
 }
 SHAKER |= {"armature_mass_kg": 5, "table_mass_kg": 5}
-EXPLANATION: dict[str, Any] = {
+SENSITIVITY_ANALYSIS: dict[str, Any] = {
     "statue_restitution": [0.97], "interface_restitution": [1.03], "ground_restitution": [0.9],
     "pedestal_lean_deg": [0.5], "statue_offset_mm": [5], "statue_cg_offset_mm": [3], "pedestal_width_cm": [60],
     "table_mass_kg": [20], "step_percent": [10],
     "tolerance_percent": 1, "tolerance_restitution": 0.01, "replicates": 2,
 }  # fmt: skip
-PARTICULAR = ("explanation", "building_sensitivity")
+PARTICULAR = ("sensitivity_analysis", "building_sensitivity")
 
 
 def draw(rng: random.Random) -> Foreign:
@@ -66,7 +66,7 @@ def draw(rng: random.Random) -> Foreign:
         elif rng.random() < 0.3:
             blocks["step"] = (rng.uniform(60, 120), rng.uniform(10, 30), 400.0)
             configurations["three"] = (names[0], "plinth|step")
-    records = {f"record {k}": rng.choice(EVENTS) for k in range(rng.choice((1, 2, 2, 3, 5)))}
+    records = {f"record {k}": rng.choice(EARTHQUAKES) for k in range(rng.choice((1, 2, 2, 3, 5)))}
     floors = {"roof": 4} if rng.random() < 0.03 else rng.choice(FLOORS)
     keys = _keys(rng, names)
     if len(configurations) == len(names) or floors is None:
@@ -102,7 +102,7 @@ def _keys(rng: random.Random, names: list[str]) -> dict[str, Any]:
             0.1,
             rng.choice(({"first_period_s": [0.2, 0.5]}, {"ground_scale": [0.8]}, {"base_shear": [0.2]})),
         ),
-        "explanation": (0.08, EXPLANATION),
+        "sensitivity_analysis": (0.08, SENSITIVITY_ANALYSIS),
         "seed": (0.1, rng.choice((0, 7))),
         "colour": (0.03, "red"),
         "write_motions ": (0.03, "GSE"),

@@ -150,7 +150,7 @@ class Chromium:
             thrown = params["exceptionDetails"]
             self.console.append(str(thrown.get("exception", {}).get("description", thrown["text"])))
         elif message.get("method") == "Runtime.consoleAPICalled":
-            self.console.append(str([one.get("value") for one in params["args"]]))
+            self.console.append(str([argument.get("value") for argument in params["args"]]))
         elif message.get("method") == "Log.entryAdded":
             self.console.append(params["entry"]["text"])
 

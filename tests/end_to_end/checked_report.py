@@ -12,14 +12,14 @@ from rockfrag.files import file_name
 from rockfrag.report.answer import study_answer
 from rockfrag.report.part import Results
 
-GUEST = re.compile(
+PLUGIN = re.compile(
     r"thesis|towers?\b|\bT[123]\b|\bGF\b|\bF[35]\b|\bC\d\d?\b|Tables? [34]\.\d|figures? [34]\.\d"
     r"|counterpart|statements? (?:are|is) tested|contradict",
     re.IGNORECASE,
 )
 NO_NUMBER = re.compile(r"\b(?:nan|NaN|NaT|inf|infinity|null|True|False)\b|<NA>|mathdefault|\(s\)")
 INTERVAL = re.compile(r"(?:([−\d.]+) )?\[([−\d.]+|open), ([−\d.]+|open)\]")
-NOUNS = "record|test|motion|event|earthquake|pair|floor|object|configuration|outcome|perturbation|building|row"
+NOUNS = "record|test|motion|earthquake|earthquake|pair|floor|object|configuration|outcome|perturbation|building|row"
 PLURALS = re.compile(rf"\b1 (?:simulated |overturning )?(?:{NOUNS})s\b")
 SINGULARS = re.compile(rf"\b(?:[2-9]|[1-9]\d+) (?:{NOUNS})\b(?! on a pedestal)")
 VOID = {"meta", "link", "br", "img", "input", "hr"}
@@ -73,7 +73,7 @@ class Page(HTMLParser):
             self.tables[-1][-1][-1] += text
 
 
-def check_report(results: Path, names: Iterable[str] = (), guest: bool = False) -> Page:
+def check_report(results: Path, names: Iterable[str] = (), plugin: bool = False) -> Page:
     """Assert that a report is fit to be shown, and return what is on it.
 
     Parameters
@@ -82,14 +82,14 @@ def check_report(results: Path, names: Iterable[str] = (), guest: bool = False) 
         Folder of the study's results.
     names
         Names that the user has given, which may be any words.
-    guest
+    plugin
         Whether the study asked to be compared with the thesis.
     """
     text = (results / "report.html").read_text(encoding="utf-8")
     page = Page(text)
-    said = [_without(one, names) for one in (*page.words, *page.drawings, *page.labels)]
+    said = [_without(word, names) for word in (*page.words, *page.drawings, *page.labels)]
     whole = " · ".join(said)
-    for pattern in (NO_NUMBER, PLURALS, SINGULARS, *(() if guest else (GUEST,))):
+    for pattern in (NO_NUMBER, PLURALS, SINGULARS, *(() if plugin else (PLUGIN,))):
         found = pattern.search(whole)
         assert found is None, (
             f"“{found[0]}” in “…{whole[max(0, found.start() - 90) : found.end() + 60]}…”"
@@ -102,9 +102,9 @@ def check_report(results: Path, names: Iterable[str] = (), guest: bool = False) 
     assert all(source.startswith(("data:", "#")) for source in sources)
     anchors = set(re.findall(r' id="([^"]*)"', text))
     assert {source[1:] for source in sources if source.startswith("#")} <= anchors
-    if not guest:
+    if not plugin:
         strange = [
-            path.name for path in results.rglob("*") if GUEST.search(_without(path.stem, names))
+            path.name for path in results.rglob("*") if PLUGIN.search(_without(path.stem, names))
         ]
         assert not strange, f"files of the guest: {strange}"
     return page
@@ -124,7 +124,7 @@ def _number(text: str) -> float:
 
 def _check_intervals(text: str) -> None:
     for found in INTERVAL.finditer(text):
-        value, lower, upper = (_number(one) if one else math.nan for one in found.groups())
+        value, lower, upper = (_number(group) if group else math.nan for group in found.groups())
         assert not lower >= upper, f"an interval without width: {found[0]}"
         assert not value < lower and not value > upper, (
             f"an estimate outside its limits: {found[0]}"
@@ -156,8 +156,12 @@ def _check_figures(results: Path, page: Page) -> None:
 def check_first_page(results: Results) -> None:
     """Assert that each number of what stands first is in the study's tables, and that it is short."""
     answer = study_answer(results)
-    text = " ".join(one.said for one in answer.sentences)
-    for name in sorted({one.name for one in results.study.configurations}, key=len, reverse=True):
+    text = " ".join(sentence.said for sentence in answer.sentences)
+    for name in sorted(
+        {configuration.name for configuration in results.study.configurations},
+        key=len,
+        reverse=True,
+    ):
         text = text.replace(name, "¤")
     for name in [*results.objects, *results.tests["test"], *results.tests["motion"]]:
         text = text.replace(name, "¤")
@@ -166,15 +170,17 @@ def check_first_page(results: Results) -> None:
     ]
     if results.study.has_pairs:
         tables.append(results.table("pedestal/effects"))
-    values = np.concatenate([one.select_dtypes("number").to_numpy(float).ravel() for one in tables])
+    values = np.concatenate(
+        [table.select_dtypes("number").to_numpy(float).ravel() for table in tables]
+    )
     values = values[np.isfinite(values)]
     known = {f"{value:.{digits}f}" for value in values for digits in (0, 1, 2, 3)}
     known |= {f"{100 * abs(value - 1):.{digits}f}" for value in values for digits in (0, 1)}
-    counts = {str(n) for n in range(1 + max(len(one) for one in tables))}
+    counts = {str(n) for n in range(1 + max(len(table) for table in tables))}
     levels = {f"{100 * results.study.fragility.confidence:g}", "95", "80", "50", "10"}
     strange = set(re.findall(r"\d+(?:\.\d+)?", text)) - known - counts - levels
-    # a ratio of amplitudes over sweeps is of no table of its own
-    strange = {one for one in strange if f"{one} times" not in text}
+    # a ratio of amplitudes over IDA curves is of no table of its own
+    strange = {item for item in strange if f"{item} times" not in text}
     assert not strange, f"numbers that are in no table: {strange} in {text}"
 
 

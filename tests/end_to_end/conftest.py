@@ -20,8 +20,8 @@ def browser(request: pytest.FixtureRequest) -> Iterator[Browser]:
     kind, program = BROWSERS[request.param]
     if program is None:
         pytest.skip(f"{request.param} is not installed")
-    with kind() as one:
-        yield one
+    with kind() as item:
+        yield item
 
 
 @pytest.fixture(scope="session")

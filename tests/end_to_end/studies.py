@@ -12,7 +12,7 @@ from rockfrag.study.loading import load_any
 
 from .. import stages_in_process
 
-CATALOGUE = "name,event,date,station,component,magnitude,distance_km,source,file,vertical,sha256,unit,licence\n"
+CATALOGUE = "name,earthquake,date,station,component,magnitude,distance_km,source,file,vertical,sha256,unit,licence\n"
 STEP, SAMPLES = 0.02, 250
 
 
@@ -27,7 +27,7 @@ class Foreign:
     configurations
         Object and pedestal (or None) of each configuration by name, and with what it is compared, if that is said.
     records
-        Event of each record by name.
+        Earthquake of each record by name.
     floors
         Level of each floor by its label, in a building of three storeys; None for no building.
     content
@@ -64,11 +64,11 @@ def write(study: Foreign, folder: Path) -> Path:
         ],
     )
     rows = []
-    for number, (name, event) in enumerate(study.records.items()):
+    for number, (name, earthquake) in enumerate(study.records.items()):
         names = f"record{number}.txt", f"record{number}-up.txt"
-        for seed, one in zip((number, 100 + number), names, strict=True):
-            _record(folder / one, seed)
-        rows.append((name, event, *[""] * 5, "folder", *names, "", "g", "own"))
+        for seed, item in zip((number, 100 + number), names, strict=True):
+            _record(folder / item, seed)
+        rows.append((name, earthquake, *[""] * 5, "folder", *names, "", "g", "own"))
     _table(folder / "motions.csv", CATALOGUE.strip(), rows)
     content: dict[str, Any] = {
         "study": "own",

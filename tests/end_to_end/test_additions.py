@@ -92,8 +92,8 @@ def test_one_declaration_each_reaches_the_report(additions, tmp_path):
     results = run(study, tmp_path)
     page = check_report(results, study.names)
     # the engine answered for the needle, and only for it
-    fell = pd.read_parquet(results / "sweep/needle.parquet")["overturned"]
-    column = pd.read_parquet(results / "sweep/column.parquet")
+    fell = pd.read_parquet(results / "ida/needle.parquet")["overturned"]
+    column = pd.read_parquet(results / "ida/column.parquet")
     assert not fell.any() and column["overturned"].any()
     # the limit state is counted, has curves between rocking and overturning, and is exported
     assert column["turns_far"].sum() > column["overturned"].sum()
@@ -106,7 +106,7 @@ def test_one_declaration_each_reaches_the_report(additions, tmp_path):
     assert "rms_g" in pd.read_parquet(results / "measures.parquet")
     curves = pd.read_parquet(results / "fragility.parquet")
     assert set(curves["im"]) == {"RMS acceleration"} and set(curves["unit"]) == {"g"}
-    assert "rms_g" in set(pd.read_parquet(results / "measure_choice.parquet")["measure"])
+    assert "rms_g" in set(pd.read_parquet(results / "measure_selection.parquet")["measure"])
     assert 'imt="RMSA"' in (results / "exports/fragility_rms_acceleration.xml").read_text()
     words = " ".join(page.words)
     assert "RMS acceleration [g]" in words and "turning far" in words

@@ -54,7 +54,7 @@ STUDIES = {
         records=dict(list(TEN.items())[:4]),
         content={"amplitudes": {"lowest_g": 0.1, "highest_g": 0.7, "step_percent": 20}},
     ),
-    "two bodies under one event": Foreign(
+    "two bodies under one earthquake": Foreign(
         blocks={"bust": (25.0, 60.0, 45.0), "column": (30.0, 180.0, 200.0)},
         configurations={"bust": ("bust", None), "column": ("column", None)},
         records={"north": "the one", "east": "the one"},
@@ -85,8 +85,8 @@ STUDIES = {
         content={"amplitudes": {"lowest_g": 0.01, "highest_g": 0.05, "step_percent": 20}},
     ),
     "everything overturns at the first step": Foreign(
-        blocks={"pole": (2.0, 150.0, 1.5), "foot": (30.0, 10.0, 20.0)},
-        configurations={"pole": ("pole", None), "pole on foot": ("pole", "foot")},
+        blocks={"pivot": (2.0, 150.0, 1.5), "foot": (30.0, 10.0, 20.0)},
+        configurations={"pivot": ("pivot", None), "pivot on foot": ("pivot", "foot")},
         records={"a": "one", "b": "two"},
         content={"amplitudes": {"lowest_g": 0.8, "highest_g": 1.5, "step_percent": 20}},
     ),
@@ -174,7 +174,7 @@ def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
     check_first_page(Results(load_any(tmp_path / "study.yaml"), results))
     words = " ".join(page.words)
     tests = pd.read_parquet(results / "tests.parquet")
-    tests = tests[tests["reading"] == "step_protocol"]
+    tests = tests[tests["definition"] == "step_protocol"]
     assert len(tests) == len(study.configurations) * len(study.records) * len(study.floors or [1])
     # what is not known is shown as a bound wherever tests are shown
     bounds = tests[tests["amplitude_g"].isna()]

@@ -53,14 +53,14 @@ def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(
     study = Foreign(SLENDER, STANDING, RECORDS, floors={"hall": 0, "loft": 3}, content=content)
     results, page = run_and_check(study, tmp_path)
     # b/h of the figure is 0.5: it slides before it could rock, and never overturns
-    figure = table(results, "sweep/figure")
+    figure = table(results, "ida/figure")
     strong = figure["amplitude_g"] > 0.5
     assert not figure["overturned"].any()
     assert (figure["peak_rotation_body_1"] == 0).all()
     assert (figure.loc[strong, "peak_slip_contact_1_m"] > 0).all()
     assert figure.loc[strong, "overturned_without_sliding"].any()
     # b/h of the column is 0.25: it rocks as on surfaces that hold until it slides
-    column = table(results, "sweep/column")
+    column = table(results, "ida/column")
     weak = column["amplitude_g"] < 0.29
     assert (
         column.loc[weak & (column["peak_slip_contact_1_m"] == 0), "overturned"]
@@ -69,7 +69,7 @@ def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(
     found = table(results, "sliding").set_index("configuration")
     assert found.loc["figure", "saved"] == figure["overturned_without_sliding"].sum()
     assert found.loc["figure", "felled"] == 0
-    assert (table(results, "sweep/column-on-plinth")["peak_slip_contact_2_m"] > 0).any()
+    assert (table(results, "ida/column-on-plinth")["peak_slip_contact_2_m"] > 0).any()
     validity = table(results, "validity")
     assert (validity["friction_demand"] <= 0.3 * (1 + 1e-9)).all()
     assert {"peak_slip_m", "flights"} <= set(validity.columns)
@@ -78,7 +78,7 @@ def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(
     assert "neither slide nor jump" not in words
     states = table(results, "fragility_floors")
     assert set(states["state"]) == {"slides", "overturns"}
-    # verdicts that are counted give the same curves as verdicts that are rows
+    # outcomes that are counted give the same curves as outcomes that are rows
     monkeypatch.setattr(rockfrag.study.study, "MOST_ROWS", 10)
     job = Job(load_any(tmp_path / "study.yaml"), results, 1, logging.getLogger("test"))
     counted = dict(fragility.run(job))["fragility_floors"]
@@ -97,13 +97,13 @@ def test_vertical_components_shake_too_and_floors_take_them_as_they_are(tmp_path
     floors, ups = (
         read_motion_set(results / "motions" / f"{name}.parquet") for name in ("floors", "vertical")
     )
-    assert [one.name for one in floors] == [one.name for one in ups]
-    by_name = {one.name: one for one in ups}
+    assert [floor.name for floor in floors] == [item.name for item in ups]
+    by_name = {item.name: item for item in ups}
     np.testing.assert_array_equal(by_name["a_hall"].acceleration, by_name["a_loft"].acceleration)
-    # a row of the sweep is what simulate says of the two components
-    sweep = table(results, "sweep/column")
-    row = sweep[(sweep["motion"] == "a_loft") & ~sweep["overturned"]].iloc[-1]
-    motion = next(one for one in floors if one.name == "a_loft")
+    # a row of the IDA curve is what simulate says of the two components
+    ida = table(results, "ida/column")
+    row = ida[(ida["motion"] == "a_loft") & ~ida["overturned"]].iloc[-1]
+    motion = next(floor for floor in floors if floor.name == "a_loft")
     factor = row["amplitude_g"] * GRAVITY / motion.pga
     block = Block(0.3, 1.2, 110.0)
     response = simulate(
@@ -115,4 +115,4 @@ def test_vertical_components_shake_too_and_floors_take_them_as_they_are(tmp_path
     peak = np.abs(response.theta).max() / block.alpha
     assert row["peak_rotation_body_1"] > 0
     np.testing.assert_allclose(row["peak_rotation_body_1"], peak, rtol=0.02)
-    assert "peak_slip_contact_1_m" not in sweep.columns
+    assert "peak_slip_contact_1_m" not in ida.columns

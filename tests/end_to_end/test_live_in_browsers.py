@@ -1,4 +1,4 @@
-"""The simulation in the page is the simulation: the same bits, and the study's verdicts."""
+"""The simulation in the page is the simulation: the same bits, and the study's outcomes."""
 
 import base64
 import json
@@ -28,11 +28,11 @@ RUN = """
   };
   return CASES.map(({ body, samples, gravity }) => {
     const made = kernel.bodyOf({ ...body, g: gravity });
-    const response = kernel.march({ body: made, samples: Float64Array.from(samples), dt: DT, history: true });
+    const response = kernel.integrate({ body: made, samples: Float64Array.from(samples), dt: DT, history: true });
     return {
       theta1: bytes(response.theta1), theta2: bytes(response.theta2),
       omega1: bytes(response.omega1), omega2: bytes(response.omega2),
-      events: response.events.map(one => one.time), fallen: response.fallen,
+      events: response.contact_events.map(one => one.time), fallen: response.fallen,
     };
   });
 })()
@@ -74,18 +74,18 @@ def measured(rng: np.random.Generator, body: Block | Stack) -> float | list[floa
 def as_given(body: Block | Stack) -> dict[str, object]:
     """Dimensions as the script takes them."""
 
-    def block(one: Block) -> dict[str, float]:
+    def block(block: Block) -> dict[str, float]:
         return {
-            "width": one.width,
-            "height": one.height,
-            "mass": one.mass,
-            "cgOffset": one.cg_offset,
-            "lean": one.lean,
+            "width": block.width,
+            "height": block.height,
+            "mass": block.mass,
+            "cgOffset": block.cg_offset,
+            "lean": block.lean,
         }
 
     if isinstance(body, Block):
         return {"statue": block(body)}
-    return {"statue": block(body.statue), "pedestal": block(body.pedestal), "offset": body.offset}
+    return {"statue": block(body.upper), "pedestal": block(body.lower), "offset": body.offset}
 
 
 def test_histories_have_the_bits_of_simulate(browser: Browser, play_page: Path):
@@ -114,7 +114,7 @@ def test_histories_have_the_bits_of_simulate(browser: Browser, play_page: Path):
                 values = np.frombuffer(base64.b64decode(live[quantity + name]))
                 expected = getattr(response, quantity)[:, column]
                 assert values.tobytes() == np.ascontiguousarray(expected).tobytes()
-        assert live["events"] == response.events["time"].tolist()
+        assert live["events"] == response.contact_events["time"].tolist()
         assert bool(live["fallen"]) == response.overturned
         moving += len(live["events"]) > 0
     assert moving > 0.7 * CASES
@@ -128,11 +128,11 @@ def change(browser: Browser, name: str, value: object, event: str) -> None:
     )
 
 
-def verdict(browser: Browser) -> str:
-    return str(browser.run("document.querySelector('#live .verdicts').textContent"))
+def outcome(browser: Browser) -> str:
+    return str(browser.run("document.querySelector('#live .outcomes').textContent"))
 
 
-def test_the_live_verdict_is_that_of_the_table(browser: Browser, report: Path):
+def test_the_live_outcome_is_that_of_the_table(browser: Browser, report: Path):
     browser.open(report)
     assert browser.run(READY)
     bodies = browser.run("document.querySelectorAll('#live .body option').length")
@@ -144,7 +144,7 @@ def test_the_live_verdict_is_that_of_the_table(browser: Browser, report: Path):
             change(browser, "motion", motion, "change")
             for place in range(0, most + 1, 2):
                 change(browser, "amplitude", str(place), "input")
-                seen.append(verdict(browser))
+                seen.append(outcome(browser))
     assert all(words.endswith("Equal.") and "Not equal" not in words for words in seen)
     assert any("Live: overturns" in words for words in seen)
     assert any("Live: stands" in words for words in seen)
@@ -153,14 +153,14 @@ def test_the_live_verdict_is_that_of_the_table(browser: Browser, report: Path):
 def test_another_width_is_another_body_at_once(browser: Browser, report: Path):
     browser.open(report)
     assert browser.run(READY)
-    before = verdict(browser)
+    before = outcome(browser)
     assert "Live: overturns" in before
     change(browser, "sizes input", "48", "input")
-    assert "Live: stands" in verdict(browser) and "not in the table of the study" in verdict(
+    assert "Live: stands" in outcome(browser) and "not in the table of the study" in outcome(
         browser
     )
     browser.run("document.querySelector('#live .reset').click()")
-    assert verdict(browser) == before
+    assert outcome(browser) == before
     browser.run("document.querySelector('#live .wider').click()")
     assert float(
         browser.run("document.querySelector('#live .sizes input').value")
@@ -171,7 +171,7 @@ def test_dimensions_that_cannot_stand_are_said_to(browser: Browser, play_page: P
     browser.open(play_page)
     assert browser.run(READY)
     change(browser, "sizes input", "900", "input")
-    assert "edge" in verdict(browser) or "touch" in verdict(browser) or "stand" in verdict(browser)
+    assert "edge" in outcome(browser) or "touch" in outcome(browser) or "stand" in outcome(browser)
     assert browser.console == []
 
 

@@ -54,15 +54,15 @@ def results(shared: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def components(results: Path) -> tuple[np.ndarray, np.ndarray]:
     """Component 90 and the vertical one as the file has them, over the time both last [m/s²]."""
     path = results.parents[1] / FILE
-    one, up = (read_motion(path, channel=name).acceleration for name in ("90", "UP"))
-    n = min(one.size, up.size)
-    return one[:n], up[:n]
+    item, up = (read_motion(path, channel=name).acceleration for name in ("90", "UP"))
+    n = min(item.size, up.size)
+    return item[:n], up[:n]
 
 
-def test_each_verdict_is_that_of_both_components_scaled_together(results: Path) -> None:
+def test_each_outcome_is_that_of_both_components_scaled_together(results: Path) -> None:
     across, up = components(results)
-    sweep = pd.read_parquet(results / "sweep" / "column.parquet")
-    rows = sweep[sweep["motion"] == "across_ground"]
+    ida = pd.read_parquet(results / "ida" / "column.parquet")
+    rows = ida[ida["motion"] == "across_ground"]
     assert rows["overturned"].any() and not rows["overturned"].all()
     for row in rows.to_dict("records"):
         factor = row["amplitude_g"] * GRAVITY / np.abs(across).max()
@@ -78,8 +78,8 @@ def test_each_verdict_is_that_of_both_components_scaled_together(results: Path) 
 
 
 def test_the_report_says_in_how_many_cases_bodies_may_fly(results: Path) -> None:
-    sweeps = [pd.read_parquet(path) for path in (results / "sweep").glob("*.parquet")]
-    cases = pd.concat(sweeps)
+    ida_curves = [pd.read_parquet(path) for path in (results / "ida").glob("*.parquet")]
+    cases = pd.concat(ida_curves)
     light = int((cases["minimum_gravity_ratio"] < LIGHT).sum())
     assert 0 < light < len(cases)
     words = (results.parents[1] / "words.txt").read_text()

@@ -23,7 +23,7 @@ STUDY = Foreign(
 def test_the_motions_of_all_floors_are_written(tmp_path: Path, format: str):
     results = run(replace(STUDY, content={"write_motions": format}), tmp_path)
     motions = read_motion_set(results / "motions" / "floors.parquet")
-    assert {one.metadata["floor"] for one in motions} == {"roof", "cellar"}
+    assert {motion.metadata["floor"] for motion in motions} == {"roof", "cellar"}
     for motion in motions:
         (path,) = (results / "motions" / "written").glob(f"{motion.name}.*")
         again = read_motion(path)

@@ -98,7 +98,7 @@ def test_a_plugin_may_go_before_the_others_and_say_why_it_does_not_answer(two):
 
     register_engine(Thin("thin"), before="fast")
     try:
-        assert [one.name for one in contract.engines()] == ["thin", "fast", "slow"]
+        assert [engine.name for engine in contract.engines()] == ["thin", "fast", "slow"]
         assert set(shake(BLOCK.system()).table()["engine"]) == {"fast"}
     finally:
         forget_engine("thin")

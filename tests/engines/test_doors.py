@@ -11,14 +11,14 @@ from rockfrag import (
     Column,
     MeasuredRestitution,
     Stack,
+    find_step_size_sensitive,
     find_thresholds,
-    fragile_verdicts,
+    outcome_robustness,
     overturns,
     rocking_spectrum,
     simulate,
     stream_histories,
     stream_overturns,
-    verdict_sureness,
 )
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
@@ -57,7 +57,9 @@ def many(body, options, folder):
 
 def thresholds(body, options, folder):
     options = listed({k: v for k, v in options.items() if k != "forces"})
-    found = find_thresholds(body, SHAKE, DT, 1.0, tolerance=0.2, smallest_window=0.5, **options)
+    found = find_thresholds(
+        body, SHAKE, DT, 1.0, tolerance=0.2, narrowest_resurrection=0.5, **options
+    )
     return found.table[["body"]]
 
 
@@ -75,12 +77,12 @@ def histories(body, options, folder):
 
 def robustness(body, options, folder):
     options = listed({k: v for k, v in options.items() if k != "forces"})
-    return verdict_sureness(body, SHAKE, DT, [0.5], perturbation=1e-6, copies=1, **options)
+    return outcome_robustness(body, SHAKE, DT, [0.5], perturbation=1e-6, copies=1, **options)
 
 
 def step_sensitivity(body, options, folder):
     options = listed({k: v for k, v in options.items() if k != "forces"})
-    return fragile_verdicts(body, SHAKE, DT, [0.5, 1.0], sample=2, **options).cases
+    return find_step_size_sensitive(body, SHAKE, DT, [0.5, 1.0], sample=2, **options).cases
 
 
 def spectrum(body, options, folder):
@@ -97,7 +99,7 @@ def listed(options):
 
 
 CONFLICTS = ("cannot be had together with", "is beyond every engine")
-CASES = [(), *((one,) for one in OPTIONS), *itertools.combinations(OPTIONS, 2)]
+CASES = [(), *((option,) for option in OPTIONS), *itertools.combinations(OPTIONS, 2)]
 
 
 @pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")

@@ -6,7 +6,7 @@ import pytest
 from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.errors import InputError
 from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.rocking.inputs import UnitDoubt
+from rockfrag.rocking.inputs import UnitWarning
 from rockfrag.system.blocks import UnlikelyBlock
 
 T = np.arange(0, 4, 0.01)
@@ -55,14 +55,14 @@ def ambiguous_stack():
 @pytest.mark.parametrize("friction", [2.0, 5.0, np.inf])
 def test_histories_and_outcomes_choose_alike_where_two_outcomes_satisfy_the_laws(friction):
     stack, a = ambiguous_stack()
-    one = simulate(stack, a, 0.01, friction=friction).overturned
-    assert one == overturns(stack, [a], 0.01, friction=[friction]).overturned.item()
+    item = simulate(stack, a, 0.01, friction=friction).overturned
+    assert item == overturns(stack, [a], 0.01, friction=[friction]).overturned.item()
 
 
 def test_a_motion_in_g_is_doubted():
-    with pytest.warns(UnitDoubt, match="multiply it by"):
+    with pytest.warns(UnitWarning, match="multiply it by"):
         assert not simulate(B, SHAKE / 9.81, 0.01).overturned
-    with pytest.warns(UnitDoubt, match="multiply it by"):
+    with pytest.warns(UnitWarning, match="multiply it by"):
         overturns(B, SHAKE / 9.81, 0.01)
 
 
@@ -86,9 +86,9 @@ def test_squat_bodies_that_lift_themselves_are_warned_of():
 def test_what_looks_like_components_or_other_units_is_not_taken_in_silence():
     with pytest.raises(InputError, match="looks like 2 components in columns"):
         overturns(B, np.zeros((400, 2)), 0.01)
-    with pytest.warns(UnitDoubt, match="of no planet"):
+    with pytest.warns(UnitWarning, match="of no planet"):
         simulate(B, SHAKE, 0.01, g=981.0)
-    with pytest.warns(UnitDoubt, match="too long for strong motion"):
+    with pytest.warns(UnitWarning, match="too long for strong motion"):
         simulate(B, SHAKE[:20], 5.0)
     # a number in an array without axes is a number
     assert not simulate(B, SHAKE, 0.01, friction=np.array(0.2)).overturned
@@ -154,7 +154,7 @@ def test_where_two_outcomes_satisfy_the_laws_the_choice_is_counted():
 def test_a_restitution_of_nothing_is_taken_as_it_is_said():
     """Any ratio that gains no energy can have been measured, so that none is doubted: 0 stops dead."""
     response = simulate(B, SHAKE, 0.01, restitution=0)
-    impacts = response.events[response.events["kind"] == "impact"]
+    impacts = response.contact_events[response.contact_events["kind"] == "impact"]
     assert len(impacts) and all(after == (0.0,) for after in impacts["omega_after"])
 
 

@@ -71,11 +71,13 @@ def main() -> int:
         [
             "| trial | runs | steps by hand | differing files | files outside | time |",
             "|---|--:|--:|--:|--:|--:|",
-            *(one.row for one in tallies),
+            *(tally.row for tally in tallies),
         ]
     )
     print(f"{table}\n\n{time.monotonic() - begin:.0f} s")
-    failed = any(one.steps or one.differing or one.outside or one.noise for one in tallies)
+    failed = any(
+        tally.steps or tally.differing or tally.outside or tally.noise for tally in tallies
+    )
     if not failed and len(tallies) == len(KINDS):
         before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
         write_text(f"{before}{BEGIN}{table}\n{END}{rest.partition(END)[2]}", PAGE)

@@ -24,18 +24,18 @@ LONGEST_WORDS = 8
 
 def shell(run: psutil.Process) -> list[psutil.Process]:
     """Shells in which Snakemake starts the jobs of a run."""
-    return [one for one in _family(run) if one.name() in ("bash", "sh")]
+    return [item for item in _family(run) if item.name() in ("bash", "sh")]
 
 
 def job(run: psutil.Process) -> list[psutil.Process]:
     """Jobs of a run, without the workers of their pools."""
-    jobs = [one for one in _family(run) if _is_job(one)]
-    return [one for one in jobs if not _is_job(one.parent())]
+    jobs = [item for item in _family(run) if _is_job(item)]
+    return [job for job in jobs if not _is_job(job.parent())]
 
 
 def worker(run: psutil.Process) -> list[psutil.Process]:
     """Workers of the pools of a run's jobs."""
-    return [one for one in _family(run) if _is_job(one) and _is_job(one.parent())]
+    return [item for item in _family(run) if _is_job(item) and _is_job(item.parent())]
 
 
 def itself(run: psutil.Process) -> list[psutil.Process]:
@@ -66,9 +66,9 @@ Kind = Callable[[psutil.Process], list[psutil.Process]]
 
 def killed(study: Study, tally: Tally, rng: random.Random, kind: Kind) -> None:
     """Kill processes of a kind in a user's study and in those that come with the project."""
-    for one in [study] * USERS + study.beside * SHIPPED:
-        one.forget(*(FORGOTTEN[rng.randrange(2)] if kind is worker else rng.choice(FORGOTTEN)))
-        _disturbed(one, tally, rng, kind, 0.5)
+    for user in [study] * USERS + study.beside * SHIPPED:
+        user.forget(*(FORGOTTEN[rng.randrange(2)] if kind is worker else rng.choice(FORGOTTEN)))
+        _disturbed(user, tally, rng, kind, 0.5)
 
 
 def compiling(study: Study, tally: Tally, rng: random.Random) -> None:
@@ -77,7 +77,7 @@ def compiling(study: Study, tally: Tally, rng: random.Random) -> None:
     study.more["NUMBA_CACHE_DIR"] = str(cache)
     for number in range(COMPILING):
         shutil.rmtree(cache, ignore_errors=True)
-        study.forget("report.html", "sweep/*")
+        study.forget("report.html", "ida/*")
         _disturbed(study, tally, rng, (job, everything)[number % 2], 15.0)
     shutil.rmtree(cache, ignore_errors=True)
 
@@ -101,7 +101,7 @@ def _disturbed(study: Study, tally: Tally, rng: random.Random, kind: Kind, momen
         process.kill()
         return
     left = psutil.wait_procs(family, timeout=10)[1]
-    tally.noise += [f"left running: {one.cmdline()}" for one in left]
+    tally.noise += [f"left running: {item.cmdline()}" for item in left]
     said = [line for line in words.splitlines() if not line.startswith("[")]
     if "Traceback" in words or len(said) > LONGEST_WORDS:
         tally.noise.append(f"says too much: {words[-300:]!r}")

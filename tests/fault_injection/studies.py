@@ -72,7 +72,7 @@ class Study:
         other.folder = scratch / self.folder.name
         shutil.copytree(self.kept, other.folder, symlinks=True)
         other.beside = [
-            one.twin(scratch.parent / f"{scratch.name} {one.name}") for one in self.beside
+            item.twin(scratch.parent / f"{scratch.name} {item.name}") for item in self.beside
         ]
         return other
 
@@ -153,8 +153,8 @@ class Study:
 
 def write_small(folder: Path, names: tuple[str, ...] = ("T1", "T2", "P")) -> str:
     """Write a study of two objects and more under synthetic motions on floors of a building; return its name."""
-    rows = ["name,event,source,file,unit"]
-    for number, event in enumerate(("First", "Second", "Third")):
+    rows = ["name,earthquake,source,file,unit"]
+    for number, earthquake in enumerate(("First", "Second", "Third")):
         rng = np.random.default_rng(number)
         time_s = np.arange(600) * 0.01
         waves = np.sin(
@@ -166,7 +166,7 @@ def write_small(folder: Path, names: tuple[str, ...] = ("T1", "T2", "P")) -> str
             for t, a in zip(time_s, 0.3 * values / abs(values).max(), strict=True)
         ]
         (folder / f"record{number}.txt").write_text("\n".join(lines) + "\n")
-        rows.append(f"motion {number},{event},folder,record{number}.txt,g")
+        rows.append(f"motion {number},{earthquake},folder,record{number}.txt,g")
     (folder / "motions.csv").write_text("\n".join(rows) + "\n")
     blocks = ["name,width_cm,height_cm,mass_g"]
     for name in names[:-1]:

@@ -5,19 +5,19 @@ import pandas as pd
 import pytest
 
 from rockfrag.fragility.estimators import fit_cloud, fit_step_tests
+from rockfrag.fragility.ida_curves import fragility_table
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.measure_choice import recommend_measure
+from rockfrag.fragility.measure_selection import recommend_measure
 from rockfrag.fragility.observations import outcomes_from_table
-from rockfrag.fragility.sweeps import fragility_table
 
 
-def sweep(capacities, levels):
+def ida(capacities, levels):
     return pd.DataFrame(
         [
             {
                 "configuration": "T",
                 "motion": f"m{k}",
-                "event": f"e{k}",
+                "earthquake": f"e{k}",
                 "amplitude_g": a,
                 "overturned": a > capacity,
             }
@@ -31,7 +31,7 @@ def test_capacities_of_two_kinds_are_found_not_lognormal_and_the_shares_are_offe
     """Half of the motions overturn at 0.1 g, half at 1 g: no lognormal curve is like that."""
     rng = np.random.default_rng(1)
     low, high = 0.1 * np.exp(0.05 * rng.normal(size=20)), np.exp(0.05 * rng.normal(size=22))
-    table = fragility_table(sweep([*low, *high], np.geomspace(0.05, 2.0, 60)))
+    table = fragility_table(ida([*low, *high], np.geomspace(0.05, 2.0, 60)))
     first = table.set_index("estimator").loc["first_overturning"]
     assert first["p_fit"] < 0.01
     assert "The lognormal curve is rejected" in first["warnings"]
@@ -48,7 +48,7 @@ def test_shares_of_motions_that_mostly_overturn_nothing_are_offered_without_numb
 ):
     rng = np.random.default_rng(1)
     capacities = [*0.1 * np.exp(0.02 * rng.normal(size=30)), *np.full(6, 1.5), *np.full(never, 9.0)]
-    table = fragility_table(sweep(capacities, np.geomspace(0.05, 2.0, 40)))
+    table = fragility_table(ida(capacities, np.geomspace(0.05, 2.0, 40)))
     first = table.set_index("estimator").loc["mean_probability"]
     assert first["p_fit"] < 0.05
     assert said in first["warnings"]
@@ -58,7 +58,7 @@ def test_shares_of_motions_that_mostly_overturn_nothing_are_offered_without_numb
 def test_lognormal_capacities_pass_and_agree_with_the_shares():
     rng = np.random.default_rng(2)
     table = fragility_table(
-        sweep(0.4 * np.exp(0.3 * rng.normal(size=60)), np.geomspace(0.05, 3.0, 120))
+        ida(0.4 * np.exp(0.3 * rng.normal(size=60)), np.geomspace(0.05, 3.0, 120))
     )
     first = table.set_index("estimator").loc["first_overturning"]
     assert first["p_fit"] > 0.05 and "does not describe" not in first["warnings"]
@@ -68,21 +68,21 @@ def test_lognormal_capacities_pass_and_agree_with_the_shares():
 
 def test_motion_that_moves_the_median_most_is_named():
     capacities = [0.3, 0.31, 0.29, 0.305, 0.295, 2.0]
-    first = fragility_table(sweep(capacities, np.geomspace(0.1, 3.0, 200)))
+    first = fragility_table(ida(capacities, np.geomspace(0.1, 3.0, 200)))
     row = first.set_index("estimator").loc["first_overturning"]
     assert row["influential"] == "m5"
-    without = fragility_table(sweep(capacities[:-1], np.geomspace(0.1, 3.0, 200)))
+    without = fragility_table(ida(capacities[:-1], np.geomspace(0.1, 3.0, 200)))
     theta = without.set_index("estimator").loc["first_overturning", "theta"]
     assert row["influence"] == pytest.approx(theta / row["theta"], rel=1e-6)
 
 
 def test_few_motions_are_said():
-    row = fragility_table(sweep([0.3, 0.5, 0.4, 0.6], np.geomspace(0.1, 2.0, 60))).iloc[0]
+    row = fragility_table(ida([0.3, 0.5, 0.4, 0.6], np.geomspace(0.1, 2.0, 60))).iloc[0]
     assert "based on only 4 motions" in row["warnings"]
     tests = pd.DataFrame(
         {"lower_g": [0.3, 0.4, 0.5], "upper_g": [0.33, 0.44, 0.55], "motion": list("abc")}
     )
-    found = fit_step_tests(tests, event=None)
+    found = fit_step_tests(tests, earthquake=None)
     assert any("only 3 motions" in note for note in found.warnings)
 
 
@@ -115,9 +115,9 @@ def test_second_measure_is_not_recommended_for_what_it_learns_of_the_motions_by_
 def test_measure_that_decides_together_with_another_is_recommended_with_it():
     rng = np.random.default_rng(3)
     motion = np.repeat(np.arange(40), 20)
-    one, two = np.exp(rng.normal(0, 0.6, (2, motion.size)))
-    fell = np.log(one) + np.log(two) + 0.2 * rng.normal(size=motion.size) > 0
-    table = pd.DataFrame({"pga_g": one, "pgv_cm_s": two, "overturned": fell, "motion": motion})
+    first, two = np.exp(rng.normal(0, 0.6, (2, motion.size)))
+    fell = np.log(first) + np.log(two) + 0.2 * rng.normal(size=motion.size) > 0
+    table = pd.DataFrame({"pga_g": first, "pgv_cm_s": two, "overturned": fell, "motion": motion})
     words = recommend_measure(table, ["pga_g", "pgv_cm_s"], replicates=20).words
     assert "use the surface in both" in words
     assert words.startswith("Use P")

@@ -1,14 +1,14 @@
-"""Sweeps counted part by part give the curves of the table with a row per verdict."""
+"""IDA curves counted part by part give the curves of the table with a row per outcome."""
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from rockfrag.fragility import fragility_of, with_measures
-from rockfrag.fragility.counted import CountedSweep
-from rockfrag.fragility.drawn_curves import verdict_bins
-from rockfrag.fragility.measure_choice import area_under_curve
-from rockfrag.fragility.sweep_data import TableSweep
+from rockfrag.fragility.counted import CountedIda
+from rockfrag.fragility.drawn_curves import outcome_bins
+from rockfrag.fragility.ida_data import TableIda
+from rockfrag.fragility.measure_selection import area_under_curve
 from rockfrag.shaketable.swept import Swept
 
 MOTIONS = 24
@@ -16,7 +16,7 @@ AMPLITUDES = np.geomspace(0.05, 2.0, 120)
 
 
 def parts(size: int) -> list[Swept]:
-    """Motions of eight events that overturn above scattered amplitudes, most with a survival window."""
+    """Motions of eight earthquakes that overturn above scattered amplitudes, most with a structural resurrection."""
     rng = np.random.default_rng(4)
     capacity = 0.4 * np.exp(0.35 * rng.normal(size=MOTIONS))
     near = np.abs(np.log(AMPLITUDES / capacity[:, None])) < 0.15
@@ -24,7 +24,7 @@ def parts(size: int) -> list[Swept]:
     about = pd.DataFrame(
         {
             "configuration": "T",
-            "event": [f"event {k // 3}" for k in range(MOTIONS)],
+            "earthquake": [f"earthquake {k // 3}" for k in range(MOTIONS)],
             "floor": "ground",
             "motion": [f"motion {k}" for k in range(MOTIONS)],
         }
@@ -54,19 +54,21 @@ def measures() -> pd.DataFrame:
 
 
 def rows() -> pd.DataFrame:
-    one = parts(MOTIONS)[0]
-    table = one.about.loc[one.about.index.repeat(AMPLITUDES.size)].reset_index(drop=True)
-    return table.assign(amplitude_g=np.tile(AMPLITUDES, MOTIONS), overturned=one.overturned.ravel())
+    part = parts(MOTIONS)[0]
+    table = part.about.loc[part.about.index.repeat(AMPLITUDES.size)].reset_index(drop=True)
+    return table.assign(
+        amplitude_g=np.tile(AMPLITUDES, MOTIONS), overturned=part.overturned.ravel()
+    )
 
 
 @pytest.mark.parametrize("column", ["pga_g", "pgv_cm_s", "arias_m_s"])
 def test_counts_give_the_curve_of_the_rows(column: str):
     wanted = {"": [column], "ground": [column]}
-    counted = CountedSweep(parts(5), parts(5), measures(), wanted).of_floor("ground")
-    table = TableSweep(with_measures(rows(), measures(), [column]))
+    counted = CountedIda(parts(5), parts(5), measures(), wanted).of_floor("ground")
+    table = TableIda(with_measures(rows(), measures(), [column]))
     few, many = counted.outcomes(column), table.outcomes(column)
     assert (few.n, few.n_overturned) == (many.n, many.n_overturned)
-    assert (few.n_motions, few.n_events) == (many.n_motions, many.n_events)
+    assert (few.n_motions, few.n_earthquakes) == (many.n_motions, many.n_earthquakes)
     found, known = fragility_of(few), fragility_of(many)
     # a cell's width in units of β, squared, is what cells change
     assert found.fit.theta == pytest.approx(known.fit.theta, rel=1e-4)
@@ -76,23 +78,23 @@ def test_counts_give_the_curve_of_the_rows(column: str):
     assert found.interval.groups == known.interval.groups == 8
     assert found.checks.p_fit == pytest.approx(known.checks.p_fit, abs=0.02)
     assert area_under_curve(few) == pytest.approx(area_under_curve(many), abs=1e-3)
-    bins = [verdict_bins({}, found, few), verdict_bins({}, known, many)]
-    assert bins[0]["share"].to_numpy() == pytest.approx(bins[1]["share"].to_numpy(), abs=0.03)
+    bins = [outcome_bins({}, found, few), outcome_bins({}, known, many)]
+    assert bins[0]["fraction"].to_numpy() == pytest.approx(bins[1]["fraction"].to_numpy(), abs=0.03)
     assert bins[0]["motions"].to_numpy() == pytest.approx(bins[1]["motions"].to_numpy(), abs=1)
 
 
 def test_parts_change_nothing():
     wanted = {"": ["pga_g"]}
-    one, other = (CountedSweep(parts(k), parts(k), measures(), wanted) for k in (1, 24))
-    pd.testing.assert_frame_equal(one.windows(""), other.windows(""))
+    first, other = (CountedIda(parts(k), parts(k), measures(), wanted) for k in (1, 24))
+    pd.testing.assert_frame_equal(first.resurrections(""), other.resurrections(""))
     assert np.array_equal(
-        one.outcomes("", "pga_g").overturned, other.outcomes("", "pga_g").overturned
+        first.outcomes("", "pga_g").overturned, other.outcomes("", "pga_g").overturned
     )
 
 
 def test_windows_are_those_of_the_table():
-    counted = CountedSweep(parts(7), [], measures(), {}).of_floor("")
-    known = TableSweep(rows()).windows("amplitude_g", ["motion", "event"])
+    counted = CountedIda(parts(7), [], measures(), {}).of_floor("")
+    known = TableIda(rows()).resurrections("amplitude_g", ["motion", "earthquake"])
     pd.testing.assert_frame_equal(
-        counted.windows("amplitude_g", ["motion", "event"]), known, check_dtype=False
+        counted.resurrections("amplitude_g", ["motion", "earthquake"]), known, check_dtype=False
     )

@@ -1,4 +1,4 @@
-"""Shares of overturned tests without a curve."""
+"""Fractions of overturned tests without a curve."""
 
 import numpy as np
 import pandas as pd
@@ -7,17 +7,17 @@ from scipy import stats
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.empirical import (
-    local_share,
-    share_in_bins,
-    survival_windows,
+    find_resurrections,
+    fraction_in_bins,
+    local_fraction,
     wilson_interval,
 )
 from rockfrag.fragility.observations import outcomes_from_table
 
 
-def sweep(verdicts, amplitudes=None, motion="m"):
-    amplitudes = amplitudes or [round(0.1 * (k + 1), 1) for k in range(len(verdicts))]
-    return pd.DataFrame({"motion": motion, "amplitude_g": amplitudes, "overturned": verdicts})
+def ida(fell, amplitudes=None, motion="m"):
+    amplitudes = amplitudes or [round(0.1 * (k + 1), 1) for k in range(len(fell))]
+    return pd.DataFrame({"motion": motion, "amplitude_g": amplitudes, "overturned": fell})
 
 
 def test_wilson_limits_solve_their_defining_equation():
@@ -30,10 +30,10 @@ def test_wilson_limits_solve_their_defining_equation():
 
 
 def test_windows_are_found_between_first_and_always():
-    row = survival_windows(sweep([0, 1, 1, 0, 0, 1, 0, 1, 1])).iloc[0]
+    row = find_resurrections(ida([0, 1, 1, 0, 0, 1, 0, 1, 1])).iloc[0]
     assert (row.first_lower, row.first_upper) == (0.1, 0.2)
     assert (row.always_lower, row.always_upper) == (0.7, 0.8)
-    assert row.windows == 2
+    assert row.resurrections == 2
     expected = np.log(np.sqrt(0.5 * 0.6) / np.sqrt(0.3 * 0.4)) + np.log(
         np.sqrt(0.7 * 0.8) / np.sqrt(0.6 * 0.7)
     )
@@ -41,40 +41,40 @@ def test_windows_are_found_between_first_and_always():
 
 
 def test_the_order_of_rows_does_not_matter_and_open_ends_stay_open():
-    table = sweep([0, 1, 0, 0])
-    pd.testing.assert_frame_equal(survival_windows(table), survival_windows(table.iloc[::-1]))
-    row = survival_windows(table).iloc[0]
+    table = ida([0, 1, 0, 0])
+    pd.testing.assert_frame_equal(find_resurrections(table), find_resurrections(table.iloc[::-1]))
+    row = find_resurrections(table).iloc[0]
     # survived to the end: no window closed, no amplitude above which it always overturned
-    assert row.windows == 0 and np.isnan(row.always_upper) and row.always_lower == 0.4
-    never = survival_windows(sweep([0, 0])).iloc[0]
+    assert row.resurrections == 0 and np.isnan(row.always_upper) and row.always_lower == 0.4
+    never = find_resurrections(ida([0, 0])).iloc[0]
     assert never.first_lower == 0.2 and np.isnan(never.first_upper)
-    at_once = survival_windows(sweep([1, 1])).iloc[0]
+    at_once = find_resurrections(ida([1, 1])).iloc[0]
     assert (at_once.first_lower, at_once.first_upper, at_once.always_lower) == (0.0, 0.1, 0.0)
 
 
-def test_a_repeated_amplitude_of_a_sweep_is_refused():
+def test_a_repeated_amplitude_of_a_ida_is_refused():
     with pytest.raises(InputError, match=r"row 2.*already has the amplitude 0.1"):
-        survival_windows(sweep([0, 1], [0.1, 0.1]))
+        find_resurrections(ida([0, 1], [0.1, 0.1]))
 
 
 def test_the_local_share_shows_a_fall_that_no_fitted_curve_can():
     im = np.repeat([0.1, 0.3, 1.0], 30)
-    verdicts = np.repeat([0, 1, 0], 30)
+    fell = np.repeat([0, 1, 0], 30)
     outcomes = outcomes_from_table(
-        pd.DataFrame({"pga_g": im, "overturned": verdicts}), "pga_g", motion=None
+        pd.DataFrame({"pga_g": im, "overturned": fell}), "pga_g", motion=None
     )
-    low, peak, high = local_share(outcomes, [0.1, 0.3, 1.0], bandwidth=0.2)
+    low, peak, high = local_fraction(outcomes, [0.1, 0.3, 1.0], bandwidth=0.2)
     assert peak > 0.95 and low < 0.05 and high < 0.05
     # far beyond the data the nearest tests decide, without a division by zero
-    assert local_share(outcomes, [1e6], bandwidth=0.2)[0] == pytest.approx(0.0, abs=1e-9)
+    assert local_fraction(outcomes, [1e6], bandwidth=0.2)[0] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_bins_hold_about_equal_numbers_and_stripes_keep_their_levels():
     rng = np.random.default_rng(2)
     table = pd.DataFrame({"pga_g": np.exp(rng.normal(size=997)), "overturned": 0})
-    cloud = share_in_bins(outcomes_from_table(table, "pga_g", motion=None), bins=10)
+    cloud = fraction_in_bins(outcomes_from_table(table, "pga_g", motion=None), bins=10)
     assert cloud.tests.sum() == 997 and cloud.tests.between(99, 100).all()
     assert (cloud.im_lower.to_numpy()[1:] > cloud.im_upper.to_numpy()[:-1]).all()
     table["pga_g"] = rng.choice([0.2, 0.4, 0.8], 997)
-    stripes = share_in_bins(outcomes_from_table(table, "pga_g", motion=None), bins=10)
+    stripes = fraction_in_bins(outcomes_from_table(table, "pga_g", motion=None), bins=10)
     assert stripes.im.to_numpy() == pytest.approx([0.2, 0.4, 0.8])

@@ -30,7 +30,7 @@ def step_tests(capacity, step, limit=np.inf, start=0.05):
             {
                 "test": k,
                 "motion": f"m{k}",
-                "event": f"e{k}",
+                "earthquake": f"e{k}",
                 "lower_g": lower[-1] if lower.size else 0.0,
                 "upper_g": upper[0] if upper.size else np.nan,
             }
@@ -47,12 +47,12 @@ def shakes_of(tests, step):
         while level > 0.05:
             survived.append(level)
             level /= 1 + step
-        verdicts = [(a, False) for a in survived[::-1]]
+        outcomes = [(a, False) for a in survived[::-1]]
         if np.isfinite(test.upper_g):
-            verdicts.append((test.upper_g, True))
+            outcomes.append((test.upper_g, True))
         rows += [
             {"test": test.test, "motion": test.motion, "amplitude_g": a, "overturned": fell}
-            for a, fell in verdicts
+            for a, fell in outcomes
         ]
     return pd.DataFrame(rows)
 
@@ -124,9 +124,9 @@ def test_brackets_of_all_kinds_agree_with_direct_maximisation():
         m, s = p[0], np.exp(p[1])
         lower = np.where(low > 0, np.log(np.maximum(low, 1e-9)), -np.inf)
         upper = np.where(np.isnan(high), np.inf, np.log(high))
-        share = stats.norm.cdf(upper, m, s) - stats.norm.cdf(lower, m, s)
+        fraction = stats.norm.cdf(upper, m, s) - stats.norm.cdf(lower, m, s)
         density = stats.norm.pdf(np.log(a), m, s)
-        return -np.log(np.where(lower == upper, density, share)).sum()
+        return -np.log(np.where(lower == upper, density, fraction)).sum()
 
     best = optimize.minimize(
         minus_log_likelihood,
@@ -188,7 +188,7 @@ def test_a_step_protocol_must_rise_and_end_with_its_overturning():
         fit_step_hazard(good.iloc[:2])
 
 
-def test_sweeps_with_survival_windows_separate_first_from_always():
+def test_ida_curves_with_survival_windows_separate_first_from_always():
     levels = np.exp(np.arange(np.log(0.1), np.log(1.5), 0.05))
     first = capacities(300, 9)
     rows = []
@@ -203,6 +203,6 @@ def test_sweeps_with_survival_windows_separate_first_from_always():
     result = fit_incremental(pd.DataFrame(rows))
     within(result.first.fit)
     assert result.first.fit.theta < result.probability.fit.theta < result.always.fit.theta
-    assert result.share_with_windows == pytest.approx(0.5, abs=0.02)
-    widths = result.windows.query("windows == 1").window_width
+    assert result.fraction_with_resurrections == pytest.approx(0.5, abs=0.02)
+    widths = result.resurrections.query("windows == 1").window_width
     assert widths.median() == pytest.approx(np.log(1.6 / 1.3), abs=0.03)

@@ -9,15 +9,15 @@ import pytest
 from scipy import stats
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
-from rockfrag.fragility.nrml import lognormal_moments, write_nrml
-from rockfrag.fragility.simcenter import write_simcenter
-from rockfrag.fragility.sweeps import (
+from rockfrag.fragility.ida_curves import (
     fragility_table,
     record_set_hash,
     scale_power,
     with_measures,
 )
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
+from rockfrag.fragility.nrml import lognormal_moments, write_nrml
+from rockfrag.fragility.simcenter import write_simcenter
 from rockfrag.records.motion import Motion
 
 CURVES = pd.DataFrame(
@@ -31,8 +31,8 @@ CURVES = pd.DataFrame(
 )
 
 
-def synthetic_sweep():
-    """Two configurations under six synthetic motions of three events, at common amplitudes."""
+def synthetic_ida():
+    """Two configurations under six synthetic motions of three earthquakes, at common amplitudes."""
     rng = np.random.default_rng(1)
     rows = []
     for name, theta in (("T1", 0.5), ("T2", 0.3)):
@@ -42,7 +42,7 @@ def synthetic_sweep():
                 {
                     "configuration": name,
                     "motion": f"m{k}",
-                    "event": f"e{k // 2}",
+                    "earthquake": f"e{k // 2}",
                     "amplitude_g": a,
                     "overturned": a > capacity,
                 }
@@ -74,11 +74,11 @@ def test_nrml_gives_back_median_and_dispersion_in_its_own_units(tmp_path):
 
 def states_of_one() -> pd.DataFrame:
     """Rocking at exactly 0.25 g, and overturning whose lognormal curve begins below it."""
-    one = {"configuration": "urn", "im": "PGA", "unit": "g"}
+    item = {"configuration": "urn", "im": "PGA", "unit": "g"}
     return pd.DataFrame(
         [
-            {**one, "state": "rocks", "theta": 0.25, "beta": 1e-9},
-            {**one, "state": "overturns", "theta": 0.4, "beta": 0.4},
+            {**item, "state": "rocks", "theta": 0.25, "beta": 1e-9},
+            {**item, "state": "overturns", "theta": 0.4, "beta": 0.4},
         ]
     )
 
@@ -89,8 +89,8 @@ def levels_of(path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     assert function.get("format") == "discrete"
     levels = np.array(function.find("n:imls", space).text.split(), dtype=float)
     return levels, {
-        one.get("ls"): np.array(one.text.split(), dtype=float)
-        for one in function.findall("n:poes", space)
+        item.get("ls"): np.array(item.text.split(), dtype=float)
+        for item in function.findall("n:poes", space)
     }
 
 
@@ -114,20 +114,22 @@ def test_rejected_curve_is_exported_as_its_points(tmp_path):
             "configuration": "urn",
             "state": "overturns",
             "x": [0.3, 0.5, 0.6, 0.8],
-            "share": [0.0, 0.3, 0.4, 0.9],
+            "fraction": [0.0, 0.3, 0.4, 0.9],
         }
     )
-    write_nrml(states_of_one(), tmp_path / "model.xml", shares=points)
+    write_nrml(states_of_one(), tmp_path / "model.xml", fractions=points)
     levels, chance = levels_of(tmp_path / "model.xml")
     found = np.interp(points["x"], levels, chance["overturns"])
-    assert found == pytest.approx(points["share"].to_numpy(), abs=1e-9)
+    assert found == pytest.approx(points["fraction"].to_numpy(), abs=1e-9)
     csv, story = tmp_path / "damage.csv", tmp_path / "damage.json"
-    write_simcenter(states_of_one(), csv, story, shares=points)
+    write_simcenter(states_of_one(), csv, story, fractions=points)
     row = pd.read_csv(csv).iloc[0]
     assert (row["LS1-Family"], row["LS2-Family"]) == ("lognormal", "multilinear_CDF")
-    at, share = (np.array(part.split(","), dtype=float) for part in row["LS2-Theta_0"].split("|"))
+    at, fraction = (
+        np.array(part.split(","), dtype=float) for part in row["LS2-Theta_0"].split("|")
+    )
     # nothing is known beyond the last level, and a distribution must end somewhere
-    assert at.tolist() == [0.3, 0.5, 0.6, 0.8, 1.6] and share[-1] == 1.0
+    assert at.tolist() == [0.3, 0.5, 0.6, 0.8, 1.6] and fraction[-1] == 1.0
     assert (
         "Beyond 0.8 g nothing was tried"
         in json.loads(story.read_text())["ROCKFRAG.urn"]["Comments"]
@@ -175,28 +177,28 @@ def test_simcenter_rows_carry_theta_and_beta_and_their_story(tmp_path):
         write_simcenter(CURVES.assign(unit="furlong"), csv, story)
 
 
-def test_the_tidy_table_has_every_reading_with_limits_over_events(tmp_path):
-    table = fragility_table(synthetic_sweep(), record_set="abc")
+def test_the_tidy_table_has_every_reading_with_limits_over_earthquakes(tmp_path):
+    table = fragility_table(synthetic_ida(), record_set="abc")
     assert list(table.configuration) == ["T1"] * 3 + ["T2"] * 3
     assert set(table.estimator) == {"mean_probability", "first_overturning", "always_overturning"}
-    assert (table.resampled == "event").all() and (table.groups == 3).all()
-    assert table.warnings.str.contains("3 events the coverage").all()
+    assert (table.resampled == "earthquake").all() and (table.groups == 3).all()
+    assert table.warnings.str.contains("3 earthquakes the coverage").all()
     assert (table.theta_lower < table.theta).all() and (table.theta < table.theta_upper).all()
     assert (table.record_set_sha256 == "abc").all()
     first = table[table.estimator == "first_overturning"].set_index("configuration")
     write_nrml(table[table.estimator == "first_overturning"], tmp_path / "model.xml")
-    # without survival windows first and always are the same amplitude
+    # without structural resurrections first and always are the same amplitude
     always = table[table.estimator == "always_overturning"].set_index("configuration")
     assert first.theta.to_numpy() == pytest.approx(always.theta.to_numpy(), rel=1e-12)
     assert first.loc["T1", "theta"] == pytest.approx(0.5, rel=0.35)
 
 
 def test_measures_of_a_scaled_motion_follow_their_power_of_the_amplitude():
-    sweep = pd.DataFrame({"motion": ["m", "m"], "amplitude_g": [0.2, 0.4], "overturned": [0, 1]})
+    ida = pd.DataFrame({"motion": ["m", "m"], "amplitude_g": [0.2, 0.4], "overturned": [0, 1]})
     measures = pd.DataFrame(
         {"name": ["m"], "pga_g": [0.1], "pgv_cm_s": [10.0], "arias_m_s": [1.0], "d5_95_s": [8.0]}
     )
-    rows = with_measures(sweep, measures, ["pga_g", "pgv_cm_s", "arias_m_s", "d5_95_s"])
+    rows = with_measures(ida, measures, ["pga_g", "pgv_cm_s", "arias_m_s", "d5_95_s"])
     assert rows.pga_g.tolist() == [0.2, 0.4]
     assert rows.pgv_cm_s.tolist() == pytest.approx([20.0, 40.0])
     assert rows.arias_m_s.tolist() == pytest.approx([4.0, 16.0])
@@ -205,7 +207,7 @@ def test_measures_of_a_scaled_motion_follow_their_power_of_the_amplitude():
     with pytest.raises(InputError, match="not known how it grows"):
         scale_power("colour")
     with pytest.raises(InputError, match="no row for motion 'm'"):
-        with_measures(sweep, measures.assign(name="other"), ["pga_g"])
+        with_measures(ida, measures.assign(name="other"), ["pga_g"])
 
 
 def test_the_hash_of_a_record_set_sees_every_sample_and_no_order():
@@ -215,17 +217,17 @@ def test_the_hash_of_a_record_set_sees_every_sample_and_no_order():
     assert record_set_hash([a, changed]) != record_set_hash([a, b])
 
 
-def curves_of(sweep):
+def curves_of(ida):
     """Curves in the amplitude as the ground's PGA, with a rocking state before overturning."""
-    table = fragility_table(sweep, record_set="abc")
+    table = fragility_table(ida, record_set="abc")
     fallen = table[table.estimator == "mean_probability"].assign(state="overturns")
     rocks = fallen.assign(state="rocks", theta=0.2, beta=1e-6)
     return pd.concat([rocks, fallen], ignore_index=True)
 
 
 def test_files_say_how_few_motions_a_curve_rests_on_and_what_is_known_of_it(tmp_path):
-    sweep = synthetic_sweep()
-    curves = curves_of(sweep[sweep.motion.isin(["m0", "m2", "m4", "m5"])])
+    ida = synthetic_ida()
+    curves = curves_of(ida[ida.motion.isin(["m0", "m2", "m4", "m5"])])
     write_nrml(curves, tmp_path / "model.xml")
     write_simcenter(curves, tmp_path / "d.csv", tmp_path / "d.json")
     space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
@@ -247,14 +249,14 @@ def test_files_say_how_few_motions_a_curve_rests_on_and_what_is_known_of_it(tmp_
 
 
 def test_limit_states_come_in_the_order_in_which_a_body_passes_them(tmp_path):
-    curves = curves_of(synthetic_sweep())
+    curves = curves_of(synthetic_ida())
     write_nrml(curves.iloc[::-1], tmp_path / "model.xml")
     space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
     root = ElementTree.parse(tmp_path / "model.xml").getroot()
     assert root.find(".//n:limitStates", space).text == "rocks overturns"
     function = root.find(".//n:fragilityFunction", space)
     kinds = ("n:params", "n:poes")
-    states = [one.get("ls") for kind in kinds for one in function.findall(kind, space)]
+    states = [item.get("ls") for kind in kinds for item in function.findall(kind, space)]
     assert states == ["rocks", "overturns"]
     write_simcenter(curves.iloc[::-1], tmp_path / "d.csv", tmp_path / "d.json")
     row = pd.read_csv(tmp_path / "d.csv").iloc[0]
@@ -266,7 +268,7 @@ def test_limit_states_come_in_the_order_in_which_a_body_passes_them(tmp_path):
 
 
 def test_uncertainties_of_motions_estimate_and_model_add_as_squares():
-    table = fragility_table(synthetic_sweep())
+    table = fragility_table(synthetic_ida())
     row = table[table.estimator == "first_overturning"].iloc[0]
     half = np.log(row.theta_upper / row.theta_lower) / 2
     assert row.beta_statistical == pytest.approx(half / stats.norm.ppf(0.95))

@@ -16,8 +16,8 @@ from rockfrag.report.figures.fragility import (
 
 
 @pytest.fixture(scope="module")
-def sweep():
-    """Synthetic sweeps of eight motions, half of them with a survival window."""
+def ida():
+    """Synthetic IDA curves of eight motions, half of them with a structural resurrection."""
     rng = np.random.default_rng(1)
     levels = np.geomspace(0.1, 1.5, 40)
     rows = []
@@ -31,20 +31,20 @@ def sweep():
     return pd.DataFrame(rows)
 
 
-def test_each_measure_has_a_panel_with_its_curve(sweep):
-    pga, pgv = fit_cloud(sweep, "amplitude_g"), fit_cloud(sweep, "pgv_cm_s")
-    data = {name: outcomes_from_table(sweep, name) for name in ("amplitude_g", "pgv_cm_s")}
+def test_each_measure_has_a_panel_with_its_curve(ida):
+    pga, pgv = fit_cloud(ida, "amplitude_g"), fit_cloud(ida, "pgv_cm_s")
+    data = {name: outcomes_from_table(ida, name) for name in ("amplitude_g", "pgv_cm_s")}
     figure = measures_figure({"amplitude_g": pga, "pgv_cm_s": pgv}, data)
     assert [axes.get_xlabel() for axes in figure.axes] == ["PGA [g]", "PGV [cm/s]"]
     assert f"AIC {pgv.fit.aic:.1f}" in figure.axes[1].get_title(loc="left")
 
 
-def test_surface_and_calibration_are_drawn_in_their_units(sweep):
+def test_surface_and_calibration_are_drawn_in_their_units(ida):
     rng = np.random.default_rng(2)
-    scattered = sweep.assign(pgv_cm_s=sweep.pgv_cm_s * np.exp(0.3 * rng.normal(size=len(sweep))))
+    scattered = ida.assign(pgv_cm_s=ida.pgv_cm_s * np.exp(0.3 * rng.normal(size=len(ida))))
     surface = surface_figure(fit_surface(scattered, ["amplitude_g", "pgv_cm_s"]), scattered)
     assert surface.axes[0].get_ylabel() == "PGV [cm/s]"
-    outcomes = outcomes_from_table(sweep, "amplitude_g")
-    judged = goodness_of_fit(outcomes, fit_cloud(sweep, "amplitude_g").fit, replicates=20)
+    outcomes = outcomes_from_table(ida, "amplitude_g")
+    judged = goodness_of_fit(outcomes, fit_cloud(ida, "amplitude_g").fit, replicates=20)
     figure = calibration_figure({"T1": judged})
     assert figure.axes[0].get_legend().get_texts()[0].get_text().startswith("T1 (p = ")

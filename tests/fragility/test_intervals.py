@@ -7,16 +7,16 @@ import pytest
 from rockfrag.fragility import censored
 from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval, fit_brackets
 from rockfrag.fragility.estimators import fit_cloud
-from rockfrag.fragility.intervals import interval_over_motions, verdict_fitter
+from rockfrag.fragility.ida_curves import fragility_table
+from rockfrag.fragility.intervals import interval_over_motions, outcome_fitter
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.observations import outcomes_from_table
-from rockfrag.fragility.sweeps import fragility_table
 
 LEVELS = np.exp(np.arange(np.log(0.1), np.log(1.2), 0.1))
 
 
 def swept_motions(n, seed=0, theta=0.35, beta=0.4):
-    """Verdicts of n motions at common levels, each with one lognormal capacity."""
+    """Outcomes of n motions at common levels, each with one lognormal capacity."""
     capacity = np.exp(np.random.default_rng(seed).normal(np.log(theta), beta, n))
     rows = [
         {"motion": f"m{k}", "amplitude_g": level, "overturned": level > capacity[k]}
@@ -28,14 +28,14 @@ def swept_motions(n, seed=0, theta=0.35, beta=0.4):
 
 def test_the_refit_with_unit_weights_is_the_estimator():
     data = swept_motions(12)
-    fit, groups = verdict_fitter(data, data.motion)
+    fit, groups = outcome_fitter(data, data.motion)
     assert groups == 12
     assert fit(np.ones((1, 12)))[0] == pytest.approx(fit_lognormal(data).coefficients, abs=1e-6)
 
 
 def test_leaving_a_motion_out_by_its_weight_equals_leaving_its_rows_out():
     data = swept_motions(5)
-    fit, _ = verdict_fitter(data, data.motion)
+    fit, _ = outcome_fitter(data, data.motion)
     kept = data.motion != "m2"
     table = pd.DataFrame(
         {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}
@@ -81,12 +81,12 @@ def test_one_motion_gives_no_interval_and_says_so():
 
 
 def swept(capacities):
-    """Sweeps of motions with given capacities at common levels from 0.1 to 1 g."""
+    """IDA curves of motions with given capacities at common levels from 0.1 to 1 g."""
     rows = [
         {
             "configuration": "T1",
             "motion": f"m{k}",
-            "event": f"e{k}",
+            "earthquake": f"e{k}",
             "amplitude_g": level,
             "overturned": level > capacity,
         }
@@ -108,7 +108,7 @@ def swept(capacities):
         ([0.3, 0.32, 0.5, 9.0], True, True),
     ],
 )
-def test_the_poorest_sweeps_give_a_stated_result(capacities, theta_known, limits_known):
+def test_the_poorest_ida_curves_give_a_stated_result(capacities, theta_known, limits_known):
     table = fragility_table(swept(capacities))
     assert (table["theta"].notna() == theta_known).all()
     assert (table["theta_lower"].notna() == limits_known).all()
@@ -121,17 +121,17 @@ def test_the_poorest_sweeps_give_a_stated_result(capacities, theta_known, limits
         assert (table["beta_lower"] == 0).all() and np.isposinf(table["beta_upper"]).all()
 
 
-def test_limits_over_motions_of_shared_events_warn():
+def test_limits_over_motions_of_shared_earthquakes_warn():
     data = swept_motions(8)
     assert not interval_over_motions(data).warnings
     table = pd.DataFrame(
         {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}
     )
-    table["event"] = table["motion"].map(lambda name: int(name[1:]) % 4)
-    shared = outcomes_from_table(table, "amplitude_g", event="event")
-    assert interval_over_motions(shared).over == "event"
+    table["earthquake"] = table["motion"].map(lambda name: int(name[1:]) % 4)
+    shared = outcomes_from_table(table, "amplitude_g", earthquake="earthquake")
+    assert interval_over_motions(shared).over == "earthquake"
     assert not interval_over_motions(shared).warnings
-    assert "come from 4 events" in interval_over_motions(shared, over="motion").warnings[0]
+    assert "come from 4 earthquakes" in interval_over_motions(shared, over="motion").warnings[0]
 
 
 def test_capacities_in_one_step_give_limits_of_the_step_and_a_beta_from_zero():
@@ -160,7 +160,7 @@ def test_beta_lies_within_its_limits_under_separation_too():
 
 
 @pytest.mark.parametrize("seed", range(150))
-def test_beta_of_four_events_lies_within_its_limits(seed):
+def test_beta_of_four_earthquakes_lies_within_its_limits(seed):
     rng = np.random.default_rng([7, seed])
     brackets_at = np.exp(rng.normal(np.log(0.4), 0.3, 4))
     levels = np.geomspace(0.05, 2.0, 80)

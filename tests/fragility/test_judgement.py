@@ -1,4 +1,4 @@
-"""Goodness of fit, choice of the measure, three states, surface, split of the variance."""
+"""Goodness of fit, intensity-measure selection, three states, surface, split of the variance."""
 
 import numpy as np
 import pandas as pd
@@ -8,8 +8,8 @@ from scipy import stats
 from rockfrag.errors import InputError
 from rockfrag.fragility.goodness import goodness_of_fit
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.measure_choice import area_under_curve, recommend_measure
-from rockfrag.fragility.measure_choice_sweeps import recommend_sweep_measure
+from rockfrag.fragility.measure_selection import area_under_curve, recommend_measure
+from rockfrag.fragility.measure_selection_ida import recommend_ida_measure
 from rockfrag.fragility.observations import outcomes_from_table
 from rockfrag.fragility.states import fit_three_states
 from rockfrag.fragility.surface import fit_surface, linearly_separable
@@ -53,7 +53,7 @@ def test_the_calibration_curve_lies_on_the_diagonal_for_a_true_curve():
     assert inside.mean() >= 0.7
 
 
-def test_sweeps_are_judged_as_motions_with_one_capacity_each():
+def test_ida_curves_are_judged_as_motions_with_one_capacity_each():
     rng = np.random.default_rng(3)
     levels = np.geomspace(0.1, 1.2, 20)
     capacity = 0.35 * np.exp(0.4 * rng.normal(size=30))
@@ -112,7 +112,7 @@ def test_proportional_measures_are_equals_and_make_no_surface():
 
 
 @pytest.mark.parametrize("decides", ["pga_g", "pgv_cm_s", "arias_m_s"])
-def test_sweeps_recommend_the_measure_that_decides(decides):
+def test_ida_curves_recommend_the_measure_that_decides(decides):
     rng = np.random.default_rng(11)
     motions = 40
     measures = pd.DataFrame(
@@ -128,22 +128,22 @@ def test_sweeps_recommend_the_measure_that_decides(decides):
     # the measure at overturning is 1 with a scatter of 0.2 in ln amplitude
     at_unit = measures[decides] / measures["pga_g"] ** power
     capacity = (np.exp(0.2 * power * rng.normal(size=motions)) / at_unit) ** (1 / power)
-    sweep = pd.DataFrame(
+    ida = pd.DataFrame(
         [
-            {"motion": name, "event": name, "amplitude_g": a, "overturned": a > limit}
+            {"motion": name, "earthquake": name, "amplitude_g": a, "overturned": a > limit}
             for name, limit in zip(measures["name"], capacity, strict=True)
             for a in limit * np.exp(np.arange(-1.0, 1.0, 0.05) + 0.05 * rng.random())
         ]
     )
     columns = ["pga_g", "pgv_cm_s", "arias_m_s"]
-    choice = recommend_sweep_measure(sweep, measures, columns, given=["magnitude"], replicates=50)
+    choice = recommend_ida_measure(ida, measures, columns, given=["magnitude"], replicates=50)
     assert choice.recommended == decides
     best = choice.table.iloc[0]
     assert best["beta_amplitude"] == pytest.approx(0.2, abs=0.06)
     assert best["theta"] == pytest.approx(1.0, rel=0.2 * power)
-    assert best["chosen_share"] > 0.9 and best["p_magnitude"] > 0.01
+    assert best["chosen_fraction"] > 0.9 and best["p_magnitude"] > 0.01
     with pytest.raises(InputError, match="does not grow with the amplitude"):
-        recommend_sweep_measure(sweep, measures.assign(d5_95_s=1.0), ["d5_95_s"])
+        recommend_ida_measure(ida, measures.assign(d5_95_s=1.0), ["d5_95_s"])
 
 
 def test_a_surface_recovers_the_parameters_that_made_it():
@@ -232,8 +232,8 @@ def test_the_variance_splits_into_the_parts_that_made_it():
     assert part["parameters: restitution"] == pytest.approx(0.16, rel=0.15)
     assert part["parameters: width"] == pytest.approx(0.12, rel=0.15)
     assert part["fit"] == pytest.approx(part["motion"] / np.sqrt(200), rel=0.02)
-    shares = split.table.set_index("component")["share"]
-    assert shares[["motion", "parameters", "motion x parameters"]].sum() == pytest.approx(1.0)
+    fractions = split.table.set_index("component")["fraction"]
+    assert fractions[["motion", "parameters", "motion x parameters"]].sum() == pytest.approx(1.0)
 
 
 def test_variance_components_are_unbiased_in_small_ensembles():

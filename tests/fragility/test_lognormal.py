@@ -1,4 +1,4 @@
-"""A lognormal fragility curve from verdicts."""
+"""A lognormal fragility curve from outcomes."""
 
 import numpy as np
 import pandas as pd
@@ -19,8 +19,8 @@ STRIPES = pd.DataFrame(
 )
 
 
-def verdicts_of(im, verdicts, motions=None):
-    table = pd.DataFrame({"pga_g": im, "overturned": verdicts})
+def outcomes_of(im, outcomes, motions=None):
+    table = pd.DataFrame({"pga_g": im, "overturned": outcomes})
     table["motion"] = motions if motions is not None else range(len(table))
     return outcomes_from_table(table, "pga_g")
 
@@ -28,7 +28,7 @@ def verdicts_of(im, verdicts, motions=None):
 def random_cloud(n, theta, beta, seed):
     rng = np.random.default_rng(seed)
     im = np.exp(rng.normal(np.log(theta), 0.8, n))
-    return verdicts_of(im, np.log(im) > rng.normal(np.log(theta), beta, n))
+    return outcomes_of(im, np.log(im) > rng.normal(np.log(theta), beta, n))
 
 
 def test_published_stripes_give_their_maximum_likelihood_estimate():
@@ -90,8 +90,8 @@ def test_penalised_logit_of_one_proportion_adds_half_a_failure_and_half_a_surviv
     assert 1 / (1 + np.exp(-fit.coefficients[:, 0])) == pytest.approx(expected, abs=1e-9)
 
 
-def test_separated_verdicts_give_a_penalised_estimate_inside_the_gap_and_say_so():
-    fit = fit_lognormal(verdicts_of([0.1, 0.2, 0.3, 0.5, 0.6, 0.7], [0, 0, 0, 1, 1, 1]))
+def test_separated_outcomes_give_a_penalised_estimate_inside_the_gap_and_say_so():
+    fit = fit_lognormal(outcomes_of([0.1, 0.2, 0.3, 0.5, 0.6, 0.7], [0, 0, 0, 1, 1, 1]))
     assert "penalised" in fit.method
     assert 0.3 < fit.theta < 0.5
     assert fit.beta > 0.02  # not the silent 4e-4 of an unpenalised fit
@@ -99,21 +99,21 @@ def test_separated_verdicts_give_a_penalised_estimate_inside_the_gap_and_say_so(
 
 
 def test_tests_that_all_survive_or_all_overturn_give_a_bound_and_no_curve():
-    survived = fit_lognormal(verdicts_of([0.1, 0.2, 0.3], [0, 0, 0]))
+    survived = fit_lognormal(outcomes_of([0.1, 0.2, 0.3], [0, 0, 0]))
     assert np.isnan(survived.theta) and "θ is above" in survived.warnings[0]
-    fell = fit_lognormal(verdicts_of([0.1, 0.2, 0.3], [1, 1, 1]))
+    fell = fit_lognormal(outcomes_of([0.1, 0.2, 0.3], [1, 1, 1]))
     assert np.isnan(fell.theta) and "θ is below" in fell.warnings[0]
 
 
 def test_a_probability_that_falls_with_the_measure_gives_no_curve():
-    for verdicts in ([1, 1, 0, 1, 0, 0], [1, 1, 1, 0, 0, 0]):
-        fit = fit_lognormal(verdicts_of([0.1, 0.2, 0.3, 0.5, 0.6, 0.7], verdicts))
+    for outcomes in ([1, 1, 0, 1, 0, 0], [1, 1, 1, 0, 0, 0]):
+        fit = fit_lognormal(outcomes_of([0.1, 0.2, 0.3, 0.5, 0.6, 0.7], outcomes))
         assert np.isnan(fit.beta)
         assert "does not rise" in fit.method
 
 
 def test_one_motion_and_repeated_rows_are_stated():
-    fit = fit_lognormal(verdicts_of([0.1, 0.2, 0.3, 0.2, 0.1], [0, 1, 1, 0, 0], ["a"] * 5))
+    fit = fit_lognormal(outcomes_of([0.1, 0.2, 0.3, 0.2, 0.1], [0, 1, 1, 0, 0], ["a"] * 5))
     assert any("one motion" in note for note in fit.warnings)
     assert any("1 of 5 rows repeat" in note for note in fit.warnings)
 
@@ -146,7 +146,7 @@ def test_counts_outside_zero_to_trials_and_empty_tables_are_refused():
     with pytest.raises(InputError, match="no column 'pgv_cm_s'"):
         outcomes_from_table(STRIPES, "pgv_cm_s", trials="trials", motion=None)
     with pytest.raises(InputError, match="at least two values"):
-        fit_lognormal(verdicts_of([0.3, 0.3], [0, 1]))
+        fit_lognormal(outcomes_of([0.3, 0.3], [0, 1]))
 
 
 def test_units_are_read_from_column_names():

@@ -29,7 +29,7 @@ POINTS = pd.DataFrame(
         "configuration": "urn",
         "state": "overturns",
         "x": [0.30, 0.34, 0.60, 0.70, 0.95],
-        "share": [0.0, 0.45, 0.55, 0.9, 1.0],
+        "fraction": [0.0, 0.45, 0.55, 0.9, 1.0],
     }
 )
 
@@ -41,7 +41,7 @@ def expected(name: str, level: float) -> float:
     if level < rocks * 0.95:
         return 0.0
     if name == "urn":
-        return float(np.interp(np.log(level), np.log(POINTS["x"]), POINTS["share"]))
+        return float(np.interp(np.log(level), np.log(POINTS["x"]), POINTS["fraction"]))
     return float(stats.norm.cdf(np.log(level / row["theta"]) / row["beta"]))
 
 
@@ -51,16 +51,18 @@ def test_openquake_reads_levels_and_lognormal_functions(tmp_path, level):
     pytest.importorskip("openquake.risklib.read_nrml", reason="openquake.engine is not installed")
     from openquake.hazardlib import nrml
 
-    write_nrml(CURVES, tmp_path / "curves.xml", shares=POINTS)
+    write_nrml(CURVES, tmp_path / "curves.xml", fractions=POINTS)
     model = nrml.to_python(str(tmp_path / "curves.xml"))
-    functions = {one.id: one for one in model.values()}
+    functions = {item.id: item for item in model.values()}
     # the lognormal curve of the bust would overturn what does not rock
-    assert {name: one.format for name, one in functions.items()} == {
+    assert {name: function.format for name, function in functions.items()} == {
         "urn": "discrete",
         "bust": "discrete",
     }
-    for name, one in functions.items():
-        rocks, falls = (float(state(np.array([level]))[0]) for state in one.build(list(STATES)))
+    for name, function in functions.items():
+        rocks, falls = (
+            float(state(np.array([level]))[0]) for state in function.build(list(STATES))
+        )
         assert falls == pytest.approx(expected(name, level), abs=0.01)
         assert rocks >= falls
 
@@ -68,7 +70,7 @@ def test_openquake_reads_levels_and_lognormal_functions(tmp_path, level):
 def test_pelicun_draws_as_many_overturned_as_the_curves_say(tmp_path):
     assessment = pytest.importorskip("pelicun.assessment", reason="pelicun is not installed")
     paths = tmp_path / "curves.csv", tmp_path / "curves.json"
-    write_simcenter(CURVES, *paths, shares=POINTS)
+    write_simcenter(CURVES, *paths, fractions=POINTS)
     draws, level = 20_000, 0.45
     run = assessment.Assessment({"PrintLog": False, "Seed": 1, "Verbose": False})
     index = ["Units", *range(draws)]
@@ -80,8 +82,8 @@ def test_pelicun_draws_as_many_overturned_as_the_curves_say(tmp_path):
     run.asset.generate_cmp_sample(draws)
     run.damage.load_model_parameters([str(paths[0])], set(names))
     run.damage.calculate()
-    shares = run.damage.ds_model.sample.mean()
+    fractions = run.damage.ds_model.sample.mean()
     for name in ("urn", "bust"):
-        assert shares[f"ROCKFRAG.{name}", "1", "1", "0", "2"] == pytest.approx(
+        assert fractions[f"ROCKFRAG.{name}", "1", "1", "0", "2"] == pytest.approx(
             expected(name, level), abs=0.012
         )

@@ -45,13 +45,13 @@ def test_a_curved_hazard_agrees_with_numerical_integration(fit):
     knots = np.log(im)
     expected = sum(integrate.quad(integrand, a, b)[0] for a, b in pairwise(knots))
     found = overturning_rate(fit, im, rate)
-    inside = found.annual_rate * (1 - found.share_below - found.share_above)
+    inside = found.annual_rate * (1 - found.fraction_below - found.fraction_above)
     assert inside == pytest.approx(expected, rel=1e-8)
 
 
 def test_a_hazard_curve_that_ends_too_early_is_said(fit):
     found = overturning_rate(fit, [0.3, 0.5], [1e-3, 2e-4])
-    assert found.share_above > 0.05
+    assert found.fraction_above > 0.05
     assert any("above the hazard curve" in note for note in found.warnings)
 
 

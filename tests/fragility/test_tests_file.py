@@ -16,8 +16,8 @@ ROWS = [("r1", 0.35, "no"), ("r2", 0.5, "yes"), ("r3", 0.25, "no")]
 def write(path, separator=",", decimal=".", encoding="utf-8", title="pga_g"):
     lines = [separator.join(("record", title, "overturned"))]
     lines += [
-        separator.join((name, str(value).replace(".", decimal), verdict))
-        for name, value, verdict in ROWS
+        separator.join((name, str(value).replace(".", decimal), outcome))
+        for name, value, outcome in ROWS
     ]
     path.write_bytes("\n".join(lines).encode(encoding))
     return path
@@ -51,7 +51,7 @@ def test_western_european_labels_are_read(tmp_path):
 
 
 @pytest.mark.parametrize(("yes", "no"), [("sì", "no"), ("VRAI", "FAUX"), ("Verdadero", "Falso")])
-def test_verdicts_in_the_words_of_spreadsheets_of_other_languages(tmp_path, yes, no):
+def test_outcomes_in_the_words_of_spreadsheets_of_other_languages(tmp_path, yes, no):
     path = tmp_path / "t.csv"
     path.write_text(f"pga_g,overturned\n0.3,{yes}\n0.2,{no}\n", encoding="utf-8")
     assert read_tests(path, ["pga_g"])["overturned"].tolist() == [1, 0]
@@ -101,7 +101,7 @@ def test_other_columns_are_kept_as_text(tmp_path):
 
 @pytest.mark.slow
 def test_a_million_rows_of_2000_motions_take_bounded_memory(tmp_path):
-    """A sweep of 2000 motions; one array of motions by rows alone would take 15 GiB."""
+    """An IDA curve of 2000 motions; one array of motions by rows alone would take 15 GiB."""
     rng = np.random.default_rng(1)
     motions, each = 2000, 500
     motion = np.repeat(np.arange(motions), each)

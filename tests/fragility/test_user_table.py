@@ -44,7 +44,7 @@ def test_the_measure_that_decides_is_recommended_with_its_reasons(csv):
     compared = result.choice.table.set_index("im")
     assert compared.loc["PGV", "beta"] < compared.loc["PGA", "beta"]
     assert compared.loc["PGV", "auc"] > compared.loc["PGA", "auc"]
-    assert compared.loc["PGV", "chosen_share"] > 0.95
+    assert compared.loc["PGV", "chosen_fraction"] > 0.95
     assert compared.loc["PGV", "p_magnitude"] > 0.01
     assert "one measure is enough" in result.choice.words
     assert result.goodness["pgv_cm_s"].p_value > 0.05
@@ -59,7 +59,7 @@ def test_the_measure_that_decides_is_recommended_with_its_reasons(csv):
         ("r1,abc,0.1,yes,6", 202, "pga_g", "'abc' is not"),
         ("r1,0,0.1,yes,6", 202, "pga_g", "above zero"),
         ("r1,0.1,-0.1,yes,6", 202, "ratio_s", "above zero"),
-        ("r1,0.1,0.1,0.7,6", 202, "fell", "no verdict"),
+        ("r1,0.1,0.1,0.7,6", 202, "fell", "no outcome"),
         (",0.1,0.1,no,6", 202, "Record", "label is missing"),
     ],
 )

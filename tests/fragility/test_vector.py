@@ -26,7 +26,7 @@ def laboratory(rng, earthquakes, motions=5, levels=6, interaction=0.0):
     index = index + rng.normal(0, 0.15, x.shape)
     return pd.DataFrame(
         {
-            "event": np.repeat(earthquake, levels).astype(str),
+            "earthquake": np.repeat(earthquake, levels).astype(str),
             "motion": np.repeat(np.arange(earthquake.size), levels).astype(str),
             MEASURES[0]: np.exp(x).ravel(),
             MEASURES[1]: np.exp(y).ravel(),

@@ -82,11 +82,11 @@ def main() -> int:
     parser.add_argument("--only", default="", help="kinds of inputs, by a word of their names")
     options = parser.parse_args()
     begin = time.monotonic()
-    kinds = {name: share for name, (_, share) in KINDS.items() if options.only in name}
+    kinds = {name: fraction for name, (_, fraction) in KINDS.items() if options.only in name}
     chunks = [
         (kind, number, min(CHUNK, count - number))
-        for kind, share in kinds.items()
-        for count in [round(options.inputs * share / sum(kinds.values()))]
+        for kind, fraction in kinds.items()
+        for count in [round(options.inputs * fraction / sum(kinds.values()))]
         for number in range(0, count, CHUNK)
     ]
     # files in memory where there are such: a disk is slower than what is under test

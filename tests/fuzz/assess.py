@@ -56,7 +56,7 @@ def objects(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a statue, with other values or damaged bytes, or an inventory."""
     (folder / "table.csv").write_text(_samples()["table.csv"])
     (folder / "building.yaml").write_bytes((ROOT / "config" / "building.yaml").read_bytes())
-    texts = [yaml.dump(one, Dumper=DUMPER, sort_keys=False).encode() for one in STATUES]
+    texts = [yaml.dump(statue, Dumper=DUMPER, sort_keys=False).encode() for statue in STATUES]
     path, table = folder / "statue.yaml", folder / "inventory.csv"
 
     def one(rng: random.Random) -> Attempt:

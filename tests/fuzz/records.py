@@ -86,7 +86,8 @@ def _seeds(folder: Path) -> Iterable[tuple[str, bytes, Callable[[Path], None]]]:
     (folder / "a.txt").write_bytes(texts["plain_csv-plain.csv"])
     row = "A,E,1976-05-06,S,090,6.5,20.1,folder,a.txt,,,\n"
     catalogue = (
-        "name,event,date,station,component,magnitude,distance_km,source,file,sha256,unit,dt\n" + row
+        "name,earthquake,date,station,component,magnitude,distance_km,source,file,sha256,unit,dt\n"
+        + row
     )
     yield "motions.csv", catalogue.encode(), lambda path: load_motions(path) and None
     yield (

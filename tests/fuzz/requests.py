@@ -71,14 +71,14 @@ def _part(part: tuple[int, int, int]) -> tuple[Counter[int], list[str]]:
             except Exception:
                 status, found = 1, [traceback.format_exc(limit=-3)]
             fates[status] += 1
-            wrong += [f"{number}: {' '.join(asked)}\n    {one}" for one in found]
+            wrong += [f"{number}: {' '.join(asked)}\n    {item}" for item in found]
     return fates, wrong
 
 
 def write_records(folder: Path) -> Path:
     """Write a catalogue of short records of noise, one an earthquake and two a station; return its path."""
     rng = np.random.default_rng(0)
-    rows = ["name,event,station,file,unit"]
+    rows = ["name,earthquake,station,file,unit"]
     for i in range(EARTHQUAKES):
         raw = Motion(rng.standard_normal(1500) * np.hanning(1500), 0.01, name=f"noise {i}")
         motion = scale_to_pga(bandpass(raw, 0.2, 1.0 + 0.5 * i), 0.2 + 0.01 * i)

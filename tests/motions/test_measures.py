@@ -13,7 +13,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY as G
 
 COLUMNS = [
-    *("name", "event", "floor", "pga_g", "pgv_cm_s", "pgd_cm", "pgv_over_pga_s", "arias_m_s"),
+    *("name", "earthquake", "floor", "pga_g", "pgv_cm_s", "pgd_cm", "pgv_over_pga_s", "arias_m_s"),
     *("cav_m_s", "d5_75_s", "d5_95_s", "mean_period_s", "predominant_period_s"),
     *("sa_0_3s_g", "sv_0_3s_cm_s", "sd_0_3s_cm", "sa_1_0s_g", "sv_1_0s_cm_s", "sd_1_0s_cm"),
     *("avgsa_g", "housner_cm", "pulse_period_s", "pulse_velocity_cm_s", "pulse_explained"),
@@ -22,10 +22,10 @@ COLUMNS = [
 
 @pytest.fixture
 def named(noise):
-    """Maker of motions with a name, an event and a floor."""
+    """Maker of motions with a name, an earthquake and a floor."""
 
     def make(name: str, seed: int) -> Motion:
-        about = {"event": "Nowhere", "floor": "roof"}
+        about = {"earthquake": "Nowhere", "floor": "roof"}
         return noise(seed, 600, tapered=True, name=name, metadata=about)
 
     return make
@@ -89,7 +89,7 @@ def test_motions_are_taken_one_at_a_time(named):
         for seed in range(5):
             motion = named(f"motion {seed}", seed)
             seen.append(weakref.ref(motion))
-            most = max(most, sum(one() is not None for one in seen))
+            most = max(most, sum(item() is not None for item in seen))
             yield motion
             del motion
 

@@ -125,10 +125,10 @@ def test_taking_the_pulse_away_takes_its_share_of_the_velocity(noise):
 
 def test_amplitude_scales_and_period_stays(noise):
     motion = noise(4, 1500, tapered=True)
-    one, three = m.strongest_pulse(motion), m.strongest_pulse(m.scale(motion, 3.0))
-    assert three.velocity == pytest.approx(3 * one.velocity)
-    assert three.period == pytest.approx(one.period)
-    assert three.explained == pytest.approx(one.explained)
+    item, three = m.strongest_pulse(motion), m.strongest_pulse(m.scale(motion, 3.0))
+    assert three.velocity == pytest.approx(3 * item.velocity)
+    assert three.period == pytest.approx(item.period)
+    assert three.explained == pytest.approx(item.explained)
 
 
 @pytest.mark.parametrize("samples", [np.zeros(500), np.ones(1), np.ones(5)])

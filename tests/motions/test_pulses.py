@@ -95,14 +95,14 @@ def test_velocity_pulse_integrates_to_its_definition(cycles, phase_deg):
 
 
 @pytest.mark.parametrize(("start", "end"), [(1.0, 16.0), (16.0, 1.0)])
-def test_sweep_passes_its_octaves_at_the_stated_rate(start, end):
-    sweep = m.sine_sweep(1.5, start, end, 8.0, 0.002)
-    assert sweep.time[-1] == pytest.approx(4 / 8 * 60)
-    # zero crossings per second in the middle of the sweep, where the frequency is the geometric mean
-    near = np.abs(sweep.time - 15.0) < 1.0
-    crossings = np.flatnonzero(np.diff(np.sign(sweep.acceleration[near])) != 0).size
+def test_ida_passes_its_octaves_at_the_stated_rate(start, end):
+    ida = m.sine_sweep(1.5, start, end, 8.0, 0.002)
+    assert ida.time[-1] == pytest.approx(4 / 8 * 60)
+    # zero crossings per second in the middle of the IDA curve, where the frequency is the geometric mean
+    near = np.abs(ida.time - 15.0) < 1.0
+    crossings = np.flatnonzero(np.diff(np.sign(ida.acceleration[near])) != 0).size
     assert crossings / 2 / 2.0 == pytest.approx(math.sqrt(start * end), rel=0.1)
-    assert m.pga(sweep) == pytest.approx(1.5, rel=1e-3)
+    assert m.pga(ida) == pytest.approx(1.5, rel=1e-3)
 
 
 @pytest.mark.parametrize(

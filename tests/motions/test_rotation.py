@@ -54,11 +54,11 @@ def test_component_is_that_of_obspy(angle):
 
 def test_measures_do_not_depend_on_how_the_sensor_stood():
     first, second = pair(2)
-    one, other = rotate(first, second, 37.0), rotate(first, second, 127.0)
+    item, other = rotate(first, second, 37.0), rotate(first, second, 127.0)
     for measure in (pga, pgv, lambda motion: spectral_acceleration(motion, 0.2)):
         for percentile in (50, 100):
             expected = rotd(first, second, measure, percentile)
-            assert rotd(one, other, measure, percentile) == pytest.approx(expected, rel=1e-9)
+            assert rotd(item, other, measure, percentile) == pytest.approx(expected, rel=1e-9)
 
 
 def test_rotation_is_recorded():
@@ -149,19 +149,19 @@ class TestCommonTime:
         late = Motion(
             np.arange(80) * 0.01 + 1.3, 0.01, "b", {"start_time": "2014-08-24T10:00:01.3"}
         )
-        one, other = common_time([early, late])
-        np.testing.assert_allclose(one.acceleration, other.acceleration, atol=1e-12)
-        assert one.acceleration.size == 70
-        assert one.provenance[-1]["left_out_at_beginning_s"] == pytest.approx(0.3)
+        first, other = common_time([early, late])
+        np.testing.assert_allclose(first.acceleration, other.acceleration, atol=1e-12)
+        assert first.acceleration.size == 70
+        assert first.provenance[-1]["left_out_at_beginning_s"] == pytest.approx(0.3)
 
     def test_other_intervals_and_parts_of_samples_are_interpolated(self):
         early = Motion(np.arange(100) * 0.01 + 1, 0.01, "a", {"start_time": "2014-08-24T10:00:01"})
         late = Motion(
             np.arange(40) * 0.02 + 1.304, 0.02, "b", {"start_time": "2014-08-24T10:00:01.304"}
         )
-        one, other = common_time([early, late])
-        assert one.dt == other.dt == 0.01
-        np.testing.assert_allclose(one.acceleration, other.acceleration, atol=1e-12)
+        first, other = common_time([early, late])
+        assert first.dt == other.dt == 0.01
+        np.testing.assert_allclose(first.acceleration, other.acceleration, atol=1e-12)
 
     def test_components_without_times_begin_together_and_others_may_not_meet(self):
         first, second = components()
@@ -182,10 +182,10 @@ class TestCommonTime:
         )
         about = {"start_time": "2014-08-24T10:00:00.0015", "component": "UP"}
         vertical = Motion(random.standard_normal(900), 0.003, "v", about)
-        one, other, upright = common_time([first, second, vertical])
-        np.testing.assert_array_equal(one.acceleration, first.acceleration[1:])
+        item, other, upright = common_time([first, second, vertical])
+        np.testing.assert_array_equal(item.acceleration, first.acceleration[1:])
         np.testing.assert_array_equal(other.acceleration, second.acceleration[1:])
-        assert (one.dt, upright.dt, upright.acceleration.size) == (0.005, 0.005, 399)
+        assert (item.dt, upright.dt, upright.acceleration.size) == (0.005, 0.005, 399)
         named = [
             replace(m, metadata={"start_time": m.metadata["start_time"]}) for m in (first, vertical)
         ]

@@ -50,9 +50,9 @@ def test_stillness_moves_nothing():
 
 
 def test_one_sample_is_a_motion():
-    one = Motion([1.0], 0.01)
-    alone = m.response_spectrum(one, HOUSNER_PERIODS).displacement
-    assert (peak_displacements(one, HOUSNER_PERIODS) == alone).all()
+    motion = Motion([1.0], 0.01)
+    alone = m.response_spectrum(motion, HOUSNER_PERIODS).displacement
+    assert (peak_displacements(motion, HOUSNER_PERIODS) == alone).all()
 
 
 def test_negative_damping_is_refused(motion):

@@ -28,12 +28,12 @@ def ensemble():
 
 
 def test_seed_decides_everything():
-    one, same, other = (m.evolutionary(seed, **MODEL) for seed in (7, 7, 8))
-    np.testing.assert_array_equal(one.acceleration, same.acceleration)
-    assert not np.array_equal(one.acceleration, other.acceleration)
-    assert one.metadata["synthetic"] is True
-    assert one.metadata["seed"] == 7
-    assert MODEL.items() <= one.provenance[0].items()
+    first, same, other = (m.evolutionary(seed, **MODEL) for seed in (7, 7, 8))
+    np.testing.assert_array_equal(first.acceleration, same.acceleration)
+    assert not np.array_equal(first.acceleration, other.acceleration)
+    assert first.metadata["synthetic"] is True
+    assert first.metadata["seed"] == 7
+    assert MODEL.items() <= first.provenance[0].items()
 
 
 def test_recorded_parameters_make_the_same_motion_again():
@@ -96,12 +96,12 @@ def test_spectrum_compatible_motion_starts_and_ends_at_rest():
 
 
 def test_spectrum_compatible_motion_depends_on_its_seed_alone():
-    one, same, other = (
+    first, same, other = (
         m.spectrum_compatible(seed, PERIODS, TARGET_G, dt=0.02) for seed in (5, 5, 6)
     )
-    np.testing.assert_array_equal(one.acceleration, same.acceleration)
-    assert not np.array_equal(one.acceleration, other.acceleration)
-    assert one.metadata["synthetic"] is True
+    np.testing.assert_array_equal(first.acceleration, same.acceleration)
+    assert not np.array_equal(first.acceleration, other.acceleration)
+    assert first.metadata["synthetic"] is True
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """The random cases that speed and accuracy are measured on: bodies × motions × amplitudes.
 
 Base 0.1-1.0 m, H/B 3-6, peak ground acceleration 0.1-1.05 g, 40 s at 0.01 s.  Everything follows from
-one seed; the ranges are filled evenly (one draw from each of as many equal shares as there are values).
+one seed; the ranges are filled evenly (one draw from each of as many equal fractions as there are values).
 """
 
 from collections.abc import Iterator
@@ -45,7 +45,7 @@ class Cases:
 
 
 def filled(rng: np.random.Generator, low: float, high: float, count: int) -> NDArray[np.float64]:
-    """Draw one value from each of ``count`` equal shares of a range, in random order."""
+    """Draw one value from each of ``count`` equal fractions of a range, in random order."""
     return low + (high - low) * rng.permutation((np.arange(count) + rng.random(count)) / count)
 
 
@@ -94,10 +94,10 @@ def stacks(count: int, seed: int) -> list[Body]:
     rng = np.random.default_rng(seed + 2)
     wider, ratio = filled(rng, 1.05, 1.5, count), filled(rng, 0.5, 2.0, count)
     made: list[Body] = []
-    for statue, w, r in zip(blocks(count, seed), wider.tolist(), ratio.tolist(), strict=True):
-        assert isinstance(statue, Block)
-        base = statue.width * w
-        made.append(Stack(Block(base, base * r, DENSITY * base * base * base * r), statue))
+    for upper, w, r in zip(blocks(count, seed), wider.tolist(), ratio.tolist(), strict=True):
+        assert isinstance(upper, Block)
+        base = upper.width * w
+        made.append(Stack(Block(base, base * r, DENSITY * base * base * base * r), upper))
     return made
 
 

@@ -81,8 +81,8 @@ class NoImpact:
     ----------
     start
         When rocking starts [s]; NaN if it never does.
-    pole
-        Pole it starts on, +1 or -1; 0 if it never does.
+    pivot
+        Pivot it starts on, +1 or -1; 0 if it never does.
     value
         -s p ∫ exp(-p (t - t0)) a/(θc g) dt from the start to the motion's end [-]: above 1 a block that
         has not come down by then overturns.
@@ -91,14 +91,14 @@ class NoImpact:
     """
 
     start: float
-    pole: int
+    pivot: int
     value: float
     impact: bool
 
     @property
     def overturns(self) -> bool:
         """Whether the block overturns without an impact."""
-        return self.pole != 0 and not self.impact and self.value > 1
+        return self.pivot != 0 and not self.impact and self.value > 1
 
 
 def no_impact(

@@ -1,4 +1,4 @@
-"""Other ways to the same verdicts: scipy's solve_ivp, the reference integrator, MuJoCo, plain numpy.
+"""Other ways to the same outcomes: scipy's solve_ivp, the reference integrator, MuJoCo, plain numpy.
 
 Every one stops as soon as a block has turned by a right angle or the motion is over.
 """
@@ -17,13 +17,13 @@ Array = NDArray[np.float64]
 
 SLOWEST_IMPACT = 1e-4
 """Speed after an impact [rad/s] below which solve_ivp's block rests: following its chatter to 1e-6 rad/s
-takes several times as long and changes no verdict."""
+takes several times as long and changes no outcome."""
 
 
 def scipy_lone(body: Body, acceleration: Array, dt: float, *, by_sample: bool = False) -> bool:
-    """Housner's block by ``solve_ivp``, DOP853, rtol 1e-10, impacts and falls as events.
+    """Housner's block by ``solve_ivp``, DOP853, rtol 1e-10, impacts and falls as contact events.
 
-    Each call ends at an event; with ``by_sample`` at the next sample too, where the ground's acceleration
+    Each call ends at a contact event; with ``by_sample`` at the next sample too, where the ground's acceleration
     has a kink: steps across kinks fail, and no user who does not know it would look there.
     """
     assert isinstance(body, Block)
@@ -111,7 +111,7 @@ def mujoco_model(body: Body | Column, timestep: float, stiff: bool, friction: fl
 </mujoco>""")
 
 
-def mujoco_verdict(
+def mujoco_outcome(
     body: Body | Column,
     acceleration: Array,
     dt: float,

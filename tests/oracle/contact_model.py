@@ -32,7 +32,7 @@ class InterfaceMode(NamedTuple):
     slides: int
 
 
-# a corner counts as over the face until it is this share of the half width beyond the edge
+# a corner counts as over the face until it is this fraction of the half width beyond the edge
 AT_EDGE = 1e-9
 
 OPEN = InterfaceMode((), 0)
@@ -117,19 +117,19 @@ class Model:
             side = 1 if (relative or turning) >= 0 else -1
             if k:
                 lower = q[3 * k - 3 : 3 * k - 1]
-                arm = self._standing_pole(k, side) - self.standing[3 * k - 3 : 3 * k - 1]
+                arm = self._standing_pivot(k, side) - self.standing[3 * k - 3 : 3 * k - 1]
                 arm = _turn(Vector(*arm), theta[k - 1])
-                pole = lower + arm
-                pole_speed = v[3 * k - 3 : 3 * k - 1] + omega[k - 1] * _perp(arm)
+                pivot = lower + arm
+                pivot_speed = v[3 * k - 3 : 3 * k - 1] + omega[k - 1] * _perp(arm)
             else:
-                pole, pole_speed = self._standing_pole(k, side), np.zeros(2)
+                pivot, pivot_speed = self._standing_pivot(k, side), np.zeros(2)
             arm = -_turn(self.corner[k][side], theta[k])
-            q[3 * k : 3 * k + 2] = pole + arm
-            v[3 * k : 3 * k + 2] = pole_speed + omega[k] * _perp(arm)
+            q[3 * k : 3 * k + 2] = pivot + arm
+            v[3 * k : 3 * k + 2] = pivot_speed + omega[k] * _perp(arm)
             q[3 * k + 2], v[3 * k + 2] = theta[k], omega[k]
         return q, v
 
-    def _standing_pole(self, k: int, side: int) -> Array:
+    def _standing_pivot(self, k: int, side: int) -> Array:
         foot: Array = self.standing[3 * k : 3 * k + 2] + np.array(self.corner[k][side])
         return foot
 

@@ -1,7 +1,7 @@
 """The reference integrator with friction and flight: slow, tight and plain, to judge the fast one by.
 
-Dormand and Prince's 8(5,3) pair from sample to sample, every event located on its dense output, and at every
-event an enumeration of all modes that the closed contacts allow.  The mechanics is that of
+Dormand and Prince's 8(5,3) pair from sample to sample, every contact event located on its dense output, and at
+every contact event an enumeration of all modes that the closed contacts allow.  The mechanics is that of
 :mod:`contact_model`; nothing but the bodies is shared with the fast kernels.
 """
 
@@ -36,19 +36,19 @@ Key = tuple[str, int, int]
 
 RTOL, ATOL = 1e-10, 1e-13
 
-# slack before an event is seen, so that what has just begun is not taken for its end: forces over the weight,
-# speeds over √(g b), lengths over b [-]
+# slack before a contact event is seen, so that what has just begun is not taken for its end: forces over the
+# weight, speeds over √(g b), lengths over b [-]
 SLACK = 1e-12
 TOUCH = 1e-13
 
 # a mode that violates its inequalities by less than this is consistent [-]; less than SLACK
 CONSISTENT = 2e-13
 
-# a contact that parts at less than this share of √(g b) after an impact, and would fall shut again, is closed
+# a contact that parts at less than this fraction of √(g b) after an impact, and would fall shut again, is closed
 CLOSING = 1e-6
 
 LONGEST_TAIL = 60.0  # free motion after the last sample, over 1/p
-MOST_EVENTS = 20_000
+MOST_CONTACT_EVENTS = 20_000
 
 _NODES = np.linspace(0.0, 1.0, 7)[1:]
 _FRESH = np.concatenate([np.logspace(-9, -1, 17), np.linspace(0.2, 1.0, 9)])
@@ -77,7 +77,7 @@ class ContactResponse:
         x, y, θ of each body relative to the moving ground, shape (n, 3 bodies) [m, rad].
     slip
         Displacement along each interface of the corner that carries, shape (n, bodies) [m].
-    events
+    contact_events
         In their order.
     overturned, overturned_body, overturning_time
         Whether, which (1 the lone block or the pedestal, 2 the statue) and when [s].
@@ -89,7 +89,7 @@ class ContactResponse:
     position: Array
     velocity: Array
     slip: Array
-    events: tuple[ContactEvent, ...]
+    contact_events: tuple[ContactEvent, ...]
     overturned: bool
     overturned_body: int
     overturning_time: float
@@ -174,7 +174,7 @@ class _Run:
         self.mode: Mode = tuple(OPEN for _ in range(model.count))
         self.kind: dict[End, bool] = {}
         self.ends = [(k, s) for k in range(model.count) for s in FULL]
-        self.events: list[ContactEvent] = []
+        self.contact_events: list[ContactEvent] = []
         self.fallen = 0
         self.start, self.now = 0.0, np.zeros(2)
         self.slope = np.zeros(2)
@@ -205,10 +205,10 @@ class _Run:
             position=values[:, :n],
             velocity=values[:, n : 2 * n],
             slip=values[:, 2 * n : 2 * n + self.model.count],
-            events=tuple(self.events),
+            contact_events=tuple(self.contact_events),
             overturned=self.fallen > 0,
             overturned_body=self.fallen,
-            overturning_time=self.events[-1].time if self.fallen else math.nan,
+            overturning_time=self.contact_events[-1].time if self.fallen else math.nan,
             energy=values[:, -5:],
         )
 
@@ -231,7 +231,7 @@ class _Run:
         a = self.now + self.slope * t
         return float(a[0]), float(a[1])
 
-    # ------------------------------------------------------- between events
+    # ------------------------------------------------------- between contact events
 
     def _interval(self) -> None:
         t, stalled = 0.0, 0
@@ -239,8 +239,10 @@ class _Run:
             before = t
             t = self._stand(t) if self._resting() else self._move(t)
             stalled = stalled + 1 if t == before else 0
-            if stalled > 50 or len(self.events) > MOST_EVENTS:
-                raise ArithmeticError(f"events without end at {self.start + t} s: {self.mode}")
+            if stalled > 50 or len(self.contact_events) > MOST_CONTACT_EVENTS:
+                raise ArithmeticError(
+                    f"contact events without end at {self.start + t} s: {self.mode}"
+                )
 
     def _stand(self, t: float) -> float:
         """At rest every margin is linear in time."""
@@ -286,7 +288,7 @@ class _Run:
             solver.step()
             if solver.status == "failed":
                 raise ArithmeticError(f"the integration failed at {self.start + solver.t} s")
-            found = self._first_event(t0, y0, solver, fresh)
+            found = self._first_contact_event(t0, y0, solver, fresh)
             fresh = False
             if found is not None:
                 time, keys, y = found
@@ -334,7 +336,7 @@ class _Run:
         return end[1] in self.mode[end[0]].closed
 
     def _margins(self, t: float, q: Array, v: Array) -> dict[Key, float]:
-        """Everything that must stay positive until the next event."""
+        """Everything that must stay positive until the next contact event."""
         model = self.model
         contacts = self._contacts(q)
         found = model.solve(q, v, self.mode, contacts, self._load(t))
@@ -367,7 +369,7 @@ class _Run:
         c = self.model.contact(q, *end, self.kind.get(end))
         return float(self.model.row(q, end[0], c, c.normal) @ v)
 
-    def _first_event(
+    def _first_contact_event(
         self, t0: float, y0: Array, solver: DOP853, fresh: bool
     ) -> tuple[float, set[Key], Array] | None:
         n = 3 * self.model.count
@@ -417,10 +419,10 @@ class _Run:
 
         return float(brentq(rate, t0, t1, xtol=1e-15))
 
-    # --------------------------------------------------------------- events
+    # --------------------------------------------------------------- contact events
 
     def _handle(self, t: float, keys: set[Key]) -> None:
-        """Find the mode after an event (or at the start, where there are no keys)."""
+        """Find the mode after a contact event (or at the start, where there are no keys)."""
         model, old = self.model, self.mode
         for name, k, _ in keys:
             if name in ("upright", "over"):
@@ -640,4 +642,4 @@ class _Run:
         return violation < 1e-6
 
     def _note(self, t: float, kind: str, old: Mode, loss: float) -> None:
-        self.events.append(ContactEvent(self.start + t, kind, old, self.mode, loss))
+        self.contact_events.append(ContactEvent(self.start + t, kind, old, self.mode, loss))

@@ -1,7 +1,7 @@
 """The reference integrator: slow, tight and plain, to judge the fast one by.
 
 Dormand and Prince's 8(5,3) pair (Hairer, Nørsett & Wanner 1993, as scipy's DOP853) with relative
-tolerance 1e-10 between the samples of the motion, where the acceleration is linear, and every event
+tolerance 1e-10 between the samples of the motion, where the acceleration is linear, and every contact event
 located on the dense output.  The mechanics is that of `rocking_model`;
 nothing is shared with the fast kernel but the bodies.
 """
@@ -26,7 +26,7 @@ from .rocking_model import (
     Pair,
     State,
 )
-from .rocking_response import ReferenceEvent, ReferenceResponse
+from .rocking_response import ReferenceContactEvent, ReferenceResponse
 
 RTOL, ATOL = 1e-10, 1e-14
 
@@ -44,9 +44,9 @@ TOUCH = 1e-15
 # longest free rocking after the motion's end, over 1/p, if no duration is given [-]
 LONGEST_TAIL = 1000.0
 
-MOST_EVENTS = 200_000
+MOST_CONTACT_EVENTS = 200_000
 
-# where to look for events inside a step, as fractions of it: after a contact has just opened, while
+# where to look for contact events inside a step, as fractions of it: after a contact has just opened, while
 # one is full, otherwise
 _FRESH = np.concatenate([np.logspace(-10, -1, 19), np.linspace(0.15, 1.0, 18)])
 _STUCK = np.array([0.25, 0.5, 0.75, 1.0])
@@ -85,7 +85,7 @@ def simulate_reference(
         Rotations [rad] and angular velocities [rad/s] at the start: a number for a block, a pair
         (pedestal, statue) for a stack; zero if not given.
     restitution
-        None conserves angular momentum about the new pole.  A measured value instead, one number
+        None conserves angular momentum about the new pivot.  A measured value instead, one number
         for a block, a pair (ground, interface) for a stack, either of which may be None, or a
         :class:`MeasuredRestitution` with its law: the lone block leaves with ω⁺ = value · ω⁻.
     linear
@@ -157,7 +157,7 @@ class _Run:
         gaps, rates = _gaps(theta), _gaps(omega)
         self.state: State = (_sign(gaps[0] or rates[0]), _sign(gaps[1] or rates[1]))
         self.fallen = self.given_way = 0
-        self.events: list[ReferenceEvent] = []
+        self.contact_events: list[ReferenceContactEvent] = []
         self.start = 0.0
         self.early = self.late = (0.0, model.g)
         self.columns = slice(1, 2) if model.alone else slice(0, 2)
@@ -194,32 +194,32 @@ class _Run:
             theta=np.array([row[1] for row in rows])[:, self.columns],
             omega=np.array([row[2] for row in rows])[:, self.columns],
             state=np.array([row[3] for row in rows], dtype=np.int8)[:, self.columns],
-            events=tuple(self.events),
+            contact_events=tuple(self.contact_events),
             overturned=self.fallen > 0,
             overturned_body=self.fallen,
-            overturning_time=self.events[-1].time if self.fallen else math.nan,
+            overturning_time=self.contact_events[-1].time if self.fallen else math.nan,
             at_rest=self.state == (0, 0),
             given_way=self.given_way,
         )
 
     def _interval(self) -> None:
-        """Go from one sample to the next through all the events between them."""
+        """Go from one sample to the next through all the contact events between them."""
         t = 0.0
         in_place = 0
         while t < self.dt and not self.fallen:
             before = t
             t = self._stand(t) if self.state == (0, 0) else self._move(t)
             in_place = in_place + 1 if t == before else 0
-            if in_place > 100 or len(self.events) > MOST_EVENTS:
-                raise ArithmeticError(f"events without end at {self.start + t} s")
+            if in_place > 100 or len(self.contact_events) > MOST_CONTACT_EVENTS:
+                raise ArithmeticError(f"contact events without end at {self.start + t} s")
 
     def _pull(self, t: float) -> Pair:
         """Acceleration of the ground, and gravity with its upward one [m/s²]."""
         x = t / self.dt
-        one, other = self.early, self.late
-        return one[0] + x * (other[0] - one[0]), one[1] + x * (other[1] - one[1])
+        first, other = self.early, self.late
+        return first[0] + x * (other[0] - first[0]), first[1] + x * (other[1] - first[1])
 
-    # ------------------------------------------------------- between events
+    # ------------------------------------------------------- between contact events
 
     def _stand(self, t: float) -> float:
         """Everything is at rest: contact moments are linear in time, so the opening is exact."""
@@ -238,7 +238,7 @@ class _Run:
         return t
 
     def _move(self, t: float) -> float:
-        """Integrate up to the next event or the end of the interval, whichever comes first."""
+        """Integrate up to the next contact event or the end of the interval, whichever comes first."""
         model, state = self.model, self.state
 
         def rates(time: float, y: NDArray[np.float64]) -> list[float]:
@@ -264,7 +264,7 @@ class _Run:
             solver.step()
             if solver.status == "failed":
                 raise ArithmeticError(f"the integration failed at {self.start + solver.t} s")
-            found = self._first_event(t0, y0, solver)
+            found = self._first_contact_event(t0, y0, solver)
             if found is not None:
                 time, watched, y = found
                 self._take(y)
@@ -279,10 +279,10 @@ class _Run:
             theta, omega = (theta[0], theta[0]), (omega[0], omega[0])
         self.theta, self.omega = theta, omega
 
-    # --------------------------------------------------------------- events
+    # --------------------------------------------------------------- contact events
 
     def _watched(self, time: float, y: Values) -> dict[Watch, float]:
-        """Every quantity that must stay positive until the next event."""
+        """Every quantity that must stay positive until the next contact event."""
         theta, omega = (float(y[0]), float(y[1])), (float(y[2]), float(y[3]))
         gaps = _gaps(theta)
         values: dict[Watch, float] = {
@@ -294,7 +294,7 @@ class _Run:
             values |= {("press", c * s): margin + SLACK for (c, s), margin in moments.items()}
         return values
 
-    def _first_event(
+    def _first_contact_event(
         self, t0: float, y0: Values, solver: DOP853
     ) -> tuple[float, list[Watch], Values] | None:
         """Earliest zero of a watched quantity in the last step, and all that vanish with it."""
@@ -353,7 +353,7 @@ class _Run:
         return float(brentq(lambda t: self._watched(t, dense(t))[key], t0, t1, xtol=1e-16))
 
     def _apply(self, time: float, watched: list[Watch]) -> None:
-        """Change the state at an event."""
+        """Change the state at a contact event."""
         down = [i for kind, i in watched if kind == "upright"]
         if down:
             self.fallen = 1 if self.model.alone else min(down) + 1
@@ -393,8 +393,8 @@ class _Run:
     def _shut(self, new: State, weak: set[int], old: State, before: Pair) -> tuple[State, Pair]:
         """Close weak contacts for good; the velocities of the others follow from momentum."""
         new = (0 if 0 in weak else new[0], 0 if 1 in weak else new[1])
-        poles = (float(new[0] or 1), float(new[1] or 1))
-        return new, self.model.projected(poles, new, old, self.theta, before)
+        pivots = (float(new[0] or 1), float(new[1] or 1))
+        return new, self.model.projected(pivots, new, old, self.theta, before)
 
     def _too_weak(
         self, time: float, new: State, after: Pair, old: State, closing: State
@@ -420,8 +420,8 @@ class _Run:
 
     def _note(self, time: float, kind: str, old: State, before: Pair) -> None:
         cut = self.columns
-        self.events.append(
-            ReferenceEvent(
+        self.contact_events.append(
+            ReferenceContactEvent(
                 time=self.start + time,
                 kind=kind,
                 before=tuple(old)[cut],

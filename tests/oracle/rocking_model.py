@@ -1,7 +1,7 @@
 """Mechanics of the reference integrator: motion, persistence and impact, written to be read.
 
 Everything follows from the velocity fields of the blocks (``docs/derivation.md``).  With r1, d and
-r2 the vectors pole of block 1 → its centre, pole of block 1 → pole of block 2, pole of block 2 → its
+r2 the vectors pivot of block 1 → its centre, pivot of block 1 → pivot of block 2, pivot of block 2 → its
 centre, the centres move with
 
     v1 = ω1 ⊥r1,   v2 = ω1 ⊥d + ω2 ⊥r2,   ⊥(x, y) = (y, -x)   (clockwise)
@@ -10,8 +10,8 @@ and mass matrix, forces and impact maps are kinetic-metric products of such fiel
 the upper block of a stack whose lower block cannot move.
 
 A *contact state* is a pair (c1, c2), ground and interface: +1 or -1 where the contact rocks on its
-right or left pole, 0 where it is full.  A *place* is a point of a base as a fraction of its half
-width, so the poles are the places +1 and -1.
+right or left pivot, 0 where it is full.  A *place* is a point of a base as a fraction of its half
+width, so the pivots are the places +1 and -1.
 """
 
 import itertools
@@ -47,7 +47,7 @@ def _dot(u: Vector, v: Vector) -> float:
 
 @dataclass(frozen=True)
 class _Affine:
-    """A vector that depends linearly on the places of the two poles."""
+    """A vector that depends linearly on the places of the two pivots."""
 
     middle: Vector
     along_ground: Vector
@@ -64,7 +64,7 @@ _NOWHERE = Vector(0.0, 0.0)
 
 
 def _affine(corner: dict[tuple[int, int], Vector]) -> _Affine:
-    """Read the dependence off three of the four pairs of poles."""
+    """Read the dependence off three of the four pairs of pivots."""
 
     def half(u: Vector, v: Vector) -> Vector:
         return Vector((u.x - v.x) / 2, (u.y - v.y) / 2)
@@ -76,7 +76,7 @@ def _affine(corner: dict[tuple[int, int], Vector]) -> _Affine:
 
 
 class Model:
-    """Two blocks (or one) with their poles; angles in [rad], SI units throughout.
+    """Two blocks (or one) with their pivots; angles in [rad], SI units throughout.
 
     Parameters
     ----------
@@ -97,13 +97,13 @@ class Model:
             self._r1 = self._d = _Affine(_NOWHERE, _NOWHERE, _NOWHERE)
             arms = {(s, t): body.arm(t) for s in (1, -1) for t in (1, -1)}
         else:
-            pedestal = body.pedestal
-            self.m1, self.i1, self.b1 = pedestal.mass, pedestal.centroidal_inertia, pedestal.b
+            lower = body.lower
+            self.m1, self.i1, self.b1 = lower.mass, lower.centroidal_inertia, lower.b
             pairs = [(s, t) for s in (1, -1) for t in (1, -1)]
-            self._r1 = _affine({(s, t): pedestal.arm(s) for s, t in pairs})
+            self._r1 = _affine({(s, t): lower.arm(s) for s, t in pairs})
             self._d = _affine({(s, t): body.reach(s, t) for s, t in pairs})
-            arms = {(s, t): body.statue_arm(t) for s, t in pairs}
-        upper = body if isinstance(body, Block) else body.contact_statue
+            arms = {(s, t): body.upper_arm(t) for s, t in pairs}
+        upper = body if isinstance(body, Block) else body.contact_upper
         self.m2, self.i2, self.b2 = upper.mass, upper.centroidal_inertia, upper.b
         self._r2 = _affine(arms)
         self.frequency = max(upper.frequency(s, g) for s in (1, -1))
@@ -112,20 +112,20 @@ class Model:
     # ---------------------------------------------------------------- motion
 
     def fields(self, places: Pair, theta: Pair) -> tuple[Vector, Vector, Vector]:
-        """Vectors r1, d and r2 in the turned position for poles at these places [m]."""
+        """Vectors r1, d and r2 in the turned position for pivots at these places [m]."""
         r1 = self._r1.at(*places).turned(theta[0])
         d = self._d.at(*places).turned(theta[0])
         r2 = self._r2.at(*places).turned(theta[1])
         return r1, d, r2
 
     def terms(
-        self, poles: State, theta: Pair, omega: Pair, pull: Pair
+        self, pivots: State, theta: Pair, omega: Pair, pull: Pair
     ) -> tuple[float, float, float, float, float]:
         """Return M11, M12, M22, f1, f2 of M θ'' + f = τ (Spanos, Roussis and Politis, 2001).
 
         ``pull`` is the acceleration of the ground, and gravity with its upward one [m/s²].
         """
-        r1, d, r2 = self.fields(poles, theta)
+        r1, d, r2 = self.fields(pivots, theta)
         # acceleration of the centres where both θ'' are zero, with gravity as if the ground rose
         x1, y1 = pull[0] - omega[0] ** 2 * r1.x, pull[1] - omega[0] ** 2 * r1.y
         x2 = pull[0] - omega[0] ** 2 * d.x - omega[1] ** 2 * r2.x
@@ -165,10 +165,10 @@ class Model:
     def margins(
         self, state: State, theta: Pair, omega: Pair, pull: Pair
     ) -> dict[tuple[int, int], float]:
-        """How firmly each full contact presses about each corner, {(contact, pole): margin} [-].
+        """How firmly each full contact presses about each corner, {(contact, pivot): margin} [-].
 
         The contact moment s τ(s), over weight times half width; below zero the contact would have
-        to pull and opens about that pole.
+        to pull and opens about that pivot.
         """
         c1, c2 = state
         q1, q2 = self.accelerations(state, theta, omega, pull)
@@ -189,7 +189,7 @@ class Model:
     def options(self, state: State, closed: tuple[bool, bool], closing: State) -> Iterator[State]:
         """List the states that the contacts allow, open before stuck, the ground first.
 
-        ``closed`` says which contacts are full or just closing, ``closing`` holds the old pole of
+        ``closed`` says which contacts are full or just closing, ``closing`` holds the old pivot of
         each contact that just closes (0 if it does not): it does not rebound on it.
         """
         choices = []
@@ -278,7 +278,7 @@ class Model:
     ) -> tuple[State, Pair, bool]:
         """Contact state and angular velocities after an impact (Spanos, Roussis and Politis, 2001).
 
-        ``closing`` holds the old pole of each contact that closes, 0 for the others.  Last comes
+        ``closing`` holds the old pivot of each contact that closes, 0 for the others.  Last comes
         whether a measured restitution gave way to the largest with which energy does not grow.
         """
         outcomes = self.admissible_impacts(old, closing, theta, before)
@@ -295,14 +295,16 @@ class Model:
         wanted = [self._wanted(i, closing, before, plain, moved) for i in (0, 1)]
         given = [law is not None for law in laws]
 
-        def shared(share: float) -> tuple[State, Pair]:
-            rates = tuple(p + share * (w - p) for p, w in zip(_rates(plain), wanted, strict=True))
+        def shared(fraction: float) -> tuple[State, Pair]:
+            rates = tuple(
+                p + fraction * (w - p) for p, w in zip(_rates(plain), wanted, strict=True)
+            )
             return self._coming_off(old, closing, theta, before, given, (rates[0], rates[1]))
 
         energy = self.kinetic_energy(old, theta, before) * (1 + 1e-9)
 
-        def spare(share: float) -> float:
-            new, after = shared(share)
+        def spare(fraction: float) -> float:
+            new, after = shared(fraction)
             return energy - self.kinetic_energy(new, theta, after)
 
         if spare(1.0) >= 0:
@@ -317,7 +319,7 @@ class Model:
         plain: Pair,
         moved: Pair | None,
     ) -> float:
-        """Rate at which a contact comes off, by its law if it closes and never on its old pole.
+        """Rate at which a contact comes off, by its law if it closes and never on its old pivot.
 
         ``before``, ``plain`` and ``moved`` are the velocities before the impact, after it by momentum,
         and after it with impulses where the law of position has them.
@@ -382,15 +384,15 @@ class Model:
     ) -> tuple[State, Pair]:
         """Keep together what met, where no other outcome is possible."""
         new = (0 if closing[0] else old[0], 0 if closing[1] else old[1])
-        poles = (float(new[0] or 1), float(new[1] or 1))
-        return new, self.projected(poles, new, old, theta, before)
+        pivots = (float(new[0] or 1), float(new[1] or 1))
+        return new, self.projected(pivots, new, old, theta, before)
 
     def admissible_impacts(
         self, old: State, closing: State, theta: Pair, before: Pair, moved: bool = False
     ) -> Iterator[tuple[State, Pair]]:
         """List every outcome of an impact that separates and presses as it must.
 
-        Impulses act at the poles, or, if ``moved``, where the law of position has them.
+        Impulses act at the pivots, or, if ``moved``, where the law of position has them.
         """
         closed = (old[0] == 0 or closing[0] != 0, old[1] == 0 or closing[1] != 0)
         speed = NEGLIGIBLE_SPEED * (abs(before[0]) + abs(before[1]))
@@ -445,38 +447,38 @@ class LinearModel(Model):
         return super().fields(places, (0.0, 0.0))
 
     def terms(
-        self, poles: State, theta: Pair, omega: Pair, pull: Pair
+        self, pivots: State, theta: Pair, omega: Pair, pull: Pair
     ) -> tuple[float, float, float, float, float]:
         """Return M11, M12, M22, f1, f2 of the linearised equations."""
-        r1, d, r2 = self.fields(poles, theta)
+        r1, d, r2 = self.fields(pivots, theta)
         m11 = self.i1 + self.m1 * _dot(r1, r1) + self.m2 * _dot(d, d)
         m12, m22 = self.m2 * _dot(d, r2), self.i2 + self.m2 * _dot(r2, r2)
         if self._lone is not None:
             # 2.9 goes one step further: sin θc = θc and cos θc = 1
-            radius = self._lone.radius(poles[1])
-            r2 = Vector(-poles[1] * self._lone.critical_angle(poles[1]) * radius, radius)
+            radius = self._lone.radius(pivots[1])
+            r2 = Vector(-pivots[1] * self._lone.critical_angle(pivots[1]) * radius, radius)
         moment1 = Vector(self.m1 * r1.x + self.m2 * d.x, self.m1 * r1.y + self.m2 * d.y)
         f1 = moment1.y * pull[0] - pull[1] * (moment1.x + moment1.y * theta[0])
         f2 = self.m2 * (r2.y * pull[0] - pull[1] * (r2.x + r2.y * theta[1]))
         return m11, m12, m22, f1, f2
 
 
-def impulse_place(block: Block, old_pole: int, value: float) -> float:
+def impulse_place(block: Block, old_pivot: int, value: float) -> float:
     """Place of an impulse that leaves a lone block with ω⁺ = value · ω⁻, over the half width [-].
 
-    Conservation of angular momentum about a point x of the base, I + m (C - x)·(C - pole), before
-    about the old pole and after about the other; x is that other pole where momentum is conserved.
+    Conservation of angular momentum about a point x of the base, I + m (C - x)·(C - pivot), before
+    about the old pivot and after about the other; x is that other pivot where momentum is conserved.
     """
     centre = block.centre
     k = block.centroidal_inertia / block.mass + centre.y**2
-    lever = k * (1 - value) / (old_pole * block.b * (1 + value) - centre.x * (1 - value))
+    lever = k * (1 - value) / (old_pivot * block.b * (1 + value) - centre.x * (1 - value))
     return (centre.x - lever) / block.b
 
 
-def largest_restitution(block: Block, new_pole: int | None = None) -> float:
-    """Largest ratio of angular velocities that does not create energy, on one pole or either [-]."""
-    ratios = {s: block.pole_inertia(-s) / block.pole_inertia(s) for s in (1, -1)}
-    return math.sqrt(min(ratios.values()) if new_pole is None else ratios[new_pole])
+def largest_restitution(block: Block, new_pivot: int | None = None) -> float:
+    """Largest ratio of angular velocities that does not create energy, on one pivot or either [-]."""
+    ratios = {s: block.pivot_inertia(-s) / block.pivot_inertia(s) for s in (1, -1)}
+    return math.sqrt(min(ratios.values()) if new_pivot is None else ratios[new_pivot])
 
 
 @dataclass(frozen=True)
@@ -511,8 +513,8 @@ def _checked_laws(body: Block | Stack, restitution: object) -> tuple[Laws, Laws]
         )
     ground, interface = restitution
     return (
-        _laws_of("restitution[0] (ground)", body.pedestal, ground, name),
-        _laws_of("restitution[1] (interface)", body.contact_statue, interface, name),
+        _laws_of("restitution[0] (ground)", body.lower, ground, name),
+        _laws_of("restitution[1] (interface)", body.contact_upper, interface, name),
     )
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
-class ReferenceEvent:
+class ReferenceContactEvent:
     """One change of the contact state.
 
     ``kind`` is "opening", "impact", "closing" (an impact too weak to part again) or "overturning";
@@ -35,8 +35,8 @@ class ReferenceResponse:
         Rotation [rad] and angular velocity [rad/s], shape (n, 1) or (n, 2): pedestal, statue.
     state
         Contact states, shape (n, 1) or (n, 2): ground, interface.
-    events
-        Every event in order.
+    contact_events
+        Every contact event in order.
     overturned
         Whether a block passed π/2.
     overturned_body
@@ -53,7 +53,7 @@ class ReferenceResponse:
     theta: NDArray[np.float64]
     omega: NDArray[np.float64]
     state: NDArray[np.int8]
-    events: tuple[ReferenceEvent, ...]
+    contact_events: tuple[ReferenceContactEvent, ...]
     overturned: bool
     overturned_body: int
     overturning_time: float

@@ -32,14 +32,14 @@ class FloatModel(Model):
 
     def __init__(self, body: Body, g: float) -> None:
         super().__init__(body, g)
-        poles = product((1, -1), repeat=2)
-        self.arms = {pair: sum(self.fields(pair, (0.0, 0.0)), ()) for pair in poles}
+        pivots = product((1, -1), repeat=2)
+        self.arms = {pair: sum(self.fields(pair, (0.0, 0.0)), ()) for pair in pivots}
 
     def terms(
-        self, poles: State, theta: Pair, omega: Pair, pull: Pair
+        self, pivots: State, theta: Pair, omega: Pair, pull: Pair
     ) -> tuple[float, float, float, float, float]:
         """Return M11, M12, M22, f1, f2 of M θ'' + f = τ."""
-        x1, y1, xd, yd, x2, y2 = self.arms[poles]
+        x1, y1, xd, yd, x2, y2 = self.arms[pivots]
         c, s = math.cos(theta[0]), math.sin(theta[0])
         x1, y1, xd, yd = x1 * c + y1 * s, y1 * c - x1 * s, xd * c + yd * s, yd * c - xd * s
         c, s = math.cos(theta[1]), math.sin(theta[1])
@@ -48,7 +48,7 @@ class FloatModel(Model):
         a, g = pull
         v1, v2 = omega[0] * omega[0], omega[1] * omega[1]
         ax, ay = a - v1 * xd - v2 * x2, g - v1 * yd - v2 * y2
-        # the pedestal's own centripetal acceleration has no moment about its pole
+        # the pedestal's own centripetal acceleration has no moment about its pivot
         return (
             self.i1 + m1 * (x1 * x1 + y1 * y1) + m2 * (xd * xd + yd * yd),
             m2 * (xd * x2 + yd * y2),
@@ -78,7 +78,7 @@ def rest_interval(model: Model) -> tuple[float, float]:
 
 
 def watches(model: Model, state: State, start: float, ground: Ground) -> list[Watch]:
-    """Events of a contact state that starts at ``start``: at ground and interface, and a fall."""
+    """Contact events of a contact state that starts at ``start``: at ground and interface, and a fall."""
 
     def gap(t: float, y: Array, i: int) -> float:
         theta = y.tolist()
@@ -93,10 +93,12 @@ def watches(model: Model, state: State, start: float, ground: Ground) -> list[Wa
         th1, th2, _, _ = y.tolist()
         return math.pi / 2 - max(abs(th1), abs(th2), abs(th2 - th1))
 
-    events: list[Watch] = [(lambda t, y, i=i: gap(t, y, i)) if state[i] else hold for i in (0, 1)]
-    for event in (*events, falls):
-        event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
-    return [*events, falls]
+    contact_events: list[Watch] = [
+        (lambda t, y, i=i: gap(t, y, i)) if state[i] else hold for i in (0, 1)
+    ]
+    for contact_event in (*contact_events, falls):
+        contact_event.terminal, contact_event.direction = True, -1  # type: ignore[attr-defined]
+    return [*contact_events, falls]
 
 
 def landed(
@@ -121,7 +123,7 @@ def landed(
 
 
 def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool = False) -> bool:
-    """Statue on pedestal by ``solve_ivp``, DOP853, rtol 1e-10, impacts, openings and falls as events.
+    """Statue on pedestal by ``solve_ivp``, DOP853, rtol 1e-10, impacts, openings and falls as contact events.
 
     ``by_sample`` as in ``scipy_lone``.
     """
@@ -153,7 +155,7 @@ def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool =
             pull = ground(t), G
             return w1, w2, *model.accelerations(state, (th1, th2), (w1, w2), pull)
 
-        # from an event just before a sample on to the one after
+        # from a contact event just before a sample on to the one after
         stop = (int(t / dt + 1e-7) + 1) * dt if by_sample else end
         run = solve_ivp(
             rates, (t, stop), np.array([*theta, *omega]), method="DOP853", rtol=1e-10, atol=1e-13,

@@ -1,8 +1,8 @@
 """A plain oracle for bodies in space: time stepping with complementarity (Moreau 1988, Jean 1999).
 
-It knows no modes and no events: in each step of constant length the vertices that have reached the ground get
-impulses that keep them from sinking and obey Coulomb's law, found by Gauss-Seidel iteration.  The attitude is a
-matrix, angular velocities are in world coordinates, and the tensor of inertia is turned in each step: nothing is
+It knows no modes and no contact events: in each step of constant length the vertices that have reached the ground
+get impulses that keep them from sinking and obey Coulomb's law, found by Gauss-Seidel iteration.  The attitude is
+a matrix, angular velocities are in world coordinates, and the tensor of inertia is turned in each step: nothing is
 shared with the engine.  Of first order in the step.
 """
 
@@ -79,9 +79,9 @@ def _alone(w, u, old, friction):
 
 
 @numba.njit
-def _relax(arms, active, impulses, velocity, omega, inverse, friction, sweeps):
+def _relax(arms, active, impulses, velocity, omega, inverse, friction, ida_curves):
     """Gauss-Seidel over the vertices that touch."""
-    for _ in range(sweeps):
+    for _ in range(ida_curves):
         change = 0.0
         for k in range(active.size):
             r = arms[active[k]]
@@ -136,8 +136,8 @@ def stepping(points, inertia, friction, ground, dt, g, step, turned):
         for part in range(each):
             pull = np.array([0.0, 0.0, -g])
             if k < samples - 1:
-                share = (part + 0.5) / each
-                pull -= ground[k] * (1 - share) + ground[k + 1] * share
+                fraction = (part + 0.5) / each
+                pull -= ground[k] * (1 - fraction) + ground[k + 1] * fraction
             if not moving:
                 if math.hypot(pull[0], pull[1]) <= safe:
                     continue

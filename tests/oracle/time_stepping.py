@@ -1,7 +1,7 @@
 """An oracle: time stepping with complementarity (Stewart and Trinkle 1996), plain and slow.
 
-It knows no modes and no events.  In each step of constant length the velocities are those after impulses that
-keep every corner from sinking through the face under it and obey Coulomb's law, found by Gauss-Seidel
+It knows no modes and no contact events.  In each step of constant length the velocities are those after impulses
+that keep every corner from sinking through the face under it and obey Coulomb's law, found by Gauss-Seidel
 iteration over the contacts.  Candidates are each corner of a base over the face below, and each edge of a face
 under the base above, as long as one lies over the other.  The method is of first order in the step.
 """

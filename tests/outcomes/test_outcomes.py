@@ -26,10 +26,10 @@ def shaken():
 
 
 def test_every_column_has_a_unit_and_a_meaning_and_no_role_in_its_name():
-    for one in columns():
-        assert one.meaning.endswith(".")
-        assert not any(one.title.endswith("_" + role) for role in ROLES)
-    assert len({one.title for one in columns()}) == len(columns())
+    for column in columns():
+        assert column.meaning.endswith(".")
+        assert not any(column.title.endswith("_" + role) for role in ROLES)
+    assert len({column.title for column in columns()}) == len(columns())
 
 
 def test_tables_are_tidy():
@@ -93,5 +93,5 @@ def test_built_in_states():
     made.peak_slip[0, 0, 0, 0] = 0.002
     assert slides.reached(made).sum() == 2
     held, loose = Block(0.3, 1.2, 100.0).system(), system_of(Block(0.3, 1.2, 100.0), 0.5)
-    assert [slides.counted(one) for one in (held, loose)] == [False, True]
+    assert [slides.counted(item) for item in (held, loose)] == [False, True]
     assert limit_state_named("overturns").reached(made).sum() == 1

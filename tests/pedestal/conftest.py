@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-EVENTS = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
+EARTHQUAKES = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
 FLOORS = ("GF", "F3", "F5")
 TOWERS = {"T1": 0.46, "T2": 0.36, "T3": 0.29}
 
@@ -16,34 +16,34 @@ def synthetic_tests(
     *,
     effect: float = 0.1,
     floor_effect: dict[str, float] | None = None,
-    sd_event: float = 0.05,
+    sd_earthquake: float = 0.05,
     sd_motion: float = 0.05,
     sd_pair: float = 0.134,
 ) -> pd.DataFrame:
-    """Tests of the thesis's design: ln(P/NP) is effect + floor + event + motion + pair."""
+    """Tests of the thesis's design: ln(P/NP) is effect + floor + earthquake + motion + pair."""
     rng = np.random.default_rng(seed)
     rows = []
-    for event in EVENTS:
-        by_event = rng.normal(0, sd_event)
-        level_event = rng.normal(0, 0.1)
+    for earthquake in EARTHQUAKES:
+        by_earthquake = rng.normal(0, sd_earthquake)
+        level_earthquake = rng.normal(0, 0.1)
         for floor in FLOORS:
             by_motion = rng.normal(0, sd_motion)
-            level = level_event + rng.normal(0, 0.1)
+            level = level_earthquake + rng.normal(0, 0.1)
             for object_name, amplitude in TOWERS.items():
                 # the scatter of d is shared evenly by the two tests of a pair
                 noise, own = rng.normal(0, sd_pair / np.sqrt(2), 2)
-                d = effect + by_event + by_motion + own
+                d = effect + by_earthquake + by_motion + own
                 d += (floor_effect or {}).get(floor, 0.0)
                 common = np.log(amplitude) + level + rng.normal(0, 0.1)
                 for pedestal, ln_a in (("NP", common - noise), ("P", common + d)):
                     rows.append(
                         {
-                            "test": f"{object_name}-{pedestal}-{event}-{floor}",
+                            "test": f"{object_name}-{pedestal}-{earthquake}-{floor}",
                             "object": object_name,
                             "pedestal": pedestal,
-                            "event": event,
+                            "earthquake": earthquake,
                             "floor": floor,
-                            "motion": f"{event}-{floor}",
+                            "motion": f"{earthquake}-{floor}",
                             "lower_g": np.exp(ln_a),
                             "upper_g": np.exp(ln_a),
                             "amplitude_g": np.exp(ln_a),

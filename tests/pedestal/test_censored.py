@@ -26,8 +26,8 @@ def test_rectangle_of_the_bivariate_normal_agrees_with_scipy():
         a, b, c, d = -0.5, 1.2, 0.1, 0.9
         box = stats.multivariate_normal([0, 0], [[1, rho], [rho, 1]])
         theirs = box.cdf([b, d], lower_limit=[a, c])
-        one = [np.array([v]) for v in (a, b, c, d)]
-        ours = _rectangle(*one, rho, math.sqrt(1 - rho**2))[0]
+        item = [np.array([v]) for v in (a, b, c, d)]
+        ours = _rectangle(*item, rho, math.sqrt(1 - rho**2))[0]
         assert ours == pytest.approx(theirs, abs=1e-5)
 
 
@@ -47,18 +47,18 @@ def test_exact_figures_give_the_mean_of_the_pairs(tests_table):
     assert 2 * fit.sd_test**2 == pytest.approx(table["d"].var(ddof=0), rel=1e-3)
 
 
-def test_jackknife_over_events_is_the_t_interval_on_exact_balanced_data(tests_table):
+def test_jackknife_over_earthquakes_is_the_t_interval_on_exact_balanced_data(tests_table):
     tests = tests_table(1)
     effect = fit_censored(tests).effect
-    events = pair_tests(tests).table.groupby("event")["d"].mean()
-    assert effect.se == pytest.approx(events.std(ddof=1) / 2, rel=1e-2)
+    earthquakes = pair_tests(tests).table.groupby("earthquake")["d"].mean()
+    assert effect.se == pytest.approx(earthquakes.std(ddof=1) / 2, rel=1e-2)
 
 
 def test_censored_tests_do_not_bias_the_effect(tests_table):
     """Unfinished tests make the mean of complete pairs low; the likelihood is not."""
     truth, full, kept, fitted = 0.15, [], [], []
     for seed in range(5):
-        tests = tests_table(seed, effect=truth, sd_event=0.0, sd_motion=0.0)
+        tests = tests_table(seed, effect=truth, sd_earthquake=0.0, sd_motion=0.0)
         cut = censor(tests, 0.45)
         assert 0.02 < (cut["censored"] == "right").mean() < 0.5
         full.append(pair_tests(tests).table["d"].mean())
@@ -77,7 +77,7 @@ def test_wide_steps_are_intervals_and_not_figures(tests_table):
     """Steps of 20 %: the reported figure is the end of the step, the truth anywhere inside."""
     truth, fitted = 0.1, []
     for seed in range(5):
-        tests = tests_table(seed, effect=truth, sd_event=0.0, sd_motion=0.0)
+        tests = tests_table(seed, effect=truth, sd_earthquake=0.0, sd_motion=0.0)
         steps = np.floor(np.log(tests["amplitude_g"] / 0.05) / math.log(1.2))
         lower = 0.05 * 1.2**steps
         upper = lower * 1.2
@@ -96,6 +96,6 @@ def test_side_that_never_overturned_is_an_error(tests_table):
 
 
 def test_pairs_that_agree_to_the_digit_are_said(tests_table):
-    tests = tests_table(1, effect=0, sd_event=0, sd_motion=0, sd_pair=0)
+    tests = tests_table(1, effect=0, sd_earthquake=0, sd_motion=0, sd_pair=0)
     with pytest.raises(InputError, match="same figure"):
         fit_censored(tests)

@@ -12,7 +12,7 @@ from rockfrag.pedestal.cluster_means import (
     unit_means,
 )
 from rockfrag.pedestal.paired_tests import pair_tests
-from rockfrag.pedestal.permutation import leave_one_event_out, sign_flip_test
+from rockfrag.pedestal.permutation import leave_one_earthquake_out, sign_flip_test
 
 
 def test_t_on_units_is_the_one_sample_t_test():
@@ -29,7 +29,7 @@ def test_units_without_scatter_have_a_stated_result():
     assert np.isnan(t_estimate([0.2]).p)
 
 
-def test_four_events_never_give_a_sign_flip_p_below_an_eighth():
+def test_four_earthquakes_never_give_a_sign_flip_p_below_an_eighth():
     result = sign_flip_test([0.5, 0.6, 0.7, 0.8])
     assert result.exact
     assert result.p == result.smallest_p == 0.125
@@ -45,19 +45,19 @@ def test_drawn_sign_flips_agree_with_enumerated_ones(monkeypatch):
     assert drawn == sign_flip_test(x, seed=5)
 
 
-def test_effect_is_mean_of_pairs_and_its_units_are_events(tests_table):
+def test_effect_is_mean_of_pairs_and_its_units_are_earthquakes(tests_table):
     table = pair_tests(tests_table(3)).table
     effect = mean_effect(table)
     assert effect.mean == pytest.approx(table["d"].mean(), abs=1e-14)
     assert effect.units == 4
-    one = mean_effect(table[table["event"] == "Kobe"])
-    assert one.units == 3
+    item = mean_effect(table[table["earthquake"] == "Kobe"])
+    assert item.units == 3
 
 
-def test_event_with_more_motions_counts_once(tests_table):
+def test_earthquake_with_more_motions_counts_once(tests_table):
     table = pair_tests(tests_table(3)).table
-    fewer = table[~((table["event"] == "Kobe") & (table["floor"] == "F5"))]
-    means = unit_means(fewer, "event")
+    fewer = table[~((table["earthquake"] == "Kobe") & (table["floor"] == "F5"))]
+    means = unit_means(fewer, "earthquake")
     assert mean_effect(fewer).mean == pytest.approx(means.mean())
     assert len(means) == 4
 
@@ -69,25 +69,25 @@ def test_slope_on_slenderness_is_recovered_without_noise(tests_table):
     assert slope.mean == pytest.approx(-0.07, abs=1e-12)
 
 
-def test_contrast_of_floors_is_taken_inside_each_event(tests_table):
+def test_contrast_of_floors_is_taken_inside_each_earthquake(tests_table):
     table = pair_tests(tests_table(3)).table
-    # a shift of a whole event must not matter to a difference of floors
-    moved = table.assign(d=table["d"] + 5.0 * (table["event"] == "Kobe"))
-    one, other = (contrast(t, "floor", "GF", "F3") for t in (table, moved))
-    assert one.mean == pytest.approx(other.mean) and one.se == pytest.approx(other.se)
+    # a shift of a whole earthquake must not matter to a difference of floors
+    moved = table.assign(d=table["d"] + 5.0 * (table["earthquake"] == "Kobe"))
+    first, other = (contrast(t, "floor", "GF", "F3") for t in (table, moved))
+    assert first.mean == pytest.approx(other.mean) and first.se == pytest.approx(other.se)
 
 
-def test_leaving_an_event_out_finds_the_one_that_matters(tests_table):
-    table = pair_tests(tests_table(3, sd_event=0, sd_motion=0, sd_pair=0.01)).table
-    table = table.assign(d=table["d"] + 1.0 * (table["event"] == "Friuli"))
-    result = leave_one_event_out(table)
+def test_leaving_an_earthquake_out_finds_the_one_that_matters(tests_table):
+    table = pair_tests(tests_table(3, sd_earthquake=0, sd_motion=0, sd_pair=0.01)).table
+    table = table.assign(d=table["d"] + 1.0 * (table["earthquake"] == "Friuli"))
+    result = leave_one_earthquake_out(table)
     assert result.loc[result["largest_change"], "without"].tolist() == ["Friuli"]
     assert len(result) == 4
     for row in result.to_dict("records"):
-        assert row["ratio"] == mean_effect(table[table["event"] != row["without"]]).ratio
+        assert row["ratio"] == mean_effect(table[table["earthquake"] != row["without"]]).ratio
 
 
-def test_of_very_many_events_none_is_left_out(tests_table, monkeypatch):
+def test_of_very_many_earthquakes_none_is_left_out(tests_table, monkeypatch):
     table = pair_tests(tests_table(3)).table
     monkeypatch.setattr("rockfrag.pedestal.permutation.MOST_LEFT_OUT", 3)
-    assert leave_one_event_out(table).empty
+    assert leave_one_earthquake_out(table).empty

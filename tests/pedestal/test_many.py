@@ -7,31 +7,31 @@ import pytest
 from rockfrag.pedestal import censored, permutation
 
 
-def ladder(events: int) -> pd.DataFrame:
-    """Three motions an event, one object, amplitudes read from a ladder of 5 %."""
+def intensity_levels(earthquakes: int) -> pd.DataFrame:
+    """Three motions an earthquake, one object, amplitudes read from a series of 5 %."""
     rng = np.random.default_rng(2)
     rows = []
-    for k in range(3 * events):
+    for k in range(3 * earthquakes):
         shared = 0.3 * rng.normal()
         for side, shift in (("NP", 0.0), ("P", 0.08)):
-            rung = np.floor((shared + shift + 0.1 * rng.normal()) / np.log(1.05))
+            level = np.floor((shared + shift + 0.1 * rng.normal()) / np.log(1.05))
             rows.append(
                 {
                     "object": "T",
                     "pedestal": side,
-                    "event": f"e{k // 3:02d}",
+                    "earthquake": f"e{k // 3:02d}",
                     "floor": "ground",
                     "motion": f"m{k}",
-                    "lower_g": 0.4 * 1.05**rung,
-                    "upper_g": 0.4 * 1.05 ** (rung + 1),
-                    "amplitude_g": 0.4 * 1.05**rung,
+                    "lower_g": 0.4 * 1.05**level,
+                    "upper_g": 0.4 * 1.05 ** (level + 1),
+                    "amplitude_g": 0.4 * 1.05**level,
                 }
             )
     return pd.DataFrame(rows)
 
 
 def test_the_linear_jackknife_has_the_limits_of_the_refitted_one(monkeypatch):
-    tests = ladder(12)
+    tests = intensity_levels(12)
     refitted = censored.fit_censored(tests).effect
     monkeypatch.setattr(censored, "MOST_REFITTED", 1)
     linear = censored.fit_censored(tests).effect
@@ -41,7 +41,7 @@ def test_the_linear_jackknife_has_the_limits_of_the_refitted_one(monkeypatch):
 
 
 def test_pairs_that_are_alike_weigh_as_many(monkeypatch):
-    tests = ladder(12)
+    tests = intensity_levels(12)
     known = censored.fit_censored(tests)
     monkeypatch.setattr(censored, "MOST_PAIRS", 1)
     found = censored.fit_censored(tests)

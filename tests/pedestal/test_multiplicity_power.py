@@ -36,10 +36,10 @@ def test_detectable_change_has_the_power_by_definition():
     assert power_of_t(ratio, effect.sd, effect.units) == pytest.approx(0.8, abs=1e-6)
 
 
-@pytest.mark.parametrize(("pairs_an_event", "percent"), [(9, 10.0), (3, 17.9)])
-def test_four_events_show_what_the_documentation_says(pairs_an_event, percent):
+@pytest.mark.parametrize(("pairs_an_earthquake", "percent"), [(9, 10.0), (3, 17.9)])
+def test_four_earthquakes_show_what_the_documentation_says(pairs_an_earthquake, percent):
     """0.134 per pair and no other scatter: the test is t over four means, not over 36 pairs."""
-    sd = 0.134 / math.sqrt(pairs_an_event)
+    sd = 0.134 / math.sqrt(pairs_an_earthquake)
     effect = Estimate(0.0, sd / 2, 4, -1.0, 1.0, 1.0)
     assert 100 * (detectable_ratio(effect) - 1) == pytest.approx(percent, abs=0.05)
 

@@ -8,20 +8,20 @@ from rockfrag.errors import InputError
 from rockfrag.pedestal.paired_tests import pair_tests, with_counterparts
 
 
-def test_thesis_design_gives_36_pairs_in_12_motions_of_4_events(tests_table):
+def test_thesis_design_gives_36_pairs_in_12_motions_of_4_earthquakes(tests_table):
     pairs = pair_tests(tests_table(1))
     assert len(pairs.table) == 36
     assert pairs.table["motion"].nunique() == 12
-    assert pairs.table["event"].nunique() == 4
+    assert pairs.table["earthquake"].nunique() == 4
     assert pairs.notes() == []
 
 
 def test_d_is_log_ratio_with_over_without(tests_table):
     tests = tests_table(1)
     pairs = pair_tests(tests).table.set_index(["object", "motion"])
-    one = tests[(tests["object"] == "T2") & (tests["motion"] == "Kobe-F3")]
-    p = one.loc[one["pedestal"] == "P", "amplitude_g"].item()
-    np_ = one.loc[one["pedestal"] == "NP", "amplitude_g"].item()
+    test = tests[(tests["object"] == "T2") & (tests["motion"] == "Kobe-F3")]
+    p = test.loc[test["pedestal"] == "P", "amplitude_g"].item()
+    np_ = test.loc[test["pedestal"] == "NP", "amplitude_g"].item()
     assert pairs.loc[("T2", "Kobe-F3"), "d"] == pytest.approx(np.log(p / np_), abs=1e-14)
 
 
@@ -62,11 +62,11 @@ def test_censored_side_bounds_the_log_ratio(tests_table):
     np_row, p_row = row[0], row[1]
     tests.loc[p_row, ["censored", "lower_g", "upper_g", "amplitude_g"]] = ["right", 0.6, None, None]
     pairs = pair_tests(tests)
-    one = pairs.censored.iloc[0]
+    item = pairs.censored.iloc[0]
     assert len(pairs.table) == 36
     assert pairs.table.set_index(["object", "motion"])["bound"]["T1", "Kobe-GF"] == "at least"
-    assert one["d_lower"] == pytest.approx(np.log(0.6 / tests.loc[np_row, "amplitude_g"]))
-    assert one["d_upper"] == np.inf
+    assert item["d_lower"] == pytest.approx(np.log(0.6 / tests.loc[np_row, "amplitude_g"]))
+    assert item["d_upper"] == np.inf
     assert "never" in pairs.notes()[0]
 
 
@@ -90,7 +90,7 @@ def test_repetitions_are_averaged_in_the_logarithm(tests_table):
         ("amplitude_g", np.inf, "amplitude_g is inf"),
         ("pedestal", "yes", "pedestal is 'yes'"),
         ("censored", "up", "censored is 'up'"),
-        ("event", None, "event is empty"),
+        ("earthquake", None, "earthquake is empty"),
         ("object", "T9", "slenderness of object T9"),
         ("lower_g", 9.0, "exceeds upper_g"),
     ],
@@ -109,10 +109,10 @@ def test_duplicate_row_is_refused_with_both_row_numbers(tests_table):
         pair_tests(pd.concat([tests, tests.iloc[[3]]]))
 
 
-def test_mixed_readings_of_one_sweep_are_refused(tests_table):
-    tests = tests_table(1).assign(reading="step_protocol")
-    tests.loc[0, "reading"] = "first_overturning"
-    with pytest.raises(InputError, match="several readings"):
+def test_mixed_readings_of_one_ida_are_refused(tests_table):
+    tests = tests_table(1).assign(definition="step_protocol")
+    tests.loc[0, "definition"] = "first_overturning"
+    with pytest.raises(InputError, match="several definitions"):
         pair_tests(tests)
 
 
@@ -135,9 +135,9 @@ def test_test_that_overturned_at_its_first_step_bounds_the_ratio_from_above(test
     on = next(k for k in row if tests.loc[k, "pedestal"] == "P")
     tests.loc[on, ["lower_g", "upper_g", "amplitude_g"]] = [0.0, 0.05, np.nan]
     pairs = pair_tests(tests)
-    one = pairs.table.set_index(["object", "motion"]).loc[("T1", "Kobe-GF")]
-    assert one["bound"] == "at most"
-    assert one["a_p_g"] == pytest.approx(0.05)
+    item = pairs.table.set_index(["object", "motion"]).loc[("T1", "Kobe-GF")]
+    assert item["bound"] == "at most"
+    assert item["a_p_g"] == pytest.approx(0.05)
     assert np.isneginf(pairs.censored.iloc[0]["d_lower"])
 
 

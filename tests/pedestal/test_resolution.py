@@ -1,4 +1,4 @@
-"""Amplitudes from a ladder are known to a step: no statement about the pedestal is finer."""
+"""Amplitudes from a series of levels are known to a step: no statement about the pedestal is finer."""
 
 import math
 
@@ -15,15 +15,15 @@ from rockfrag.pedestal.power import detectable_ratio, power_note
 LOWEST = 0.05
 
 
-def on_a_ladder(tests: pd.DataFrame, step: float) -> pd.DataFrame:
+def on_levels(tests: pd.DataFrame, step: float) -> pd.DataFrame:
     """The same tests raised in steps of a ratio 1 + step; the figure is the last step survived."""
-    rung = np.floor(np.log(tests["amplitude_g"] / LOWEST) / math.log1p(step))
-    lower = LOWEST * (1 + step) ** rung
+    level = np.floor(np.log(tests["amplitude_g"] / LOWEST) / math.log1p(step))
+    lower = LOWEST * (1 + step) ** level
     return tests.assign(lower_g=lower, upper_g=lower * (1 + step), amplitude_g=lower)
 
 
 def tied(tests_table, step=0.05):
-    return on_a_ladder(tests_table(1, effect=0, sd_event=0, sd_motion=0, sd_pair=0), step)
+    return on_levels(tests_table(1, effect=0, sd_earthquake=0, sd_motion=0, sd_pair=0), step)
 
 
 def test_pairs_that_agree_leave_a_change_of_one_step_open(tests_table):
@@ -33,14 +33,14 @@ def test_pairs_that_agree_leave_a_change_of_one_step_open(tests_table):
     assert effect.lower <= -math.log(1.05) + 1e-12
 
 
-def test_ladder_of_5_percent_shows_equivalence_to_10_percent_and_not_to_1(tests_table):
+def test_intensity_levels_of_5_percent_shows_equivalence_to_10_percent_and_not_to_1(tests_table):
     effect = mean_effect(pair_tests(tied(tests_table)).table)
     assert equivalence(effect, 0.10) < 0.05
     assert equivalence(effect, 0.01) >= 0.05
     assert equivalence(effect, 0.05) >= 0.05
 
 
-def test_finer_ladder_shows_a_smaller_equivalence(tests_table):
+def test_finer_intensity_levels_shows_a_smaller_equivalence(tests_table):
     effect = mean_effect(pair_tests(tied(tests_table, 0.005)).table)
     assert equivalence(effect, 0.01) < 0.05
 
@@ -63,13 +63,13 @@ def test_differences_of_tied_pairs_have_width(tests_table, estimate):
 def test_pairs_that_differ_are_not_widened(tests_table):
     """Where every pair differs the rounding is part of the scatter and averages out."""
     fine = mean_effect(pair_tests(tests_table(1)).table)
-    rough = mean_effect(pair_tests(on_a_ladder(tests_table(1), 0.01)).table)
+    rough = mean_effect(pair_tests(on_levels(tests_table(1), 0.01)).table)
     assert rough.resolution < 0.15 * math.log(1.01) * 2
     assert rough.upper - rough.lower == pytest.approx(fine.upper - fine.lower, rel=0.1)
 
 
 def test_equal_figures_without_steps_have_no_interval(tests_table):
-    tests = tests_table(1, effect=0, sd_event=0, sd_motion=0, sd_pair=0)
+    tests = tests_table(1, effect=0, sd_earthquake=0, sd_motion=0, sd_pair=0)
     study = study_pedestal(tests, seed=1)
     assert study.effects[["lower", "upper", "p"]].isna().all(axis=None)
     assert not study.effects["equivalent"].any()
@@ -78,7 +78,7 @@ def test_equal_figures_without_steps_have_no_interval(tests_table):
 
 def test_no_effect_of_a_study_has_an_interval_without_width(tests_table):
     tests = tied(tests_table)
-    # one pair jumps by three steps, as a survival window makes it do
+    # one pair jumps by three steps, as a structural resurrection makes it do
     jump = tests.index[(tests["pedestal"] == "P") & (tests["motion"] == "Kobe-F5")][0]
     tests.loc[jump, ["lower_g", "upper_g", "amplitude_g"]] *= 1.05**3
     effects = study_pedestal(tests, seed=1).effects

@@ -666,7 +666,7 @@ def csmnc(folder: Path) -> Built:
         "UNCORRECTED ACCELERATION          UNIT: CM/SEC/SEC",
         f"NO. OF POINTS:  {N}  EQUALLY SPACED INTERVALS OF:  0.005  SEC",
         "PEAK VALUE:    3.262   AT   22.89 SEC    DURATION:  44 SEC",
-        "PRE-EVENT TIME:  20  SEC  RECORDER TIME:  2012-01-3 15:40:00.000 BTM",
+        "PRE-EARTHQUAKE TIME:  20  SEC  RECORDER TIME:  2012-01-3 15:40:00.000 BTM",
         "CSMNC",
         "",
     ]

@@ -27,7 +27,7 @@ def write_catalogue(folder, *rows, columns=COLUMNS):
     return path
 
 
-ROW = {"name": "A", "event": "E", "source": "folder", "file": "a.txt", "unit": "g"}
+ROW = {"name": "A", "earthquake": "E", "source": "folder", "file": "a.txt", "unit": "g"}
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ def test_motions_of_a_folder_are_read_with_the_facts_of_the_catalogue(tmp_path, 
     )
     (motion,) = load_motions(path)
     assert motion.name == "A"
-    assert motion.metadata["event"] == "E"
+    assert motion.metadata["earthquake"] == "E"
     assert motion.metadata["station"] == "Gilroy"
     assert motion.metadata["magnitude"] == 6.9
     assert motion.metadata["distance_km"] == 12.8
@@ -90,7 +90,7 @@ def test_a_channel_is_named_after_a_hash_sign(tmp_path, builders):
     ("changed", "column"),
     [
         ({"name": ""}, "name"),
-        ({"event": ""}, "event"),
+        ({"earthquake": ""}, "earthquake"),
         ({"file": ""}, "file"),
         ({"dt": "10 ms"}, "dt"),
         ({"dt": "1e-30"}, "dt"),
@@ -118,7 +118,7 @@ def test_a_wrong_cell_is_named_by_row_and_column(tmp_path, changed, column):
 def test_a_name_twice_a_missing_and_an_unknown_column_are_refused(tmp_path):
     with pytest.raises(InputError, match="line 3, column 'name': 'A' is there twice"):
         read_catalogue(write_catalogue(tmp_path, ROW, ROW))
-    with pytest.raises(InputError, match="column 'event' is missing"):
+    with pytest.raises(InputError, match="column 'earthquake' is missing"):
         read_catalogue(write_catalogue(tmp_path, ROW, columns=("name", "file")))
     with pytest.raises(InputError, match="column 'extra' is unknown"):
         read_catalogue(write_catalogue(tmp_path, ROW, columns=(*COLUMNS, "extra")))
@@ -268,7 +268,7 @@ def test_a_component_of_the_fema_sets_is_read_from_hdf5(tmp_path):
 def test_columns_that_do_not_matter_may_be_missing(tmp_path, builders):
     built = builders["plain_csv"](tmp_path)
     path = tmp_path / "motions.csv"
-    path.write_text(f"name,event,file\nA,E,{built.path.name}\n")
+    path.write_text(f"name,earthquake,file\nA,E,{built.path.name}\n")
     (motion,) = load_motions(path)
     assert motion.metadata["source"] == "folder"
     assert motion.acceleration.size == built.samples.shape[1]
@@ -278,7 +278,7 @@ def test_semicolons_and_decimal_commas_are_understood(tmp_path, builders):
     built = builders["rows_of_numbers"](tmp_path)
     path = tmp_path / "motions.csv"
     path.write_text(
-        f"name;event;magnitude;file;unit;dt;scale_factor\nA;E;6,5;{built.path.name};g;0,02;1,5\n"
+        f"name;earthquake;magnitude;file;unit;dt;scale_factor\nA;E;6,5;{built.path.name};g;0,02;1,5\n"
     )
     (motion,) = load_motions(path)
     assert motion.dt == 0.02
@@ -363,7 +363,7 @@ class TestUrl:
 class TestFdsn:
     @pytest.fixture
     def service(self, monkeypatch):
-        """A service that has two channels of one station and one event, and the requests it got."""
+        """A service that has two channels of one station and one earthquake, and the requests it got."""
         import obspy.clients.fdsn
         from obspy import Stream, Trace, UTCDateTime
         from obspy.core.event import Catalog, Event, Origin
@@ -408,7 +408,7 @@ class TestFdsn:
         monkeypatch.setattr(obspy.clients.fdsn, "Client", Service)
         return requests
 
-    def test_wildcards_and_the_window_of_an_event_are_asked_for_once(self, tmp_path, service):
+    def test_wildcards_and_the_window_of_an_earthquake_are_asked_for_once(self, tmp_path, service):
         from obspy import UTCDateTime
 
         row = ROW | {"source": "fdsn", "file": "NCEDC BK.CMB.*.HN? nc72282711 -10 +120#HNE"}

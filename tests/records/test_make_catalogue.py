@@ -113,7 +113,7 @@ def test_unreadable_files_copies_and_unstated_units_are_said(tmp_path, builders,
     write(tmp_path / "plain.txt", 1)
     assert main(["catalogue", str(tmp_path)]) == 1
     told = capsys.readouterr()
-    assert told.out.splitlines()[0].startswith("name,event")
+    assert told.out.splitlines()[0].startswith("name,earthquake")
     assert "peer.AT2: the same record as" in told.err
     assert "cut.AT2, line 5: the header promises 43 samples" in told.err
     assert "plain.txt: the file does not state its unit" in told.err
@@ -145,8 +145,8 @@ def test_pairs_of_peers_arrays_are_found(tmp_path, pair):
     stem = pair[0][:-3].rstrip("-")
     write(tmp_path / f"RSN173_IMPVALL.H_{stem}-UP.txt", 2)
     draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
-    one, other = (f"RSN173_IMPVALL.H_{name}.txt" for name in pair)
-    assert partners(draft) == {one: other, other: one}
+    first, other = (f"RSN173_IMPVALL.H_{name}.txt" for name in pair)
+    assert partners(draft) == {first: other, other: first}
     assert set(draft.table["vertical"]) == {f"RSN173_IMPVALL.H_{stem}-UP.txt"}
 
 
@@ -210,7 +210,7 @@ def test_messages_name_the_options_of_the_command_line(tmp_path, capsys, builder
     assert "give it with --dt (in seconds)" in told
     assert main(["info", str(tmp_path / "a.txt")]) == 1
     assert "give --unit" in capsys.readouterr().err
-    (tmp_path / "motions.csv").write_text("name,event,file\nA,E,a.txt\n")
+    (tmp_path / "motions.csv").write_text("name,earthquake,file\nA,E,a.txt\n")
     with pytest.raises(InputError, match=r"give the column unit \(g, m/s2"):
         load_motions(tmp_path / "motions.csv")
 
@@ -240,7 +240,7 @@ def test_names_that_no_table_shows_are_replaced_or_refused(tmp_path, capsys):
 def test_rows_of_a_catalogue_are_numbered_as_lines_and_repeats_are_named(tmp_path):
     write(tmp_path / "a.txt", 1)
     path = tmp_path / "motions.csv"
-    path.write_text("name,event,file,unit\n\nA,E,a.txt,g\n\nB,E,none.txt,g\nC,E,a.txt,g\n")
+    path.write_text("name,earthquake,file,unit\n\nA,E,a.txt,g\n\nB,E,none.txt,g\nC,E,a.txt,g\n")
     with pytest.raises(InputError, match=r"line 5: .*none\.txt"):
         load_motions(path)
     assert repeated_motions(read_catalogue(path)) == ["motion C is the same as A: a.txt"]

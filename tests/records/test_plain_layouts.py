@@ -272,7 +272,7 @@ class TestLayouts:
             "".join(f"{v:14.7E}" for v in WAVE[i : i + 5]) + "\n" for i in range(0, N, 5)
         )
         text = (
-            "Event Date & Time             : 2009-04-06 01:32:39\n"
+            "Earthquake Date & Time             : 2009-04-06 01:32:39\n"
             "Station Code / Name           : 2987 / Somewhere, Italy\n"
             "Orientation                   : NS\n"
             "Filter Cut-off Frequency (Hz) : 0.100 - 50.000\n"

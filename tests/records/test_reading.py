@@ -238,7 +238,7 @@ class TestWriting:
         rng = np.random.default_rng(3)
         values = rng.normal(size=1001) * 10.0 ** rng.integers(-12, 3, size=1001)
         values[:4] = [0.0, -0.0, 5e-324, 1.7e308]
-        header = {"delta": dt, "rockfrag": {"unit": "g", "event": "E", "component": "090"}}
+        header = {"delta": dt, "rockfrag": {"unit": "g", "earthquake": "E", "component": "090"}}
         stream = Stream([Trace(values, {**header, "station": "GILROY"})])
         path = tmp_path / file
         stream.write(str(path), format="AT2" if file.endswith("AT2") else "PLAINTEXT")

@@ -84,10 +84,12 @@ def test_what_is_not_acceleration_is_refused_as_that(shared, file, words):
         read_motion(shared / "records/world" / file)
 
 
-def test_event_station_and_component_of_peers_records_of_eastern_north_america_are_kept(shared):
+def test_earthquake_station_and_component_of_peers_records_of_eastern_north_america_are_kept(
+    shared,
+):
     motion = read_motion(shared / "records/world/at2/RSN10590_ComalTX11-10-20_IU.CCM.BH1.00.AT2")
     facts = motion.metadata
-    assert facts["event"] == "ComalTX11-10-20, 10/20/2011"
+    assert facts["earthquake"] == "ComalTX11-10-20, 10/20/2011"
     assert (facts["station"], facts["component"]) == ("CCM", "BH100")
 
 

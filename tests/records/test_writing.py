@@ -16,7 +16,7 @@ ENDINGS = [".AT2", ".csv", ".dat", ".tcl", ".mseed"]
 def motion():
     """A floor motion with a mean, which a raw recording would lose."""
     samples = 0.3 + np.random.default_rng(3).normal(size=1001)
-    facts = {"event": "Friuli 1976", "station": "TMZ", "component": "000", "floor": "attic"}
+    facts = {"earthquake": "Friuli 1976", "station": "TMZ", "component": "000", "floor": "attic"}
     return Motion(samples, 0.005, "Friuli attic", facts)
 
 
@@ -26,8 +26,8 @@ def test_a_motion_reads_back_without_a_question(tmp_path, motion, ending):
     np.testing.assert_allclose(back.acceleration, motion.acceleration, rtol=1e-14)
     assert back.dt == pytest.approx(motion.dt, rel=1e-12)
     if ending in (".AT2", ".dat"):
-        facts = {key: back.metadata[key] for key in ("event", "station", "component")}
-        assert facts == {"event": "Friuli 1976", "station": "TMZ", "component": "000"}
+        facts = {key: back.metadata[key] for key in ("earthquake", "station", "component")}
+        assert facts == {"earthquake": "Friuli 1976", "station": "TMZ", "component": "000"}
 
 
 @pytest.mark.parametrize("unit", ["g", "cm/s2", "mm/s2"])

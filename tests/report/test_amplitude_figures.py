@@ -18,8 +18,8 @@ from rockfrag.report.figures.amplitudes import (
 )
 from rockfrag.report.figures.effects import forest_figure, ratio_axis
 from rockfrag.report.figures.fragility import fragility_figure
+from rockfrag.report.figures.ida import outcome_map
 from rockfrag.report.figures.shaker import shaker_limits
-from rockfrag.report.figures.sweep import verdict_map
 from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
 
 OBJECTS = ("vase", "column & capital")
@@ -30,7 +30,7 @@ def laboratory(unfinished: int = 0) -> pd.DataFrame:
     """Tests of two objects on two floors by three records, the first ones never overturned."""
     rng = np.random.default_rng(4)
     rows = []
-    for event in ("Alpha", "Beta", "Gamma"):
+    for earthquake in ("Alpha", "Beta", "Gamma"):
         for floor in ("cellar", "attic"):
             for name in OBJECTS:
                 for side in ("P", "NP"):
@@ -41,9 +41,9 @@ def laboratory(unfinished: int = 0) -> pd.DataFrame:
                             "configuration": f"{name} {side}",
                             "object": name,
                             "pedestal": side,
-                            "event": event,
+                            "earthquake": earthquake,
                             "floor": floor,
-                            "motion": f"{event}_{floor}",
+                            "motion": f"{earthquake}_{floor}",
                             "lower_g": 2.0 if censored else a,
                             "upper_g": np.nan if censored else 1.05 * a,
                             "amplitude_g": np.nan if censored else a,
@@ -113,7 +113,7 @@ def effects() -> pd.DataFrame:
         ("floor", "attic", 1, 1.04, np.nan, np.nan),
     ]
     columns = ["scope", "level", "units", "ratio", "lower", "upper"]
-    return pd.DataFrame(rows, columns=columns).assign(unit="event", p_holm=0.4)
+    return pd.DataFrame(rows, columns=columns).assign(unit="earthquake", p_holm=0.4)
 
 
 def test_the_forest_draws_an_interval_only_where_there_is_one():
@@ -128,7 +128,7 @@ def test_the_forest_draws_an_interval_only_where_there_is_one():
     assert len(lines) == 2  # that of one, and one interval
 
 
-def sweep(amplitudes: list[float], fallen: list[bool]) -> pd.DataFrame:
+def ida(amplitudes: list[float], fallen: list[bool]) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "configuration": "vase",
@@ -151,7 +151,7 @@ def sweep(amplitudes: list[float], fallen: list[bool]) -> pd.DataFrame:
 def test_the_map_has_a_bar_for_each_range_that_overturns(
     amplitudes: list[float], fallen: list[bool], bars: int
 ):
-    axes = verdict_map(sweep(amplitudes, fallen), ["vase"]).axes[0]
+    axes = outcome_map(ida(amplitudes, fallen), ["vase"]).axes[0]
     assert len(axes.collections[0].get_paths()) == bars
 
 
@@ -167,7 +167,7 @@ def test_the_shakers_limits_stand_beside_the_objects():
     assert {text.get_text().strip() for text in axes.texts} == {"stroke", "force"}
 
 
-def test_a_configuration_without_a_curve_keeps_its_verdicts():
+def test_a_configuration_without_a_curve_keeps_its_outcomes():
     x = np.geomspace(0.1, 1, 5)
     curves = pd.DataFrame(
         {
@@ -191,9 +191,9 @@ def test_a_configuration_without_a_curve_keeps_its_verdicts():
             for name, value in (("vase", 0.5), ("jug", np.nan))
         ]
     )
-    bins = pd.DataFrame({"configuration": ["vase", "jug"], "x": 0.3, "share": [0.4, 0.0]}).assign(
-        share_lower=0.0, share_upper=0.5
-    )
+    bins = pd.DataFrame(
+        {"configuration": ["vase", "jug"], "x": 0.3, "fraction": [0.4, 0.0]}
+    ).assign(fraction_lower=0.0, fraction_upper=0.5)
     figure = fragility_figure(curves, bands, bins)
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert titles == ["(a) vase: θ = 0.4 g, β = 0.30", "(b) jug: no median"]
@@ -210,7 +210,7 @@ def test_any_name_can_be_drawn_and_is_the_text_that_was_given(name: str, tmp_pat
     save_figure(figure, tmp_path / "a.svg", tmp_path / "a.png")
     label = figure.axes[0].get_xticklabels()[0].get_text()
     assert label == name if len(name) <= 14 else label.startswith(name[:6])
-    verdict_map(sweep([0.1, 0.2], [False, True]).assign(motion=name), ["vase"])
+    outcome_map(ida([0.1, 0.2], [False, True]).assign(motion=name), ["vase"])
 
 
 def test_figures_are_the_same_bytes_for_the_same_data_and_their_text_is_text(tmp_path: Path):
@@ -219,8 +219,8 @@ def test_figures_are_the_same_bytes_for_the_same_data_and_their_text_is_text(tmp
         figure = amplitudes_by_object(tests, mean_amplitudes(tests))
         save_figure(figure, tmp_path / f"{name}.svg", tmp_path / f"{name}.png")
     for ending in ("svg", "png"):
-        one, two = ((tmp_path / f"{name}.{ending}").read_bytes() for name in ("one", "two"))
-        assert one == two
+        first, two = ((tmp_path / f"{name}.{ending}").read_bytes() for name in ("one", "two"))
+        assert first == two
     assert ">vase<" in (tmp_path / "one.svg").read_text()
 
 
@@ -257,7 +257,7 @@ def test_panels_have_letters_and_axes_no_empty_units():
     figure = slenderness_figure(tests, mean_amplitudes(tests), SLENDERNESS)
     assert [axes.get_title(loc="left")[:3] for axes in figure.axes] == ["(a)", "(b)"]
     words = [text.get_text() for text in figure.findobj(Text)]
-    assert not any("[-]" in one for one in words)
+    assert not any("[-]" in word for word in words)
 
 
 @pytest.mark.parametrize("span", [(0.55, 1.25), (0.2, 5.0), (0.9, 1.1), (0.7, 1.3)])
@@ -274,5 +274,5 @@ def test_ticks_of_ratios_do_not_print_over_each_other(span):
 def test_names_of_records_are_whole_where_a_reader_looks_them_up():
     name = "RSN825 CAPEMEND CPM_350_ground"
     amplitudes = [0.1, 0.2]
-    figure = verdict_map(sweep(amplitudes, [False, True]).assign(motion=name), ["vase"])
+    figure = outcome_map(ida(amplitudes, [False, True]).assign(motion=name), ["vase"])
     assert name in [tick.get_text() for tick in figure.axes[0].get_yticklabels()]

@@ -72,7 +72,7 @@ def test_without_limits_no_interval_is_spoken_of():
 
 
 def recorded(*cases: tuple[str, str, bool, float]) -> pd.DataFrame:
-    return pd.DataFrame(cases, columns=["configuration", "motion", "overturned", "share_near"])
+    return pd.DataFrame(cases, columns=["configuration", "motion", "overturned", "fraction_near"])
 
 
 @pytest.mark.parametrize(

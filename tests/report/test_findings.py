@@ -12,7 +12,7 @@ from rockfrag.report.findings import (
     model_allowed,
     objects_compared,
     pedestal_effect,
-    windows_found,
+    resurrections_found,
 )
 
 NAN = math.nan
@@ -93,11 +93,11 @@ def test_it_is_said_over_which_motions_means_are_taken():
 
 def effects(lower: float, ratio: float, upper: float, **changes: object) -> pd.DataFrame:
     row = {
-        "reading": "step_protocol",
+        "definition": "step_protocol",
         "scope": "whole",
         "level": "all",
         "pairs": 36,
-        "unit": "event",
+        "unit": "earthquake",
         "units": 4,
         "ratio": ratio,
         "lower": lower,
@@ -159,10 +159,10 @@ def test_without_any_pair_the_effect_is_not_known():
 
 
 def test_floors_are_compared_where_there_are_two():
-    one = effects(0.9, 1.0, 1.1)
+    item = effects(0.9, 1.0, 1.1)
     floors = [effects(1.1, 1.2, 1.3, scope="floor", level=name) for name in ("cellar", "attic")]
-    assert len(pedestal_effect(pd.concat([one, floors[0]]))) == 1
-    found = pedestal_effect(pd.concat([one, *floors]))
+    assert len(pedestal_effect(pd.concat([item, floors[0]]))) == 1
+    found = pedestal_effect(pd.concat([item, *floors]))
     assert "all 2 floors" in found[1].headline
 
 
@@ -194,22 +194,24 @@ def test_what_friction_says_of_the_pedestal_is_said_where_both_sides_were_tested
     assert "without 0.20 to 0.30" in found.numbers
 
 
-def windows(*counts: int) -> pd.DataFrame:
-    return pd.DataFrame({"first_upper": 0.5, "windows": list(counts)})
+def resurrections(*counts: int) -> pd.DataFrame:
+    return pd.DataFrame({"first_upper": 0.5, "resurrections": list(counts)})
 
 
-def test_survival_windows_are_counted_over_the_sweeps_that_overturn():
+def test_survival_windows_are_counted_over_the_ida_curves_that_overturn():
     tests = pd.DataFrame(
         {
             "test": ["a", "a"],
-            "reading": ["first_overturning", "always_overturning"],
+            "definition": ["first_overturning", "always_overturning"],
             "amplitude_g": [0.5, 1.0],
         }
     )
-    found = windows_found(windows(2, 0), tests)
+    found = resurrections_found(resurrections(2, 0), tests)
     assert found.headline.startswith("Non-monotone response: in 1 of 2 analyses")
     assert "2.00 times" in found.numbers
-    assert windows_found(windows(0, 0), tests).headline.startswith("Every motion stronger")
-    assert windows_found(windows(0).assign(first_upper=NAN), tests).headline.startswith(
+    assert resurrections_found(resurrections(0, 0), tests).headline.startswith(
+        "Every motion stronger"
+    )
+    assert resurrections_found(resurrections(0).assign(first_upper=NAN), tests).headline.startswith(
         "Nothing overturns"
     )

@@ -38,7 +38,7 @@ def test_the_page_carries_motions_to_the_last_bit_and_bodies_as_given():
     data = data_of(live_kernel(BODIES, [motion()]))
     samples = np.frombuffer(base64.b64decode(data["motions"][0]["samples"]))
     assert samples.tobytes() == motion().acceleration.tobytes()
-    assert [one["name"] for one in data["bodies"]] == list(BODIES)
+    assert [body["name"] for body in data["bodies"]] == list(BODIES)
     assert data["bodies"][1]["pedestal"]["width"] == 0.5
     assert data["bodies"][0]["pedestal"] is None
 
@@ -49,37 +49,37 @@ def test_no_name_ends_the_script():
     assert "<b>" not in html
 
 
-def test_the_verdicts_are_those_of_the_table_it_is_given():
-    one = motion()
-    table = swept(BODIES, [one])
+def test_the_outcomes_are_those_of_the_table_it_is_given():
+    item = motion()
+    table = swept(BODIES, [item])
     table["overturned"] = table["amplitude_g"] > 0.7
-    data = data_of(live_kernel(BODIES, [one], table, Start("figure", "wave")))
+    data = data_of(live_kernel(BODIES, [item], table, Start("figure", "wave")))
     assert data["start"]["body"] == 0
     assert data["start"]["amplitude"] == pytest.approx(0.7, rel=0.03)
     expected = "".join("1" if g > 0.7 else "0" for g in data["amplitudes"])
-    assert data["verdicts"][0][0] == expected
+    assert data["outcomes"][0][0] == expected
 
 
 def test_without_a_table_the_amplitudes_are_tried():
-    one = motion()
-    table = swept(BODIES, [one])
+    item = motion()
+    table = swept(BODIES, [item])
     own = table[table["configuration"] == "figure"]
-    scales = own["amplitude_g"].to_numpy() * 9.81 / one.pga
-    fell = overturns([STATUE], [one.acceleration], [one.dt], scales).overturned.ravel()
+    scales = own["amplitude_g"].to_numpy() * 9.81 / item.pga
+    fell = overturns([STATUE], [item.acceleration], [item.dt], scales).overturned.ravel()
     assert own["overturned"].to_numpy(dtype=bool).tolist() == fell.tolist()
     assert 0 < fell.sum() < fell.size
 
 
 def test_a_page_carries_no_more_motions_than_it_has_room_for():
     many = [motion(f"wave {number}", 3000) for number in range(40)]
-    assert sum(one.acceleration.size for one in carried(many)) <= MOST_SAMPLES
+    assert sum(item.acceleration.size for item in carried(many)) <= MOST_SAMPLES
     assert len(carried([motion("long", 2 * MOST_SAMPLES)])) == 1
 
 
 @pytest.mark.parametrize("theta", [0.2, -0.2])
 def test_a_block_is_drawn_on_the_edge_on_which_it_rocks(theta: float):
     (corners,) = outlines(STATUE.system(), [theta])
-    low = min(corners, key=lambda one: one.y)
+    low = min(corners, key=lambda item: item.y)
     assert low.y == pytest.approx(0, abs=1e-12)
     assert low.x == pytest.approx(math.copysign(0.15, theta))
     for a, b, length in zip(corners, corners[1:], (0.3, 1.2, 0.3), strict=False):
@@ -93,24 +93,25 @@ def test_a_statue_is_drawn_on_its_pedestal(theta: tuple[float, float]):
     pedestal, statue = outlines(stack, theta)
     along = pedestal[2].minus(pedestal[3])
     heights = [
-        (along.x * (one.y - pedestal[3].y) - along.y * (one.x - pedestal[3].x)) / math.hypot(*along)
-        for one in statue
+        (along.x * (item.y - pedestal[3].y) - along.y * (item.x - pedestal[3].x))
+        / math.hypot(*along)
+        for item in statue
     ]
     assert min(heights) == pytest.approx(0, abs=1e-12)
 
 
 def test_frames_say_what_becomes_of_the_body():
-    one = motion()
-    drawing, words = frames_svg(STATUE.system(), one, [0.05, 0.5, 2.0])
+    item = motion()
+    drawing, words = frames_svg(STATUE.system(), item, [0.05, 0.5, 2.0])
     assert "at 0.050 g it stays at rest" in words
     assert drawing.count("<polygon") == 3
     assert "overturns at" in words or "rocks to" in words
 
 
 def test_the_played_page_is_small_and_the_same_every_time(tmp_path: Path):
-    one = motion(samples=MOST_PLAYED)
+    item = motion(samples=MOST_PLAYED)
     for name in ("a.html", "b.html"):
-        write_play_page(BODIES["figure"], one, tmp_path / name)
+        write_play_page(BODIES["figure"], item, tmp_path / name)
     assert (tmp_path / "a.html").read_bytes() == (tmp_path / "b.html").read_bytes()
     assert (tmp_path / "a.html").stat().st_size < 400_000
     with pytest.raises(InputError, match="more than the"):

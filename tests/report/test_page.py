@@ -31,7 +31,7 @@ def page(folder: Path) -> str:
     columns = [Column("name", "Name"), Column("value", "Value [g]", 2)]
     specs = [spec("one"), spec("two")]
     parts = [table_html(table, columns, "A"), *specs]
-    pictures = {one.name: draw(one, folder) for one in specs}
+    pictures = {spec.name: draw(spec, folder) for spec in specs}
     return render(
         title="T",
         lead="lead",

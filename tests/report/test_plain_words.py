@@ -14,7 +14,7 @@ from rockfrag.report.glossary import TERMS, terms_used
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding, Section, opened
 from rockfrag.report.wording import agree, estimate, spelled
-from rockfrag.stages.measure_choice import best_of
+from rockfrag.stages.measure_selection import best_of
 
 SPEAKING = ("report", "thesis", "pedestal", "fragility", "campaign", "stages")
 """Subpackages whose sentences stand in reports and on the screen of a run."""

@@ -22,23 +22,23 @@ def uniform(p: float, alpha: float, g: float = 9.81) -> Block:
 
 def random_stack(rng: np.random.Generator) -> Stack:
     """General stack: any inertia, centres of gravity off the middle, an uneven base, an offset."""
-    pedestal = Block(
+    lower = Block(
         rng.uniform(0.3, 0.6),
         rng.uniform(0.2, 0.8),
         rng.uniform(20, 200),
         cg_offset=rng.uniform(-0.02, 0.02),
         lean=rng.uniform(-0.01, 0.01),
     )
-    width = rng.uniform(0.3, 0.9) * pedestal.width
+    width = rng.uniform(0.3, 0.9) * lower.width
     height = width * rng.uniform(2, 5)
-    statue = Block(
+    upper = Block(
         width,
         height,
         rng.uniform(5, 100),
         cg_height=height * rng.uniform(0.35, 0.6),
         cg_offset=rng.uniform(-0.1, 0.1) * width,
     )
-    return Stack(pedestal, statue, offset=rng.uniform(-0.01, 0.01))
+    return Stack(lower, upper, offset=rng.uniform(-0.01, 0.01))
 
 
 def random_motion(rng: np.random.Generator, samples: int = 300, dt: float = 0.01) -> np.ndarray:

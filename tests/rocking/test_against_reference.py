@@ -9,7 +9,7 @@ from ..oracle.rocking_integrator import simulate_reference
 
 DT = 0.01
 MARGIN = 0.02
-"""Closest approach to balance, in critical angles, below which a verdict may hang on rounding."""
+"""Closest approach to balance, in critical angles, below which an outcome may hang on rounding."""
 
 
 def random_motion(rng, peak):
@@ -30,22 +30,22 @@ def random_case(seed, lone):
     base, slenderness = rng.uniform(0.1, 0.5), rng.uniform(2, 6)
     below, squatness = base * rng.uniform(1, 1.6), rng.uniform(0.5, 2.5)
     odd = seed % 3 == 2
-    statue = Block(
+    upper = Block(
         base,
         base * slenderness,
         1000 * base**2 * slenderness,
         cg_offset=0.05 * base * rng.normal() * odd,
         cg_height=base * slenderness * (0.45 if odd else 0.5),
     )
-    pedestal = Block(
+    lower = Block(
         below,
         below * squatness,
         1000 * below**2 * squatness * rng.uniform(0.3, 3),
         cg_offset=0.03 * below * rng.normal() * odd,
         lean=0.005 * rng.normal() * odd,
     )
-    body = statue if lone else Stack(pedestal, statue)
-    weakest = statue.alpha if lone else min(statue.alpha, body.rigidly_joined().alpha)
+    body = upper if lone else Stack(lower, upper)
+    weakest = upper.alpha if lone else min(upper.alpha, body.rigidly_joined().alpha)
     motion = random_motion(rng, 9.81 * weakest * rng.uniform(1.1, 4))
     restitution = None if seed % 5 else (0.85 if lone else (0.6, 0.85))
     return body, motion, restitution
@@ -55,9 +55,9 @@ def agree(seed, lone):
     body, motion, restitution = random_case(seed, lone)
     fast = simulate(body, motion, DT, restitution=restitution)
     plain = simulate_reference(body, motion, DT, restitution=restitution)
-    verdict = overturns(body, motion, DT, [1.0], restitution=[restitution])
+    outcome = overturns(body, motion, DT, [1.0], restitution=[restitution])
     if fast.unstable_distance > MARGIN:
-        assert fast.overturned == plain.overturned == bool(verdict.overturned[0, 0, 0])
+        assert fast.overturned == plain.overturned == bool(outcome.overturned[0, 0, 0])
     grazing = first_grazing(fast)
     n = min(len(fast.time), len(plain.time), int(np.searchsorted(fast.time, grazing)))
     # a block that is falling leaves its unstable balance exponentially: compare while it can return
@@ -68,10 +68,13 @@ def agree(seed, lone):
 
 def first_grazing(response):
     """Time of the first impact with less than 1e-3 rad/s; infinite if there is none."""
-    for _, event in response.events.iterrows():
-        change = np.diff(event["omega_before"], prepend=0.0)
-        if event["kind"] != "opening" and np.abs(change[change != 0]).min(initial=1.0) < 1e-3:
-            return event["time"]
+    for _, contact_event in response.contact_events.iterrows():
+        change = np.diff(contact_event["omega_before"], prepend=0.0)
+        if (
+            contact_event["kind"] != "opening"
+            and np.abs(change[change != 0]).min(initial=1.0) < 1e-3
+        ):
+            return contact_event["time"]
     return np.inf
 
 

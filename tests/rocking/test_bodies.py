@@ -24,7 +24,7 @@ def test_uniform_block_has_the_textbook_properties(width: float, height: float) 
     radius = math.hypot(width, height) / 2
     assert block.alpha == pytest.approx(math.atan(width / height), rel=1e-12)
     assert block.radius() == pytest.approx(radius, rel=1e-12)
-    assert block.pole_inertia() == pytest.approx(4 / 3 * 10.0 * radius**2, rel=1e-12)
+    assert block.pivot_inertia() == pytest.approx(4 / 3 * 10.0 * radius**2, rel=1e-12)
     assert block.frequency() == pytest.approx(math.sqrt(3 * G / (4 * radius)), rel=1e-12)
     # 1 - 1.5 sin²α (thesis eq. 2.14)
     expected = 1 - 1.5 * math.sin(block.alpha) ** 2
@@ -41,37 +41,37 @@ def test_an_off_centre_statue_has_two_critical_angles() -> None:
     assert STATUE.critical_angle(+1) < upright
 
 
-@pytest.mark.parametrize("pole", [+1, -1])
-def test_it_balances_at_its_critical_angle_and_tips_beyond(pole: int) -> None:
-    critical = pole * STATUE.critical_angle(pole)
+@pytest.mark.parametrize("pivot", [+1, -1])
+def test_it_balances_at_its_critical_angle_and_tips_beyond(pivot: int) -> None:
+    critical = pivot * STATUE.critical_angle(pivot)
     quiet = np.zeros(3)
     inside = simulate(STATUE, quiet, 0.01, theta0=0.999 * critical)
     beyond = simulate(STATUE, quiet, 0.01, theta0=1.001 * critical)
-    assert inside.alpha[0, 0] * pole < 0 < beyond.alpha[0, 0] * pole
+    assert inside.alpha[0, 0] * pivot < 0 < beyond.alpha[0, 0] * pivot
     assert beyond.overturned and beyond.impacts == 0
     # released on its strong side it may still fall over the weak one, after an impact
     assert not inside.overturned or inside.impacts == 1
     balanced = simulate(STATUE, quiet, 0.01, theta0=critical)
-    assert abs(balanced.alpha[0, 0]) < 1e-12 * STATUE.frequency(pole) ** 2 * 1e3
+    assert abs(balanced.alpha[0, 0]) < 1e-12 * STATUE.frequency(pivot) ** 2 * 1e3
 
 
 @pytest.mark.parametrize("body", [STATUE, T2, Stack(P, T2), Stack(P, T2, offset=0.02)])
 def test_what_stands_stays_at_rest_under_gravity(body: Block | Stack) -> None:
     response = simulate(body, np.zeros(20), 0.01)
     assert not response.theta.any() and not response.omega.any()
-    assert (response.pattern == "rest").all()
-    assert response.events.empty and not response.overturned
+    assert (response.rocking_mode == "rest").all()
+    assert response.contact_events.empty and not response.overturned
 
 
-@pytest.mark.parametrize("pole", [+1, -1])
-def test_each_side_starts_to_rock_at_its_own_acceleration(pole: int) -> None:
-    arm = STATUE.arm(pole)
+@pytest.mark.parametrize("pivot", [+1, -1])
+def test_each_side_starts_to_rock_at_its_own_acceleration(pivot: int) -> None:
+    arm = STATUE.arm(pivot)
     threshold = abs(arm.x) / arm.y * G
     # an acceleration to the left turns the block clockwise, about the right corner
-    below = simulate(STATUE, np.full(4, -pole * 0.9999 * threshold), 0.01)
-    above = simulate(STATUE, np.full(4, -pole * 1.0001 * threshold), 0.01)
+    below = simulate(STATUE, np.full(4, -pivot * 0.9999 * threshold), 0.01)
+    above = simulate(STATUE, np.full(4, -pivot * 1.0001 * threshold), 0.01)
     assert not below.theta.any()
-    assert np.sign(above.theta[3, 0]) == pole
+    assert np.sign(above.theta[3, 0]) == pivot
 
 
 def test_a_lower_centre_of_gravity_makes_it_harder_to_topple() -> None:
@@ -85,11 +85,11 @@ def test_the_stack_as_one_body_has_the_thesis_s_inertia() -> None:
     # I_o = I_O1 + I_C2 + m2 r², r² = (2h1 + h2)² + b1² (thesis eq. 2.67, 2.84)
     stack = Stack(P, T2)
     r2 = (2 * P.h + T2.h) ** 2 + P.b**2
-    inertia = P.pole_inertia() + T2.centroidal_inertia + T2.mass * r2
-    one = stack.rigidly_joined()
-    assert one.pole_inertia() == pytest.approx(inertia, rel=1e-12)
+    inertia = P.pivot_inertia() + T2.centroidal_inertia + T2.mass * r2
+    item = stack.rigidly_joined()
+    assert item.pivot_inertia() == pytest.approx(inertia, rel=1e-12)
     total = P.mass + T2.mass
-    assert one.momentum_restitution() == pytest.approx(
+    assert item.momentum_restitution() == pytest.approx(
         (inertia - 2 * total * P.b**2) / inertia, rel=1e-12
     )
     # thesis eq. 2.22
@@ -98,7 +98,7 @@ def test_the_stack_as_one_body_has_the_thesis_s_inertia() -> None:
 
 
 @pytest.mark.parametrize(
-    ("statue", "restitution", "p"),
+    ("upper", "restitution", "p"),
     [
         (Block(0.124, 0.372, 2.172), 0.8289, 5.092),
         (T2, 0.8809, 4.631),
@@ -106,10 +106,10 @@ def test_the_stack_as_one_body_has_the_thesis_s_inertia() -> None:
     ],
     ids=["T1", "T2", "T3"],
 )
-def test_stack_as_one_body(statue: Block, restitution: float, p: float) -> None:
-    one = Stack(P, statue).rigidly_joined()
-    assert one.momentum_restitution() == pytest.approx(restitution, abs=5e-4)
-    assert one.frequency() == pytest.approx(p, abs=5e-4)
+def test_stack_as_one_body(upper: Block, restitution: float, p: float) -> None:
+    item = Stack(P, upper).rigidly_joined()
+    assert item.momentum_restitution() == pytest.approx(restitution, abs=5e-4)
+    assert item.frequency() == pytest.approx(p, abs=5e-4)
 
 
 WIDE = Block(0.30, 0.50, 5.0, cg_offset=0.01)
@@ -118,30 +118,30 @@ WIDE = Block(0.30, 0.50, 5.0, cg_offset=0.01)
 
 def test_a_statue_wider_than_its_pedestal_stands_on_the_pedestal_s_upper_edge() -> None:
     stack = Stack(P, WIDE, offset=0.02)
-    left, right = stack.interface_pole(-1), stack.interface_pole(+1)
+    left, right = stack.interface_pivot(-1), stack.interface_pivot(+1)
     assert (left.x, left.y) == pytest.approx((-P.b, P.height))
     assert (right.x, right.y) == pytest.approx((P.b, P.height))
     # its centre of gravity stays where it is
-    for pole in (+1, -1):
-        assert stack.interface_pole(pole).x + stack.statue_arm(pole).x == pytest.approx(0.03)
-        assert stack.statue_arm(pole).y == pytest.approx(0.25)
+    for pivot in (+1, -1):
+        assert stack.interface_pivot(pivot).x + stack.upper_arm(pivot).x == pytest.approx(0.03)
+        assert stack.upper_arm(pivot).y == pytest.approx(0.25)
 
 
 def test_a_wide_statue_rocks_as_one_whose_base_is_the_overlap() -> None:
     stack = Stack(P, WIDE, offset=0.02)
     narrow = Block(P.width, WIDE.height, WIDE.mass, inertia=WIDE.centroidal_inertia, cg_offset=0.03)
     motion = 6.0 * np.sin(np.arange(200) * 0.3)
-    one, other = simulate(stack, motion, 0.01), simulate(Stack(P, narrow), motion, 0.01)
-    assert one.impacts > 3
-    np.testing.assert_allclose(one.theta, other.theta, atol=1e-9)
-    np.testing.assert_allclose(one.normal_force, other.normal_force, rtol=1e-6, atol=1e-6)
+    first, other = simulate(stack, motion, 0.01), simulate(Stack(P, narrow), motion, 0.01)
+    assert first.impacts > 3
+    np.testing.assert_allclose(first.theta, other.theta, atol=1e-9)
+    np.testing.assert_allclose(first.normal_force, other.normal_force, rtol=1e-6, atol=1e-6)
 
 
 def test_a_statue_may_stand_over_one_edge() -> None:
     stack = Stack(P, T2, offset=0.05)
-    assert stack.interface_pole(+1).x == pytest.approx(P.b)
-    assert stack.interface_pole(-1).x == pytest.approx(0.05 - T2.b)
-    right, left = (stack.contact_statue.critical_angle(pole) for pole in (+1, -1))
+    assert stack.interface_pivot(+1).x == pytest.approx(P.b)
+    assert stack.interface_pivot(-1).x == pytest.approx(0.05 - T2.b)
+    right, left = (stack.contact_upper.critical_angle(pivot) for pivot in (+1, -1))
     assert right < T2.alpha == pytest.approx(left)
 
 

@@ -39,8 +39,8 @@ rockfragKernel(new Uint8Array(fs.readFileSync(wasm))).then((kernel) => {
     }
     const samples = bytes.subarray(start, start + count);
     const more = lifted ? { vertical: bytes.subarray(0, count).map((a) => 0.6 * a) } : {};
-    const r = kernel.march({ body, samples, ...rest, ...more });
-    const verdict = kernel.march({ body, samples, ...rest, ...more, history: false });
+    const r = kernel.integrate({ body, samples, ...rest, ...more });
+    const outcome = kernel.integrate({ body, samples, ...rest, ...more, history: false });
     for (const name of HISTORY) found.push(Float64Array.from(r[name]));
     for (const number of [(e) => e.time, (e) => e.energy_after, (e) => e.before.omega2]) {
       found.push(Float64Array.from(r.events, number));
@@ -51,7 +51,7 @@ rockfragKernel(new Uint8Array(fs.readFileSync(wasm))).then((kernel) => {
       record: Buffer.from(body.record).toString("hex"),
       shaking: kernel.shakingOf(body, rest.dt),
       kinds: r.events.map((e) => e.kind),
-      alike: numbers.every((name) => Object.is(r[name], verdict[name])),
+      alike: numbers.every((name) => Object.is(r[name], outcome[name])),
     };
   });
   fs.writeFileSync(out, Buffer.concat(found.map((values) => Buffer.from(values.buffer))));
@@ -70,14 +70,14 @@ def given(block: Block) -> dict[str, float | None]:
 def told(body: Body, **more):
     if isinstance(body, Block):
         return {"statue": given(body), **more}
-    both = {"statue": given(body.statue), "pedestal": given(body.pedestal)}
+    both = {"statue": given(body.upper), "pedestal": given(body.lower)}
     return {**both, "offset": body.offset, **more}
 
 
 def in_node(folder, cases, motion):
     """Run cases in Node; what it says of each, and all its numbers."""
-    files = {name: folder / name for name in ("march.wasm", "cases.json", "motions", "found")}
-    files["march.wasm"].write_bytes(module_bytes())
+    files = {name: folder / name for name in ("integrate.wasm", "cases.json", "motions", "found")}
+    files["integrate.wasm"].write_bytes(module_bytes())
     files["cases.json"].write_text(json.dumps(cases))
     files["motions"].write_bytes(motion.tobytes())
     (folder / "run.cjs").write_text(f"{driver_text()}\nconst HISTORY = {HISTORY};\n{RUN}")
@@ -115,14 +115,14 @@ def some_restitution(rng, body: Body):
         return None
 
     def of(block):
-        largest = min(block.pole_inertia(1), block.pole_inertia(-1)) / max(
-            block.pole_inertia(1), block.pole_inertia(-1)
+        largest = min(block.pivot_inertia(1), block.pivot_inertia(-1)) / max(
+            block.pivot_inertia(1), block.pivot_inertia(-1)
         )
         return float(rng.uniform(0.5, 0.99) * math.sqrt(largest))
 
     if isinstance(body, Block):
         return of(body)
-    ground, interface = of(body.pedestal), of(body.contact_statue)
+    ground, interface = of(body.lower), of(body.contact_upper)
     return [(ground, interface), (None, interface), (ground, None)][rng.integers(0, 3)]
 
 
@@ -144,7 +144,7 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
             float(rng.choice([0.005, 0.01, 0.02])),
         )
         released = bool(rng.random() < 0.3)
-        lean = 0.3 * (body.alpha if isinstance(body, Block) else body.statue.alpha)
+        lean = 0.3 * (body.alpha if isinstance(body, Block) else body.upper.alpha)
         angles = {"theta2": lean} if released else {}
         theta0 = None if not released else lean if isinstance(body, Block) else (0.0, lean)
         cases.append(
@@ -170,15 +170,15 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
         records.append(body_record(system_of(body, restitution=restitution), linear))
         assert math.isfinite(responses[-1].theta[-1, -1])
     said, numbers = in_node(tmp_path, cases, motion)
-    found = iter(np.split(numbers, np.cumsum([n for one in said for n in lengths(one)])))
-    for case, one, response, record in zip(cases, said, responses, records, strict=True):
-        body, events = response.system, response.events
-        assert one["record"] == record.tobytes().hex()
-        assert one["shaking"] == {
+    found = iter(np.split(numbers, np.cumsum([n for item in said for n in lengths(item)])))
+    for case, item, response, record in zip(cases, said, responses, records, strict=True):
+        body, events = response.system, response.contact_events
+        assert item["record"] == record.tobytes().hex()
+        assert item["shaking"] == {
             "substeps": step_count(body, case["dt"], GRAVITY, STEP),
             "freeSamples": free_samples(body, case["dt"], GRAVITY),
         }
-        assert one["done"] == len(response.time)
+        assert item["done"] == len(response.time)
         history = dict(zip(HISTORY, (next(found) for _ in HISTORY), strict=True))
         blocks = ("1", "2")[-body.count :]
         for name in ("theta", "omega", "alpha", "state"):
@@ -190,20 +190,23 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
         np.testing.assert_array_equal(times, events["time"])
         np.testing.assert_array_equal(energies, events["energy_after"])
         np.testing.assert_array_equal(speeds, [omega[-1] for omega in events["omega_before"]])
-        assert one["kinds"] == events["kind"].tolist()
-        assert (one["fallen"] > 0) == response.overturned
-        assert one["fallTime"] == response.overturning_time or not response.overturned
-        assert (one["impacts"], one["grazings"]) == (response.impacts, response.grazings)
-        assert one["closest"] == response.unstable_distance or one["closest"] is None
-        assert one["alike"], "a verdict alone is that of the history"
+        assert item["kinds"] == events["kind"].tolist()
+        assert (item["fallen"] > 0) == response.overturned
+        assert item["fallTime"] == response.overturning_time or not response.overturned
+        assert (item["impacts"], item["grazings"]) == (response.impacts, response.grazings)
+        assert (
+            item["unstable_distance"] == response.unstable_distance
+            or item["unstable_distance"] is None
+        )
+        assert item["alike"], "an outcome alone is that of the history"
     assert len(list(found)) == 1, "what is left is empty"
     assert sum(response.overturned for response in responses) > 5
-    assert sum(len(response.events) for response in responses) > 500
+    assert sum(len(response.contact_events) for response in responses) > 500
 
 
-def lengths(one):
+def lengths(item):
     """How many numbers each array of a case has."""
-    return [one["done"]] * len(HISTORY) + [3 * len(one["kinds"])]
+    return [item["done"]] * len(HISTORY) + [3 * len(item["kinds"])]
 
 
 @needs_node
@@ -224,8 +227,8 @@ def test_bodies_that_cannot_stand_are_refused(tmp_path):
     cases = [{"given": body, "start": 0, "count": 2, "dt": 0.01} for body in bodies.values()]
     said, numbers = in_node(tmp_path, cases, np.zeros(2))
     assert numbers.size == 0
-    for words, one in zip(bodies, said, strict=True):
-        assert words in one["error"]
+    for words, item in zip(bodies, said, strict=True):
+        assert words in item["error"]
 
 
 def test_the_module_is_small_and_needs_nothing():

@@ -30,12 +30,12 @@ def test_restitution_and_frequency_of_the_specimens(block: Block, e: float, p: f
 
 
 @pytest.mark.parametrize(
-    ("statue", "e", "p"), [(T1, 0.8289, 5.092), (T2, 0.8809, 4.631), (T3, 0.9138, 4.2655)]
+    ("upper", "e", "p"), [(T1, 0.8289, 5.092), (T2, 0.8809, 4.631), (T3, 0.9138, 4.2655)]
 )
 def test_restitution_and_frequency_of_the_stacks_as_one_body(
-    statue: Block, e: float, p: float
+    upper: Block, e: float, p: float
 ) -> None:
-    whole = Stack(P, statue).rigidly_joined()
+    whole = Stack(P, upper).rigidly_joined()
     assert whole.momentum_restitution() == pytest.approx(e, abs=5e-4)
     assert whole.frequency() == pytest.approx(p, abs=5e-4)
 
@@ -136,7 +136,7 @@ def test_the_linear_block_overturns_above_the_closed_form_and_not_below(
         response = simulate_reference(
             BLOCK, factor * x * motion, dt, linear=True, duration=dt * motion.size + DECIDED
         )
-        impacts = [e for e in response.events if e.kind == "impact"]
+        impacts = [e for e in response.contact_events if e.kind == "impact"]
         assert (response.overturned and not impacts) is falls
         assert falls or impacts
 
@@ -173,16 +173,16 @@ def test_the_integral_criterion_agrees_with_simulation_for_any_motion() -> None:
         for factor, falls in ((1 - 1e-4, False), (1 + 1e-4, True)):
             criterion = formulas.no_impact(factor * high * motion, 0.02, ALPHA, P0)
             response = simulate_reference(BLOCK, factor * high * motion, 0.02, linear=True)
-            without = not any(e.kind == "impact" for e in response.events)
+            without = not any(e.kind == "impact" for e in response.contact_events)
             assert criterion.overturns is falls
             assert (response.overturned and without) is falls
-            assert response.events[0].time == pytest.approx(criterion.start, abs=1e-9)
-            assert response.events[0].after == (criterion.pole,)
+            assert response.contact_events[0].time == pytest.approx(criterion.start, abs=1e-9)
+            assert response.contact_events[0].after == (criterion.pivot,)
 
 
 def test_a_motion_below_the_threshold_moves_nothing() -> None:
     judged = formulas.no_impact([0.0, 0.9 * ALPHA * G, 0.0], 0.1, ALPHA, P0)
-    assert judged.pole == 0
+    assert judged.pivot == 0
     assert not judged.overturns
 
 
@@ -193,14 +193,14 @@ def test_a_block_that_comes_down_first_is_not_judged() -> None:
 
 
 @pytest.mark.parametrize(
-    ("linear", "windows"),
+    ("linear", "resurrections"),
     [(True, (3.0186, 6.3181, 7.1681)), (False, (3.032, 6.743, 7.493))],
 )
 def test_one_sine_overturns_in_a_window_and_again_above_it(
-    linear: bool, windows: tuple[float, float, float]
+    linear: bool, resurrections: tuple[float, float, float]
 ) -> None:
     motion, dt = pulse("sine", 5.0, 161)
-    begin, end, again = windows
+    begin, end, again = resurrections
     expected = ((begin, False, True), (end, True, False), (again, False, True))
     for x, below, above in expected:
         for factor, falls in ((0.998, below), (1.002, above)):
@@ -212,7 +212,7 @@ def test_one_sine_overturns_in_a_window_and_again_above_it(
             )
             assert response.overturned is falls
             # after an impact without shaking nothing has the energy to overturn any more
-            assert falls or response.events[-1].time > dt * motion.size
+            assert falls or response.contact_events[-1].time > dt * motion.size
 
 
 def test_no_simulated_block_overturns_below_ishiyamas_bounds() -> None:

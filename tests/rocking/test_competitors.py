@@ -18,15 +18,15 @@ PULSE = np.sin(2 * np.pi * np.arange(101) * DT)
 
 @pytest.mark.parametrize("by_sample", [False, True])
 @pytest.mark.parametrize("body", [STATUE, STACK], ids=["block", "stack"])
-def test_solve_ivp_gives_the_same_verdicts(body: Block | Stack, by_sample: bool):
-    verdict = scipy_lone if isinstance(body, Block) else scipy_stack
+def test_solve_ivp_gives_the_same_outcomes(body: Block | Stack, by_sample: bool):
+    outcome = scipy_lone if isinstance(body, Block) else scipy_stack
     amplitudes = (2.0, 4.0, 8.0)
     ours = overturns(body, PULSE, DT, amplitudes).overturned.ravel().tolist()
-    assert [verdict(body, a * PULSE, DT, by_sample=by_sample) for a in amplitudes] == ours
+    assert [outcome(body, a * PULSE, DT, by_sample=by_sample) for a in amplitudes] == ours
     assert len(set(ours)) == 2
 
 
-def test_numpy_gives_nearly_the_same_verdicts_with_small_steps():
+def test_numpy_gives_nearly_the_same_outcomes_with_small_steps():
     """It takes impacts at the ends of steps, and ends with the motion."""
     bodies = [Block(b, 4 * b, 500.0) for b in (0.2, 0.3, 0.4, 0.6)]
     scales = np.linspace(1.0, 12.0, 30)[np.newaxis]

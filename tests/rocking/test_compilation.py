@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from rockfrag.engines.kernels import jit
 from rockfrag.engines.kernels.by_reference import by_reference
-from rockfrag.engines.kernels.lanes.block import march_blocks
-from rockfrag.engines.kernels.lanes.scheduler import march_stacks
+from rockfrag.engines.kernels.lanes.block import integrate_blocks
+from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.system.blocks import Block, Stack
 
@@ -26,7 +26,7 @@ STACK = Stack(Block(0.4, 0.3, 100.0), BLOCK)
 MOTION = 6.0 * np.sin(np.arange(300) * 0.06)
 
 
-@pytest.mark.parametrize(("body", "entry"), [(BLOCK, march_blocks), (STACK, march_stacks)])
+@pytest.mark.parametrize(("body", "entry"), [(BLOCK, integrate_blocks), (STACK, integrate_stacks)])
 def test_one_compilation_serves_every_ensemble(body, entry):
     for motions, scales in ((1, [1.0]), (2, np.ones((2, 3))), (1, np.linspace(0, 1, 5))):
         overturns([body] * motions, [MOTION] * motions, 0.01, scales)

@@ -24,13 +24,13 @@ shake = 5.0 * np.sin(2 * np.pi * 1.1 * np.arange(0, 1, 0.01))
 
 def first(law, ratio):
     found = simulate(body, shake, 0.01, restitution=MeasuredRestitution((None, ratio), law))
-    impacts = found.events[found.events["kind"] == "impact"]
+    impacts = found.contact_events[found.contact_events["kind"] == "impact"]
     return impacts.iloc[0]
 
 def turning(of):
     return of[1] - of[0]
 
-plain = simulate(body, shake, 0.01).events
+plain = simulate(body, shake, 0.01).contact events
 plain = plain[plain["kind"] == "impact"].iloc[0]
 own = first("between", 0.8)
 wanted = 0.8 * (0.25 * turning(plain["omega_after"]) + 0.5 * turning(plain["omega_before"]))

@@ -18,19 +18,19 @@ MOTIONS = [motion[:2500] for motion in benchmark_cases.motions(4, seed=11)]
 SCALES = np.array([[0.15, 0.4, 0.9], [0.2, 0.5, 1.0], [0.25, 0.6, 0.8], [0.0, 0.35, 0.7]])
 LONE = benchmark_cases.blocks(5, seed=11)
 STACKS = benchmark_cases.stacks(3, seed=11)
-# a leaning block with its centre of gravity to one side has two different poles
+# a leaning block with its centre of gravity to one side has two different pivots
 SKEW = Block(width=0.3, height=1.2, mass=100.0, cg_offset=0.02, lean=0.01)
 # a slender pedestal falls with its squat statue
 SLENDER = Stack(Block(width=0.3, height=1.5, mass=360.0), Block(width=0.25, height=0.4, mass=70.0))
 BODIES = [SLENDER, LONE[0], STACKS[0], LONE[1], SKEW, STACKS[1], *LONE[2:], STACKS[2]]
 
 
-def same(one: Outcomes, other: Outcomes) -> None:
+def same(outcomes: Outcomes, other: Outcomes) -> None:
     """Every array of two results agrees bit for bit."""
     names = [column.name for column in columns()]
-    most = min(one.peak_rotation.shape[-1], other.peak_rotation.shape[-1])
+    most = min(outcomes.peak_rotation.shape[-1], other.peak_rotation.shape[-1])
     for name in names:
-        values, others = getattr(one, name), getattr(other, name)
+        values, others = getattr(outcomes, name), getattr(other, name)
         if values.ndim > 3:
             # what systems of fewer bodies are filled up with
             values, others = values[..., :most], others[..., :most]
@@ -51,8 +51,8 @@ def whole() -> Outcomes:
 def test_the_cases_hold_falls_and_survivals_of_blocks_and_stacks(whole):
     for number in (1, 2):
         assert (whole.overturned_body == number).any()
-    share = whole.overturned.mean()
-    assert 0.1 < share < 0.9
+    fraction = whole.overturned.mean()
+    assert 0.1 < fraction < 0.9
     assert (whole.impacts > 20).any()
 
 
@@ -93,15 +93,15 @@ def test_a_body_that_needs_shorter_steps_changes_no_other(whole):
 
 
 def test_a_block_on_an_immovable_pedestal_is_a_lone_block():
-    pedestal = Block(width=50.0, height=1.0, mass=1e9)
-    kinds = [LONE, [Stack(pedestal, block) for block in LONE]]
+    lower = Block(width=50.0, height=1.0, mass=1e9)
+    kinds = [LONE, [Stack(lower, block) for block in LONE]]
     lone, on_top = (overturns(kind, MOTIONS, benchmark_cases.DT, SCALES) for kind in kinds)
     assert (lone.overturned == on_top.overturned).all()
     assert set(np.unique(on_top.overturned_body)) == {0, 2}
     assert set(np.unique(lone.overturned_body)) == {0, 1}
 
 
-def test_single_simulations_of_blocks_agree_in_verdicts_and_peaks(whole):
+def test_single_simulations_of_blocks_agree_in_outcomes_and_peaks(whole):
     """simulate() follows every impact with Taylor series of higher order."""
     checked = 0
     for i, body in enumerate(BODIES):
@@ -116,8 +116,8 @@ def test_single_simulations_of_blocks_agree_in_verdicts_and_peaks(whole):
                 if response.overturned or near:
                     continue
                 top = response.theta[:, -1]
-                pole = [body.critical_angle(s) for s in (1, -1)]
-                peak = max(top.max() / pole[0], -top.min() / pole[1])
+                pivot = [body.critical_angle(s) for s in (1, -1)]
+                peak = max(top.max() / pivot[0], -top.min() / pivot[1])
                 # between samples a flight rises by at most (p dt)² α / 4 above them
                 between = (body.frequency() * benchmark_cases.DT) ** 2 / 4 + 1e-6
                 assert peak - 1e-6 <= whole.peak_rotation[(*at, 0)] <= peak + between
@@ -126,7 +126,7 @@ def test_single_simulations_of_blocks_agree_in_verdicts_and_peaks(whole):
     assert checked > 5
 
 
-def test_single_simulations_of_stacks_agree_in_verdicts_and_peaks():
+def test_single_simulations_of_stacks_agree_in_outcomes_and_peaks():
     """Over some seconds: an ensemble closes chatter to 1e-7 rad/s, and stacks are chaotic in the long run."""
     checked = 0
     for body in STACKS:
@@ -136,16 +136,16 @@ def test_single_simulations_of_stacks_agree_in_verdicts_and_peaks():
                 # with still ground at its end, as an ensemble stops when nothing can fall any more
                 part = np.append(scale * motion[start : start + 400], np.zeros(500))
                 response = simulate(body, part, benchmark_cases.DT)
-                one = overturns(body, part, benchmark_cases.DT, [1.0])
-                if one.unstable_distance[0, 0, 0] < 0.02:
+                item = overturns(body, part, benchmark_cases.DT, [1.0])
+                if item.unstable_distance[0, 0, 0] < 0.02:
                     continue
-                assert response.overturned == one.overturned[0, 0, 0]
+                assert response.overturned == item.overturned[0, 0, 0]
                 if response.overturned or response.impacts == 0:
                     continue
                 # the ensemble looks at its speed before impacts, and at samples
                 fastest = np.abs(response.omega[:, -1]).max()
-                assert one.peak_velocity[0, 0, 0, -1] >= fastest - 1e-3
-                assert one.unstable_distance[0, 0, 0] == pytest.approx(
+                assert item.peak_velocity[0, 0, 0, -1] >= fastest - 1e-3
+                assert item.unstable_distance[0, 0, 0] == pytest.approx(
                     response.unstable_distance, rel=0.01
                 )
                 checked += 1

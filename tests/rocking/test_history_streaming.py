@@ -67,9 +67,9 @@ def test_the_file_holds_the_history_of_every_case_in_order(tmp_path):
 def test_a_shorter_step_and_another_gravity_are_used(tmp_path):
     for name, arguments in {"a": {}, "b": {"step": 0.02}, "c": {"g": 1.62}}.items():
         stream_histories(BLOCK, MOTIONS[0], DT, [0.5], tmp_path / name, **arguments)
-    one, finer, moon = (pd.read_parquet(tmp_path / name) for name in "abc")
-    assert len(finer) == len(one)
-    assert 0 < np.abs(finer["theta_rad"] - one["theta_rad"]).max() < 1e-8
+    item, finer, moon = (pd.read_parquet(tmp_path / name) for name in "abc")
+    assert len(finer) == len(item)
+    assert 0 < np.abs(finer["theta_rad"] - item["theta_rad"]).max() < 1e-8
     expected = simulate(BLOCK, 0.5 * MOTIONS[0], DT, g=1.62)
     np.testing.assert_array_equal(moon["theta_rad"], expected.theta[:, 0])
 

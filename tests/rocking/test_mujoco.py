@@ -1,6 +1,6 @@
-"""Another program's verdict: MuJoCo with stiff contacts, high friction and no bounce.
+"""Another program's outcome: MuJoCo with stiff contacts, high friction and no bounce.
 
-Its contacts are springs and dampers solved for at each small step, so it knows nothing of poles, contact
+Its contacts are springs and dampers solved for at each small step, so it knows nothing of pivots, contact
 states or impact maps.  Two boxes that move in the plane stand on the ground; the ground's acceleration
 acts as a horizontal gravity.
 """
@@ -48,7 +48,7 @@ BODY = """
 def mujoco_overturns(stack: Stack, motion: np.ndarray) -> bool:
     """Whether a block falls in MuJoCo."""
     base, bodies = 0.0, []
-    for block in (stack.pedestal, stack.statue):
+    for block in (stack.lower, stack.upper):
         bodies.append(
             BODY.format(
                 z=base + block.h,
@@ -77,21 +77,21 @@ def mujoco_overturns(stack: Stack, motion: np.ndarray) -> bool:
 
 def random_case(rng: np.random.Generator) -> tuple[Stack, np.ndarray]:
     """Draw a statue on a squat pedestal, and a burst of three sines that may overturn it."""
-    pedestal = Block(rng.uniform(0.5, 0.8), rng.uniform(0.5, 1.0), rng.uniform(100, 400))
-    width = rng.uniform(0.4, 0.9) * pedestal.width
-    statue = Block(width, width * rng.uniform(2.5, 4.5), rng.uniform(30, 150))
+    lower = Block(rng.uniform(0.5, 0.8), rng.uniform(0.5, 1.0), rng.uniform(100, 400))
+    width = rng.uniform(0.4, 0.9) * lower.width
+    upper = Block(width, width * rng.uniform(2.5, 4.5), rng.uniform(30, 150))
     t = np.arange(301) * DT
     waves = sum(
         np.sin(2 * math.pi * f * t + phase)
         for f, phase in zip(rng.uniform(0.5, 2.5, 3), rng.uniform(0, 2 * math.pi, 3), strict=True)
     )
     motion = waves * np.sin(math.pi * t / t[-1])
-    peak = rng.uniform(1.0, 3.0) * 9.81 * statue.b / statue.h
-    return Stack(pedestal, statue), peak * motion / np.abs(motion).max()
+    peak = rng.uniform(1.0, 3.0) * 9.81 * upper.b / upper.h
+    return Stack(lower, upper), peak * motion / np.abs(motion).max()
 
 
 def near_critical(stack: Stack, motion: np.ndarray) -> bool:
-    """Whether two per cent more or less of the motion changes the verdict."""
+    """Whether two per cent more or less of the motion changes the outcome."""
     factors = 1 + np.array([-0.02, -0.015, -0.01, -0.005, 0.0, 0.005, 0.01, 0.015, 0.02])
     return len({simulate(stack, f * motion, DT).overturned for f in factors}) == 2
 
@@ -110,14 +110,14 @@ def disagreements(cases: int, seed: int) -> tuple[int, int]:
     return differing, fallen
 
 
-def test_mujoco_gives_the_same_verdict() -> None:
+def test_mujoco_gives_the_same_outcome() -> None:
     differing, fallen = disagreements(12, seed=100)
     assert differing <= 1
     assert 2 <= fallen <= 10
 
 
 @pytest.mark.slow
-def test_mujoco_gives_the_same_verdict_in_95_of_100_cases() -> None:
+def test_mujoco_gives_the_same_outcome_in_95_of_100_cases() -> None:
     differing, fallen = disagreements(100, seed=101)
     assert differing <= 5
     assert 20 <= fallen <= 80

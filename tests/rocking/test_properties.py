@@ -61,12 +61,12 @@ def blocks(draw: st.DrawFn, crooked: bool = False) -> Block:
 @st.composite
 def stacks(draw: st.DrawFn, crooked: bool = False) -> Stack:
     """A statue on a pedestal that it leaves some room on."""
-    statue = draw(blocks(crooked))
-    width = statue.width * draw(st.floats(1.2, 2.5))
+    upper = draw(blocks(crooked))
+    width = upper.width * draw(st.floats(1.2, 2.5))
     height = width * draw(st.floats(0.3, 2))
-    pedestal = Block(width, height, width * height * draw(st.floats(300, 2000)))
+    lower = Block(width, height, width * height * draw(st.floats(300, 2000)))
     offset = draw(st.floats(-0.05, 0.05)) * width if crooked else 0.0
-    return Stack(pedestal, statue, offset)
+    return Stack(lower, upper, offset)
 
 
 def bodies(crooked: bool) -> st.SearchStrategy[Body]:
@@ -77,9 +77,9 @@ def mirrored(body: Body) -> Body:
     """The body seen from behind."""
     if isinstance(body, Block):
         return replace(body, cg_offset=-body.cg_offset, lean=-body.lean)
-    pedestal, statue = mirrored(body.pedestal), mirrored(body.statue)
-    assert isinstance(pedestal, Block) and isinstance(statue, Block)
-    return Stack(pedestal, statue, -body.offset)
+    lower, upper = mirrored(body.lower), mirrored(body.upper)
+    assert isinstance(lower, Block) and isinstance(upper, Block)
+    return Stack(lower, upper, -body.offset)
 
 
 def until_fallen(response: Response) -> slice:
@@ -91,26 +91,26 @@ def until_fallen(response: Response) -> slice:
 @few
 @given(body=bodies(crooked=True), motion=motions())
 def test_a_mirrored_motion_mirrors_the_response(body: Body, motion: np.ndarray) -> None:
-    one = simulate(body, motion, DT)
+    first = simulate(body, motion, DT)
     other = simulate(mirrored(body), -motion, DT)
-    assert one.overturned == other.overturned
-    assert one.impacts == other.impacts
-    assert one.theta == pytest.approx(-other.theta, abs=1e-12)
-    assert (one.state == -other.state).all()
-    assert one.normal_force == pytest.approx(other.normal_force, rel=1e-9, abs=1e-6)
+    assert first.overturned == other.overturned
+    assert first.impacts == other.impacts
+    assert first.theta == pytest.approx(-other.theta, abs=1e-12)
+    assert (first.state == -other.state).all()
+    assert first.normal_force == pytest.approx(other.normal_force, rel=1e-9, abs=1e-6)
 
 
 @few
 @given(body=bodies(crooked=False), motion=motions())
-def test_a_mirrored_motion_gives_a_symmetric_body_the_same_verdict(
+def test_a_mirrored_motion_gives_a_symmetric_body_the_same_outcome(
     body: Body, motion: np.ndarray
 ) -> None:
     found = overturns([body], [motion, -motion], DT, [0.7, 1.0, 1.6])
     for name in ("overturned", "overturned_body", "impacts"):
         values = getattr(found, name)[0]
         assert (values[0] == values[1]).all(), name
-    one, other = found.peak_rotation[0]
-    assert one == pytest.approx(other, rel=1e-9)
+    first, other = found.peak_rotation[0]
+    assert first == pytest.approx(other, rel=1e-9)
 
 
 @few
@@ -118,12 +118,12 @@ def test_a_mirrored_motion_gives_a_symmetric_body_the_same_verdict(
 def test_similar_blocks_share_one_response(block: Block, motion: np.ndarray, size: float) -> None:
     # α, ωp/p and a/(αg) alike: θ(p t)/α alike
     larger = Block(block.width * size, block.height * size, block.mass)
-    one = simulate(block, motion, DT)
+    first = simulate(block, motion, DT)
     other = simulate(larger, motion, DT * math.sqrt(size))
-    assert one.overturned == other.overturned
-    n = min(until_fallen(one).stop, until_fallen(other).stop)
-    assert abs(until_fallen(one).stop - until_fallen(other).stop) <= 1
-    assert one.theta[:n] / block.alpha == pytest.approx(other.theta[:n] / block.alpha, abs=1e-8)
+    assert first.overturned == other.overturned
+    n = min(until_fallen(first).stop, until_fallen(other).stop)
+    assert abs(until_fallen(first).stop - until_fallen(other).stop) <= 1
+    assert first.theta[:n] / block.alpha == pytest.approx(other.theta[:n] / block.alpha, abs=1e-8)
 
 
 @few
@@ -134,23 +134,23 @@ def test_similar_stacks_share_one_response_whatever_they_weigh(
     def grown(block: Block) -> Block:
         return Block(block.width * size, block.height * size, block.mass * weight)
 
-    other_body = Stack(grown(stack.pedestal), grown(stack.statue))
-    one = simulate(stack, motion, DT)
+    other_body = Stack(grown(stack.lower), grown(stack.upper))
+    first = simulate(stack, motion, DT)
     other = simulate(other_body, motion, DT * math.sqrt(size))
     # the threshold that closes chatter is a speed, which does not scale; before the first it matters not
-    closed = one.events.query("kind == 'chatter'")["time"]
-    stop = int(closed.iloc[0] / DT) if len(closed) else len(one.time)
-    n = min(stop, until_fallen(one).stop, until_fallen(other).stop)
-    assert one.theta[:n] == pytest.approx(other.theta[:n], abs=1e-8)
+    closed = first.contact_events.query("kind == 'chatter'")["time"]
+    stop = int(closed.iloc[0] / DT) if len(closed) else len(first.time)
+    n = min(stop, until_fallen(first).stop, until_fallen(other).stop)
+    assert first.theta[:n] == pytest.approx(other.theta[:n], abs=1e-8)
 
 
 @few
-@given(statue=blocks(), motion=motions())
+@given(upper=blocks(), motion=motions())
 def test_on_a_pedestal_that_cannot_move_the_statue_rocks_alone(
-    statue: Block, motion: np.ndarray
+    upper: Block, motion: np.ndarray
 ) -> None:
-    stack = Stack(Block(1e3, 1.0, 1e12), statue)
-    alone, carried = simulate(statue, motion, DT), simulate(stack, motion, DT)
+    stack = Stack(Block(1e3, 1.0, 1e12), upper)
+    alone, carried = simulate(upper, motion, DT), simulate(stack, motion, DT)
     assert alone.overturned == carried.overturned
     n = min(until_fallen(alone).stop, until_fallen(carried).stop)
     assert np.abs(carried.theta[:, 0]).max() < 1e-9
@@ -164,14 +164,14 @@ def test_two_blocks_that_never_part_rock_as_one(
 ) -> None:
     # a flat plate on a column has no cause to rock on its own
     stack = Stack(Block(0.5, height, 300.0), Block(0.5, top * 0.5, 30.0))
-    together, one = simulate(stack, motion, DT), simulate(stack.rigidly_joined(), motion, DT)
+    together, item = simulate(stack, motion, DT), simulate(stack.rigidly_joined(), motion, DT)
     parted = np.flatnonzero(together.state[:, 1] != 0)
-    n = min(until_fallen(together).stop, until_fallen(one).stop)
+    n = min(until_fallen(together).stop, until_fallen(item).stop)
     n = min(n, int(parted[0]) if parted.size else n)
     assume(n > 20)
-    assert together.theta[:n, 0] == pytest.approx(one.theta[:n, 0], abs=1e-9)
-    assert together.theta[:n, 1] == pytest.approx(one.theta[:n, 0], abs=1e-9)
-    assert set(together.pattern[:n]) <= {"rest", "3a", "3b"}
+    assert together.theta[:n, 0] == pytest.approx(item.theta[:n, 0], abs=1e-9)
+    assert together.theta[:n, 1] == pytest.approx(item.theta[:n, 0], abs=1e-9)
+    assert set(together.rocking_mode[:n]) <= {"rest", "3a", "3b"}
 
 
 @few
@@ -179,21 +179,21 @@ def test_two_blocks_that_never_part_rock_as_one(
 def test_a_later_start_shifts_the_response_rigidly(
     body: Body, motion: np.ndarray, zeros: int
 ) -> None:
-    one = simulate(body, motion, DT)
+    first = simulate(body, motion, DT)
     other = simulate(body, np.r_[np.zeros(zeros), motion], DT)
-    n = len(one.time)
+    n = len(first.time)
     assert not other.theta[:zeros].any()
-    assert other.theta[zeros : zeros + n] == pytest.approx(one.theta, abs=1e-12)
-    assert other.impacts == one.impacts and other.overturned == one.overturned
+    assert other.theta[zeros : zeros + n] == pytest.approx(first.theta, abs=1e-12)
+    assert other.impacts == first.impacts and other.overturned == first.overturned
 
 
 @few
 @given(body=bodies(crooked=True), motion=motions())
-def test_energy_is_never_gained_at_impacts_and_the_ledger_closes(
+def test_energy_is_never_gained_at_impacts_and_the_energy_balance_closes(
     body: Body, motion: np.ndarray
 ) -> None:
     response = simulate(body, motion, DT)
-    impacts = response.events.query("kind != 'opening'")
+    impacts = response.contact_events.query("kind != 'opening'")
     before, after = impacts["energy_before"], impacts["energy_after"]
     assert (after <= before * (1 + 1e-12) + 1e-300).all()
     energy = response.energy
@@ -201,13 +201,13 @@ def test_energy_is_never_gained_at_impacts_and_the_ledger_closes(
     residual = energy["residual"].abs().max()
     # a contact that closes because it chatters gives up no more than this
     whole = body if isinstance(body, Block) else body.rigidly_joined()
-    closing = 0.5 * max(whole.pole_inertia(pole) for pole in (+1, -1)) * HISTORY.closing_speed**2
+    closing = 0.5 * max(whole.pivot_inertia(pivot) for pivot in (+1, -1)) * HISTORY.closing_speed**2
     assert residual <= 1e-6 * scale + closing, f"{residual} J of {scale} J"
 
 
 @few
 @given(body=bodies(crooked=True), motion=motions(), scale=st.floats(0.5, 2.0))
-def test_the_ensemble_gives_the_verdict_of_the_single_simulation(
+def test_the_ensemble_gives_the_outcome_of_the_single_simulation(
     body: Body, motion: np.ndarray, scale: float
 ) -> None:
     found = overturns([body], [motion], DT, [scale])
@@ -224,7 +224,7 @@ def test_free_rocking_ends_at_rest_or_on_the_side(body: Body, start: float) -> N
     if isinstance(body, Block):
         theta0: float | tuple[float, float] = start * body.alpha
     else:
-        theta0 = (0.0, start * body.statue.alpha)
+        theta0 = (0.0, start * body.upper.alpha)
     response = simulate(body, np.zeros(2), DT, theta0=theta0)
-    assert response.overturned or response.pattern[-1] == "rest"
+    assert response.overturned or response.rocking_mode[-1] == "rest"
     assert np.isfinite(response.theta).all()

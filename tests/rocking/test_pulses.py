@@ -83,7 +83,7 @@ def test_any_motion_overturns_without_impact_where_the_integral_exceeds_one(seed
 def test_linear_amplitudes_decay_by_the_closed_relation() -> None:
     # φ' = 1 - √(1 - e² (1 - (1 - φ)²)): .5 .38639 .30596 .24560 for T2
     response = simulate(T2, np.zeros(2000), 0.001, theta0=0.5 * T2.alpha, linear=True)
-    impacts = response.events.query("kind == 'impact'")
+    impacts = response.contact_events.query("kind == 'impact'")
     phi = [
         peak_after(T2, abs(after[0]), linear=True) / T2.alpha
         for after in impacts["omega_after"][:3]

@@ -51,17 +51,19 @@ def response(request: pytest.FixtureRequest) -> Response:
 def test_energy_is_never_gained_at_an_impact_and_not_changed_by_an_opening(
     response: Response,
 ) -> None:
-    events = response.events
-    impacts, openings = (events[events["kind"] == kind] for kind in ("impact", "opening"))
+    contact_events = response.contact_events
+    impacts, openings = (
+        contact_events[contact_events["kind"] == kind] for kind in ("impact", "opening")
+    )
     assert (impacts["energy_after"] <= impacts["energy_before"] * (1 + 1e-12)).all()
     assert (openings["energy_after"] == openings["energy_before"]).all()
 
 
 def test_velocity_is_continuous_where_there_is_no_impact(response: Response) -> None:
-    for _, event in response.events.query("kind == 'opening'").iterrows():
-        assert event["omega_before"] == event["omega_after"]
-    # between events the samples follow their accelerations; compare where no event falls inside
-    edges = np.searchsorted(response.time, response.events["time"])
+    for _, contact_event in response.contact_events.query("kind == 'opening'").iterrows():
+        assert contact_event["omega_before"] == contact_event["omega_after"]
+    # between contact events the samples follow their accelerations; compare where no contact event falls inside
+    edges = np.searchsorted(response.time, response.contact_events["time"])
     quiet = np.setdiff1d(np.arange(1, len(response.time)), edges)
     standing = np.abs(response.theta[:, -1]) < 1.0
     quiet = quiet[standing[quiet]]
@@ -71,21 +73,23 @@ def test_velocity_is_continuous_where_there_is_no_impact(response: Response) -> 
     assert np.abs(step - mean).max() < 0.5 * jump + 1e-3
 
 
-def test_the_energy_ledger_closes(response: Response) -> None:
+def test_the_energy_energy_balance_closes(response: Response) -> None:
     energy = response.energy
     scale = energy["kinetic"].max() + energy["input"].abs().max()
     assert energy["residual"].abs().max() < 1e-6 * scale
     columns = [f"lost_contact_{k + 1}" for k in range(response.system.count)]
     for column in columns:
         assert (np.diff(energy[column]) >= -1e-15 * scale).all()
-    lost = (response.events["energy_before"] - response.events["energy_after"]).sum()
+    lost = (
+        response.contact_events["energy_before"] - response.contact_events["energy_after"]
+    ).sum()
     total = energy[columns].iloc[-1].sum()
     assert total == pytest.approx(lost, rel=1e-9)
 
 
 @pytest.mark.parametrize("body", [*BODIES, T1, T3])
 def test_free_rocking_conserves_energy_between_impacts(body: Block | Stack) -> None:
-    start = 0.6 * (body.alpha if isinstance(body, Block) else body.statue.alpha)
+    start = 0.6 * (body.alpha if isinstance(body, Block) else body.upper.alpha)
     theta0 = start if isinstance(body, Block) else (0.0, start)
     response = simulate(body, np.zeros(400), DT, theta0=theta0)
     energy = response.energy
@@ -108,7 +112,7 @@ def test_positions_agree_with_the_contact_states(response: Response) -> None:
 @pytest.mark.parametrize("block", [T1, T2, T3, P], ids=["T1", "T2", "T3", "P"])
 def test_each_impact_takes_what_momentum_says(block: Block) -> None:
     response = simulate(block, np.zeros(200), DT, theta0=0.7 * block.alpha)
-    impacts = response.events.query("kind == 'impact'")
+    impacts = response.contact_events.query("kind == 'impact'")
     ratio = [
         b[0] / a[0] for a, b in zip(impacts["omega_before"], impacts["omega_after"], strict=True)
     ]
@@ -119,14 +123,14 @@ def test_each_impact_takes_what_momentum_says(block: Block) -> None:
 @pytest.mark.parametrize("e", [0.0, 0.6, 0.95, 1.0])
 def test_a_measured_restitution_is_what_comes_out(e: float) -> None:
     response = simulate(T2, np.zeros(50), DT, theta0=0.3 * T2.alpha, restitution=e)
-    first = response.events[response.events["kind"] != "opening"].iloc[0]
+    first = response.contact_events[response.contact_events["kind"] != "opening"].iloc[0]
     assert first["omega_after"][0] == pytest.approx(e * first["omega_before"][0], abs=1e-12)
 
 
 def test_measured_restitution_of_a_stack_never_gains_energy() -> None:
     for pair in ((0.9, 0.9), (1.0, 1.0), (None, 0.95), (0.5, None)):
         response = simulate(Stack(P, T2), shaking(4, 0.5), DT, restitution=pair)
-        impacts = response.events.query("kind == 'impact'")
+        impacts = response.contact_events.query("kind == 'impact'")
         assert len(impacts) > 3
         assert (impacts["energy_after"] <= impacts["energy_before"] * (1 + 1e-9)).all()
 
@@ -143,7 +147,7 @@ def test_measured_restitution_of_a_stack_never_gains_energy() -> None:
 def test_linear_period_is_housner_s(block: Block, fractions: tuple[float, ...]) -> None:
     for start, period in zip((0.2, 0.5, 0.9), fractions, strict=True):
         response = simulate(block, np.zeros(400), DT, theta0=start * block.alpha, linear=True)
-        first = response.events.query("kind == 'impact'")["time"].iloc[0]
+        first = response.contact_events.query("kind == 'impact'")["time"].iloc[0]
         assert 4 * first == pytest.approx(period, abs=1e-5)
 
 
@@ -152,7 +156,7 @@ def test_linear_period_is_housner_s(block: Block, fractions: tuple[float, ...]) 
 )
 def test_nonlinear_quarter_period(block: Block, quarter: float) -> None:
     response = simulate(block, np.zeros(400), DT, theta0=0.5 * block.alpha)
-    first = response.events.query("kind == 'impact'")["time"].iloc[0]
+    first = response.contact_events.query("kind == 'impact'")["time"].iloc[0]
     assert first == pytest.approx(quarter, abs=1e-5)
 
 
@@ -181,17 +185,17 @@ def test_friction_at_the_threshold_is_b_over_h() -> None:
 def test_forces_of_a_rocking_block_follow_from_newton() -> None:
     response = simulate(T2, shaking(3, 0.3), DT)
     rows = np.flatnonzero((response.state[:, 0] != 0) & (np.abs(response.theta[:, 0]) < 0.2))
-    pole = response.state[rows, 0]
+    pivot = response.state[rows, 0]
     theta, omega, alpha = (x[rows, 0] for x in (response.theta, response.omega, response.alpha))
     radius, angle = T2.radius(), T2.alpha - np.abs(theta)
     # rising of the centre of gravity, y = R cos(θc - |θ|) (thesis eq. 2.2 and below)
-    rise = radius * (np.sin(angle) * pole * alpha - np.cos(angle) * omega**2)
+    rise = radius * (np.sin(angle) * pivot * alpha - np.cos(angle) * omega**2)
     assert response.normal_force[rows, 0] == pytest.approx(T2.mass * (G + rise), rel=1e-9)
 
 
 @pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
 def test_a_heavy_blow_is_reported_as_a_jump() -> None:
-    # thrown off the ground: a rotation this fast needs a pull at the pole
+    # thrown off the ground: a rotation this fast needs a pull at the pivot
     response = simulate(T2, np.zeros(10), 0.001, theta0=0.0, omega0=12.0)
     assert response.least_normal_force[0] < 0
     assert math.isinf(response.friction_demand[0])
@@ -204,7 +208,7 @@ def test_overturning_has_a_time_and_a_body() -> None:
     assert 0 < response.overturning_time <= response.time[-1]
     calm = simulate(stack, shaking(2, 0.15), DT)
     assert not calm.overturned and calm.overturned_body == "" and math.isnan(calm.overturning_time)
-    assert calm.events.empty
+    assert calm.contact_events.empty
 
 
 def test_a_pedestal_that_is_tall_and_thin_falls_with_its_statue() -> None:
@@ -213,7 +217,7 @@ def test_a_pedestal_that_is_tall_and_thin_falls_with_its_statue() -> None:
     assert response.overturned and response.overturned_body == "lower body"
 
 
-def test_unstable_distance_tells_how_near_the_verdict_was() -> None:
+def test_unstable_distance_tells_how_near_the_outcome_was() -> None:
     pulse = np.sin(np.linspace(0, np.pi, 101))
     dt = math.pi / (3 * T2.frequency()) / 100
     low, high = 1.5, 4.0
@@ -227,7 +231,7 @@ def test_unstable_distance_tells_how_near_the_verdict_was() -> None:
     assert far.unstable_distance > 0.1
 
 
-def test_patterns_have_the_thesis_s_names() -> None:
+def test_rocking_modes_have_the_thesis_s_names() -> None:
     response = simulate(Stack(P, T2), np.zeros(5), DT, theta0=(0.0, 0.05))
-    assert response.pattern[0] == "4a"
-    assert simulate(T2, np.zeros(5), DT, theta0=-0.05).pattern[0] == "4b"
+    assert response.rocking_mode[0] == "4a"
+    assert simulate(T2, np.zeros(5), DT, theta0=-0.05).rocking_mode[0] == "4b"

@@ -34,12 +34,12 @@ def free_rocking(
 
 
 def impact_times(response: Response) -> np.ndarray:
-    return response.events.query("kind == 'impact'")["time"].to_numpy()
+    return response.contact_events.query("kind == 'impact'")["time"].to_numpy()
 
 
 def peaks_between_impacts(block: Block, response: Response, count: int) -> np.ndarray:
     """Release, then what energy gives after each impact's speed."""
-    after = [row[0] for row in response.events.query("kind == 'impact'")["omega_after"]]
+    after = [row[0] for row in response.contact_events.query("kind == 'impact'")["omega_after"]]
     peaks = [response.theta[0, 0]]
     peaks += [math.copysign(peak_after(block, abs(w), 1 if w > 0 else -1), w) for w in after]
     return np.array(peaks[:count])
@@ -49,7 +49,7 @@ def peaks_between_impacts(block: Block, response: Response, count: int) -> np.nd
 @pytest.mark.parametrize("e", [0.7, 0.87, 0.95])
 def test_exact_times_and_peaks_give_the_restitution_back(block: Block, e: float) -> None:
     response = free_rocking(block, e)
-    by_times = restitution_from_impacts(block, impact_times(response)[:7], first_pole=-1)
+    by_times = restitution_from_impacts(block, impact_times(response)[:7], first_pivot=-1)
     by_peaks = restitution_from_peaks(block, peaks_between_impacts(block, response, 7))
     assert by_times.restitution == pytest.approx(e, abs=1e-6)
     assert by_peaks.restitution == pytest.approx(e, abs=1e-8)

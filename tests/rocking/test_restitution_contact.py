@@ -21,10 +21,10 @@ G = 9.81
 def struck(stack, old, omega, hollow, moves):
     """Rates of pedestal and statue after the dashpots of the interface have stopped all approach [rad/s].
 
-    ``old``: poles of ground and interface before; ``hollow``: power of the distance from the middle that the
+    ``old``: pivots of ground and interface before; ``hollow``: power of the distance from the middle that the
     dashpots grow with; ``moves``: whether the pedestal does.
     """
-    below, above = stack.pedestal, stack.statue
+    below, above = stack.lower, stack.upper
     centre = np.array([-old[0] * below.b, below.height + above.h])
     places = np.linspace(-1, 1, 401)
     weight = np.abs(places) ** hollow
@@ -32,7 +32,7 @@ def struck(stack, old, omega, hollow, moves):
     # velocities: of the pedestal's turn, and of the statue's centre and turn
     inverse = np.diag(
         [
-            moves / (below.pole_inertia() if moves else 1.0),
+            moves / (below.pivot_inertia() if moves else 1.0),
             1 / above.mass,
             1 / above.mass,
             1 / above.centroidal_inertia,
@@ -45,14 +45,14 @@ def struck(stack, old, omega, hollow, moves):
     slip = np.array([-below.height, 1.0, 0.0, -above.h])
     along = inverse @ slip
     inverse = inverse - np.outer(along, along) / (slip @ along)
-    # before: the statue turns about its old pole, which the pedestal carries along
-    pole = np.array([-old[0] * below.b + old[1] * above.b, below.height])
-    arm = centre - pole
+    # before: the statue turns about its old pivot, which the pedestal carries along
+    pivot = np.array([-old[0] * below.b + old[1] * above.b, below.height])
+    arm = centre - pivot
     before = np.array(
         [
             omega[0],
-            omega[0] * pole[1] + omega[1] * arm[1],
-            -omega[0] * pole[0] - omega[1] * arm[0],
+            omega[0] * pivot[1] + omega[1] * arm[1],
+            -omega[0] * pivot[0] - omega[1] * arm[0],
             omega[1],
         ]
     )
@@ -68,11 +68,11 @@ def struck(stack, old, omega, hollow, moves):
 def random_case(rng):
     base, slenderness = rng.uniform(0.1, 0.5), rng.uniform(2.5, 6)
     below, squatness = base * rng.uniform(1, 1.6), rng.uniform(1.0, 2.5)
-    statue = Block(base, base * slenderness, 1000 * base**2 * slenderness)
-    pedestal = Block(below, below * squatness, 1000 * below**2 * squatness * rng.uniform(0.5, 3))
+    upper = Block(base, base * slenderness, 1000 * base**2 * slenderness)
+    lower = Block(below, below * squatness, 1000 * below**2 * squatness * rng.uniform(0.5, 3))
     old = (int(rng.choice([1, -1])), int(rng.choice([1, -1])))
     omega1 = rng.normal()
-    return Stack(pedestal, statue), old, (omega1, omega1 - 2 * old[1] * abs(rng.normal()))
+    return Stack(lower, upper), old, (omega1, omega1 - 2 * old[1] * abs(rng.normal()))
 
 
 def errors_of_laws(count, hollow):
@@ -83,12 +83,12 @@ def errors_of_laws(count, hollow):
         stack, old, omega = random_case(rng)
         _, lone = struck(stack, old, (0.0, -float(old[1])), hollow, moves=0)
         e = -old[1] * lone
-        one, two = struck(stack, old, omega, hollow, moves=1)
+        first, two = struck(stack, old, omega, hollow, moves=1)
         here = []
         for law in ("position", "couple", "ratio", None):
             measured = None if law is None else MeasuredRestitution((None, e), law)
             _, after, _ = Model(stack, G, measured).impact(old, (0, old[1]), (0.0, 0.0), omega)
-            here.append((after[1] - after[0] - (two - one)) / abs(omega[1] - omega[0]))
+            here.append((after[1] - after[0] - (two - first)) / abs(omega[1] - omega[0]))
         found.append(here)
     return np.abs(found)
 
@@ -97,7 +97,7 @@ def test_a_hollow_base_conserves_momentum_about_its_corner():
     rng = np.random.default_rng(1)
     stack, old, _ = random_case(rng)
     _, lone = struck(stack, old, (0.0, -float(old[1])), 2000, moves=0)
-    assert -old[1] * lone == pytest.approx(stack.statue.momentum_restitution(), abs=1e-3)
+    assert -old[1] * lone == pytest.approx(stack.upper.momentum_restitution(), abs=1e-3)
 
 
 @pytest.mark.slow

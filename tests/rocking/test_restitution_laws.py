@@ -43,17 +43,17 @@ def random_stack(rng):
     base, slenderness = rng.uniform(0.1, 0.5), rng.uniform(1.6, 6)
     below, squatness = base * rng.uniform(1, 1.8), rng.uniform(0.9, 2.5)
     odd = rng.integers(2)
-    statue = Block(
+    upper = Block(
         base,
         base * slenderness,
         1000 * base**2 * slenderness,
         cg_offset=float(0.05 * base * rng.normal() * odd),
     )
-    pedestal = Block(
+    lower = Block(
         below, below * squatness, 1000 * below**2 * squatness * rng.uniform(0.3, 3),
         cg_offset=float(0.03 * below * rng.normal() * odd),
     )  # fmt: skip
-    return Stack(pedestal, statue)
+    return Stack(lower, upper)
 
 
 def random_impact(rng, kind):
@@ -87,14 +87,14 @@ def plain(body, restitution, old, closes, theta, omega):
 
 def measured(stack, factor, law):
     """Every interface at a factor on what conserves momentum, as far as a lone block allows it."""
-    blocks = stack.pedestal, stack.contact_statue
+    blocks = stack.lower, stack.contact_upper
     values = tuple(
         tuple(
             min(
-                factor * max(0.05, block.momentum_restitution(-pole)),
-                largest_restitution(block, pole),
+                factor * max(0.05, block.momentum_restitution(-pivot)),
+                largest_restitution(block, pivot),
             )
-            for pole in (1, -1)
+            for pivot in (1, -1)
         )
         for block in blocks
     )
@@ -127,7 +127,7 @@ def test_without_a_measured_value_momentum_is_conserved_and_nothing_gives_way():
             if (
                 min(
                     b.momentum_restitution(s)
-                    for b in (stack.pedestal, stack.contact_statue)
+                    for b in (stack.lower, stack.contact_upper)
                     for s in (1, -1)
                 )
                 > 0.05
@@ -177,9 +177,9 @@ def test_no_dead_stop_no_jump_and_no_gain_of_energy_in_ten_thousand_stacks(law):
 @pytest.mark.parametrize("law", law_names())
 @pytest.mark.parametrize("factor", [0.5, 0.9, 1.05])
 def test_on_a_support_that_does_not_move_every_law_is_the_lone_block(law, factor):
-    statue = Block(0.124, 0.496, 2.79, cg_offset=0.004)
-    heavy = Stack(Block(5.0, 1.0, 1e9), statue)
-    values = tuple(factor * statue.momentum_restitution(-pole) for pole in (1, -1))
+    upper = Block(0.124, 0.496, 2.79, cg_offset=0.004)
+    heavy = Stack(Block(5.0, 1.0, 1e9), upper)
+    values = tuple(factor * upper.momentum_restitution(-pivot) for pivot in (1, -1))
     for side in (1, -1):
         response = simulate(
             heavy,
@@ -188,14 +188,14 @@ def test_on_a_support_that_does_not_move_every_law_is_the_lone_block(law, factor
             theta0=(0.0, side * 0.05),
             restitution=MeasuredRestitution((None, values), law),
         )
-        first = response.events.query("kind == 'impact'").iloc[0]
+        first = response.contact_events.query("kind == 'impact'").iloc[0]
         ratio = first["omega_after"][1] / first["omega_before"][1]
         assert ratio == pytest.approx(values[(1 + side) // 2], abs=1e-6)
 
 
 def test_a_lone_block_has_a_value_for_each_direction():
     crooked = Block(0.3, 1.0, 100.0, cg_offset=0.1)
-    values = tuple(crooked.momentum_restitution(-pole) for pole in (1, -1))
+    values = tuple(crooked.momentum_restitution(-pivot) for pivot in (1, -1))
     assert abs(values[0] - values[1]) > 0.04 and max(values) > largest_restitution(crooked)
     free = simulate(crooked, STILL, 0.002, theta0=0.05)
     named = simulate(crooked, STILL, 0.002, theta0=0.05, restitution=values)
@@ -211,7 +211,7 @@ def test_a_statue_does_not_stop_dead_below_what_conserves_momentum(e):
         response = simulate(
             stack, STILL, 0.002, theta0=(0, 0.099), restitution=MeasuredRestitution((None, e), law)
         )
-        impacts = response.events.query("kind == 'impact'")
+        impacts = response.contact_events.query("kind == 'impact'")
         assert len(impacts) > 3
         assert np.abs(response.theta[-20:]).max() < 0.05 < np.abs(response.theta[:, 1]).max()
         assert abs(impacts.iloc[0]["omega_after"][1]) > 0.5 * abs(
@@ -226,7 +226,7 @@ def test_what_gives_way_is_counted(law):
     motion = 3 * np.interp(np.arange(3000) * 0.002, np.arange(121) * 0.05, coarse)
     restitution = MeasuredRestitution((0.9, None), law)
     response = simulate(stack, motion, 0.002, restitution=restitution)
-    impacts = response.events.query("kind == 'impact'")
+    impacts = response.contact_events.query("kind == 'impact'")
     assert response.given_way > 10
     # where a law gives way, no energy is lost
     without_loss = impacts["energy_after"] > impacts["energy_before"] * (1 - 1e-9)
@@ -239,7 +239,7 @@ def test_a_law_that_does_not_exist_and_one_with_nothing_to_multiply_are_refused(
     with pytest.raises(InputError, match="none of position, couple, ratio"):
         MeasuredRestitution(0.9, "newton")
     flat = Stack(Block(1.0, 0.2, 100.0), Block(0.5, 0.2, 10.0))
-    assert flat.pedestal.momentum_restitution() < 0
+    assert flat.lower.momentum_restitution() < 0
     with pytest.raises(InputError, match="nothing to multiply"):
         simulate(flat, STILL, 0.002, restitution=MeasuredRestitution((0.3, None), "couple"))
     with pytest.raises(InputError, match="nothing to multiply"):

@@ -113,8 +113,8 @@ def test_the_series_written_out_for_lanes_are_those_of_the_recurrence(theta, ome
     coupled = m11, m22, e * c + f * s, f * c - e * s
     found = written_out(coupled, *weights, tuple(rates), ground, (*gravity, True))
     plain = series_by_recurrence(*step_of(theta, omega))
-    for one, angle in zip(found, plain, strict=True):
-        np.testing.assert_allclose(one, angle[1:] * np.arange(1, ORDER + 1), rtol=1e-9, atol=1e-17)
+    for item, angle in zip(found, plain, strict=True):
+        np.testing.assert_allclose(item, angle[1:] * np.arange(1, ORDER + 1), rtol=1e-9, atol=1e-17)
 
 
 def test_the_series_of_a_ground_that_keeps_its_height_are_those_of_one_that_rises_by_nothing():

@@ -1,4 +1,4 @@
-"""Thresholds to a tolerance, survival windows, and verdicts that hang on the step."""
+"""Thresholds to a tolerance, structural resurrections, and outcomes that hang on the step."""
 
 import math
 
@@ -8,7 +8,7 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag.rocking.case_list import overturned_cases
 from rockfrag.rocking.ensemble import Options, overturns, prepared
-from rockfrag.rocking.step_sensitivity import fragile_verdicts
+from rockfrag.rocking.step_sensitivity import find_step_size_sensitive
 from rockfrag.rocking.thresholds import find_thresholds
 from rockfrag.system.blocks import Block
 
@@ -34,14 +34,14 @@ def test_the_survival_window_of_a_sine_pulse_between_its_two_modes_of_overturnin
     """Overturning with one impact from 3.032, survival from 6.743, overturning above 7.493 αg."""
     block, pulse, dt = one_sine()
     found = find_thresholds(
-        block, pulse, dt, 9.0, tolerance=1e-3, smallest_window=0.25, restitution=[0.9]
+        block, pulse, dt, 9.0, tolerance=1e-3, narrowest_resurrection=0.25, restitution=[0.9]
     )
     row = found.table.iloc[0]
-    assert row.windows == 1
+    assert row.resurrections == 1
     assert row.first_overturning == pytest.approx(3.032, rel=2e-3)
     assert row.always_overturning == pytest.approx(7.493, rel=2e-3)
     assert row.first_overturning_pga_g == pytest.approx(3.032 * 0.25, rel=2e-3)
-    window = found.windows.iloc[0]
+    window = found.resurrections.iloc[0]
     assert window.lower == pytest.approx(6.743, rel=2e-3)
     assert window.upper == pytest.approx(7.493, rel=2e-3)
 
@@ -49,10 +49,10 @@ def test_the_survival_window_of_a_sine_pulse_between_its_two_modes_of_overturnin
 def test_a_window_narrower_than_promised_can_be_missed_and_a_finer_grid_finds_it():
     block, pulse, dt = one_sine()
     settings = {"tolerance": 0.01, "restitution": [0.9]}
-    coarse = find_thresholds(block, pulse, dt, 12.0, smallest_window=4.0, **settings)
-    fine = find_thresholds(block, pulse, dt, 12.0, smallest_window=0.7, **settings)
-    assert len(coarse.windows) == 0
-    assert len(fine.windows) == 1
+    coarse = find_thresholds(block, pulse, dt, 12.0, narrowest_resurrection=4.0, **settings)
+    fine = find_thresholds(block, pulse, dt, 12.0, narrowest_resurrection=0.7, **settings)
+    assert len(coarse.resurrections) == 0
+    assert len(fine.resurrections) == 1
 
 
 @pytest.fixture(scope="module")
@@ -65,17 +65,17 @@ def test_thresholds_are_those_of_a_fine_grid(ensemble):
     spacing, tolerance = 0.02, 0.002
     width = spacing / 16  # the first power of two that makes it no wider than the tolerance
     found = find_thresholds(
-        bodies, motions, 0.01, 1.2, tolerance=tolerance, smallest_window=spacing
+        bodies, motions, 0.01, 1.2, tolerance=tolerance, narrowest_resurrection=spacing
     )
     fine = np.arange(1, 601) * tolerance
     fallen = overturns(bodies, motions, 0.01, fine).overturned
     checked = 0
     for row in found.table.itertuples():
-        verdicts = fallen[row.body, row.motion]
+        outcomes = fallen[row.body, row.motion]
         if math.isnan(row.first_overturning):
-            assert not verdicts[fine >= 1.2 - 1e-9].any()
+            assert not outcomes[fine >= 1.2 - 1e-9].any()
             continue
-        on_grid = verdicts[9::10]
+        on_grid = outcomes[9::10]
         assert on_grid.any()
         # the changes next to the first and last of those on the coarse grid
         first = 10 * (int(np.argmax(on_grid)) + 1) * tolerance
@@ -99,29 +99,31 @@ def test_thresholds_are_those_of_a_fine_grid(ensemble):
 
 def test_both_ends_of_every_window_survive_and_it_overturns_just_outside(ensemble):
     bodies, motions = ensemble
-    found = find_thresholds(bodies, motions, 0.01, 1.5, tolerance=0.004, smallest_window=0.01)
-    assert len(found.windows) > 3
+    found = find_thresholds(
+        bodies, motions, 0.01, 1.5, tolerance=0.004, narrowest_resurrection=0.01
+    )
+    assert len(found.resurrections) > 3
     width = 0.01 / 4
-    for row in found.windows.itertuples():
+    for row in found.resurrections.itertuples():
         scales = [row.lower - width, row.lower, row.upper, row.upper + width]
         fallen = overturns(bodies[row.body], motions[row.motion], 0.01, scales).overturned[0, 0]
         assert not fallen[1:3].any()
         assert fallen[0]
         assert fallen[3] or row.upper == 1.5
-    counts = found.windows.groupby(["body", "motion"]).size().sum()
-    assert counts == found.table["windows"].sum()
+    counts = found.resurrections.groupby(["body", "motion"]).size().sum()
+    assert counts == found.table["resurrections"].sum()
 
 
 def test_thresholds_do_not_depend_on_threads(ensemble):
     bodies, motions = ensemble
-    one, two = (
+    first, two = (
         find_thresholds(
-            bodies, motions, 0.01, 1.0, tolerance=1e-3, smallest_window=0.05, threads=threads
+            bodies, motions, 0.01, 1.0, tolerance=1e-3, narrowest_resurrection=0.05, threads=threads
         )
         for threads in (1, 2)
     )
-    assert one.table.equals(two.table)
-    assert one.windows.equals(two.windows)
+    assert first.table.equals(two.table)
+    assert first.resurrections.equals(two.resurrections)
 
 
 def test_a_block_that_nothing_topples_has_no_threshold():
@@ -131,20 +133,20 @@ def test_a_block_that_nothing_topples_has_no_threshold():
         0.01,
         0.9,
         tolerance=0.1,
-        smallest_window=0.3,
+        narrowest_resurrection=0.3,
     )
     assert found.table[["first_overturning", "always_overturning"]].isna().all(axis=None)
-    assert found.windows.empty
+    assert found.resurrections.empty
 
 
-@pytest.mark.parametrize("name", ["highest", "tolerance", "smallest_window"])
+@pytest.mark.parametrize("name", ["highest", "tolerance", "narrowest_resurrection"])
 def test_thresholds_name_wrong_input(name):
-    given = {"highest": 1.0, "tolerance": 0.1, "smallest_window": 0.5}
+    given = {"highest": 1.0, "tolerance": 0.1, "narrowest_resurrection": 0.5}
     with pytest.raises(InputError, match=f"{name}: expected a positive number"):
         find_thresholds(Block(1.0, 4.0, 1.0), np.ones(9), 0.01, **(given | {name: -1.0}))
 
 
-def test_scattered_cases_have_the_verdicts_of_the_grid(ensemble):
+def test_scattered_cases_have_the_outcomes_of_the_grid(ensemble):
     bodies, motions = ensemble
     scales = np.linspace(0.2, 1.0, 7)
     grid = overturns(bodies, motions, 0.01, scales).overturned
@@ -157,9 +159,9 @@ def test_scattered_cases_have_the_verdicts_of_the_grid(ensemble):
 
 @pytest.mark.parametrize(("kind", "gate"), [("lone", 0.001), ("stack", 0.005)])
 @pytest.mark.parametrize("count", [1000, pytest.param(10_000, marks=pytest.mark.slow, id="10000")])
-def test_few_verdicts_change_when_the_step_is_halved(kind, gate, count):
+def test_few_outcomes_change_when_the_step_is_halved(kind, gate, count):
     cases = benchmark_cases.cases(kind, count)
-    fragile = fragile_verdicts(
+    fragile = find_step_size_sensitive(
         cases.bodies, cases.accelerations, cases.dt, cases.scales, sample=cases.count
     )
     assert fragile.sampled == cases.count
@@ -167,22 +169,24 @@ def test_few_verdicts_change_when_the_step_is_halved(kind, gate, count):
     assert fragile.changed < gate * fragile.sampled + (2 if count < 10_000 else 0)
 
 
-def test_verdicts_taken_with_long_steps_are_fragile():
-    """The count is not zero by construction: steps of p h up to 1 leave more verdicts open."""
+def test_outcomes_taken_with_long_steps_are_fragile():
+    """The count is not zero by construction: steps of p h up to 1 leave more outcomes open."""
     cases = benchmark_cases.cases("lone", 1000)
     rough = [motion[::10] for motion in cases.accelerations]
-    fragile = fragile_verdicts(cases.bodies, rough, 0.1, cases.scales, sample=1000, step=3.0)
-    assert fragile.share > 0.005
+    fragile = find_step_size_sensitive(
+        cases.bodies, rough, 0.1, cases.scales, sample=1000, step=3.0
+    )
+    assert fragile.fraction > 0.005
     assert fragile.cases.shape == (fragile.changed, 3)
 
 
 def test_the_sample_follows_from_its_seed(ensemble):
     bodies, motions = ensemble
-    one, again = (
-        fragile_verdicts(
+    item, again = (
+        find_step_size_sensitive(
             bodies, motions, 0.2, [0.5, 1.0, 2.0], sample=20, seed=4, step=3.0, threads=threads
         )
         for threads in (1, 2)
     )
-    assert one.sampled == 20
-    np.testing.assert_array_equal(one.cases, again.cases)
+    assert item.sampled == 20
+    np.testing.assert_array_equal(item.cases, again.cases)

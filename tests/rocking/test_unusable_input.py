@@ -11,8 +11,8 @@ from rockfrag.records.motion import Motion
 from rockfrag.rocking import (
     Block,
     Stack,
+    find_step_size_sensitive,
     find_thresholds,
-    fragile_verdicts,
     overturns,
     restitution_from_peaks,
     rocking_spectrum,
@@ -170,16 +170,21 @@ UNUSABLE = [
     (swept(theta0=[(0.1, 0.2)]), "theta0: expected 1 finite number(s), got (0.1, 0.2)"),
     # what is built on them
     (
-        lambda: find_thresholds(T2, MOTION, None, "high", tolerance=0.1, smallest_window=0.1),
+        lambda: find_thresholds(
+            T2, MOTION, None, "high", tolerance=0.1, narrowest_resurrection=0.1
+        ),
         "highest: expected a positive number, got 'high'",
     ),
     (
-        lambda: find_thresholds(T2, MOTION, None, 1.0, tolerance=0.0, smallest_window=0.1),
+        lambda: find_thresholds(T2, MOTION, None, 1.0, tolerance=0.0, narrowest_resurrection=0.1),
         "tolerance: expected a positive number, got 0.0",
     ),
-    (lambda: fragile_verdicts(T2, MOTION, None, [1.0], sample=0), "sample: expected at least one"),
     (
-        lambda: fragile_verdicts(T2, MOTION, None, [1.0], sample="x"),
+        lambda: find_step_size_sensitive(T2, MOTION, None, [1.0], sample=0),
+        "sample: expected at least one",
+    ),
+    (
+        lambda: find_step_size_sensitive(T2, MOTION, None, [1.0], sample="x"),
         "sample: expected a whole number",
     ),
     (lambda: rocking_spectrum(MOTION, ["a"], [0.2]), "periods: expected numbers [s], got text"),
@@ -241,14 +246,14 @@ def test_hostile_motions_end(body):
 
 
 def test_a_motion_may_be_given_in_every_usual_form():
-    one = simulate(T2, MOTION)
+    first = simulate(T2, MOTION)
     for other in (simulate(T2, SHAKE, 0.01), simulate(T2, SHAKE.tolist(), np.float64(0.01))):
-        np.testing.assert_array_equal(one.theta, other.theta)
-    verdicts = [
+        np.testing.assert_array_equal(first.theta, other.theta)
+    outcomes = [
         overturns(T2, MOTION, scales=[0.5, 2.0]),
         overturns([T2], [MOTION], scales=[0.5, 2.0]),
         overturns(T2, SHAKE, 0.01, [0.5, 2.0]),
         overturns(T2, SHAKE.tolist(), 0.01, [0.5, 2.0]),
     ]
-    for found in verdicts:
-        np.testing.assert_array_equal(found.peak_velocity, verdicts[0].peak_velocity)
+    for found in outcomes:
+        np.testing.assert_array_equal(found.peak_velocity, outcomes[0].peak_velocity)

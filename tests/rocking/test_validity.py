@@ -78,13 +78,13 @@ def test_friction_of_the_interface_is_along_the_face_that_carries():
     assert at_rest.friction_demand[0] == pytest.approx(0, abs=1e-12)
 
 
-def test_losing_contact_is_an_event():
+def test_losing_contact_is_an_contact_event():
     # the ground falls away faster than the block
     up = np.interp(np.arange(100) * 0.01, [0.0, 0.2, 0.4, 0.6], [0.0, -2 * G, 0.0, 0.0])
     with pytest.warns(LightBodies, match="at 0.100 s the body would have left"):
         response = simulate(T2, np.zeros(100), 0.01, vertical=up)
     assert response.lost_contact == pytest.approx(0.1, abs=1e-9)
-    lifted = response.events.query("kind == 'lift-off'")
+    lifted = response.contact_events.query("kind == 'lift-off'")
     assert lifted["time"].tolist() == [response.lost_contact]
     assert math.isinf(response.friction_demand[0]) and response.least_normal_force[0] < 0
     found = overturns(T2, np.zeros(100), 0.01, vertical=[up], forces=True)
@@ -98,13 +98,13 @@ def test_an_ensemble_asks_what_its_histories_do():
     found = overturns(bodies, motion, 0.01, [0.5, 1.0, 1.4], forces=True)
     for i, body in enumerate(bodies):
         for k, scale in enumerate(found.scales[0]):
-            one = simulate(body, scale * motion, 0.01)
-            n = one.friction_demand.size
+            item = simulate(body, scale * motion, 0.01)
+            n = item.friction_demand.size
             assert found.friction_demand[i, 0, k, :n] == pytest.approx(
-                one.friction_demand, rel=1e-12
+                item.friction_demand, rel=1e-12
             )
             assert found.least_normal_force[i, 0, k, :n] == pytest.approx(
-                one.least_normal_force, rel=1e-12
+                item.least_normal_force, rel=1e-12
             )
     assert np.isnan(found.friction_demand[0, ..., 1]).all()
     contacts = found.table("contacts")

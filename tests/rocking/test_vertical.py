@@ -38,7 +38,7 @@ def test_a_constant_vertical_acceleration_is_another_gravity(body, upward, linea
     other = simulate(body, motion, DT, g=9.81 + upward, linear=linear)
     n = min(len(with_it.time), len(other.time), motion.size)
     # each stays within the same steps, and rounds differently
-    assert len(with_it.events) > 2
+    assert len(with_it.contact_events) > 2
     assert with_it.theta[:n] == pytest.approx(other.theta[:n], abs=1e-9)
     assert with_it.overturned == other.overturned
 
@@ -64,7 +64,7 @@ def cases(count):
     rng = np.random.default_rng(3)
     for number in range(count):
         base, slenderness = rng.uniform(0.1, 0.5), rng.uniform(2, 6)
-        statue = Block(
+        upper = Block(
             base,
             base * slenderness,
             1000 * base**2 * slenderness,
@@ -72,9 +72,9 @@ def cases(count):
         )
         below = base * rng.uniform(1, 1.6)
         body = (
-            statue
+            upper
             if number % 2
-            else Stack(Block(below, below * rng.uniform(0.5, 2), 1500 * below**2), statue)
+            else Stack(Block(below, below * rng.uniform(0.5, 2), 1500 * below**2), upper)
         )
         motion = shaking(rng, 9.81 / slenderness * rng.uniform(1.1, 3))
         up = shaking(rng, 8.0 if number % 3 == 0 else 3.0)
@@ -85,14 +85,16 @@ def cases(count):
 def test_ensembles_and_histories_agree_under_vertical_motion():
     differ = 0
     for body, motion, up in cases(60):
-        one = simulate(body, motion, DT, vertical=up)
+        item = simulate(body, motion, DT, vertical=up)
         found = overturns(body, motion, DT, vertical=[up])
-        if one.overturned != found.overturned.item():
+        if item.overturned != found.overturned.item():
             differ += 1
-        elif not one.overturned and isinstance(body, Block):
-            peak = np.abs(one.theta).max() / body.alpha
+        elif not item.overturned and isinstance(body, Block):
+            peak = np.abs(item.theta).max() / body.alpha
             assert found.peak_rotation.item() == pytest.approx(peak, rel=0.1, abs=1e-3)
-        assert np.abs(one.energy["residual"]).max() <= 1e-5 * max(1e-3, one.energy["kinetic"].max())
+        assert np.abs(item.energy["residual"]).max() <= 1e-5 * max(
+            1e-3, item.energy["kinetic"].max()
+        )
     assert differ <= 1
 
 
@@ -109,12 +111,12 @@ def test_histories_follow_the_plain_integrator_with_every_law_and_vertical_motio
 
 
 def follow_the_plain_one(seed, law):
-    """Up to the sixth event, before a contact grazes."""
+    """Up to the sixth contact event, before a contact grazes."""
     body, motion, up = list(cases(seed + 1))[-1]
     rng = np.random.default_rng(seed)
     restitution = None
     if law is not None:
-        blocks = (body,) if isinstance(body, Block) else (body.pedestal, body.contact_statue)
+        blocks = (body,) if isinstance(body, Block) else (body.lower, body.contact_upper)
         values = [
             min(block.momentum_restitution(s) for s in (1, -1)) * rng.uniform(0.8, 1.04)
             for block in blocks
@@ -127,12 +129,12 @@ def follow_the_plain_one(seed, law):
     slow = simulate_reference(
         body, motion, DT, vertical=up, restitution=restitution, duration=motion.size * DT
     )
-    events = [e for e in slow.events if e.kind != "overturning"]
-    until = events[6].time if len(events) > 6 else np.inf
-    for event in events:
-        change = np.diff(event.omega_before, prepend=0.0)
-        if event.kind != "opening" and np.abs(change[change != 0]).min(initial=1.0) < 1e-2:
-            until = min(until, event.time)
+    contact_events = [e for e in slow.contact_events if e.kind != "overturning"]
+    until = contact_events[6].time if len(contact_events) > 6 else np.inf
+    for contact_event in contact_events:
+        change = np.diff(contact_event.omega_before, prepend=0.0)
+        if contact_event.kind != "opening" and np.abs(change[change != 0]).min(initial=1.0) < 1e-2:
+            until = min(until, contact_event.time)
     n = min(len(fast.time), len(slow.time), int(np.searchsorted(fast.time, until)))
     upright = np.abs(slow.theta[:n]).max(axis=1) < 0.5
     if n < 4 and until < np.inf:

@@ -1,6 +1,6 @@
 """What a study costs against its size: synthetic motions, lone blocks and stacks, through the workflow.
 
-``python -m tests.scale 300 1000 3000`` runs studies of so many motions of 20 s, a third as many events,
+``python -m tests.scale 300 1000 3000`` runs studies of so many motions of 20 s, a third as many earthquakes,
 the thesis's six configurations (three lone blocks, three stacks) and 200 amplitudes; ``--amplitudes 2000``
 takes more.  Each stage's processor time, what the run takes before and between its jobs, the largest memory
 and the wall time of the whole are printed as the table of ``docs/reliability.md``, and go to
@@ -29,8 +29,8 @@ from rockfrag.study.amplitudes import Amplitudes
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES, DT = 2000, 0.01
 LOWEST_G, HIGHEST_G = 0.05, 2.0
-OF_AN_EVENT = 3
-"""Motions of one event."""
+OF_AN_EARTHQUAKE = 3
+"""Motions of one earthquake."""
 
 CONFIGURATIONS = 6
 _TOOK = re.compile(r"took ([0-9.]+) s, ([0-9.]+) s of processors, ([0-9]+) MiB")
@@ -76,8 +76,8 @@ def measured(folder: Path, motions: int, amplitudes: int, cores: int) -> list[di
         found = _TOOK.search(log.read_text(encoding="utf-8"))
         if found is None:
             raise RuntimeError(f"{log} does not say what its job took")
-        one = (float(found[1]), float(found[2]), float(found[3]))
-        stages.setdefault(_PART.sub("", log.stem), []).append(one)
+        item = (float(found[1]), float(found[2]), float(found[3]))
+        stages.setdefault(_PART.sub("", log.stem), []).append(item)
     # reading the records beforehand, and planning the jobs
     jobs = sum(job[1] for some in stages.values() for job in some)
     stages["before and between"] = [(math.nan, whole - jobs, math.nan)]
@@ -107,16 +107,16 @@ def in_words(table: pd.DataFrame) -> str:
     lines = [
         "| motions | histories | "
         + " | ".join(stages)
-        + " | all but sweep | memory [MiB] | wall [s] |"
+        + " | all but IDA curve | memory [MiB] | wall [s] |"
     ]
     lines.append("|--:" * (len(stages) + 5) + "|")
     for (motions, histories), rows in table.groupby(["motions", "histories"], sort=False):
         seconds = rows.set_index("stage")["processor_s"]
         cells = [f"{motions}", f"{histories:,}".replace(",", " ")]
         cells += [f"{seconds[stage]:.0f}" for stage in stages]
-        share = 1 - seconds["sweep"] / seconds.sum()
+        fraction = 1 - seconds["ida"] / seconds.sum()
         cells += [
-            f"{share:.0%}",
+            f"{fraction:.0%}",
             f"{rows['memory_mib'].max():.0f}",
             f"{rows['wall_s'].iloc[0]:.0f}",
         ]
@@ -127,14 +127,14 @@ def in_words(table: pd.DataFrame) -> str:
 def write_study(folder: Path, motions: int, amplitudes: int) -> None:
     """Write a study's configuration and its records."""
     (folder / "records").mkdir(parents=True, exist_ok=True)
-    rows = ["name,event,source,file,unit"]
+    rows = ["name,earthquake,source,file,unit"]
     for number in range(motions):
         name = f"records/{number:05d}.txt"
         if not (folder / name).exists():
             values = np.round(acceleration(number), 6).astype(str)
             lines = [f"{k * DT:.2f} {value}" for k, value in enumerate(values)]
             (folder / name).write_text("\n".join(lines) + "\n", encoding="utf-8")
-        rows.append(f"motion {number},event {number // OF_AN_EVENT},folder,{name},g")
+        rows.append(f"motion {number},earthquake {number // OF_AN_EARTHQUAKE},folder,{name},g")
     (folder / "motions.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     for name in ("specimens.csv", "configurations.csv"):
         shutil.copy(ROOT / "config" / name, folder / name)

@@ -14,7 +14,7 @@ def table_of(amplitudes: dict[tuple[str, str], list[float]]) -> pd.DataFrame:
             "configuration": f"{name} {side}",
             "object": name,
             "pedestal": side,
-            "event": "abc"[i],
+            "earthquake": "abc"[i],
             "floor": "up",
             "motion": f"{'abc'[i]}_up",
             "amplitude_g": value,

@@ -9,9 +9,7 @@ from rockfrag.shaketable.tests_table import COLUMNS
 
 TEMPLATE = Path(__file__).resolve().parents[2] / "config" / "experiment" / "tests-template.csv"
 
-HEADER = (
-    "test,object,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
-)
+HEADER = "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
 # synthetic: round numbers that nobody measured
 ROWS = (
     "a,T1,NP,Kobe,GF,0.40,0.42,none,statue,1,",
@@ -40,7 +38,7 @@ def test_a_measured_table_becomes_a_table_of_tests(table):
     assert tests["amplitude_g"].tolist()[:3] == [0.40, 0.30, 0.33]
     assert tests["motion"].tolist()[0] == "Kobe_GF"
     assert tests["remark"].tolist()[1] == "loud, and late"
-    assert set(tests["reading"]) == {"measured"}
+    assert set(tests["definition"]) == {"measured"}
     last = tests.iloc[3]
     assert last["censored"] == "right"
     assert math.isnan(last["upper_g"]) and math.isnan(last["amplitude_g"])
@@ -104,7 +102,7 @@ def test_the_same_repetition_twice_is_refused(table):
 @pytest.mark.parametrize(
     ("header", "message"),
     [
-        (HEADER.replace("event,", ""), "column 'event' is missing"),
+        (HEADER.replace("earthquake,", ""), "column 'earthquake' is missing"),
         (HEADER + ",colour", "column 'colour' is unknown"),
         (HEADER + ",remark", "column 'remark' occurs twice"),
         (HEADER.replace("upper_g", "upper_m_s2"), "either lower_g and upper_g or"),

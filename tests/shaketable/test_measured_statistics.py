@@ -4,9 +4,9 @@ import pytest
 
 from rockfrag.fragility.censored import brackets_from_table, fit_brackets
 from rockfrag.pedestal.paired_tests import pair_tests
+from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.readings import tests_from_sweep as read_sweep
 from rockfrag.shaketable.steps import GeometricSteps
 
 AMPLITUDES = 0.05 * 1.02 ** np.arange(150)
@@ -16,14 +16,14 @@ AMPLITUDES = 0.05 * 1.02 ** np.arange(150)
 def simulated():
     """Tests of synthetic objects that overturn above a threshold of their own, one of them censored."""
     rng = np.random.default_rng(7)
-    sweeps = []
+    ida_curves = []
     for object_name in ("T1", "T2", "T3"):
-        for event in ("A", "B", "C", "D"):
+        for earthquake in ("A", "B", "C", "D"):
             for floor in ("GF", "F3", "F5"):
                 for pedestal in ("P", "NP"):
                     threshold = 0.3 * np.exp(0.3 * rng.normal())
                     over = threshold < AMPLITUDES
-                    sweeps.append(
+                    ida_curves.append(
                         pd.DataFrame(
                             {
                                 "configuration": f"P&{object_name}"
@@ -31,8 +31,8 @@ def simulated():
                                 else object_name,
                                 "object": object_name,
                                 "pedestal": pedestal,
-                                "motion": f"{event}_{floor}",
-                                "event": event,
+                                "motion": f"{earthquake}_{floor}",
+                                "earthquake": earthquake,
                                 "floor": floor,
                                 "amplitude_g": AMPLITUDES,
                                 "overturned": over,
@@ -40,10 +40,10 @@ def simulated():
                             }
                         )
                     )
-    return read_sweep(
-        pd.concat(sweeps),
+    return read_ida(
+        pd.concat(ida_curves),
         Protocol(GeometricSteps(0.05, 0.05)),
-        readings=["step_protocol"],
+        definitions=["step_protocol"],
         limits_g={"A_GF": 0.3},
     )
 
@@ -52,7 +52,7 @@ def simulated():
 def measured(simulated, tmp_path):
     """The same tests, written down as a laboratory would and read as a measured table."""
     path = tmp_path / "measured.csv"
-    names = "test,object,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
+    names = "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
     simulated[names.split(",")].to_csv(path, index=False)
     return read_measured(path)
 
@@ -60,7 +60,7 @@ def measured(simulated, tmp_path):
 def test_measured_and_simulated_tests_are_the_same_table(simulated, measured):
     assert (simulated["censored"] == "right").any()
     pd.testing.assert_frame_equal(
-        measured.drop(columns="reading"), simulated.drop(columns="reading")
+        measured.drop(columns="definition"), simulated.drop(columns="definition")
     )
 
 

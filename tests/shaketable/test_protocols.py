@@ -7,40 +7,40 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.shaketable.instruments import Accelerometer, ForceOverMass
-from rockfrag.shaketable.protocols import Outcome, Protocol, climb, measured
-from rockfrag.shaketable.readings import (
+from rockfrag.shaketable.definitions import (
     always_overturning,
     first_overturning,
     step_protocol,
 )
-from rockfrag.shaketable.readings import (
-    tests_from_sweep as read_sweep,
+from rockfrag.shaketable.definitions import (
+    tests_from_ida as read_ida,
 )
+from rockfrag.shaketable.instruments import Accelerometer, ForceOverMass
+from rockfrag.shaketable.protocols import Outcome, Protocol, climb, measured
 from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
 from rockfrag.shaketable.tests_table import COLUMNS
 
 GRID = np.round(np.arange(0.05, 1.0001, 0.01), 10)
-# overturns from 0.30 to 0.34, survives to 0.50, overturns above: one survival window
+# overturns from 0.30 to 0.34, survives to 0.50, overturns above: one structural resurrection
 WINDOW = ((GRID > 0.295) & (GRID < 0.345)) | (GRID > 0.505)
 
-sweeps = st.lists(st.booleans(), min_size=1, max_size=60).map(np.array)
+ida_curves = st.lists(st.booleans(), min_size=1, max_size=60).map(np.array)
 
 
-def grid(verdicts):
-    return 0.05 + 0.01 * np.arange(len(verdicts))
+def grid(outcomes):
+    return 0.05 + 0.01 * np.arange(len(outcomes))
 
 
-def sweep_table(overturned=WINDOW, amplitudes=GRID, **fields):
+def ida_table(overturned=WINDOW, amplitudes=GRID, **fields):
     columns = {"configuration": "vase", "object": "vase", "pedestal": "NP", "motion": "Kobe_ground"}
-    columns |= {"event": "Kobe", "floor": "ground"} | fields
+    columns |= {"earthquake": "Kobe", "floor": "ground"} | fields
     body = np.where(overturned, "statue", "")
     return pd.DataFrame(
         {"amplitude_g": amplitudes, "overturned": overturned, "overturned_body": body, **columns}
     )
 
 
-def test_ladders_climb_as_their_names_say():
+def test_level_series_climb_as_their_names_say():
     assert LinearSteps(0.1, 0.1).amplitudes(0.5) == pytest.approx([0.1, 0.2, 0.3, 0.4, 0.5])
     assert GeometricSteps(0.1, 1.0).amplitudes(0.8) == pytest.approx([0.1, 0.2, 0.4, 0.8])
     force = ForceSteps(98.1, 98.1, moved_mass_kg=100.0)
@@ -59,7 +59,7 @@ def test_the_lab_stops_at_the_first_overturning():
     assert asked == [0.1, 0.2, 0.3]
 
 
-def test_three_readings_of_one_sweep_differ():
+def test_three_readings_of_one_ida_differ():
     protocol = Protocol(LinearSteps(0.05, 0.1), limit_g=1.0)
     assert step_protocol(GRID, WINDOW, protocol) == Outcome(0.45, 0.55)
     assert first_overturning(GRID, WINDOW) == Outcome(0.29, 0.30)
@@ -68,32 +68,34 @@ def test_three_readings_of_one_sweep_differ():
 
 def test_repetitions_start_within_a_step_of_each_other():
     protocol = Protocol(LinearSteps(0.05, 0.1), limit_g=1.0, repetitions=2)
-    table = read_sweep(sweep_table(), protocol, readings=["step_protocol"])
+    table = read_ida(ida_table(), protocol, definitions=["step_protocol"])
     assert table["repetition"].tolist() == [1, 2]
     assert table["upper_g"].tolist() == pytest.approx([0.55, 0.30])
 
 
 def test_a_table_of_tests_has_the_schema_of_the_contract():
-    table = read_sweep(sweep_table(), Protocol(LinearSteps(0.05, 0.05)))
+    table = read_ida(ida_table(), Protocol(LinearSteps(0.05, 0.05)))
     assert tuple(table.columns) == COLUMNS
-    assert table["reading"].tolist() == ["step_protocol", "first_overturning", "always_overturning"]
+    assert table["definition"].tolist() == [
+        "step_protocol",
+        "first_overturning",
+        "always_overturning",
+    ]
     assert (table["amplitude_g"] == table["lower_g"]).all()
     assert (table["overturned_body"] == "statue").all()
-    assert read_sweep(sweep_table().iloc[:0], Protocol(LinearSteps(1, 1))).dtypes.equals(
-        table.dtypes
-    )
+    assert read_ida(ida_table().iloc[:0], Protocol(LinearSteps(1, 1))).dtypes.equals(table.dtypes)
 
 
 def test_at_overturning_reports_the_upper_bound():
-    protocol = Protocol(LinearSteps(0.05, 0.05), reading="at")
-    table = read_sweep(sweep_table(), protocol)
+    protocol = Protocol(LinearSteps(0.05, 0.05), definition="at")
+    table = read_ida(ida_table(), protocol)
     assert (table["amplitude_g"] == table["upper_g"]).all()
 
 
 def test_the_shakers_limit_censors_the_step_protocol_only():
-    table = read_sweep(
-        sweep_table(), Protocol(LinearSteps(0.05, 0.05)), limits_g={"Kobe_ground": 0.272}
-    ).set_index("reading")
+    table = read_ida(
+        ida_table(), Protocol(LinearSteps(0.05, 0.05)), limits_g={"Kobe_ground": 0.272}
+    ).set_index("definition")
     lab = table.loc["step_protocol"]
     assert lab["lower_g"] == pytest.approx(0.25)
     assert math.isnan(lab["upper_g"]) and math.isnan(lab["amplitude_g"])
@@ -102,7 +104,7 @@ def test_the_shakers_limit_censors_the_step_protocol_only():
 
 
 def test_overturning_at_the_first_step_leaves_nothing_to_report_before_it():
-    table = read_sweep(sweep_table(np.ones(GRID.size, bool)), Protocol(LinearSteps(0.2, 0.1)))
+    table = read_ida(ida_table(np.ones(GRID.size, bool)), Protocol(LinearSteps(0.2, 0.1)))
     assert (table["lower_g"] == 0).all()
     assert table["amplitude_g"].isna().all()
     assert (table["censored"] == "none").all()
@@ -125,11 +127,11 @@ def test_a_clipped_accelerometer_gives_a_lower_bound_only():
 
 
 @settings(deadline=None, derandomize=True)
-@given(verdicts=sweeps, step=st.floats(0.003, 0.3), start=st.floats(0.01, 0.5))
-def test_the_bounds_hold_a_survival_and_an_overturning(verdicts, step, start):
-    amplitudes = grid(verdicts)
-    outcome = step_protocol(amplitudes, verdicts, Protocol(LinearSteps(start, step)))
-    known = dict(zip(amplitudes, verdicts, strict=True))
+@given(outcomes=ida_curves, step=st.floats(0.003, 0.3), start=st.floats(0.01, 0.5))
+def test_the_bounds_hold_a_survival_and_an_overturning(outcomes, step, start):
+    amplitudes = grid(outcomes)
+    outcome = step_protocol(amplitudes, outcomes, Protocol(LinearSteps(start, step)))
+    known = dict(zip(amplitudes, outcomes, strict=True))
     assert outcome.lower_g == 0 or not known[outcome.lower_g]
     if not outcome.censored:
         assert outcome.lower_g < outcome.upper_g
@@ -137,20 +139,20 @@ def test_the_bounds_hold_a_survival_and_an_overturning(verdicts, step, start):
 
 
 @settings(deadline=None, derandomize=True)
-@given(verdicts=sweeps)
-def test_fine_steps_find_the_first_overturning(verdicts):
-    amplitudes = grid(verdicts)
+@given(outcomes=ida_curves)
+def test_fine_steps_find_the_first_overturning(outcomes):
+    amplitudes = grid(outcomes)
     fine = Protocol(LinearSteps(0.05, 0.002))
-    assert step_protocol(amplitudes, verdicts, fine) == first_overturning(amplitudes, verdicts)
+    assert step_protocol(amplitudes, outcomes, fine) == first_overturning(amplitudes, outcomes)
 
 
 @settings(deadline=None, derandomize=True)
-@given(verdicts=sweeps, step=st.floats(0.003, 0.3))
-def test_no_protocol_overturns_below_the_first_overturning(verdicts, step):
-    amplitudes = grid(verdicts)
-    outcome = step_protocol(amplitudes, verdicts, Protocol(LinearSteps(0.05, step)))
+@given(outcomes=ida_curves, step=st.floats(0.003, 0.3))
+def test_no_protocol_overturns_below_the_first_overturning(outcomes, step):
+    amplitudes = grid(outcomes)
+    outcome = step_protocol(amplitudes, outcomes, Protocol(LinearSteps(0.05, step)))
     if not outcome.censored:
-        assert outcome.upper_g >= first_overturning(amplitudes, verdicts).upper_g
+        assert outcome.upper_g >= first_overturning(amplitudes, outcomes).upper_g
 
 
 @settings(deadline=None, derandomize=True)
@@ -179,9 +181,9 @@ def test_protocols_that_make_no_sense_are_refused(make, message):
         make()
 
 
-def test_sweeps_with_missing_columns_or_doubled_amplitudes_are_refused():
+def test_ida_curves_with_missing_columns_or_doubled_amplitudes_are_refused():
     protocol = Protocol(LinearSteps(0.1, 0.1))
-    with pytest.raises(InputError, match="'event' is missing"):
-        read_sweep(sweep_table().drop(columns="event"), protocol)
+    with pytest.raises(InputError, match="'earthquake' is missing"):
+        read_ida(ida_table().drop(columns="earthquake"), protocol)
     with pytest.raises(InputError, match="vase Kobe_ground: amplitudes must"):
-        read_sweep(pd.concat([sweep_table(), sweep_table()]), protocol)
+        read_ida(pd.concat([ida_table(), ida_table()]), protocol)

@@ -9,9 +9,9 @@ import yaml
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
+from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.high_pass import filter_effect
 from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.readings import tests_from_sweep as read_sweep
 from rockfrag.shaketable.shaker import Shaker, limits_g
 from rockfrag.shaketable.steps import GeometricSteps
 from rockfrag.study.configurations import configuration_of, each_alone
@@ -33,7 +33,7 @@ def amplitudes(lowest, highest, step):
     return lowest * (1 + step) ** np.arange(int(np.log(highest / lowest) / np.log(1 + step)) + 1)
 
 
-def sweep(motions, values):
+def ida(motions, values):
     result = overturns(
         list(TOWERS.values()),
         [motion.acceleration for motion in motions],
@@ -47,7 +47,7 @@ def sweep(motions, values):
                 "object": object_name,
                 "pedestal": "NP",
                 "motion": motion.name,
-                "event": motion.name,
+                "earthquake": motion.name,
                 "floor": "GF",
                 "amplitude_g": values,
                 "overturned": result.overturned[i, j],
@@ -61,10 +61,10 @@ def sweep(motions, values):
 
 def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
     motions, shaker = list(records.values()), Shaker()
-    tests = read_sweep(
-        sweep(motions, amplitudes(0.2, 0.7, 0.01)),
+    tests = read_ida(
+        ida(motions, amplitudes(0.2, 0.7, 0.01)),
         Protocol(GeometricSteps(0.2, 0.01)),
-        readings=["step_protocol"],
+        definitions=["step_protocol"],
         limits_g=limits_g(shaker, motions),
     )
     censored = tests[tests["censored"] == "right"]
@@ -94,7 +94,7 @@ def settings():
 def wave(frequency, name):
     t = np.arange(300) * 0.01
     shaken = np.sin(2 * np.pi * frequency * t) * np.sin(np.pi * t / t[-1])
-    return Motion(2 * shaken, 0.01, name, {"event": name})
+    return Motion(2 * shaken, 0.01, name, {"earthquake": name})
 
 
 def test_a_variant_equal_to_the_reference_gives_the_same_tests(settings):

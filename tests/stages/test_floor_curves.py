@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.fragility import with_measures
-from rockfrag.fragility.sweep_data import TableSweep
+from rockfrag.fragility.ida_data import TableIda
 from rockfrag.stages.floor_curves import export_curves, floor_curves
 from rockfrag.system.blocks import Block
 
@@ -37,21 +37,21 @@ def curves():
                 {
                     "configuration": "statue",
                     "motion": name,
-                    "event": f"e{k}",
+                    "earthquake": f"e{k}",
                     "floor": floor,
                     "amplitude_g": a,
                     "overturned": a > capacity,
                 }
                 for a in np.geomspace(0.1, 2.0, 60)
             ]
-    sweep, measures = pd.DataFrame(rows), pd.DataFrame(measures)
+    ida, measures = pd.DataFrame(rows), pd.DataFrame(measures)
     columns = [name for name in measures if name not in ("name", "floor")]
-    sweeps = {
-        ("statue", str(floor)): TableSweep(with_measures(part, measures, columns))
-        for floor, part in sweep.groupby("floor", sort=False)
+    ida_curves = {
+        ("statue", str(floor)): TableIda(with_measures(part, measures, columns))
+        for floor, part in ida.groupby("floor", sort=False)
     }
     return floor_curves(
-        {"overturns": sweeps}, measures, FLOORS, {"statue": STATUE.system()}, "abc", 0.90
+        {"overturns": ida_curves}, measures, FLOORS, {"statue": STATUE.system()}, "abc", 0.90
     )[0]
 
 
@@ -81,7 +81,7 @@ def test_what_slides_is_a_state_of_its_own_between_standing_and_falling(tmp_path
             {
                 "configuration": "statue",
                 "motion": f"m{k}",
-                "event": f"e{k}",
+                "earthquake": f"e{k}",
                 "floor": "hall",
                 "amplitude_g": a,
                 "overturned": a > falls,
@@ -91,11 +91,11 @@ def test_what_slides_is_a_state_of_its_own_between_standing_and_falling(tmp_path
         ]
     names = ["pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g"]
     measures = pd.DataFrame({"name": [f"m{k}" for k in range(8)]} | dict.fromkeys(names, 0.3))
-    sweep = with_measures(pd.DataFrame(rows), measures, names)
+    ida = with_measures(pd.DataFrame(rows), measures, names)
     curves, _ = floor_curves(
         {
-            "overturns": {("statue", "hall"): TableSweep(sweep)},
-            "slides": {("statue", "hall"): TableSweep(sweep.assign(overturned=sweep["slides"]))},
+            "overturns": {("statue", "hall"): TableIda(ida)},
+            "slides": {("statue", "hall"): TableIda(ida.assign(overturned=ida["slides"]))},
         },
         measures,
         FLOORS,

@@ -21,7 +21,7 @@ def motions(count: int) -> dict[str, Motion]:
 
 
 def readings_of(names: list[str]) -> pd.DataFrame:
-    about = {"configuration": "T", "object": "T", "pedestal": "NP", "event": "e", "floor": "g"}
+    about = {"configuration": "T", "object": "T", "pedestal": "NP", "earthquake": "e", "floor": "g"}
     table = pd.DataFrame({"motion": names, **about, "amplitude_g": 0.4})
     return table.assign(test=table["motion"])
 

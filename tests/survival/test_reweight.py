@@ -24,10 +24,10 @@ def power_law(k0: float, slope: float = SLOPE) -> HazardCurve:
 
 
 def made_branches(*factors: float, weights: list[float] | None = None) -> list[Branch]:
-    shares = weights or [1 / len(factors)] * len(factors)
+    fractions = weights or [1 / len(factors)] * len(factors)
     return [
         Branch(f"factor {f:g}", w, {PGA: power_law(1e-4 * f)})
-        for f, w in zip(factors, shares, strict=True)
+        for f, w in zip(factors, fractions, strict=True)
     ]
 
 
@@ -72,11 +72,11 @@ def test_equal_branches_keep_equal_weights():
 
 def test_independent_objects_multiply_and_identical_ones_with_shared_error_do_not():
     branches = made_branches(0.5, 1.0, 2.0)
-    one, other = rock(2000, sd=0.4, name="one"), rock(2000, sd=0.4, name="other")
-    alone = reweight(branches, [one]).log_survival
-    apart = reweight(branches, [one, other], shared_error=0.0, same_earthquakes=False)
+    first, other = rock(2000, sd=0.4, name="one"), rock(2000, sd=0.4, name="other")
+    alone = reweight(branches, [first]).log_survival
+    apart = reweight(branches, [first, other], shared_error=0.0, same_earthquakes=False)
     assert apart.log_survival == pytest.approx(2 * alone, rel=5e-3)
-    together = reweight(branches, [one, other], shared_error=1.0, same_earthquakes=False)
+    together = reweight(branches, [first, other], shared_error=1.0, same_earthquakes=False)
     assert (together.log_survival > 2 * alone + 0.02).all()
 
 

@@ -22,14 +22,14 @@ def test_a_system_has_the_same_bits_as_the_blocks_that_wrote_it(width, height, a
     assert block.system().shapes == (block.shape,)
     stack = Stack(Block(2 * width, 2 * width, 90.0, lean=-lean), block, offset * width)
     assert stack.system().pile == stack.pile
-    assert stack.system().carried == (stack.pedestal.shape, stack.pile.statue)
+    assert stack.system().carried == (stack.lower.shape, stack.pile.upper)
 
 
 def test_a_statue_that_reaches_beyond_its_pedestal_rocks_on_the_overlap():
     stack = Stack(Block(0.4, 0.3, 150.0), Block(0.5, 1.2, 100.0), offset=0.01)
-    assert stack.system().carried[1] == stack.contact_statue.shape
-    three = Column((stack.pedestal, stack.statue, Block(0.2, 0.4, 10.0)), (0.01, 0.0))
-    lower, upper = three.system().carried[1], stack.contact_statue.shape
+    assert stack.system().carried[1] == stack.contact_upper.shape
+    three = Column((stack.lower, stack.upper, Block(0.2, 0.4, 10.0)), (0.01, 0.0))
+    lower, upper = three.system().carried[1], stack.contact_upper.shape
     assert lower.b == pytest.approx(upper.b, rel=1e-15)
     assert lower.x == pytest.approx(upper.x, rel=1e-12)
 
@@ -130,11 +130,11 @@ def test_friction_of_a_contact():
 
 
 def test_each_contact_opens_at_the_least_width_over_height_of_what_stands_on_it():
-    statue = Block(0.2, 0.8, 50.0)
-    assert uplift_ratios(statue.system()) == pytest.approx((0.25,))
-    assert uplift_ratios(Stack(Block(0.4, 0.4, 60.0), statue).system())[1] == pytest.approx(0.25)
+    upper = Block(0.2, 0.8, 50.0)
+    assert uplift_ratios(upper.system()) == pytest.approx((0.25,))
+    assert uplift_ratios(Stack(Block(0.4, 0.4, 60.0), upper).system())[1] == pytest.approx(0.25)
     # a slender pedestal goes before its statue, at the b/h of the two together
-    slender = Stack(Block(0.2, 1.2, 60.0), statue)
+    slender = Stack(Block(0.2, 1.2, 60.0), upper)
     both = slender.rigidly_joined()
     assert min(uplift_ratios(slender.system())) == pytest.approx(both.b / both.h)
     assert both.b / both.h < 0.25

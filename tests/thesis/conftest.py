@@ -1,4 +1,4 @@
-"""Synthetic tables of tests, in which statements are true or false by construction."""
+"""Synthetic tables of tests, in which hypotheses are true or false by construction."""
 
 from collections.abc import Callable, Sequence
 
@@ -6,16 +6,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-EVENTS = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
+EARTHQUAKES = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
 FLOORS = ("GF", "F3", "F5")
 TOWERS = {"T1": 0.50, "T2": 0.40, "T3": 0.30}
 STEP = 0.05
-"""Growth of the ladder from one rung to the next [-]."""
+"""Growth of the series of levels from one level to the next [-]."""
 
 Effect = Callable[[str, str, str], float]
 
 
-def nothing(object_name: str, event: str, floor: str) -> float:
+def nothing(object_name: str, earthquake: str, floor: str) -> float:
     return 0.0
 
 
@@ -26,42 +26,44 @@ def build(
     noise: float = 0.01,
     seed: int = 0,
     objects: dict[str, float] = TOWERS,
-    events: Sequence[str] = EVENTS,
+    earthquakes: Sequence[str] = EARTHQUAKES,
     motions: int = 1,
     of_motion: float = 0.0,
     step: float | None = None,
 ) -> pd.DataFrame:
-    """Synthetic tests with ln(P/NP) = effect(object, event, floor) and ln a = ln(object's) + level.
+    """Synthetic tests with ln(P/NP) = effect(object, earthquake, floor) and ln a = ln(object's) + level.
 
     Parameters
     ----------
     noise, of_motion
         Scatter of ln a: of each test, and of each motion, which both sides share [-].
-    events, motions
+    earthquakes, motions
         Earthquakes, and motions of each on every floor.
     step
-        Growth of a ladder on which each test is climbed; without it amplitudes are exact to 2 %.
+        Growth of a series of levels on which each test is climbed; without it amplitudes are exact to 2 %.
     """
     rng = np.random.default_rng(seed)
     rows = []
-    for event in events:
+    for earthquake in earthquakes:
         for floor in FLOORS:
             for k in range(motions):
-                motion = f"{event}-{floor}" + (f"-{k}" if motions > 1 else "")
+                motion = f"{earthquake}-{floor}" + (f"-{k}" if motions > 1 else "")
                 shared = rng.normal(0, of_motion)
                 for object_name, amplitude in objects.items():
-                    base = np.log(amplitude) + level(object_name, event, floor) + shared
+                    base = np.log(amplitude) + level(object_name, earthquake, floor) + shared
                     for pedestal in ("NP", "P"):
                         ln_a = base + rng.normal(0, noise)
                         if pedestal == "P":
-                            ln_a += effect(object_name, event, floor)
-                        rows.append((object_name, pedestal, event, floor, motion, np.exp(ln_a)))
-    names = ["object", "pedestal", "event", "floor", "motion", "amplitude_g"]
+                            ln_a += effect(object_name, earthquake, floor)
+                        rows.append(
+                            (object_name, pedestal, earthquake, floor, motion, np.exp(ln_a))
+                        )
+    names = ["object", "pedestal", "earthquake", "floor", "motion", "amplitude_g"]
     table = pd.DataFrame(rows, columns=names)
     upper = table["amplitude_g"]
     if step is not None:
-        rung = np.ceil(np.log(upper / 0.01) / np.log1p(step))
-        table["amplitude_g"] = upper = 0.01 * (1 + step) ** rung
+        step_number = np.ceil(np.log(upper / 0.01) / np.log1p(step))
+        table["amplitude_g"] = upper = 0.01 * (1 + step) ** step_number
     return table.assign(censored="none", lower_g=upper / (1 + (step or 0.02)), upper_g=upper)
 
 

@@ -3,8 +3,8 @@ import pandas as pd
 import pytest
 
 from rockfrag_thesis.figures.building import floor_amplitudes
-from rockfrag_thesis.figures.floors import floor_order, floor_statements
-from rockfrag_thesis.floor_order import STATEMENTS
+from rockfrag_thesis.figures.floors import floor_hypotheses, floor_order
+from rockfrag_thesis.floor_order import HYPOTHESES
 
 PERIODS = (0.3, 0.5, 0.7)
 
@@ -31,14 +31,14 @@ def tests():
 @pytest.fixture
 def margins():
     rows = [
-        {"statement": name, "value": period, "margin": margin}
-        for name in (*STATEMENTS, "order")
+        {"hypothesis": name, "value": period, "margin": margin}
+        for name in (*HYPOTHESES, "order")
         for period, margin in zip(PERIODS, (-0.5, -0.1, 0.3), strict=True)
     ]
     table = pd.DataFrame(rows)
     return table.assign(
         axis="first_period_s",
-        reading="step_protocol",
+        definition="step_protocol",
         label=[f"first period {value:g} s" for value in table["value"]],
     )
 
@@ -54,10 +54,10 @@ def test_the_order_of_the_floors_is_shaded_where_it_holds(tests, margins):
 
 
 def test_the_map_of_statements_shows_every_margin(margins):
-    figure = floor_statements(margins, "first_period_s", "step_protocol")
+    figure = floor_hypotheses(margins, "first_period_s", "step_protocol")
     (image,) = figure.axes[0].images
     assert np.asarray(image.get_array()) == pytest.approx(
-        100 * np.tile([-0.5, -0.1, 0.3], (len(STATEMENTS), 1))
+        100 * np.tile([-0.5, -0.1, 0.3], (len(HYPOTHESES), 1))
     )
     (dots,) = figure.axes[0].lines
     assert set(dots.get_xdata()) == {2}

@@ -2,9 +2,9 @@
 
 import itertools
 
-from rockfrag_thesis.statements import Evidence, contradictions
-from rockfrag_thesis.statements.contradictions import orderings_of_floor_means
-from rockfrag_thesis.statements.slenderness import stack_slenderness
+from rockfrag_thesis.hypotheses import Evidence, contradictions
+from rockfrag_thesis.hypotheses.contradictions import orderings_of_floor_means
+from rockfrag_thesis.hypotheses.slenderness import stack_slenderness
 
 
 def test_no_order_of_the_four_means_satisfies_all_four_statements():
@@ -39,7 +39,7 @@ def test_table_says_what_the_tests_show(made):
     assert (bare["in_these_tests"] == "").all()
     seen = contradictions(Evidence(made(), "simulated"))
     first = seen.iloc[0]
-    assert "C42" in first["statements"] and "P GF" in first["in_these_tests"]
+    assert "C42" in first["hypotheses"] and "P GF" in first["in_these_tests"]
     tests = made()
     ground = contradictions(Evidence(tests[tests["floor"] == "GF"], "simulated"))
     assert "cannot be said" in ground.iloc[0]["in_these_tests"]

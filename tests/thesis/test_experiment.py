@@ -1,20 +1,20 @@
-"""Statements about the experiment come out right where the truth is known."""
+"""Hypotheses about the experiment come out right where the truth is known."""
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag_thesis.statements import COLUMNS, STATEMENTS, Evidence, Finding, ledger
-from rockfrag_thesis.statements.earthquakes import rank_correlation
-from rockfrag_thesis.statements.orders import ORDERS, margin
-from rockfrag_thesis.statements.statement import Kind, statement, verdict
+from rockfrag_thesis.hypotheses import COLUMNS, HYPOTHESES, Evidence, Finding, hypothesis_table
+from rockfrag_thesis.hypotheses.earthquakes import rank_correlation
+from rockfrag_thesis.hypotheses.hypothesis import Kind, hypothesis, outcome
+from rockfrag_thesis.hypotheses.orders import ORDERS, margin
 
 FOR, AGAINST, OPEN = Finding.FOR, Finding.AGAINST, Finding.OPEN
 
 
 def result(number, tests, basis="simulated", **extra):
-    return STATEMENTS[number].test(Evidence(tests, basis, **extra))
+    return HYPOTHESES[number].test(Evidence(tests, basis, **extra))
 
 
 def finding(number, tests, basis="simulated", **extra):
@@ -22,29 +22,29 @@ def finding(number, tests, basis="simulated", **extra):
 
 
 def findings(numbers, tests, basis="simulated"):
-    """Findings of several statements about the same tests, whose pairs are then made once."""
+    """Findings of several hypotheses about the same tests, whose pairs are then made once."""
     evidence = Evidence(tests, basis)
-    return {number: STATEMENTS[number].test(evidence).finding for number in numbers}
+    return {number: HYPOTHESES[number].test(evidence).finding for number in numbers}
 
 
 def on_floor(**effects):
-    return lambda object_name, event, floor: effects.get(floor, 0.0)
+    return lambda object_name, earthquake, floor: effects.get(floor, 0.0)
 
 
-def on_event(**effects):
-    return lambda object_name, event, floor: effects.get(event.replace(" ", ""), 0.0)
+def on_earthquake(**effects):
+    return lambda object_name, earthquake, floor: effects.get(earthquake.replace(" ", ""), 0.0)
 
 
 def on_object(**effects):
-    return lambda object_name, event, floor: effects.get(object_name, 0.0)
+    return lambda object_name, earthquake, floor: effects.get(object_name, 0.0)
 
 
 def everywhere(size):
-    return lambda object_name, event, floor: size
+    return lambda object_name, earthquake, floor: size
 
 
 def t1_first(floor, size):
-    return lambda object_name, event, where: (
+    return lambda object_name, earthquake, where: (
         size * (3 if object_name == "T1" else 1) if where == floor else 0.0
     )
 
@@ -65,10 +65,10 @@ CASES = [
     (39, t1_first("GF", 0.1), t1_first("GF", -0.1)),
     (40, t1_first("F5", -0.1), t1_first("F5", 0.1)),
     (41, on_floor(GF=0.3, F3=-0.1, F5=0.1), on_floor(GF=0.1, F3=-0.3)),
-    (45, on_event(Friuli=0.2, Kobe=0.2, LomaPrieta=0.2), on_event(Kobe=-0.2)),
-    (46, on_event(Northridge=-0.2), on_event(Northridge=0.2)),
-    (47, on_event(LomaPrieta=0.3), on_event(Friuli=0.3, LomaPrieta=0.1)),
-    (48, on_event(Friuli=0.3, LomaPrieta=0.1), on_event(LomaPrieta=0.3)),
+    (45, on_earthquake(Friuli=0.2, Kobe=0.2, LomaPrieta=0.2), on_earthquake(Kobe=-0.2)),
+    (46, on_earthquake(Northridge=-0.2), on_earthquake(Northridge=0.2)),
+    (47, on_earthquake(LomaPrieta=0.3), on_earthquake(Friuli=0.3, LomaPrieta=0.1)),
+    (48, on_earthquake(Friuli=0.3, LomaPrieta=0.1), on_earthquake(LomaPrieta=0.3)),
     (49, everywhere(0.1), everywhere(-0.1)),
     (50, THESIS_SIGNS, on_floor(F3=0.1, F5=0.1)),
     (51, THESIS_SIGNS, on_floor(GF=-0.1)),
@@ -91,81 +91,81 @@ def test_c29_and_c49_say_the_same_of_every_table(made, effect, noise):
         assert found[29] is found[49]
 
 
-def test_c29_and_c49_agree_when_most_pairs_rise_and_one_event_falls(made):
+def test_c29_and_c49_agree_when_most_pairs_rise_and_one_earthquake_falls(made):
     # the mean falls with Northridge, though 27 of 36 pairs rise
-    tests = made(on_event(Friuli=0.03, Kobe=0.03, LomaPrieta=0.03, Northridge=-0.6))
+    tests = made(on_earthquake(Friuli=0.03, Kobe=0.03, LomaPrieta=0.03, Northridge=-0.6))
     assert finding(29, tests) is finding(49, tests) is OPEN
 
 
 @pytest.mark.parametrize("basis", ["simulated", "measured"])
 def test_without_an_effect_large_changes_are_excluded_and_small_ones_are_not(made, basis):
-    rows = ledger(Evidence(made(), basis)).set_index("number")
+    rows = hypothesis_table(Evidence(made(), basis)).set_index("number")
     assert rows.loc[35, "finding"] == Finding.BOUNDED
-    assert rows.loc[35, "verdict"] == "a change of 10 % or more is excluded"
+    assert rows.loc[35, "outcome"] == "a change of 10 % or more is excluded"
     assert rows.loc[35, "p_of"] == "a change of 10 % or more" and rows.loc[35, "p"] < 0.05
     assert "smaller change" in rows.loc[35, "remark"]
     of_the_pedestal = [29, 33, 34, 35, 36, 37, 39, 40, 45, 46, 48, 49, 51]
-    assert not {"not reproduced", "rejected"} & set(rows.loc[of_the_pedestal, "verdict"])
+    assert not {"not reproduced", "rejected"} & set(rows.loc[of_the_pedestal, "outcome"])
 
 
 def test_equal_figures_get_equal_words(made):
-    """Whatever a statement calls its change: the row's interval decides."""
-    rows = ledger(Evidence(made(), "simulated")).set_index("number")
+    """Whatever a hypothesis calls its change: the row's interval decides."""
+    rows = hypothesis_table(Evidence(made(), "simulated")).set_index("number")
     single = rows.loc[[29, 33, 35, 36, 37, 46, 49, 51]]
-    assert len(set(single["verdict"])) == 1
+    assert len(set(single["outcome"])) == 1
     for _, row in single.iterrows():
         assert row["lower"] < 1 < row["upper"] < 1.1
 
 
 def test_every_rule_on_a_change_says_what_excludes_it(made):
-    rows = ledger(Evidence(made(), "simulated")).set_index("number")
+    rows = hypothesis_table(Evidence(made(), "simulated")).set_index("number")
     for number in (29, 33, 35, 36, 37, 45, 46, 50, 51):
         assert "10 %" in rows.loc[number, "rule"] and "excluded" in rows.loc[number, "rule"], number
 
 
 def test_each_p_value_names_its_hypothesis(made):
-    rows = ledger(Evidence(made(), "simulated"))
+    rows = hypothesis_table(Evidence(made(), "simulated"))
     assert (rows.loc[rows["p"].notna(), "p_of"] != "").all()
     assert rows.set_index("number").loc[26, "p_of"] == "no change"
 
 
 def test_words_fit_what_the_evidence_can_show():
-    assert verdict(Kind.INFERENCE, "simulated", AGAINST) == "not reproduced"
-    assert verdict(Kind.INFERENCE, "measured", AGAINST) == "rejected"
-    assert verdict(Kind.DESCRIPTION, "simulated", FOR) == "reproduced"
-    assert verdict(Kind.DESCRIPTION, "measured", FOR) == "confirmed"
-    assert verdict(Kind.IDENTITY, "computed", FOR) == "confirmed"
-    only = verdict(Kind.PROPERTY, "simulated", Finding.SPECIMENS_ONLY)
+    assert outcome(Kind.INFERENCE, "simulated", AGAINST) == "not reproduced"
+    assert outcome(Kind.INFERENCE, "measured", AGAINST) == "rejected"
+    assert outcome(Kind.DESCRIPTION, "simulated", FOR) == "reproduced"
+    assert outcome(Kind.DESCRIPTION, "measured", FOR) == "confirmed"
+    assert outcome(Kind.IDENTITY, "computed", FOR) == "confirmed"
+    only = outcome(Kind.PROPERTY, "simulated", Finding.SPECIMENS_ONLY)
     assert only == "confirmed for the specimens, with exceptions elsewhere"
     with pytest.raises(KeyError):
-        verdict(Kind.INFERENCE, "measured", Finding.SPECIMENS_ONLY)
+        outcome(Kind.INFERENCE, "measured", Finding.SPECIMENS_ONLY)
 
 
-def equal_on_a_ladder(made):
-    """Tests whose pedestal never matters, on a ladder of 5 %: every pair is tied."""
+def equal_on_levels(made):
+    """Tests whose pedestal never matters, on a series of 5 %: every pair is tied."""
     tests = made(noise=0.0, step=0.05)
     assert (tests.groupby(["object", "motion"])["amplitude_g"].agg(np.ptp) == 0).all()
     return tests
 
 
 def test_ties_have_an_interval_as_wide_as_the_step(made):
-    effect = result(35, equal_on_a_ladder(made))
+    effect = result(35, equal_on_levels(made))
     assert effect.estimate == 1.0
     assert effect.lower == pytest.approx(1 / 1.05) and effect.upper == pytest.approx(1.05)
 
 
 @pytest.mark.parametrize("number", [32, 41, 47])
 def test_nothing_leads_in_a_tie(made, number):
-    assert finding(number, equal_on_a_ladder(made)) is OPEN
+    assert finding(number, equal_on_levels(made)) is OPEN
 
 
 @pytest.mark.parametrize("number", [33, 36, 37, 38, 50])
 def test_a_slight_change_is_not_excluded_by_ties(made, number):
-    assert finding(number, equal_on_a_ladder(made)) in (OPEN, Finding.BOUNDED)
+    assert finding(number, equal_on_levels(made)) in (OPEN, Finding.BOUNDED)
 
 
-def test_no_interval_of_the_ledger_is_without_width(made):
-    rows = ledger(Evidence(equal_on_a_ladder(made), "simulated"))
+def test_no_interval_of_the_hypothesis_table_is_without_width(made):
+    rows = hypothesis_table(Evidence(equal_on_levels(made), "simulated"))
     known = rows[rows["lower"].notna() & ~rows["number"].isin([55])]
     assert (known["upper"] > known["lower"]).all()
 
@@ -183,13 +183,13 @@ def test_noise_alone_leaves_directions_and_ranks_open(made):
     numbers = (32, 33, 35, 36, 37, 39, 40, 46, 47, 48, 49)
     found = [findings(numbers, made(noise=0.3, seed=seed), "measured") for seed in seeds]
     for number in numbers:
-        of_seeds = [one[number] for one in found]
+        of_seeds = [item[number] for item in found]
         assert of_seeds.count(FOR) <= 1, number
         assert OPEN in of_seeds, number
 
 
 def test_signs_of_the_nine_cells(made):
-    def thesis(object_name, event, floor):
+    def thesis(object_name, earthquake, floor):
         if floor == "GF" or (floor == "F3" and object_name == "T1"):
             return 0.1
         return -0.1
@@ -222,7 +222,7 @@ def test_falling_towers_overturn_in_order_with_and_without_pedestal(made):
 
 
 def test_slopes_that_differ_by_floor_are_seen(made):
-    def steeper_above(object_name, event, floor):
+    def steeper_above(object_name, earthquake, floor):
         return 0.0 if floor == "GF" else 0.3 * (object_name == "T1")
 
     assert finding(28, made(level=steeper_above)) is FOR
@@ -254,21 +254,23 @@ def test_the_stack_is_less_slender_than_its_tower(made):
     found = result(30, made())
     assert found.finding is AGAINST
     assert found.figure.startswith("stack 2.66, 3.23, 3.83 against 3.00, 4.00, 5.00")
-    row = ledger(Evidence(made(), "measured")).set_index("number").loc[30]
-    assert (row["verdict"], row["basis"]) == ("refuted", "computed")
+    row = hypothesis_table(Evidence(made(), "measured")).set_index("number").loc[30]
+    assert (row["outcome"], row["basis"]) == ("refuted", "computed")
 
 
 def measures_of(tests, **columns):
-    motions = tests[["motion", "event", "floor"]].drop_duplicates().reset_index(drop=True)
+    motions = tests[["motion", "earthquake", "floor"]].drop_duplicates().reset_index(drop=True)
     return motions.rename(columns={"motion": "name"}).assign(**columns)
 
 
 def test_correlation_with_the_motion_is_found_when_it_is_there(made):
     rng = np.random.default_rng(3)
-    events = [f"E{k}" for k in range(12)]
-    motions = made(events=events)["motion"].unique()
+    earthquakes = [f"E{k}" for k in range(12)]
+    motions = made(earthquakes=earthquakes)["motion"].unique()
     period = dict(zip(motions, rng.uniform(0.2, 1.0, len(motions)), strict=True))
-    tests = made(lambda _, event, floor: 0.5 * period[f"{event}-{floor}"], events=events)
+    tests = made(
+        lambda _, earthquake, floor: 0.5 * period[f"{earthquake}-{floor}"], earthquakes=earthquakes
+    )
     measures = measures_of(
         tests,
         mean_period_s=list(period.values()),
@@ -287,10 +289,10 @@ def test_twelve_motions_cannot_show_that_there_is_no_correlation(made):
 
 
 def test_effects_that_are_tied_have_no_order_to_correlate(made):
-    tests = equal_on_a_ladder(made)
+    tests = equal_on_levels(made)
     measures = measures_of(tests, mean_period_s=np.linspace(0.1, 1, 12))
-    row = ledger(Evidence(tests, "simulated", measures)).set_index("number").loc[52]
-    assert row["verdict"] == "undecided" and "same effect" in row["remark"]
+    row = hypothesis_table(Evidence(tests, "simulated", measures)).set_index("number").loc[52]
+    assert row["outcome"] == "undecided" and "same effect" in row["remark"]
 
 
 def test_correlation_counts_earthquakes_and_not_their_motions():
@@ -301,7 +303,7 @@ def test_correlation_counts_earthquakes_and_not_their_motions():
         effect, period = rng.normal(size=(2, 4))
         rows = pd.DataFrame(
             {
-                "event": np.repeat(list("ABCD"), 3),
+                "earthquake": np.repeat(list("ABCD"), 3),
                 "d": np.repeat(effect, 3) + rng.normal(0, 0.3, 12),
                 "x": np.repeat(period, 3) + rng.normal(0, 0.3, 12),
             }
@@ -316,10 +318,10 @@ def test_pure_rocking_is_judged_by_friction_and_normal_force(made):
     assert finding(57, smooth) is FOR
     assert finding(57, smooth.assign(friction_demand=0.5)) is OPEN
     assert finding(57, smooth.assign(friction_demand=1.5)) is AGAINST
-    opened = ledger(Evidence(smooth.assign(least_normal_force_n=-0.1), "measured"))
+    opened = hypothesis_table(Evidence(smooth.assign(least_normal_force_n=-0.1), "measured"))
     row = opened.set_index("number").loc[57]
     # it is the model's premise that fails; about the experiment nothing is said
-    assert (row["verdict"], row["basis"]) == ("refuted", "simulated")
+    assert (row["outcome"], row["basis"]) == ("refuted", "simulated")
 
 
 def test_force_over_mass_is_checked_where_recorded(made):
@@ -335,7 +337,7 @@ def test_force_over_mass_is_checked_where_recorded(made):
 
 def test_sliding_is_compared_where_given(made):
     sliding = pd.DataFrame(
-        {"event": list("ABCD"), "rocking_g": 0.3, "sliding_g": [0.4, 0.41, 0.39, 0.42]}
+        {"earthquake": list("ABCD"), "rocking_g": 0.3, "sliding_g": [0.4, 0.41, 0.39, 0.42]}
     )
     assert finding(58, made(), sliding=sliding) is FOR
     sliding["sliding_g"] -= 0.2
@@ -345,64 +347,68 @@ def test_sliding_is_compared_where_given(made):
 def test_twelve_motions_per_specimen_are_counted(made):
     tests = made()
     assert finding(55, tests) is FOR
-    assert finding(55, tests[tests["event"] != "Kobe"]) is OPEN
+    assert finding(55, tests[tests["earthquake"] != "Kobe"]) is OPEN
 
 
-def test_ledger_has_all_34_statements_with_columns_and_reasons(made):
-    table = ledger(Evidence(made(noise=0.1), "measured"))
+def test_hypothesis_table_has_all_34_statements_with_columns_and_reasons(made):
+    table = hypothesis_table(Evidence(made(noise=0.1), "measured"))
     assert list(table.columns) == list(COLUMNS)
     assert table["number"].tolist() == list(range(25, 59))
     assert table.loc[table["number"] == 58, "remark"].item().startswith("these data cannot decide")
-    undecided = table[(table["verdict"] == "undecided") & table["number"].between(27, 51)]
+    undecided = table[(table["outcome"] == "undecided") & table["number"].between(27, 51)]
     assert (
         undecided["remark"]
         .str.contains("80 % power|has no power|power is not known", regex=True)
         .all()
     )
-    # what is inferred says how often it errs, and what is left when all statements are counted
+    # what is inferred says how often it errs, and what is left when all hypotheses are counted
     inferred = table[table["p"].notna()]
     assert len(inferred) > 20
     assert inferred["error_rate"].str.contains("%").all()
     assert (inferred["p_holm"] >= inferred["p"]).all()
 
 
-def test_ledger_is_the_same_for_any_order_of_rows(made):
+def test_hypothesis_table_is_the_same_for_any_order_of_rows(made):
     tests = made(noise=0.1)
-    one = ledger(Evidence(tests, "simulated"))
-    two = ledger(Evidence(tests.sample(frac=1, random_state=5), "simulated"))
-    pd.testing.assert_frame_equal(one, two)
+    first = hypothesis_table(Evidence(tests, "simulated"))
+    two = hypothesis_table(Evidence(tests.sample(frac=1, random_state=5), "simulated"))
+    pd.testing.assert_frame_equal(first, two)
 
 
-def test_missing_floors_and_events_leave_their_statements_open(made):
+def test_missing_floors_and_earthquakes_leave_their_statements_open(made):
     tests = made(noise=0.1)
-    part = tests[(tests["floor"] == "GF") & (tests["event"] != "Kobe")]
-    rows = ledger(Evidence(part, "measured")).set_index("number")
+    part = tests[(tests["floor"] == "GF") & (tests["earthquake"] != "Kobe")]
+    rows = hypothesis_table(Evidence(part, "measured")).set_index("number")
     for number in (36, 37, 41, 42, 44, 45):
-        assert rows.loc[number, "verdict"] == "undecided"
+        assert rows.loc[number, "outcome"] == "undecided"
         assert "cannot decide" in rows.loc[number, "remark"]
 
 
 def test_one_tower_with_and_without_its_plinth_leaves_comparisons_of_towers_open(made):
     tests = made(everywhere(0.2), noise=0.05)
-    rows = ledger(Evidence(tests[tests["object"] == "T2"], "measured")).set_index("number")
+    rows = hypothesis_table(Evidence(tests[tests["object"] == "T2"], "measured")).set_index(
+        "number"
+    )
     for number in (25, 26, 27, 28, 31, 32, 39, 53, 54):
-        assert rows.loc[number, "verdict"] == "undecided", number
+        assert rows.loc[number, "outcome"] == "undecided", number
         assert "cannot decide" in rows.loc[number, "remark"]
-    assert rows.loc[29, "verdict"] == "confirmed"
+    assert rows.loc[29, "outcome"] == "confirmed"
 
 
 def test_one_motion_decides_nothing_and_breaks_nothing(made):
     tests = made(noise=0.1)
-    rows = ledger(Evidence(tests[tests["motion"] == "Kobe-GF"], "measured"))
+    rows = hypothesis_table(Evidence(tests[tests["motion"] == "Kobe-GF"], "measured"))
     assert len(rows) == 34
-    # but for geometry no statement may be decided by one motion
-    assert set(rows.loc[rows["verdict"] != "undecided", "number"]) <= {30}
+    # but for geometry no hypothesis may be decided by one motion
+    assert set(rows.loc[rows["outcome"] != "undecided", "number"]) <= {30}
 
 
 def test_a_table_without_pairs_leaves_the_pedestal_open(made):
     tests = made()
-    rows = ledger(Evidence(tests[tests["pedestal"] == "NP"], "measured")).set_index("number")
-    assert (rows.loc[31:51, "verdict"] == "undecided").all()
+    rows = hypothesis_table(Evidence(tests[tests["pedestal"] == "NP"], "measured")).set_index(
+        "number"
+    )
+    assert (rows.loc[31:51, "outcome"] == "undecided").all()
     assert rows.loc[35, "remark"].startswith(
         "these data cannot decide it: Table of tests: no object"
     )
@@ -413,32 +419,32 @@ def test_an_object_on_two_pedestals_is_no_double_test(made):
     on_one = tests["pedestal"] == "P"
     tests.loc[on_one, "configuration"] = "low " + tests["object"]
     second = tests[on_one].assign(configuration="high " + tests["object"])
-    rows = ledger(Evidence(pd.concat([tests, second]), "measured")).set_index("number")
-    assert rows.loc[29, "verdict"] == "confirmed"
+    rows = hypothesis_table(Evidence(pd.concat([tests, second]), "measured")).set_index("number")
+    assert rows.loc[29, "outcome"] == "confirmed"
 
 
-def test_spelling_of_event_names_does_not_matter(made):
-    tests = made(on_event(LomaPrieta=0.3))
-    tests["event"] = tests["event"].str.lower().str.replace(" ", "_")
+def test_spelling_of_earthquake_names_does_not_matter(made):
+    tests = made(on_earthquake(LomaPrieta=0.3))
+    tests["earthquake"] = tests["earthquake"].str.lower().str.replace(" ", "_")
     assert finding(47, tests) is FOR
 
 
 def test_unusable_table_is_an_input_error(made):
     with pytest.raises(InputError):
-        ledger(Evidence(made().assign(amplitude_g=np.nan, lower_g=np.nan), "simulated"))
+        hypothesis_table(Evidence(made().assign(amplitude_g=np.nan, lower_g=np.nan), "simulated"))
 
 
 def test_there_are_58_statements_each_with_text_source_rule_and_error_rate():
-    assert sorted(STATEMENTS) == list(range(1, 59))
-    for number, one in STATEMENTS.items():
-        assert one.number == number
-        assert one.text and one.source and one.evidence and one.rule and one.error_rate
-        assert one.kind in Kind
+    assert sorted(HYPOTHESES) == list(range(1, 59))
+    for number, item in HYPOTHESES.items():
+        assert item.number == number
+        assert item.text and item.source and item.evidence and item.rule and item.error_rate
+        assert item.kind in Kind
 
 
 def test_a_number_is_given_once():
     with pytest.raises(ValueError, match="C35 is there already"):
-        statement(35, "", "", Kind.IDENTITY, evidence="", rule="", error_rate="")(lambda _: None)
+        hypothesis(35, "", "", Kind.IDENTITY, evidence="", rule="", error_rate="")(lambda _: None)
 
 
 def test_a_margin_is_positive_where_the_means_are_as_stated(made):

@@ -5,15 +5,15 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag_thesis.explanation.explain import explain
+from rockfrag_thesis.sensitivity_analysis.explain import explain
 
 
-def explanation_table(effect=0.15):
+def sensitivity_analysis_table(effect=0.15):
     rng = np.random.default_rng(2)
     rows = []
     for level, shift in ((0.85, 0.0), (0.80, effect), (0.75, 2 * effect)):
         for object_name in ("T1", "T2", "T3"):
-            for event in "ABCD":
+            for earthquake in "ABCD":
                 for floor in ("GF", "F3", "F5"):
                     sign = 1 if floor == "GF" else -0.5
                     for replicate in range(3):
@@ -24,19 +24,19 @@ def explanation_table(effect=0.15):
                                 level,
                                 level == 0.85,
                                 object_name,
-                                event,
+                                earthquake,
                                 floor,
                                 replicate,
                                 d,
                             )
                         )
-    names = ["factor", "level", "reference", "object", "event", "floor", "replicate", "d"]
+    names = ["factor", "level", "reference", "object", "earthquake", "floor", "replicate", "d"]
     table = pd.DataFrame(rows, columns=names)
     return table.assign(ratio=np.exp(table["d"])).drop(columns="d")
 
 
-def test_explanation_recovers_the_effect_of_a_level_by_floor():
-    result = explain(explanation_table(0.15)).set_index(["level", "floor"])
+def test_sensitivity_analysis_recovers_the_effect_of_a_level_by_floor():
+    result = explain(sensitivity_analysis_table(0.15)).set_index(["level", "floor"])
     for level, factor in ((0.80, 1), (0.75, 2)):
         for floor, sign in (("GF", 1), ("F3", -0.5)):
             row = result.loc[(level, floor)]
@@ -45,16 +45,16 @@ def test_explanation_recovers_the_effect_of_a_level_by_floor():
     assert result.loc[(0.85, "all"), "effect"] == 1.0
 
 
-def test_explanation_pairs_with_the_reference_and_counts_what_is_left_out():
-    table = explanation_table()
-    gone = (table["level"] == 0.80) & (table["event"] == "A") & (table["object"] == "T1")
+def test_sensitivity_analysis_pairs_with_the_reference_and_counts_what_is_left_out():
+    table = sensitivity_analysis_table()
+    gone = (table["level"] == 0.80) & (table["earthquake"] == "A") & (table["object"] == "T1")
     table.loc[gone, "ratio"] = np.nan
     row = explain(table).set_index(["level", "floor"]).loc[(0.80, "all")]
     assert (row["pairs"], row["left_out"]) == (33, 3)
 
 
-def test_explanation_needs_one_reference_and_positive_ratios():
-    table = explanation_table()
+def test_sensitivity_analysis_needs_one_reference_and_positive_ratios():
+    table = sensitivity_analysis_table()
     with pytest.raises(InputError, match="0 reference levels"):
         explain(table.assign(reference=False))
     with pytest.raises(InputError, match=r"row 1: ratio is 0\.0"):

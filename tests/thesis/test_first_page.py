@@ -7,15 +7,15 @@ import pytest
 
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer
-from rockfrag.shaketable.readings import READING
+from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag_thesis import pattern
-from rockfrag_thesis.explanation.explain import explain
-from rockfrag_thesis.explanation.simulated import REFERENCE
 from rockfrag_thesis.first_page import first_page
-from rockfrag_thesis.pattern import departures_by_floor
+from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
+from rockfrag_thesis.pattern import perturbations_by_floor
+from rockfrag_thesis.sensitivity_analysis.explain import explain
+from rockfrag_thesis.sensitivity_analysis.simulated import REFERENCE
 from rockfrag_thesis.specimens import THESIS_BODIES
-from rockfrag_thesis.statements import Evidence, ledger
 
 from ..end_to_end.checked_report import open_words
 from .conftest import build
@@ -36,13 +36,13 @@ WORDS_WITH_DIGITS = (
 
 def effects_of(tests: pd.DataFrame) -> pd.DataFrame:
     slenderness = {name: body.slenderness for name, body in THESIS_BODIES.items()}
-    return pedestal_tables(tests.assign(reading=READING), 1, slenderness)["effects"]
+    return pedestal_tables(tests.assign(definition=DEFINITION), 1, slenderness)["effects"]
 
 
-def claims_of(tests: pd.DataFrame) -> pd.DataFrame:
-    claims = ledger(Evidence(tests, "simulated"))
-    c12 = claims.iloc[[0]].assign(number=12, estimate=1.0)
-    return pd.concat([c12, claims], ignore_index=True)
+def hypotheses_of(tests: pd.DataFrame) -> pd.DataFrame:
+    hypotheses = hypothesis_table(Evidence(tests, "simulated"))
+    c12 = hypotheses.iloc[[0]].assign(number=12, estimate=1.0)
+    return pd.concat([c12, hypotheses], ignore_index=True)
 
 
 @pytest.fixture(scope="module")
@@ -57,30 +57,30 @@ def effects(plain) -> pd.DataFrame:
 
 
 @pytest.fixture(scope="module")
-def claims(plain) -> pd.DataFrame:
-    return claims_of(plain)
+def hypotheses(plain) -> pd.DataFrame:
+    return hypotheses_of(plain)
 
 
 def departing(floors: dict[str, float]) -> pd.DataFrame:
-    """Effects of an explanation whose one departure changes P/NP on the floors by so much."""
+    """Effects of a sensitivity analysis whose one perturbed parameter changes P/NP on the floors by so much."""
     reference = build(noise=0.005, seed=1)
     wide = reference.pivot_table(
-        index=["object", "event", "floor", "motion"], columns="pedestal", values="amplitude_g"
+        index=["object", "earthquake", "floor", "motion"], columns="pedestal", values="amplitude_g"
     ).reset_index()
     wide["ratio"] = wide["P"] / wide["NP"]
-    departed = wide.assign(ratio=wide["ratio"] * wide["floor"].map(floors))
+    perturbed = wide.assign(ratio=wide["ratio"] * wide["floor"].map(floors))
     return explain(
         pd.concat(
             [
                 wide.assign(factor="statue_restitution", level=REFERENCE, reference=True),
-                departed.assign(factor="statue_restitution", level="0.9", reference=False),
+                perturbed.assign(factor="statue_restitution", level="0.9", reference=False),
             ]
         )
     )
 
 
 def said(findings) -> str:
-    return " ".join(one.said for one in findings)
+    return " ".join(finding.said for finding in findings)
 
 
 def as_printed(row: pd.Series, lower: str = "lower", upper: str = "upper") -> str:
@@ -95,27 +95,31 @@ def unexplained(words: str, facts: list[str]) -> list[str]:
 
 
 def facts_of(effects: pd.DataFrame) -> list[str]:
-    here = effects[(effects["reading"] == READING) & effects["scope"].isin(["whole", "floor"])]
+    here = effects[
+        (effects["definition"] == DEFINITION) & effects["scope"].isin(["whole", "floor"])
+    ]
     return [as_printed(row) for _, row in here.iterrows()]
 
 
 @pytest.mark.parametrize("ground", [-0.2, 0.0, 0.2])
 def test_every_number_of_the_words_stands_in_the_tables(ground):
     tests = build(lambda o, e, floor: ground if floor == "GF" else -0.04, noise=0.03, step=0.05)
-    effects, claims = effects_of(tests), claims_of(tests)
-    explanation = departing({"GF": 1.1, "F3": 1.1, "F5": 1.1})
-    words = said(first_page(effects, claims, explanation))
+    effects, hypotheses = effects_of(tests), hypotheses_of(tests)
+    sensitivity_analysis = departing({"GF": 1.1, "F3": 1.1, "F5": 1.1})
+    words = said(first_page(effects, hypotheses, sensitivity_analysis))
 
-    departure = explanation[(explanation["level"] == "0.9") & (explanation["floor"] == "all")]
+    perturbation = sensitivity_analysis[
+        (sensitivity_analysis["level"] == "0.9") & (sensitivity_analysis["floor"] == "all")
+    ]
     facts = facts_of(effects)
-    facts += [as_printed(row, "ratio_lower", "ratio_upper") for _, row in departure.iterrows()]
+    facts += [as_printed(row, "ratio_lower", "ratio_upper") for _, row in perturbation.iterrows()]
     facts += [f"{len(tests) // 2} pairs"]
     facts += ["× 0.9"]
     assert unexplained(words, facts) == []
 
 
 def inverted(reaches: bool = False) -> pd.DataFrame:
-    """One departure, two together, and one that acts on the ground alone, with what they give."""
+    """One perturbed parameter, two together, and one that acts on the ground alone, with what they give."""
     nothing = {"factor_2": "", "level_2": float("nan"), "acts_on": "all floors"}
     rows = [
         {"factor_1": "pedestal_width_cm", "level_1": 16.0, "ground": 1.021, "above": 1.002},
@@ -132,13 +136,13 @@ def inverted(reaches: bool = False) -> pd.DataFrame:
     ("reaches", "who"), [(False, "None of 3 mechanisms"), (True, "1 of 3 mechanisms")]
 )
 def test_what_was_asked_the_other_way_round_is_one_sentence_of_its_table(
-    effects, claims, reaches, who
+    effects, hypotheses, reaches, who
 ):
     wanted = {"ground": 10.0, "above": -5.0}
-    table, explanation = inverted(reaches), departing({"GF": 1.1, "F3": 1.1, "F5": 1.1})
-    plain = first_page(effects, claims, explanation)
-    whole = first_page(effects, claims, explanation, table, wanted)
-    assert [one.headline for one in whole] == [one.headline for one in plain]
+    table, sensitivity_analysis = inverted(reaches), departing({"GF": 1.1, "F3": 1.1, "F5": 1.1})
+    plain = first_page(effects, hypotheses, sensitivity_analysis)
+    whole = first_page(effects, hypotheses, sensitivity_analysis, table, wanted)
+    assert [item.headline for item in whole] == [item.headline for item in plain]
     words = said(whole).removeprefix(said(plain)).strip()
     assert words.count(". ") == 0 and words.startswith(who)
     facts = [
@@ -154,8 +158,8 @@ def test_what_was_asked_the_other_way_round_is_one_sentence_of_its_table(
     assert unexplained(words, facts) == []
 
 
-def test_a_number_that_is_not_in_the_tables_is_found(effects, claims):
-    words = said(first_page(effects, claims))
+def test_a_number_that_is_not_in_the_tables_is_found(effects, hypotheses):
+    words = said(first_page(effects, hypotheses))
     assert unexplained(words.replace("36 pairs", "37 pairs"), [*facts_of(effects), "36 pairs"])
 
 
@@ -167,31 +171,31 @@ def test_a_number_that_is_not_in_the_tables_is_found(effects, claims):
         (-0.3, "gives the opposite"),
     ],
 )
-def test_the_headline_is_the_ledger_s_finding(ground, words):
+def test_the_headline_is_the_hypothesis_table_s_finding(ground, words):
     tests = build(lambda o, e, floor: ground if floor == "GF" else 0.0, noise=0.02)
-    assert words in first_page(effects_of(tests), claims_of(tests))[0].headline
+    assert words in first_page(effects_of(tests), hypotheses_of(tests))[0].headline
 
 
 def test_what_the_simulations_leave_open_is_called_open():
     tests = build(noise=0.4, seed=2)
-    found = first_page(effects_of(tests), claims_of(tests))[0]
+    found = first_page(effects_of(tests), hypotheses_of(tests))[0]
     assert "undecided" in found.headline and "GF: undecided" in found.numbers
 
 
-def test_the_pattern_is_named_only_with_intervals_on_its_side(effects, claims):
+def test_the_pattern_is_named_only_with_intervals_on_its_side(effects, hypotheses):
     def headline(floors):
-        return first_page(effects, claims, departing(floors))[1].headline
+        return first_page(effects, hypotheses, departing(floors))[1].headline
 
     assert headline({"GF": 1.2, "F3": 0.9, "F5": 0.9}).startswith("The only perturbation")
     assert headline({"GF": 1.2, "F3": 0.9, "F5": 1.0}).startswith("No perturbation")
     assert headline({"GF": 1.2, "F3": 1.2, "F5": 1.2}).startswith("No perturbation")
 
 
-def test_simulated_perturbations_are_judged_together_by_a_named_rule(effects, claims):
-    explanation = departing({"GF": 1.2, "F3": 1.2, "F5": 1.2})
+def test_simulated_perturbations_are_judged_together_by_a_named_rule(effects, hypotheses):
+    sensitivity_analysis = departing({"GF": 1.2, "F3": 1.2, "F5": 1.2})
 
     def found(p: float):
-        return first_page(effects, claims, explanation.assign(p=p))[1].numbers
+        return first_page(effects, hypotheses, sensitivity_analysis.assign(p=p))[1].numbers
 
     rule = r"\(Benjamini–Hochberg at 5 % over 1 test\)"
     largest = (
@@ -202,35 +206,37 @@ def test_simulated_perturbations_are_judged_together_by_a_named_rule(effects, cl
     assert re.search(rf"The only s{changes} {rule}; {largest}", found(0.01))
 
 
-def test_arithmetic_is_told_apart_from_simulation_and_counts_in_no_adjustment(effects, claims):
+def test_arithmetic_is_told_apart_from_simulation_and_counts_in_no_adjustment(effects, hypotheses):
     simulated = departing({"GF": 1.0, "F3": 1.0, "F5": 1.0}).assign(p=0.04)
     computed = simulated.assign(factor="table_not_counted", p=1e-6)
     computed = computed[computed["level"] != REFERENCE]
-    numbers = first_page(effects, claims, pd.concat([simulated, computed]))[1].numbers
+    numbers = first_page(effects, hypotheses, pd.concat([simulated, computed]))[1].numbers
     assert "1 other is arithmetic, not simulation" in numbers
     # one simulated test alone: its p value stays 0.04, however small those of arithmetic are
     assert "The only simulated perturbation changes the ratio" in numbers
-    both = departures_by_floor(pd.concat([simulated, computed])).set_index("factor")
+    both = perturbations_by_floor(pd.concat([simulated, computed])).set_index("factor")
     assert both.loc["table_not_counted", "arithmetic"]
     assert pd.isna(both.loc["table_not_counted", "p_adjusted"])
 
 
 def test_signs_of_means_are_not_those_of_intervals():
-    means = departures_by_floor(departing({"GF": 1.001, "F3": 0.999, "F5": 0.999})).iloc[0]
+    means = perturbations_by_floor(departing({"GF": 1.001, "F3": 0.999, "F5": 0.999})).iloc[0]
     assert means["signs"] or not means["beyond_chance"]
-    clear = departures_by_floor(departing({"GF": 1.2, "F3": 0.8, "F5": 0.8})).iloc[0]
+    clear = perturbations_by_floor(departing({"GF": 1.2, "F3": 0.8, "F5": 0.8})).iloc[0]
     assert clear["signs"] and clear["beyond_chance"]
 
 
-def test_why_is_said_only_where_the_simulations_show_it(effects, claims):
-    assert "lifts the pedestal" in said(first_page(effects, claims))
-    unsettled = claims.assign(estimate=claims["estimate"].where(claims["number"] != 12, 0.98))
+def test_why_is_said_only_where_the_simulations_show_it(effects, hypotheses):
+    assert "lifts the pedestal" in said(first_page(effects, hypotheses))
+    unsettled = hypotheses.assign(
+        estimate=hypotheses["estimate"].where(hypotheses["number"] != 12, 0.98)
+    )
     assert "lifts the pedestal" not in said(first_page(effects, unsettled))
 
 
 def test_a_study_without_the_floors_says_what_it_has(plain):
     tests = plain[plain["floor"] == "GF"].assign(floor="ground")
-    found = first_page(effects_of(tests), claims_of(tests))[0]
+    found = first_page(effects_of(tests), hypotheses_of(tests))[0]
     assert "depends on the floor" in found.headline
     assert "does not have the thesis’s floors" in found.numbers
     assert "36 pairs" not in found.numbers
@@ -239,10 +245,12 @@ def test_a_study_without_the_floors_says_what_it_has(plain):
 MOST_WORDS = 120
 
 
-def test_the_first_page_stands_open_in_few_words(effects, claims):
+def test_the_first_page_stands_open_in_few_words(effects, hypotheses):
     """All that is read without a click but the figure's caption, the links and the advice of some 40 words."""
-    explanation = departing({"GF": 1.2, "F3": 1.0, "F5": 1.0})
-    found = first_page(effects, claims, explanation, inverted(), {"ground": 10.0, "above": -5.0})
+    sensitivity_analysis = departing({"GF": 1.2, "F3": 1.0, "F5": 1.0})
+    found = first_page(
+        effects, hypotheses, sensitivity_analysis, inverted(), {"ground": 10.0, "above": -5.0}
+    )
     page = render(
         title="T",
         lead="lead",

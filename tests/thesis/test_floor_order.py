@@ -7,27 +7,27 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag_thesis.floor_order import STATEMENTS, floor_margins
-from rockfrag_thesis.statements.floors import FLOORS
+from rockfrag_thesis.floor_order import HYPOTHESES, floor_margins
+from rockfrag_thesis.hypotheses.floors import FLOORS
 
 TOWERS = {"T1": 0.5, "T2": 0.4, "T3": 0.3}
 
 
 def table_of(order=None, effect=None, objects=None):
-    """Tests of two events; amplitude = object × floor, times 1 + effect with the pedestal."""
+    """Tests of two earthquakes; amplitude = object × floor, times 1 + effect with the pedestal."""
     order = order or {"GF": 1.2, "F3": 1.0, "F5": 1.1}
     effect = effect or {"GF": 0.1, "F3": -0.05, "F5": -0.05}
     rows = [
         {
             "object": object_name,
-            "event": event,
+            "earthquake": earthquake,
             "floor": floor,
             "pedestal": pedestal,
             "amplitude_g": base * order[floor] * (1 + effect[floor] if pedestal == "P" else 1),
             "lower_g": 0.0,
         }
         for object_name, base in (objects or TOWERS).items()
-        for event in ("A", "B")
+        for earthquake in ("A", "B")
         for floor in FLOORS
         for pedestal in ("P", "NP")
     ]
@@ -36,7 +36,7 @@ def table_of(order=None, effect=None, objects=None):
 
 def test_margins_are_the_logarithms_they_are_said_to_be():
     margins = floor_margins(table_of())
-    assert set(STATEMENTS) | {"order"} == set(margins)
+    assert set(HYPOTHESES) | {"order"} == set(margins)
     assert margins["C35"] == pytest.approx(math.log(1.1))
     assert margins["C36"] == pytest.approx(-math.log(0.95))
     assert margins["C37"] == pytest.approx(-math.log(0.95))

@@ -8,17 +8,17 @@ import pytest
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Stack, overturns
-from rockfrag_thesis.explanation.friction_grid import (
+from rockfrag_thesis.sensitivity_analysis.friction_grid import (
     friction_effects,
     friction_ratios,
     survived_amplitudes,
 )
-from rockfrag_thesis.explanation.simulated import ladder_amplitudes
+from rockfrag_thesis.sensitivity_analysis.simulated import level_amplitudes
 
 TOWER = Block(0.124, 0.372, 2.172)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
-LADDER = 0.2 * 1.15 ** np.arange(14)
-PAIRS = [(one, two) for one in (0.3, 0.4, math.inf) for two in (0.25, 0.36, math.inf)]
+INTENSITY_LEVELS = 0.2 * 1.15 ** np.arange(14)
+PAIRS = [(first, two) for first in (0.3, 0.4, math.inf) for two in (0.25, 0.36, math.inf)]
 
 
 @pytest.fixture(scope="module")
@@ -26,35 +26,41 @@ def motions() -> list[Motion]:
     time = np.arange(250) * 0.01
     rng = np.random.default_rng(3)
     found = []
-    for event in ("A", "B"):
+    for earthquake in ("A", "B"):
         waves = np.sin(2 * np.pi * np.outer(time, rng.uniform(0.6, 4, 12)) + rng.uniform(0, 6, 12))
         values = waves.sum(axis=1) * np.exp(-(((time - 1.2) / 0.6) ** 2))
-        found.append(Motion(values, 0.01, event, {"event": event, "floor": "ground"}))
+        found.append(
+            Motion(values, 0.01, earthquake, {"earthquake": earthquake, "floor": "ground"})
+        )
     return found
 
 
 def test_amplitudes_are_those_of_each_pair_climbed_by_itself(motions: list[Motion]) -> None:
-    found = survived_amplitudes(STACK, PAIRS, motions, LADDER)
-    scales = np.array([factors_to_pga(motion, LADDER) for motion in motions])
+    found = survived_amplitudes(STACK, PAIRS, motions, INTENSITY_LEVELS)
+    scales = np.array([factors_to_pga(motion, INTENSITY_LEVELS) for motion in motions])
     accelerations = [motion.acceleration for motion in motions]
     fell = overturns([STACK] * len(PAIRS), accelerations, 0.01, scales, friction=PAIRS).overturned
     first = fell.argmax(axis=2)
-    each = np.where(fell.any(axis=2) & (first > 0), LADDER[np.maximum(first - 1, 0)], np.nan)
+    each = np.where(
+        fell.any(axis=2) & (first > 0), INTENSITY_LEVELS[np.maximum(first - 1, 0)], np.nan
+    )
     np.testing.assert_array_equal(found, each)
     assert np.isfinite(found).sum() > 6 and len(np.unique(found[np.isfinite(found)])) > 2
 
 
 def test_without_end_friction_gives_what_pure_rocking_gives(motions: list[Motion]) -> None:
-    pure = ladder_amplitudes([TOWER.system(), STACK.system()], motions, LADDER)
+    pure = level_amplitudes([TOWER.system(), STACK.system()], motions, INTENSITY_LEVELS)
     rough = [
-        survived_amplitudes(TOWER, [(math.inf,)], motions, LADDER)[0],
-        survived_amplitudes(STACK, [(math.inf, math.inf)], motions, LADDER)[0],
+        survived_amplitudes(TOWER, [(math.inf,)], motions, INTENSITY_LEVELS)[0],
+        survived_amplitudes(STACK, [(math.inf, math.inf)], motions, INTENSITY_LEVELS)[0],
     ]
     np.testing.assert_array_equal(pure, rough)
 
 
 def test_below_its_slenderness_an_object_has_no_amplitude(motions: list[Motion]) -> None:
-    rows = friction_ratios({"tower": STACK}, motions, LADDER, ground=[0.3], interface=[0.5])
+    rows = friction_ratios(
+        {"tower": STACK}, motions, INTENSITY_LEVELS, ground=[0.3], interface=[0.5]
+    )
     smooth = rows[rows["ground"] == 0.3]
     assert smooth["np_g"].isna().all() and smooth["ratio"].isna().all()
     effects = friction_effects(rows, {"ground": 0})

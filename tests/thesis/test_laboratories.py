@@ -1,4 +1,4 @@
-"""Three synthetic laboratories pass through the ledger: no measurement is behind any of them.
+"""Three synthetic laboratories pass through the table of hypotheses: no measurement is behind any of them.
 
 One has the thesis's pattern, one no effect of the pedestal, one the opposite pattern, each with the
 scatter that tolerances cause. Where the thesis contradicts itself (C42 with C35, C37, C43; C47 with C48)
@@ -12,10 +12,10 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from rockfrag_thesis.statements import Evidence, ledger
-from rockfrag_thesis.statements.statement import EXCLUDED
+from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
+from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
 
-from .conftest import EVENTS, STEP, TOWERS, build
+from .conftest import EARTHQUAKES, STEP, TOWERS, build
 
 PAIR_SCATTER = 0.134
 """Scatter of ln P/NP of a pair through tolerances of geometry and restitution alone [-]."""
@@ -25,15 +25,15 @@ EFFECT = {
     "F3": {"T1": 0.05, "T2": -0.05, "T3": -0.02},
     "F5": {"T1": -0.35, "T2": -0.05, "T3": -0.03},
 }
-BY_EVENT = {"Friuli": 0.20, "Northridge": -0.20}
+BY_EARTHQUAKE = {"Friuli": 0.20, "Northridge": -0.20}
 LEVEL = {"GF": 0.55, "F3": 0.0, "F5": 0.45}
 
 
-def thesis_effect(object_name, event, floor):
-    return EFFECT[floor][object_name] + BY_EVENT.get(event, 0.0)
+def thesis_effect(object_name, earthquake, floor):
+    return EFFECT[floor][object_name] + BY_EARTHQUAKE.get(earthquake, 0.0)
 
 
-def thesis_level(object_name, event, floor):
+def thesis_level(object_name, earthquake, floor):
     return LEVEL[floor] + 0.1 * (object_name == "T1" and floor == "GF")
 
 
@@ -48,7 +48,7 @@ LABORATORIES = {
 }
 
 OF_TESTS = set(range(25, 55)) - {30, 52}
-"""Statements that a table of tests alone can decide."""
+"""Hypotheses that a table of tests alone can decide."""
 
 FALSE = {
     "thesis": {42, 47},
@@ -59,9 +59,9 @@ FALSE = {
 NEITHER = {"thesis": {54}, "no effect": set(), "opposite": {54}}
 
 
-def laboratory(name: str, seed: int, events: int = 4, motions: int = 1) -> pd.DataFrame:
+def laboratory(name: str, seed: int, earthquakes: int = 4, motions: int = 1) -> pd.DataFrame:
     effect, level, objects = LABORATORIES[name]
-    names = [*EVENTS, *(f"E{k}" for k in range(5, events + 1))]
+    names = [*EARTHQUAKES, *(f"E{k}" for k in range(5, earthquakes + 1))]
     return build(
         effect,
         level,
@@ -69,25 +69,25 @@ def laboratory(name: str, seed: int, events: int = 4, motions: int = 1) -> pd.Da
         of_motion=0.15,
         seed=seed,
         objects=objects,
-        events=names,
+        earthquakes=names,
         motions=motions,
         step=STEP,
     )
 
 
-def verdicts(tests: pd.DataFrame) -> dict[int, str]:
-    table = ledger(Evidence(tests, "measured"))
-    return dict(zip(table["number"], table["verdict"], strict=True))
+def outcomes(tests: pd.DataFrame) -> dict[int, str]:
+    table = hypothesis_table(Evidence(tests, "measured"))
+    return dict(zip(table["number"], table["outcome"], strict=True))
 
 
-def of(found: dict[int, str], verdict: str) -> set[int]:
-    return {number for number in OF_TESTS if found[number] == verdict}
+def of(found: dict[int, str], outcome: str) -> set[int]:
+    return {number for number in OF_TESTS if found[number] == outcome}
 
 
 @pytest.fixture(scope="module")
 def large() -> dict[str, dict[int, str]]:
-    """Verdicts on laboratories with forty earthquakes and three motions of each on every floor."""
-    return {name: verdicts(laboratory(name, 1, events=40, motions=3)) for name in LABORATORIES}
+    """Outcomes on laboratories with forty earthquakes and three motions of each on every floor."""
+    return {name: outcomes(laboratory(name, 1, earthquakes=40, motions=3)) for name in LABORATORIES}
 
 
 @pytest.mark.parametrize("name", LABORATORIES)
@@ -119,7 +119,7 @@ def test_the_opposite_pattern_rejects_what_the_thesis_reports(large):
 
 @pytest.mark.parametrize("name", LABORATORIES)
 def test_four_earthquakes_leave_most_of_the_pedestal_open(name):
-    found = verdicts(laboratory(name, 2))
+    found = outcomes(laboratory(name, 2))
     assert not of(found, "confirmed") & FALSE[name]
     assert len(of(found, "undecided")) > 12
 
@@ -127,16 +127,16 @@ def test_four_earthquakes_leave_most_of_the_pedestal_open(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LABORATORIES)
 def test_statements_err_at_their_stated_rate(name):
-    """On the thesis's own design: false statements confirmed, true ones rejected, 2.5 % each."""
+    """On the thesis's own design: false hypotheses confirmed, true ones rejected, 2.5 % each."""
     draws = 120
     wrong: Counter[int] = Counter()
     for seed in range(draws):
-        found = verdicts(laboratory(name, seed))
+        found = outcomes(laboratory(name, seed))
         true = OF_TESTS - FALSE[name] - NEITHER[name]
         wrong.update(of(found, "confirmed") & FALSE[name])
         wrong.update(of(found, "rejected") & true)
     for number, count in wrong.items():
         rate = 0.05 if number == 41 else 0.025
-        # one of a hundred statements may be as far off by chance
+        # one of a hundred hypotheses may be as far off by chance
         assert stats.binom.sf(count - 1, draws, rate) > 1e-4, (number, count / draws)
     assert wrong.total() / (draws * len(OF_TESTS)) < 0.025

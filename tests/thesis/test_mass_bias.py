@@ -5,7 +5,7 @@ import math
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag_thesis.explanation.mass_bias import ratio_bias
+from rockfrag_thesis.sensitivity_analysis.mass_bias import ratio_bias
 
 
 def test_right_masses_give_no_bias():

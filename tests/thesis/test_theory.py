@@ -9,13 +9,13 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Stack, simulate
+from rockfrag_thesis.hypotheses import HYPOTHESES, Undecidable, theory_table
+from rockfrag_thesis.hypotheses.blocks import perturbed
+from rockfrag_thesis.hypotheses.hypothesis_table import THEORY
+from rockfrag_thesis.hypotheses.setting import bisect, make_setting, moves, starts_at
+from rockfrag_thesis.hypotheses.spectra import dispersion_ratio, exchanges
+from rockfrag_thesis.hypotheses.stacks import LIFTED, SETTLES, STILL, after_impacts, free_fall
 from rockfrag_thesis.specimens import THESIS_BODIES
-from rockfrag_thesis.statements import STATEMENTS, Undecidable, theory_ledger
-from rockfrag_thesis.statements.blocks import perturbed
-from rockfrag_thesis.statements.ledger import THEORY
-from rockfrag_thesis.statements.setting import bisect, make_setting, moves, starts_at
-from rockfrag_thesis.statements.spectra import dispersion_ratio, exchanges
-from rockfrag_thesis.statements.stacks import LIFTED, SETTLES, STILL, after_landings, free_fall
 
 
 def made_motion(seed: int) -> Motion:
@@ -34,96 +34,107 @@ MOTIONS = [made_motion(seed) for seed in range(4)]
 
 
 @pytest.fixture(scope="module")
-def ledger() -> pd.DataFrame:
-    table = theory_ledger(THESIS_BODIES, MOTIONS, seed=7, threads=2)
+def hypothesis_table() -> pd.DataFrame:
+    table = theory_table(THESIS_BODIES, MOTIONS, seed=7, threads=2)
     return table.set_index("number", drop=False)
 
 
-def test_every_statement_has_one_row(ledger: pd.DataFrame) -> None:
-    assert list(ledger.index) == list(THEORY)
-    limited = ledger[ledger["lower"].notna()]
+def test_every_statement_has_one_row(hypothesis_table: pd.DataFrame) -> None:
+    assert list(hypothesis_table.index) == list(THEORY)
+    limited = hypothesis_table[hypothesis_table["lower"].notna()]
     assert (limited["lower"] <= limited["estimate"]).all()
     assert (limited["estimate"] <= limited["upper"]).all()
 
 
 @pytest.mark.parametrize("number", [1, 2, 3, 4, 6, 7, 8, 10, 13, 15, 16, 20, 22, 24])
-def test_what_mechanics_settles_is_settled(ledger: pd.DataFrame, number: int) -> None:
-    assert ledger.loc[number, "verdict"] == "confirmed", ledger.loc[number]
+def test_what_mechanics_settles_is_settled(hypothesis_table: pd.DataFrame, number: int) -> None:
+    assert hypothesis_table.loc[number, "outcome"] == "confirmed", hypothesis_table.loc[number]
 
 
 @pytest.mark.parametrize("number", [9, 11, 12, 21, 23])
-def test_what_holds_for_the_specimens_alone_says_so(ledger: pd.DataFrame, number: int) -> None:
-    row = ledger.loc[number]
-    assert row["verdict"] == "confirmed for the specimens, with exceptions elsewhere", row
-
-
-def test_identities_are_called_so(ledger: pd.DataFrame) -> None:
-    assert {1, 2, 20, 21, 22, 23, 24} <= set(ledger.index[ledger["kind"] == "identity"])
-    assert (ledger.loc[ledger["kind"] == "identity", "basis"] == "computed").all()
-
-
-def test_printed_tables_agree_to_the_digit(ledger: pd.DataFrame) -> None:
-    assert ledger.loc[2, "figure"].startswith("9 of 9 figures agree; 6 of 6 simulated stacks")
-    assert ledger.loc[3, "figure"].startswith("12 of 12 figures agree")
-
-
-def test_error_of_the_linearised_quarter_period(ledger: pd.DataFrame) -> None:
-    assert "T1 0.30, T2 0.18, T3 0.11 %" in ledger.loc[7, "figure"]
-
-
-def test_a_sudden_acceleration_starts_pattern_1_and_a_continuous_one_does_not(
-    ledger: pd.DataFrame,
+def test_what_holds_for_the_specimens_alone_says_so(
+    hypothesis_table: pd.DataFrame, number: int
 ) -> None:
-    records, sudden = ledger.loc[9, "figure"].split("under motions")
-    share, total = records.split(" start")[0].split(" of ")
-    assert share == total
+    row = hypothesis_table.loc[number]
+    assert row["outcome"] == "confirmed for the specimens, with exceptions elsewhere", row
+
+
+def test_identities_are_called_so(hypothesis_table: pd.DataFrame) -> None:
+    assert {1, 2, 20, 21, 22, 23, 24} <= set(
+        hypothesis_table.index[hypothesis_table["kind"] == "identity"]
+    )
+    assert (
+        hypothesis_table.loc[hypothesis_table["kind"] == "identity", "basis"] == "computed"
+    ).all()
+
+
+def test_printed_tables_agree_to_the_digit(hypothesis_table: pd.DataFrame) -> None:
+    assert hypothesis_table.loc[2, "figure"].startswith(
+        "9 of 9 figures agree; 6 of 6 simulated stacks"
+    )
+    assert hypothesis_table.loc[3, "figure"].startswith("12 of 12 figures agree")
+
+
+def test_error_of_the_linearised_quarter_period(hypothesis_table: pd.DataFrame) -> None:
+    assert "T1 0.30, T2 0.18, T3 0.11 %" in hypothesis_table.loc[7, "figure"]
+
+
+def test_a_sudden_acceleration_starts_rocking_mode_1_and_a_continuous_one_does_not(
+    hypothesis_table: pd.DataFrame,
+) -> None:
+    records, sudden = hypothesis_table.loc[9, "figure"].split("under motions")
+    fraction, total = records.split(" start")[0].split(" of ")
+    assert fraction == total
     assert "1" in sudden
 
 
 def test_the_pedestal_of_the_specimens_lifts_and_stands_again_at_once() -> None:
     for name in ("T1", "T2", "T3"):
         stack = Stack(THESIS_BODIES["P"], THESIS_BODIES[name])
-        events = free_fall(stack)
+        contact_events = free_fall(stack)
         # eq. 2.85 with the specimens' numbers has θ1⁺ < 0 after an impact in 4a: it is 1b
-        assert events[events["kind"] == "impact"]["to"].iloc[0] == "1b"
-        assert set(after_landings(events)) == {SETTLES}
+        assert contact_events[contact_events["kind"] == "impact"]["to"].iloc[0] == "1b"
+        assert set(after_impacts(contact_events)) == {SETTLES}
         # in far less time than to the statue's next landing
-        lifted = events["time"][events["to"].str.startswith("4")].iloc[0] - events["time"].iloc[0]
-        assert 0 < lifted < 0.1 * math.pi / stack.statue.frequency()
+        lifted = (
+            contact_events["time"][contact_events["to"].str.startswith("4")].iloc[0]
+            - contact_events["time"].iloc[0]
+        )
+        assert 0 < lifted < 0.1 * math.pi / stack.upper.frequency()
 
 
 def test_landings_are_told_apart() -> None:
-    def events(*rows: tuple[str, str, str]) -> pd.DataFrame:
+    def contact_events(*rows: tuple[str, str, str]) -> pd.DataFrame:
         return pd.DataFrame(rows, columns=["kind", "from", "to"])
 
     landing = ("impact", "4a", "1b")
-    assert after_landings(events(("impact", "4a", "4b"))) == [STILL]
-    assert after_landings(events(landing, ("impact", "1b", "2a"), ("impact", "2a", "4b"))) == [
-        SETTLES
-    ]
-    assert after_landings(events(landing, ("impact", "1b", "2b"))) == [LIFTED]
+    assert after_impacts(contact_events(("impact", "4a", "4b"))) == [STILL]
+    assert after_impacts(
+        contact_events(landing, ("impact", "1b", "2a"), ("impact", "2a", "4b"))
+    ) == [SETTLES]
+    assert after_impacts(contact_events(landing, ("impact", "1b", "2b"))) == [LIFTED]
     # the record ends before it is decided
-    assert after_landings(events(landing)) == []
+    assert after_impacts(contact_events(landing)) == []
 
 
 @pytest.mark.parametrize("name", ["T1", "T2", "T3"])
 def test_the_thesis_s_own_formula_has_the_pedestal_lifted(name: str) -> None:
     # eq. 2.85 with θ2'⁻ on its right-hand sides; 1b is possible if θ1'⁺ has the sign of θ2'⁻
-    one, two = THESIS_BODIES["P"], THESIS_BODIES[name]
-    theta, beta = two.alpha, math.atan2(one.b - two.b, 2 * one.h)
-    reach, up = math.hypot(one.b - two.b, 2 * one.h), 2 * one.h + two.h
+    first, two = THESIS_BODIES["P"], THESIS_BODIES[name]
+    theta, beta = two.alpha, math.atan2(first.b - two.b, 2 * first.h)
+    reach, up = math.hypot(first.b - two.b, 2 * first.h), 2 * first.h + two.h
     moment = two.mass * two.radius()
-    c1 = two.pole_inertia()
-    c2 = two.centroidal_inertia + moment * (up * math.cos(theta) - one.b * math.sin(theta))
-    c3 = two.centroidal_inertia + moment * (up * math.cos(theta) + one.b * math.sin(theta))
-    c4 = two.pole_inertia() - 2 * two.mass * two.b**2
-    c5 = one.pole_inertia() + two.mass * reach * (up * math.cos(beta) + one.b * math.sin(beta))
+    c1 = two.pivot_inertia()
+    c2 = two.centroidal_inertia + moment * (up * math.cos(theta) - first.b * math.sin(theta))
+    c3 = two.centroidal_inertia + moment * (up * math.cos(theta) + first.b * math.sin(theta))
+    c4 = two.pivot_inertia() - 2 * two.mass * two.b**2
+    c5 = first.pivot_inertia() + two.mass * reach * (up * math.cos(beta) + first.b * math.sin(beta))
     c6 = two.mass * reach * (two.h * math.cos(beta) + two.b * math.sin(beta))
     a = (c1 * c2 - c3 * c4) / (c5 * c1 - c3 * c6)
     b = (c6 * c2 - c5 * c4) / (c3 * c6 - c1 * c5)
     assert a > 0
-    events = free_fall(Stack(one, two))
-    impact = events[events["kind"] == "impact"].iloc[0]
+    contact_events = free_fall(Stack(first, two))
+    impact = contact_events[contact_events["kind"] == "impact"].iloc[0]
     before, (after1, after2) = impact["omega_before"][1], impact["omega_after"]
     assert (impact["from"], impact["to"]) == ("4a", "1b")
     assert after1 == pytest.approx(a * before, rel=1e-9)
@@ -131,21 +142,21 @@ def test_the_thesis_s_own_formula_has_the_pedestal_lifted(name: str) -> None:
 
 
 def test_pedestals_of_random_stacks_come_to_rest_under_a_rocking_statue(
-    ledger: pd.DataFrame,
+    hypothesis_table: pd.DataFrame,
 ) -> None:
-    specimens, elsewhere = ledger.loc[11, "figure"].split("; random stacks")
+    specimens, elsewhere = hypothesis_table.loc[11, "figure"].split("; random stacks")
     assert "0 neither" in specimens
     assert "1a→4a" in elsewhere
 
 
-def test_without_a_measured_history_restitution_stays_open(ledger: pd.DataFrame) -> None:
-    assert ledger.loc[5, "verdict"] == "undecided"
-    assert "no measured history" in ledger.loc[5, "remark"]
+def test_without_a_measured_history_restitution_stays_open(hypothesis_table: pd.DataFrame) -> None:
+    assert hypothesis_table.loc[5, "outcome"] == "undecided"
+    assert "no measured history" in hypothesis_table.loc[5, "remark"]
 
 
-def test_results_do_not_depend_on_threads_or_repetition(ledger: pd.DataFrame) -> None:
-    again = theory_ledger(THESIS_BODIES, MOTIONS, seed=7, threads=1)
-    pd.testing.assert_frame_equal(again, ledger.reset_index(drop=True))
+def test_results_do_not_depend_on_threads_or_repetition(hypothesis_table: pd.DataFrame) -> None:
+    again = theory_table(THESIS_BODIES, MOTIONS, seed=7, threads=1)
+    pd.testing.assert_frame_equal(again, hypothesis_table.reset_index(drop=True))
 
 
 def history(name: str, e: float) -> tuple[np.ndarray, np.ndarray]:
@@ -156,22 +167,22 @@ def history(name: str, e: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize(
-    ("restitution", "verdict"), [(0.87, "confirmed"), (None, "rejected")], ids=["real", "ideal"]
+    ("restitution", "outcome"), [(0.87, "confirmed"), (None, "rejected")], ids=["real", "ideal"]
 )
 def test_measured_free_rocking_decides_about_restitution(
-    restitution: float | None, verdict: str
+    restitution: float | None, outcome: str
 ) -> None:
     ideal = THESIS_BODIES["T3"].momentum_restitution()
     e = restitution or ideal
-    table = theory_ledger(THESIS_BODIES, [], seed=1, free_rocking={"T3": history("T3", e)})
+    table = theory_table(THESIS_BODIES, [], seed=1, free_rocking={"T3": history("T3", e)})
     row = table.set_index("number").loc[5]
-    assert (row["verdict"], row["basis"]) == (verdict, "measured")
+    assert (row["outcome"], row["basis"]) == (outcome, "measured")
     assert row["lower"] <= e - ideal <= row["upper"]
 
 
 def test_an_unusable_history_is_the_users_error() -> None:
     with pytest.raises(InputError, match="one per time"):
-        theory_ledger(
+        theory_table(
             {"T3": THESIS_BODIES["T3"]}, [], seed=1, free_rocking={"T3": (np.arange(9), np.ones(8))}
         )
 
@@ -188,8 +199,8 @@ def test_an_unusable_history_is_the_users_error() -> None:
 def test_what_the_data_cannot_say_is_open_with_the_reason(
     specimens: dict[str, Block], motions: list[Motion], opened: set[int]
 ) -> None:
-    for row in theory_ledger(specimens, motions, seed=1).itertuples():
-        assert (row.verdict == "undecided") == (row.number in opened), row
+    for row in theory_table(specimens, motions, seed=1).itertuples():
+        assert (row.outcome == "undecided") == (row.number in opened), row
         if row.number in opened:
             assert "cannot decide" in row.remark
 
@@ -198,36 +209,36 @@ def test_printed_tables_say_nothing_about_other_specimens() -> None:
     other = {**THESIS_BODIES, "T1": Block(0.13, 0.372, 2.172)}
     for number in (2, 3):
         with pytest.raises(Undecidable, match="T1 differs"):
-            STATEMENTS[number].test(make_setting(other, [], 1))
+            HYPOTHESES[number].test(make_setting(other, [], 1))
 
 
 def test_a_proxy_scatters_least_when_a_block_overturns() -> None:
     """The instrument of C19 tells a perfect proxy from a useless one, and needs many earthquakes."""
     rng = np.random.default_rng(0)
-    events = [f"E{k}" for k in range(20) for _ in range(2)]
+    contact_events = [f"E{k}" for k in range(20) for _ in range(2)]
     proxy = rng.normal(0, 0.05, (3, 40))
     useless = proxy + rng.normal(0, 0.5, 40)
-    better = dispersion_ratio(proxy, useless, events)
+    better = dispersion_ratio(proxy, useless, contact_events)
     assert better.ratio == pytest.approx(0.1, abs=0.05) and better.ratio_upper < 1
-    assert dispersion_ratio(useless, proxy, events).ratio_lower > 1
+    assert dispersion_ratio(useless, proxy, contact_events).ratio_lower > 1
     alike = useless + rng.normal(0, 0.1, (3, 40))
-    few = dispersion_ratio(useless[:, :4], alike[:, :4], events[:4])
+    few = dispersion_ratio(useless[:, :4], alike[:, :4], contact_events[:4])
     assert few.ratio_lower < 1 < few.ratio_upper
 
 
 def test_pairs_of_spectra_that_exchange_their_order() -> None:
-    one = np.array([[3.0, 3.0, 0.0], [2.0, 2.0, 2.0], [1.0, 1.0, 1.0]])
+    first = np.array([[3.0, 3.0, 0.0], [2.0, 2.0, 2.0], [1.0, 1.0, 1.0]])
     other = np.array([[1.0, 1.0, 9.0], [2.0, 2.0, 2.0], [0.0, 0.0, 0.0]])
     # the first falls behind the second over most abscissas and stays ahead of the third
-    assert exchanges(one, other) == (1, 3)
-    assert exchanges(one, np.ones((3, 3))) == (0, 0)
+    assert exchanges(first, other) == (1, 3)
+    assert exchanges(first, np.ones((3, 3))) == (0, 0)
 
 
-def test_existence_needs_one_motion_only(ledger: pd.DataFrame) -> None:
+def test_existence_needs_one_motion_only(hypothesis_table: pd.DataFrame) -> None:
     """C16 says that there are ranges; motions without one do not make it false."""
-    having, total = ledger.loc[16, "figure"].split(" motions")[0].split(" of ")
+    having, total = hypothesis_table.loc[16, "figure"].split(" motions")[0].split(" of ")
     assert 0 < int(having) <= int(total)
-    assert ledger.loc[16, "verdict"] == "confirmed"
+    assert hypothesis_table.loc[16, "outcome"] == "confirmed"
 
 
 def test_threshold_is_where_bisection_ends_and_simulations_start() -> None:
@@ -250,10 +261,10 @@ def test_copies_stay_within_their_tolerances() -> None:
 
 
 @pytest.mark.slow
-def test_thesis_motions_give_the_ledger(four_records: dict[str, Motion]) -> None:
+def test_thesis_motions_give_the_hypothesis_table(four_records: dict[str, Motion]) -> None:
     motions = list(four_records.values())
-    table = theory_ledger(THESIS_BODIES, motions, seed=1).set_index("number")
+    table = theory_table(THESIS_BODIES, motions, seed=1).set_index("number")
     for number in (8, 14, 15, 16, 17, 18):
-        assert table.loc[number, "verdict"] == "confirmed", table.loc[number]
+        assert table.loc[number, "outcome"] == "confirmed", table.loc[number]
     # four earthquakes cannot tell whether a spectrum is a better proxy than a peak
-    assert table.loc[19, "verdict"] == "undecided"
+    assert table.loc[19, "outcome"] == "undecided"

@@ -1,7 +1,7 @@
 """How often confidence limits of a fragility curve hold the truth, in 1000 simulated data sets.
 
 The capacity of a motion is lognormal with θ = 0.35 g, β = 0.4; 30 % of its variance is shared by
-the motions of an event. The designs: 4 events of one motion, 4 of three, 22 of two. The tables in
+the motions of an earthquake. The designs: 4 earthquakes of one motion, 4 of three, 22 of two. The tables in
 ``docs/validation-fragility.md`` are written by these tests.
 """
 
@@ -10,15 +10,15 @@ import pandas as pd
 import pytest
 
 from rockfrag.fragility.censored import Brackets, bracket_fitter, bracket_interval
+from rockfrag.fragility.fractions import fractions_of_capacities
 from rockfrag.fragility.intervals import (
     Interval,
     interval_over_motions,
+    outcome_fitter,
     population,
     resampled_interval,
-    verdict_fitter,
 )
 from rockfrag.fragility.observations import Outcomes
-from rockfrag.fragility.shares import shares_of_capacities
 
 from .documented import document
 
@@ -28,22 +28,23 @@ DESIGNS = {4: (4, 1), 12: (4, 3), 44: (22, 2)}
 DATA_SETS, OF_A_KIND, SEED = 1000, 4000, 20261121
 
 
-# step of the ladder, share of the variance that motions of an event share, law, β, scatter of objects
+# step of the series of levels, fraction of the variance that motions of an earthquake share, law, β, scatter of
+# objects
 KINDS = {
     "lognormal": {},
-    "heteroscedastic: half of the events scatter twice as much": {"uneven": 2.0},
-    "events dominate": {"shared": 0.8},
-    "ladder of 5 %": {"step": 0.05},
-    "ladder of 1 %": {"step": 0.01},
-    "nearly all in one step (β = 0.03, ladder of 10 %)": {"beta": 0.03},
+    "heteroscedastic: half of the earthquakes scatter twice as much": {"uneven": 2.0},
+    "earthquakes dominate": {"shared": 0.8},
+    "series of 5 %": {"step": 0.05},
+    "series of 1 %": {"step": 0.01},
+    "nearly all in one step (β = 0.03, series of 10 %)": {"beta": 0.03},
     "heavy tails (t, 3 df)": {"law": "t3"},
 }
 WARNED = ("heavy tails (t, 3 df)",)
-COARSE = ("nearly all in one step (β = 0.03, ladder of 10 %)",)
+COARSE = ("nearly all in one step (β = 0.03, series of 10 %)",)
 
 
 def simulated(
-    events: int,
+    earthquakes: int,
     each: int,
     rng: np.random.Generator,
     step: float = 0.1,
@@ -52,32 +53,34 @@ def simulated(
     beta: float = BETA,
     uneven: float = 1.0,
 ):
-    """Brackets and verdicts of one data set: each motion swept in equal steps of ln amplitude."""
-    event = np.repeat(np.arange(events), each)
+    """Brackets and outcomes of one data set: each motion swept in equal steps of ln amplitude."""
+    earthquake = np.repeat(np.arange(earthquakes), each)
 
     def drawn(size):
         return rng.normal(size=size) if law == "normal" else rng.standard_t(3, size) / np.sqrt(3)
 
-    scale = np.where(np.arange(events) % 2 == 0, 1.0, uneven)
+    scale = np.where(np.arange(earthquakes) % 2 == 0, 1.0, uneven)
     scale = scale / np.sqrt(np.mean(scale**2))
-    log_a = np.sqrt(shared) * drawn(events)[event] + np.sqrt(1 - shared) * drawn(event.size)
-    log_a = np.log(THETA) + beta * scale[event] * log_a
+    log_a = np.sqrt(shared) * drawn(earthquakes)[earthquake] + np.sqrt(1 - shared) * drawn(
+        earthquake.size
+    )
+    log_a = np.log(THETA) + beta * scale[earthquake] * log_a
     reach = int(np.ceil(max(1.6, 8 * beta if law != "normal" else 0) / step))
-    # the ladder's phase is chance
+    # the series of levels's phase is chance
     levels = THETA * np.exp((np.arange(-reach, reach + 1) + rng.random()) * step)
-    labels = np.array([f"m{k}" for k in range(event.size)], dtype=object)
-    event_labels = np.array([f"e{k}" for k in event], dtype=object)
+    labels = np.array([f"m{k}" for k in range(earthquake.size)], dtype=object)
+    earthquake_labels = np.array([f"e{k}" for k in earthquake], dtype=object)
     step = np.clip(np.searchsorted(np.log(levels), log_a), 1, levels.size - 1)
-    brackets = Brackets(levels[step - 1], levels[step], labels, event_labels)
+    brackets = Brackets(levels[step - 1], levels[step], labels, earthquake_labels)
     fell = np.log(levels)[None, :] > log_a[:, None]
-    verdicts = Outcomes(
-        np.tile(levels, event.size),
+    outcomes = Outcomes(
+        np.tile(levels, earthquake.size),
         fell.ravel().astype(float),
         np.ones(fell.size),
         np.repeat(labels, levels.size),
-        np.repeat(event_labels, levels.size),
+        np.repeat(earthquake_labels, levels.size),
     )
-    return brackets, verdicts
+    return brackets, outcomes
 
 
 def holds(interval: Interval, beta: float = BETA) -> tuple[bool, bool, bool]:
@@ -92,18 +95,18 @@ def holds(interval: Interval, beta: float = BETA) -> tuple[bool, bool, bool]:
 
 def coverage(n: int, over: str) -> pd.DataFrame:
     """Coverage of 90 % limits for one design and what is left out, both estimators."""
-    events, each = DESIGNS[n]
+    earthquakes, each = DESIGNS[n]
     rng = np.random.default_rng([SEED, n])
-    found, warned = {"brackets": [], "verdicts": []}, []
+    found, warned = {"brackets": [], "outcomes": []}, []
     for _ in range(DATA_SETS):
-        brackets, verdicts = simulated(events, each, rng)
+        brackets, outcomes = simulated(earthquakes, each, rng)
         fitters = {
             "brackets": bracket_fitter(brackets, over),
-            "verdicts": verdict_fitter(
-                verdicts, verdicts.motion if over == "motion" else verdicts.event
+            "outcomes": outcome_fitter(
+                outcomes, outcomes.motion if over == "motion" else outcomes.earthquake
             ),
         }
-        _, notes = population(n, events, over)
+        _, notes = population(n, earthquakes, over)
         for name, (fit, groups) in fitters.items():
             interval = resampled_interval(fit, groups, over=over, notes=notes)
             found[name].append(holds(interval))
@@ -116,7 +119,7 @@ def coverage(n: int, over: str) -> pd.DataFrame:
         rows.append(
             {
                 "motions": n,
-                "events": events,
+                "earthquakes": earthquakes,
                 "data": name,
                 "data_sets": DATA_SETS,
                 "resampled": f"{over}s",
@@ -130,16 +133,16 @@ def coverage(n: int, over: str) -> pd.DataFrame:
 
 
 def of_kind(name: str, n: int = 12, data_sets: int = OF_A_KIND) -> pd.DataFrame:
-    """Coverage of the default limits, jackknife over events, where the data are of another kind."""
-    events, each = DESIGNS[n]
+    """Coverage of the default limits, jackknife over earthquakes, where the data are of another kind."""
+    earthquakes, each = DESIGNS[n]
     rng = np.random.default_rng([SEED, n, list(KINDS).index(name)])
-    found: dict[str, list[tuple[bool, ...]]] = {"brackets": [], "verdicts": []}
+    found: dict[str, list[tuple[bool, ...]]] = {"brackets": [], "outcomes": []}
     for _ in range(data_sets):
-        brackets, verdicts = simulated(events, each, rng, **KINDS[name])
+        brackets, outcomes = simulated(earthquakes, each, rng, **KINDS[name])
         beta = KINDS[name].get("beta", BETA)
         for data, interval in (
-            ("brackets", bracket_interval(brackets, over="event")),
-            ("verdicts", interval_over_motions(verdicts, over="event")),
+            ("brackets", bracket_interval(brackets, over="earthquake")),
+            ("outcomes", interval_over_motions(outcomes, over="earthquake")),
         ):
             own = 1.0 / interval.estimate[1]
             has = interval.method == "none" or interval.beta[0] <= own <= interval.beta[1]
@@ -168,7 +171,7 @@ def kinds() -> pd.DataFrame:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [one for one in KINDS if one not in (*WARNED, *COARSE)])
+@pytest.mark.parametrize("name", [kind for kind in KINDS if kind not in (*WARNED, *COARSE)])
 def test_limits_hold_the_truth_whatever_the_kind_of_data(kinds, name):
     # 4000 data sets know a coverage to ± half a percent
     assert ((kinds.loc[[name], ["θ", "β"]] - 0.90).abs() < 0.035).all(axis=None)
@@ -195,14 +198,14 @@ def test_heavy_tails_cost_the_limits_of_beta_and_not_those_of_theta(kinds, name)
 
 @pytest.fixture(scope="module")
 def methods() -> pd.DataFrame:
-    """All designs, over events and over motions."""
+    """All designs, over earthquakes and over motions."""
     parts = [
         coverage(n, over)
-        for n, (events, _) in DESIGNS.items()
-        for over in (("event", "motion") if events < n else ("event",))
+        for n, (earthquakes, _) in DESIGNS.items()
+        for over in (("earthquake", "motion") if earthquakes < n else ("earthquake",))
     ]
     found = pd.concat(parts, ignore_index=True)
-    order = ["resampled", "motions", "events", "data", "data_sets", "theta", "beta"]
+    order = ["resampled", "motions", "earthquakes", "data", "data_sets", "theta", "beta"]
     shown = found.assign(warns=np.where(found["warns"], "yes", "no"))[[*order, "curve", "warns"]]
     shown = shown.rename(columns={"theta": "θ", "beta": "β", "data_sets": "data sets"})
     document("validation-fragility.md", "methods", shown)
@@ -211,9 +214,9 @@ def methods() -> pd.DataFrame:
 
 @pytest.mark.slow
 def test_default_limits_hold_the_truth_in_87_to_93_percent(methods):
-    default = methods[methods["resampled"] == "events"]
+    default = methods[methods["resampled"] == "earthquakes"]
     assert len(default) == 6 and not default.warns.any()
-    # of four motions on a ladder of 10 % few values of β can come out, and its limits hold a little too often
+    # of four motions on a series of 10 % few values of β can come out, and its limits hold a little too often
     few = default["motions"] == 4
     assert default.loc[few, "beta"].between(0.87, 0.95).all()
     assert ((default.loc[~few, "beta"] - 0.90).abs() < 0.035).all(), default
@@ -228,23 +231,27 @@ def test_other_limits_hold_the_truth_or_warn(methods):
 
 
 @pytest.fixture(scope="module")
-def without_form() -> pd.DataFrame:
+def nonparametric() -> pd.DataFrame:
     """Coverage of the curve that assumes no form, where capacities are lognormal and where they are not."""
     rows = []
     for name, law, spread in (("lognormal", "normal", 1.0), ("heavy tails (t, 3 df)", "t3", 0.691)):
-        for events, each in ((4, 3), (22, 2)):
-            rng = np.random.default_rng([SEED, events])
+        for earthquakes, each in ((4, 3), (22, 2)):
+            rng = np.random.default_rng([SEED, earthquakes])
             held = []
             for _ in range(DATA_SETS):
-                labels = np.repeat(np.arange(events), each).astype(object)
+                labels = np.repeat(np.arange(earthquakes), each).astype(object)
                 drawn = rng.normal(size=labels.size)
                 if law == "t3":
                     drawn = rng.standard_t(3, labels.size) / np.sqrt(3)
-                one = shares_of_capacities(np.log(THETA) + BETA * drawn, labels, 0.90)
-                (low, high), (least, most) = one.theta_limits, one.beta_limits
+                item = fractions_of_capacities(np.log(THETA) + BETA * drawn, labels, 0.90)
+                (low, high), (least, most) = item.theta_limits, item.beta_limits
                 held.append((low <= THETA <= high, least <= BETA * spread <= most))
             theta, beta = np.mean(held, axis=0)
-            design = {"data sets of": name, "motions": events * each, "events": events}
+            design = {
+                "data sets of": name,
+                "motions": earthquakes * each,
+                "earthquakes": earthquakes,
+            }
             rows.append(design | {"median": theta, "half of 16 to 84 %": beta})
     found = pd.DataFrame(rows)
     document("validation-fragility.md", "without a form", found)
@@ -252,5 +259,5 @@ def without_form() -> pd.DataFrame:
 
 
 @pytest.mark.slow
-def test_limits_that_assume_no_form_hold_whatever_the_tails(without_form):
-    assert without_form[["median", "half of 16 to 84 %"]].min(axis=None) >= 0.86
+def test_limits_that_assume_no_form_hold_whatever_the_tails(nonparametric):
+    assert nonparametric[["median", "half of 16 to 84 %"]].min(axis=None) >= 0.86

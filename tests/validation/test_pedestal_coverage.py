@@ -1,6 +1,6 @@
 """How often the interval of the pedestal's effect holds the truth, and how often nothing is called something.
 
-36 pairs of 4 events, 3 floors, 3 objects, amplitudes exact or on a ladder of steps. The table in
+36 pairs of 4 earthquakes, 3 floors, 3 objects, amplitudes exact or on a series of steps. The table in
 ``docs/validation-pedestal.md`` is written by these tests.
 """
 
@@ -19,20 +19,20 @@ SEED, DATA_SETS = 20261121, 4_000
 SHAPE = (4, 3, 3)
 NORMAL, TAILS, SKEWED = "normal", "t3", "exponential"
 
-# standard deviations of event, motion and pair, law, step of the ladder, rate and size of jumps
+# standard deviations of earthquake, motion and pair, law, step of the series of levels, rate and size of jumps
 DESIGNS = {
     "lognormal, pairs only": dict(sd=(0.0, 0.0, 0.134)),
-    "lognormal, motions and events": dict(sd=(0.10, 0.10, 0.134)),
+    "lognormal, motions and earthquakes": dict(sd=(0.10, 0.10, 0.134)),
     "heteroscedastic: objects 0.05, 0.13, 0.30": dict(sd=(0.05, 0.05, (0.05, 0.13, 0.30))),
-    "heteroscedastic: one event scatters three times as much": dict(
+    "heteroscedastic: one earthquake scatters three times as much": dict(
         sd=((0.1, 0.1, 0.1, 0.3), 0.05, 0.1)
     ),
-    "events dominate": dict(sd=(0.30, 0.05, 0.10)),
-    "ladder of 5 %": dict(sd=(0.05, 0.05, 0.134), step=0.05),
-    "ladder of 1 %": dict(sd=(0.05, 0.05, 0.134), step=0.01),
-    "ladder of 5 %, scatter of one step": dict(sd=(0.02, 0.02, 0.05), step=0.05),
-    "heavy tails (t, 3 df), events": dict(sd=(0.10, 0.10, 0.134), law=TAILS),
-    "skewed events (exponential)": dict(sd=(0.10, 0.10, 0.134), law=SKEWED),
+    "earthquakes dominate": dict(sd=(0.30, 0.05, 0.10)),
+    "series of 5 %": dict(sd=(0.05, 0.05, 0.134), step=0.05),
+    "series of 1 %": dict(sd=(0.05, 0.05, 0.134), step=0.01),
+    "series of 5 %, scatter of one step": dict(sd=(0.02, 0.02, 0.05), step=0.05),
+    "heavy tails (t, 3 df), earthquakes": dict(sd=(0.10, 0.10, 0.134), law=TAILS),
+    "skewed earthquakes (exponential)": dict(sd=(0.10, 0.10, 0.134), law=SKEWED),
     "nearly all ties, 5 %: jumps of ×1.35 in 1 % of pairs": dict(step=0.05, rate=0.01, jump=0.3),
     "nearly all ties, 5 %: jumps of ×1.35 in 3 %": dict(step=0.05, rate=0.03, jump=0.3),
     "nearly all ties, 5 %: jumps of ×1.35 in 10 %": dict(step=0.05, rate=0.10, jump=0.3),
@@ -42,9 +42,9 @@ DESIGNS = {
 }
 TIES = [name for name in DESIGNS if name.startswith("nearly")]
 WARNED = [name for name in DESIGNS if "tails" in name or "skewed" in name]
-# scatter that differs between events makes t cautious, ties make it so by the width of a step
-CAUTIOUS = [*TIES, "heteroscedastic: one event scatters three times as much"]
-CAUTIOUS += ["ladder of 5 %, scatter of one step"]
+# scatter that differs between earthquakes makes t cautious, ties make it so by the width of a step
+CAUTIOUS = [*TIES, "heteroscedastic: one earthquake scatters three times as much"]
+CAUTIOUS += ["series of 5 %, scatter of one step"]
 
 
 def drawn(rng: np.random.Generator, law: str, size: tuple[int, ...]) -> np.ndarray:
@@ -59,9 +59,9 @@ def simulated(
 ) -> tuple[np.ndarray, float, float]:
     """d of one data set, its true mean, and the resolution of one pair."""
     design = DESIGNS[name]
-    event, motion, pair = (np.asarray(sd) for sd in design.get("sd", (0.0, 0.0, 0.0)))
+    earthquake, motion, pair = (np.asarray(sd) for sd in design.get("sd", (0.0, 0.0, 0.0)))
     law = design.get("law", NORMAL)
-    d = effect + event.reshape(-1, 1, 1) * drawn(rng, law, (4, 1, 1))
+    d = effect + earthquake.reshape(-1, 1, 1) * drawn(rng, law, (4, 1, 1))
     d = d + motion * rng.normal(size=(4, 3, 1)) + pair * rng.normal(size=SHAPE)
     rate, jump = design.get("rate", 0.0), design.get("jump", 0.0)
     d = d + jump * (rng.random(SHAPE) < rate) + design.get("shift", 0.0)
@@ -79,19 +79,19 @@ def estimate(d: np.ndarray, step: float, confidence: float):
     return t_estimate(d.mean(axis=(1, 2)), confidence, float(hidden))
 
 
-def shares(name: str) -> dict[str, object]:
+def fractions(name: str) -> dict[str, object]:
     """Coverage of the 90 % interval, false alarms at 5 % of a true effect of none, and widths."""
     rng = np.random.default_rng([SEED, list(DESIGNS).index(name)])
     held, naive, width, alarms = [], [], [], []
     for _ in range(DATA_SETS):
         d, truth, step = simulated(name, rng)
-        one = estimate(d, step, 0.90)
+        item = estimate(d, step, 0.90)
         bare = t_estimate(d.mean(axis=(1, 2)), 0.90)
-        held.append(one.lower <= truth <= one.upper)
+        held.append(item.lower <= truth <= item.upper)
         # an interval without width is one value
         limits = (bare.mean, bare.mean) if math.isnan(bare.lower) else (bare.lower, bare.upper)
         naive.append(limits[0] - 1e-12 <= truth <= limits[1] + 1e-12)
-        width.append(one.upper - one.lower)
+        width.append(item.upper - item.lower)
         # centred on no effect, jumps either way
         none = np.sign(rng.random(SHAPE) - 0.5) * d if name in TIES else d
         alarms.append(estimate(none, step, 0.95).p < 0.05)
@@ -106,7 +106,7 @@ def shares(name: str) -> dict[str, object]:
 
 @pytest.fixture(scope="module")
 def table() -> pd.DataFrame:
-    found = pd.DataFrame([shares(name) for name in DESIGNS])
+    found = pd.DataFrame([fractions(name) for name in DESIGNS])
     document("validation-pedestal.md", "coverage", found)
     return found.set_index("design")
 
@@ -145,7 +145,7 @@ def test_fast_estimate_is_that_of_the_package():
         index = np.indices(SHAPE).reshape(3, -1)
         pairs = pd.DataFrame(
             {
-                "event": index[0],
+                "earthquake": index[0],
                 "motion": 3 * index[0] + index[1],
                 "object": index[2],
                 "d": d.ravel(),

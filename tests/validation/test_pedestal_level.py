@@ -1,6 +1,6 @@
 """How often tests of the pedestal's effect call nothing something, in the thesis's crossed design.
 
-36 pairs: 3 objects under 12 motions, 3 floors of each of 4 events. d = event + motion + pair, all
+36 pairs: 3 objects under 12 motions, 3 floors of each of 4 earthquakes. d = earthquake + motion + pair, all
 with mean zero, so that every rejection is false. The tables in ``docs/validation-pedestal.md``
 are written by these tests.
 """
@@ -23,36 +23,36 @@ from .documented import document
 
 SEED = 20261121
 DATA_SETS = 20_000
-EVENTS, FLOORS, TOWERS = 4, 3, 3
-CHOSEN = "t, event means"
+EARTHQUAKES, FLOORS, TOWERS = 4, 3, 3
+CHOSEN = "t, earthquake means"
 
-# standard deviations of event, motion and pair; how the event effects are distributed; pairs missing
+# standard deviations of earthquake, motion and pair; how the earthquake effects are distributed; pairs missing
 DESIGNS = {
     "pairs only": (0.0, 0.0, 0.134, "normal", 0),
     "motions": (0.0, 0.10, 0.134, "normal", 0),
-    "events and motions, small": (0.05, 0.05, 0.134, "normal", 0),
-    "events and motions": (0.10, 0.10, 0.134, "normal", 0),
-    "events, large": (0.20, 0.10, 0.134, "normal", 0),
+    "earthquakes and motions, small": (0.05, 0.05, 0.134, "normal", 0),
+    "earthquakes and motions": (0.10, 0.10, 0.134, "normal", 0),
+    "earthquakes, large": (0.20, 0.10, 0.134, "normal", 0),
     "5 pairs missing": (0.10, 0.10, 0.134, "normal", 5),
-    "events with heavy tails (t, 3 df)": (0.10, 0.10, 0.134, "heavy", 0),
-    "skewed events (exponential)": (0.10, 0.10, 0.134, "skewed", 0),
+    "earthquakes with heavy tails (t, 3 df)": (0.10, 0.10, 0.134, "heavy", 0),
+    "skewed earthquakes (exponential)": (0.10, 0.10, 0.134, "skewed", 0),
 }
-BEYOND = ("events with heavy tails (t, 3 df)", "skewed events (exponential)")
+BEYOND = ("earthquakes with heavy tails (t, 3 df)", "skewed earthquakes (exponential)")
 
 
 def simulated(design: str, data_sets: int = DATA_SETS, seed: int = SEED) -> np.ndarray:
-    """Values of d under no effect, shape (data sets, events, floors, objects)."""
-    sd_event, sd_motion, sd_pair, law, missing = DESIGNS[design]
+    """Values of d under no effect, shape (data sets, earthquakes, floors, objects)."""
+    sd_earthquake, sd_motion, sd_pair, law, missing = DESIGNS[design]
     rng = np.random.default_rng([seed, list(DESIGNS).index(design)])
-    shape = (data_sets, EVENTS, 1, 1)
-    event = {
+    shape = (data_sets, EARTHQUAKES, 1, 1)
+    earthquake = {
         "normal": lambda: rng.normal(size=shape),
         "heavy": lambda: rng.standard_t(3, size=shape) / math.sqrt(3),
         "skewed": lambda: rng.exponential(size=shape) - 1,
     }[law]()
-    d = sd_event * event
-    d = d + sd_motion * rng.normal(size=(data_sets, EVENTS, FLOORS, 1))
-    d = d + sd_pair * rng.normal(size=(data_sets, EVENTS, FLOORS, TOWERS))
+    d = sd_earthquake * earthquake
+    d = d + sd_motion * rng.normal(size=(data_sets, EARTHQUAKES, FLOORS, 1))
+    d = d + sd_pair * rng.normal(size=(data_sets, EARTHQUAKES, FLOORS, TOWERS))
     if missing:
         flat = d.reshape(data_sets, -1)
         order = rng.permuted(np.tile(np.arange(flat.shape[1]), (data_sets, 1)), axis=1)
@@ -70,29 +70,31 @@ def p_of_t(values: np.ndarray) -> np.ndarray:
 def reml_se(d: np.ndarray) -> np.ndarray:
     """Standard error of the mean by REML of balanced data: mean squares pooled where they fall."""
     motion = d.mean(axis=3)
-    event = motion.mean(axis=2)
-    free = np.array([EVENTS * FLOORS * (TOWERS - 1), EVENTS * (FLOORS - 1), EVENTS - 1])
+    earthquake = motion.mean(axis=2)
+    free = np.array(
+        [EARTHQUAKES * FLOORS * (TOWERS - 1), EARTHQUAKES * (FLOORS - 1), EARTHQUAKES - 1]
+    )
     squares = [
         np.sum((d - motion[..., None]) ** 2, axis=(1, 2, 3)) / free[0],
-        TOWERS * np.sum((motion - event[..., None]) ** 2, axis=(1, 2)) / free[1],
-        FLOORS * TOWERS * np.var(event, axis=1, ddof=1),
+        TOWERS * np.sum((motion - earthquake[..., None]) ** 2, axis=(1, 2)) / free[1],
+        FLOORS * TOWERS * np.var(earthquake, axis=1, ddof=1),
     ]
     pairs_motions = (free[0] * squares[0] + free[1] * squares[1]) / (free[0] + free[1])
-    motions_events = (free[1] * squares[1] + free[2] * squares[2]) / (free[1] + free[2])
+    motions_earthquakes = (free[1] * squares[1] + free[2] * squares[2]) / (free[1] + free[2])
     everything = sum(n * s for n, s in zip(free, squares, strict=True)) / free.sum()
     # pool adjacent violators from the lowest stratum up; what counts is the top stratum's value
     lower = np.where(squares[1] < squares[0], pairs_motions, squares[1])
     pooled_up = np.where(
         squares[1] < squares[0],
         everything,
-        np.where(motions_events < squares[0], everything, motions_events),
+        np.where(motions_earthquakes < squares[0], everything, motions_earthquakes),
     )
     top = np.where(squares[2] < lower, pooled_up, squares[2])
-    return np.sqrt(top / (EVENTS * FLOORS * TOWERS))
+    return np.sqrt(top / (EARTHQUAKES * FLOORS * TOWERS))
 
 
 def levels(design: str, data_sets: int = DATA_SETS) -> dict[str, float]:
-    """Share of false rejections at 5 % of each test."""
+    """Fraction of false rejections at 5 % of each test."""
     d = simulated(design, data_sets)
     flat = d.reshape(len(d), -1)
     with warnings.catch_warnings():
@@ -107,7 +109,7 @@ def levels(design: str, data_sets: int = DATA_SETS) -> dict[str, float]:
     if not np.isnan(d).any():
         z = np.abs(flat.mean(axis=1)) / reml_se(d)
         result["mixed model, z"] = 2 * stats.norm.sf(z)
-        result["mixed model, t with 3 df"] = 2 * stats.t.sf(z, EVENTS - 1)
+        result["mixed model, t with 3 df"] = 2 * stats.t.sf(z, EARTHQUAKES - 1)
     return {name: float(np.mean(p < 0.05)) for name, p in result.items()}
 
 
@@ -115,8 +117,8 @@ def frame(d: np.ndarray) -> pd.DataFrame:
     """One data set as a table of pairs."""
     index = np.indices(d.shape).reshape(3, -1)
     names = [[f"E{i}" for i in index[0]], [f"F{i}" for i in index[1]], [f"T{i}" for i in index[2]]]
-    table = pd.DataFrame(dict(zip(("event", "floor", "object"), names, strict=True)))
-    table["motion"] = table["event"] + table["floor"]
+    table = pd.DataFrame(dict(zip(("earthquake", "floor", "object"), names, strict=True)))
+    table["motion"] = table["earthquake"] + table["floor"]
     return table.assign(d=d.ravel())
 
 
@@ -125,20 +127,20 @@ def further(design: str) -> dict[str, float]:
     d = simulated(design, 2_000)
     motion = d.mean(axis=3)
     floors = p_of_t(np.swapaxes(motion, 1, 2))
-    ranks = [stats.wilcoxon(one.ravel(), method="exact").pvalue for one in motion[:1_000]]
+    ranks = [stats.wilcoxon(item.ravel(), method="exact").pvalue for item in motion[:1_000]]
     bounds = [
         stats.bootstrap(
-            (one.ravel(),), np.mean, method="BCa", n_resamples=999, rng=SEED
+            (item.ravel(),), np.mean, method="BCa", n_resamples=999, rng=SEED
         ).confidence_interval
-        for one in motion[:500]
+        for item in motion[:500]
     ]
     shifted = motion.mean(axis=2) + math.log(1.1)
-    same = [equivalence(t_estimate(one)) < 0.05 for one in shifted]
+    same = [equivalence(t_estimate(item)) < 0.05 for item in shifted]
     difference = p_of_t(motion[:, :, 0] - motion[:, :, 1])
     return {
         "signed ranks, 12 motion means": float(np.mean(np.array(ranks) < 0.05)),
         "BCa over 12 motions leaves 0 out": float(np.mean([lo > 0 or hi < 0 for lo, hi in bounds])),
-        "difference of two floors, t over events": float(np.mean(difference < 0.05)),
+        "difference of two floors, t over earthquakes": float(np.mean(difference < 0.05)),
         "any of 3 floors, Holm": float(np.mean([holm(p).min() < 0.05 for p in floors])),
         "equivalence shown at a true change of 10 %": float(np.mean(same)),
     }
@@ -146,7 +148,7 @@ def further(design: str) -> dict[str, float]:
 
 @pytest.fixture(scope="module")
 def alarms() -> pd.DataFrame:
-    """Share of false rejections of each test in every design."""
+    """Fraction of false rejections of each test in every design."""
     found = pd.DataFrame({design: levels(design) for design in DESIGNS}).T
     document("validation-pedestal.md", "false alarms", found.reset_index(names="design"))
     return found
@@ -154,9 +156,9 @@ def alarms() -> pd.DataFrame:
 
 @pytest.fixture(scope="module")
 def decisions() -> pd.DataFrame:
-    """Share of false findings of the other decisions, by design."""
+    """Fraction of false findings of the other decisions, by design."""
     found = pd.DataFrame(
-        {design: further(design) for design in ("pairs only", "motions", "events and motions")}
+        {design: further(design) for design in ("pairs only", "motions", "earthquakes and motions")}
     )
     document("validation-pedestal.md", "decisions", found.reset_index(names="decision"))
     return found
@@ -176,14 +178,14 @@ def test_chosen_test_stays_near_its_level_beyond_the_normal(alarms, design):
 
 @pytest.mark.slow
 def test_naive_test_on_36_pairs_does_not(alarms):
-    assert alarms.loc["events and motions", "t, 36 pairs"] > 0.14
+    assert alarms.loc["earthquakes and motions", "t, 36 pairs"] > 0.14
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("design", ["pairs only", "motions", "events and motions"])
+@pytest.mark.parametrize("design", ["pairs only", "motions", "earthquakes and motions"])
 def test_other_decisions_hold_their_level(decisions, design):
     found = decisions[design]
-    assert found["difference of two floors, t over events"] < 0.07
+    assert found["difference of two floors, t over earthquakes"] < 0.07
     assert found["any of 3 floors, Holm"] < 0.07
     assert found["equivalence shown at a true change of 10 %"] < 0.07
 
@@ -193,7 +195,7 @@ def test_other_decisions_hold_their_level(decisions, design):
     ("units", "sd", "ratio"), [(4, 0.05, 1.10), (4, 0.09, 1.18), (19, 0.05, 1.04)]
 )
 def test_power_is_that_of_the_test_that_is_made(units, sd, ratio):
-    """t over the means of events, not over pairs: what is printed is what simulated data show."""
+    """t over the means of earthquakes, not over pairs: what is printed is what simulated data show."""
     rng = np.random.default_rng(SEED)
     p = p_of_t(math.log(ratio) + sd * rng.normal(size=(DATA_SETS, units)))
     assert power_of_t(ratio, sd, units) == pytest.approx(np.mean(p < 0.05), abs=0.01)
@@ -201,29 +203,29 @@ def test_power_is_that_of_the_test_that_is_made(units, sd, ratio):
 
 @pytest.mark.slow
 def test_pooled_mean_squares_are_those_of_a_mixed_model():
-    """Where events matter; without variance of events statsmodels stops short of the maximum."""
-    for one in simulated("events, large", 6):
-        table = frame(one).assign(whole=1)
+    """Where earthquakes matter; without variance of earthquakes statsmodels stops short of the maximum."""
+    for item in simulated("earthquakes, large", 6):
+        table = frame(item).assign(whole=1)
         model = smf.mixedlm(
             "d ~ 1",
             table,
             groups="whole",
             re_formula="0",
-            vc_formula={"event": "0 + C(event)", "motion": "0 + C(motion)"},
+            vc_formula={"earthquake": "0 + C(earthquake)", "motion": "0 + C(motion)"},
         )
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             fit = model.fit(reml=True, method="bfgs")
-        assert fit.bse["Intercept"] == pytest.approx(reml_se(one[None])[0], rel=0.02)
+        assert fit.bse["Intercept"] == pytest.approx(reml_se(item[None])[0], rel=0.02)
 
 
 @pytest.mark.slow
 def test_fast_formula_is_the_package_s_own_test():
-    d = simulated("events and motions", 20)
+    d = simulated("earthquakes and motions", 20)
     fast = p_of_t(d.mean(axis=(2, 3)))
-    package = [mean_effect(frame(one)).p for one in d]
+    package = [mean_effect(frame(item)).p for item in d]
     assert package == pytest.approx(fast, rel=1e-9)
-    floors = [contrast(frame(one), "floor", "F0", "F1").p for one in d]
+    floors = [contrast(frame(item), "floor", "F0", "F1").p for item in d]
     assert floors == pytest.approx(
         p_of_t(d.mean(axis=3)[:, :, 0] - d.mean(axis=3)[:, :, 1]), rel=1e-9
     )

@@ -1,7 +1,7 @@
 """Whether every estimator of the pedestal's effect finds the effect that was put in.
 
-Tests of the thesis's design are simulated: ln a of an object, a floor and an event, a random effect of
-the pair, scatter per test, and a true effect of the pedestal that varies with event and motion. Some
+Tests of the thesis's design are simulated: ln a of an object, a floor and an earthquake, a random effect of
+the pair, scatter per test, and a true effect of the pedestal that varies with earthquake and motion. Some
 are swept in steps of 20 %, some end at the shaker's limit. The tables in
 ``docs/validation-pedestal.md`` are written by these tests.
 """
@@ -20,12 +20,12 @@ from rockfrag.pedestal.paired_tests import pair_tests
 from .documented import document
 
 SEED = 20261121
-EVENTS = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
+EARTHQUAKES = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
 FLOORS = {"GF": 0.10, "F3": -0.05, "F5": -0.05}
 TOWERS = {"T1": (3, 0.50), "T2": (4, 0.38), "T3": (5, 0.30)}
 EFFECT_SIZE, SLOPE = 0.10, 0.04
-SD_EVENT, SD_MOTION, SD_PAIR, SD_TEST = 0.06, 0.05, 0.15, 0.095
-SD_LEVEL = 0.1  # of ln a between events, with and without pedestal alike
+SD_EARTHQUAKE, SD_MOTION, SD_PAIR, SD_TEST = 0.06, 0.05, 0.15, 0.095
+SD_LEVEL = 0.1  # of ln a between earthquakes, with and without pedestal alike
 LIMIT, STEP = 0.50, 1.2
 
 
@@ -33,19 +33,28 @@ def simulated(seed: int) -> pd.DataFrame:
     """72 tests with exact figures."""
     rng = np.random.default_rng([SEED, seed])
     rows = []
-    for event in EVENTS:
-        by_event, level_event = rng.normal(0, SD_EVENT), rng.normal(0, SD_LEVEL)
+    for earthquake in EARTHQUAKES:
+        by_earthquake, level_earthquake = rng.normal(0, SD_EARTHQUAKE), rng.normal(0, SD_LEVEL)
         for floor, by_floor in FLOORS.items():
             by_motion = rng.normal(0, SD_MOTION)
             for object_name, (slenderness, amplitude) in TOWERS.items():
-                pair = math.log(amplitude) + level_event + rng.normal(0, SD_PAIR)
-                effect = EFFECT_SIZE + by_floor + SLOPE * (slenderness - 4) + by_event + by_motion
+                pair = math.log(amplitude) + level_earthquake + rng.normal(0, SD_PAIR)
+                effect = (
+                    EFFECT_SIZE + by_floor + SLOPE * (slenderness - 4) + by_earthquake + by_motion
+                )
                 for pedestal in ("NP", "P"):
                     ln_a = pair + effect * (pedestal == "P") + rng.normal(0, SD_TEST)
                     rows.append(
-                        (object_name, pedestal, event, floor, f"{event}-{floor}", math.exp(ln_a))
+                        (
+                            object_name,
+                            pedestal,
+                            earthquake,
+                            floor,
+                            f"{earthquake}-{floor}",
+                            math.exp(ln_a),
+                        )
                     )
-    names = ["object", "pedestal", "event", "floor", "motion", "amplitude_g"]
+    names = ["object", "pedestal", "earthquake", "floor", "motion", "amplitude_g"]
     table = pd.DataFrame(rows, columns=names).assign(censored="none")
     return table.assign(lower_g=table["amplitude_g"], upper_g=table["amplitude_g"])
 
@@ -129,20 +138,20 @@ def variances() -> pd.DataFrame:
     """Standard deviations that the likelihood finds, against those put in (root mean of squares)."""
     fits = [fit_censored(stepped(simulated(seed))) for seed in range(10)]
     mean = np.sqrt(np.mean([(fit.sd_pair**2, fit.sd_test**2) for fit in fits], axis=0))
-    # what the effect itself varies by: event, motion, floor and slope; half of it on each test
-    varying = SD_EVENT**2 + SD_MOTION**2 + np.var(list(FLOORS.values())) + SLOPE**2 * 2 / 3
+    # what the effect itself varies by: earthquake, motion, floor and slope; half of it on each test
+    varying = SD_EARTHQUAKE**2 + SD_MOTION**2 + np.var(list(FLOORS.values())) + SLOPE**2 * 2 / 3
     spread = math.sqrt(SD_TEST**2 + varying / 2)
     return pd.DataFrame(
         {"truth": [math.hypot(SD_PAIR, SD_LEVEL), spread], "root mean square": mean},
         index=[
-            "interval likelihood, pair (with the level of the event)",
+            "interval likelihood, pair (with the level of the earthquake)",
             "interval likelihood, test (with the effect's own scatter)",
         ],
     )
 
 
 def coverage_of_censored(data_sets: int = 200) -> float:
-    """Share of 95 % intervals of the interval likelihood (jackknife over events) with the truth."""
+    """Fraction of 95 % intervals of the interval likelihood (jackknife over earthquakes) with the truth."""
     held = 0
     for seed in range(data_sets):
         effect = fit_censored(cut(simulated(seed))).effect
@@ -169,9 +178,9 @@ def test_estimator_finds_what_was_put_in(recovered, name):
 def test_leaving_censored_pairs_out_biases_the_effect_and_the_likelihood_does_not():
     """On the same data, against the mean that a stronger shaker would have found."""
     sets = [simulated(seed) for seed in range(40)]
-    full = np.array([mean_effect(pairs_of(one)).mean for one in sets])
-    kept = np.array([mean_effect(complete(cut(one))).mean for one in sets]) - full
-    modelled = np.array([likely(cut(one)) for one in sets]) - full
+    full = np.array([mean_effect(pairs_of(item)).mean for item in sets])
+    kept = np.array([mean_effect(complete(cut(item))).mean for item in sets]) - full
+    modelled = np.array([likely(cut(item)) for item in sets]) - full
     assert abs(kept.mean()) > 3 * kept.std(ddof=1) / math.sqrt(len(sets))
     assert abs(modelled.mean()) < abs(kept.mean()) / 2
 

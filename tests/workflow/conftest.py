@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 CATALOGUE = (
-    "name,event,date,station,component,magnitude,distance_km,source,file,sha256,unit,licence\n"
+    "name,earthquake,date,station,component,magnitude,distance_km,source,file,sha256,unit,licence\n"
 )
 
 SPECIMENS = (
@@ -60,9 +60,9 @@ def make_study(folder: Path) -> Path:
     """Write a whole small study into a new folder."""
     folder.mkdir()
     rows = [CATALOGUE]
-    for number, event in enumerate(("First", "First", "Second", "Second", "Third", "Fourth")):
+    for number, earthquake in enumerate(("First", "First", "Second", "Second", "Third", "Fourth")):
         write_record(folder / f"record{number}.txt", seed=number)
-        rows.append(f"motion {number},{event},,,,,,folder,record{number}.txt,,g,made up\n")
+        rows.append(f"motion {number},{earthquake},,,,,,folder,record{number}.txt,,g,made up\n")
     (folder / "motions.csv").write_text("".join(rows))
     (folder / "specimens.csv").write_text(SPECIMENS)
     (folder / "configurations.csv").write_text(CONFIGURATIONS)

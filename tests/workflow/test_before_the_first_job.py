@@ -12,7 +12,7 @@ import yaml
 from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.files import check_name, distinct_file_names, file_name
-from rockfrag.fragility.sweeps import scale_power
+from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.motions.measures import measure_motion
 from rockfrag.records.motion import Motion
 from rockfrag.schema import registered
@@ -122,7 +122,7 @@ def test_null_is_the_same_as_no_building(study_folder: Path):
 def test_without_a_table_of_configurations_each_block_stands_alone(study_folder: Path):
     content = {**study_content(), "bodies": {"specimens": "specimens.csv", "use": ["T1", "T2"]}}
     study = load_any(write_study(study_folder, content))
-    assert [one.name for one in study.configurations] == ["T1", "T2"]
+    assert [configuration.name for configuration in study.configurations] == ["T1", "T2"]
     assert not study.has_pairs
 
 
@@ -167,7 +167,7 @@ def test_a_record_in_cm_s2_that_is_taken_for_m_s2_is_refused(
 
 @pytest.mark.parametrize(
     "columns",
-    [{"overturned": "fell"}, {"overturned": "overturned", "event": "quake"}],
+    [{"overturned": "fell"}, {"overturned": "overturned", "earthquake": "quake"}],
 )
 def test_a_column_that_a_measured_table_lacks_is_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], columns: dict
@@ -241,9 +241,9 @@ def test_names_become_files_that_stay_in_their_folder_and_apart():
     }
     assert made["P&T1"] == "P-T1"
     assert len(set(made.values())) == len(made)
-    for one in made.values():
-        assert not set(one) & set("/\\{}")
-        assert one[0] not in ".-"
+    for item in made.values():
+        assert not set(item) & set("/\\{}")
+        assert item[0] not in ".-"
     for first, second in (("T/1", "T:1"), ("T1", "t1")):
         with pytest.raises(InputError, match="share a file name"):
             distinct_file_names([first, second])

@@ -40,14 +40,17 @@ def smoke(**keys: object):
 )
 def test_each_contact_has_the_friction_that_the_study_states(friction, alone, stacked):
     study = smoke(friction=friction)
-    found = {one.name: [on.friction for on in one.contacts] for one in study.configurations}
+    found = {
+        configuration.name: [on.friction for on in configuration.contacts]
+        for configuration in study.configurations
+    }
     assert found["T1"] == alone
     assert found["P&T1"] == stacked
 
 
 def test_without_the_keys_nothing_slides_and_nothing_moves_up_and_down():
     study = smoke()
-    assert not any(one.loose for one in study.configurations)
+    assert not any(configuration.loose for configuration in study.configurations)
     assert (study.slides, study.vertical) == (False, False)
 
 
@@ -84,9 +87,11 @@ def test_measured_impacts_and_friction_may_be_given_together():
 def test_what_rocks_without_sliding_is_refused_beside_them(key):
     source = CONFIG / "thesis.yaml"
     content = {**read_yaml(source), key: 0.3 if key == "friction" else True}
-    with pytest.raises(InputError, match=f"key {key}: the departures of the key explanation"):
+    with pytest.raises(
+        InputError, match=f"key {key}: the perturbed parameters of the key sensitivity_analysis"
+    ):
         study_from(content, source)
-    del content["explanation"]
+    del content["sensitivity_analysis"]
     with pytest.raises(InputError, match=f"key {key}: what the key compare_with"):
         study_from(content, source)
 
@@ -146,8 +151,8 @@ def test_a_building_says_which_floors_move_up_and_down_more_than_the_ground():
     }
     up = Motion(np.sin(np.arange(50.0)), 0.01, "quake")
     plain = vertical_motions(make_building(settings), up)
-    assert [one.name for one in plain] == ["quake_hall", "quake_loft"]
-    assert all((one.acceleration == up.acceleration).all() for one in plain)
+    assert [item.name for item in plain] == ["quake_hall", "quake_loft"]
+    assert all((item.acceleration == up.acceleration).all() for item in plain)
     soft = vertical_motions(make_building({**settings, "vertical_factors": {"loft": 1.5}}), up)
     np.testing.assert_allclose(soft[1].acceleration, 1.5 * up.acceleration)
     with pytest.raises(InputError, match="floor 'attic' is not defined"):

@@ -196,10 +196,10 @@ def test_a_job_that_may_not_write_its_log_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
     (tmp_path / "file").write_text("")
-    with pytest.raises(SystemExit), logged(str(tmp_path / "file" / "x.log"), "sweep"):
+    with pytest.raises(SystemExit), logged(str(tmp_path / "file" / "x.log"), "ida"):
         pass
     said = capsys.readouterr().err
-    assert said.startswith("sweep failed: ")
+    assert said.startswith("IDA curve failed: ")
     assert said.count("\n") == 1
 
 

@@ -19,8 +19,8 @@ def damaged(study_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A study with one record that is no record, one of zeros, one that is not there, and two out of reach."""
     monkeypatch.setenv("PIP_NO_INDEX", "1")
     with (study_folder / "motions.csv").open("a", encoding="utf-8") as table:
-        for name, event in (("fetched 1", "Friuli"), ("fetched 2", "Kobe")):
-            table.write(f"{name},{event},,,,,,gmspy,{event}.dat,,,made elsewhere\n")
+        for name, earthquake in (("fetched 1", "Friuli"), ("fetched 2", "Kobe")):
+            table.write(f"{name},{earthquake},,,,,,gmspy,{earthquake}.dat,,,made elsewhere\n")
     (study_folder / "record1.txt").write_text("Not a record.\n")
     (study_folder / "record2.txt").write_text("0.00 0.0\n0.01 0.0\n0.02 0.0\n" * 3)
     rows = "".join(f"{0.01 * i:.2f} 0.0\n" for i in range(100))

@@ -8,9 +8,7 @@ import pandas as pd
 from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.stages.measured_tests import measured_tables
 
-HEADER = (
-    "test,object,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
-)
+HEADER = "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
 
 
 def tables(folder: Path, rows: list[str]) -> dict[str, pd.DataFrame]:
@@ -36,13 +34,13 @@ def test_a_full_synthetic_table_has_curves_and_an_effect(tmp_path: Path):
     rng = np.random.default_rng(2)
     rows = []
     for object_name, level in (("T1", 0.5), ("T2", 0.4), ("T3", 0.3)):
-        for event in "ABCD":
+        for earthquake in "ABCD":
             for floor in ("GF", "F3", "F5"):
                 for side in ("P", "NP"):
                     a = level * np.exp(0.1 * rng.normal())
                     name = f"synthetic {len(rows)}"
                     rows.append(
-                        f"{name},{object_name},{side},{event},{floor},{a:.4f},{1.05 * a:.4f},none,statue,1,"
+                        f"{name},{object_name},{side},{earthquake},{floor},{a:.4f},{1.05 * a:.4f},none,statue,1,"
                     )
     found = tables(tmp_path, rows)
     whole = found["measured/effects"].query("scope == 'whole'")["ratio"].iloc[0]

@@ -21,7 +21,10 @@ def study_with(restitution):
 
 def test_each_block_brings_what_was_measured_of_it():
     study = study_with({"law": "ratio", "blocks": {"T1": 0.9, "P": [0.3, 0.35]}})
-    found = {one.name: [under.law for under in one.contacts] for one in study.configurations}
+    found = {
+        configuration.name: [under.law for under in configuration.contacts]
+        for configuration in study.configurations
+    }
     pedestal, tower = ImpactLaw("ratio", 0.3, 0.35), ImpactLaw("ratio", 0.9, 0.9)
     assert found["T1"] == [tower]
     assert found["P&T1"] == [pedestal, tower]
@@ -31,7 +34,7 @@ def test_each_block_brings_what_was_measured_of_it():
 
 def test_without_the_key_momentum_is_conserved():
     configurations = study_from(read_yaml(SMOKE), SMOKE).configurations
-    laws = {under.law.name for one in configurations for under in one.contacts}
+    laws = {under.law.name for configuration in configurations for under in configuration.contacts}
     assert laws == {"momentum"}
 
 

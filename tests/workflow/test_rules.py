@@ -65,7 +65,7 @@ def test_snakemake_finds_nothing_to_mend():
 
 def test_records_come_first_and_the_report_last(study_folder: Path):
     done = snakemake(study_folder, "--dry-run")
-    others = {"sweep", "tests", "fragility", "pedestal"}
+    others = {"ida", "tests", "fragility", "pedestal"}
     assert set(planned(done.stdout)) == {"motions", *others, "report", "all"}
     assert planned(done.stdout)[0] == "motions"
     assert planned(done.stdout)[-2:] == ["report", "all"]

@@ -71,7 +71,7 @@ def test_the_workflow_writes_what_the_stages_write_to_the_byte(ran: Path, tmp_pa
 def test_a_study_runs_from_records_to_report(ran: Path):
     results = ran / "results" / "tiny"
     tests = pd.read_csv(results / "tests.csv")
-    laboratory = tests[tests["reading"] == "step_protocol"]
+    laboratory = tests[tests["definition"] == "step_protocol"]
     assert len(laboratory) == 3 * 2
     # every test has an amplitude or says why not
     known = laboratory["amplitude_g"].notna()

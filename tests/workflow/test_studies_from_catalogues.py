@@ -70,7 +70,7 @@ def test_44_text_files_become_a_study(tmp_path, study_file, monkeypatch, capsys)
     table = pd.read_csv(catalogue, dtype=str, keep_default_na=False)
     assert len(table) == 44
     assert (table["second"] != "").all()
-    assert table.groupby("event").size().tolist() == [2] * 22
+    assert table.groupby("earthquake").size().tolist() == [2] * 22
     assert sorted(table["dt"][table["dt"] != ""]) == ["0.01"] * 4
     assert "its earthquake is not stated" in capsys.readouterr().err
     measures = run_motions(study_file, monkeypatch)
@@ -78,7 +78,7 @@ def test_44_text_files_become_a_study(tmp_path, study_file, monkeypatch, capsys)
     assert (measures["rotd100_pga_g"] >= measures["pga_g"] * (1 - 1e-3)).all()
     assert (measures["rotd50_pga_g"] <= measures["rotd100_pga_g"]).all()
     # both components of a record have the measures that no direction decides
-    assert measures.groupby("event")["rotd50_pga_g"].nunique().eq(1).all()
+    assert measures.groupby("earthquake")["rotd50_pga_g"].nunique().eq(1).all()
 
 
 def test_a_download_of_20_pairs_becomes_a_study(tmp_path, study_file, monkeypatch):
@@ -91,7 +91,7 @@ def test_a_download_of_20_pairs_becomes_a_study(tmp_path, study_file, monkeypatc
     assert first["name"] == "RSN701_LOMAP_S01000"
     assert first["second"] == "PEERNGARecords_Unscaled/RSN701_LOMAP_S01090.AT2"
     assert first["vertical"] == "PEERNGARecords_Unscaled/RSN701_LOMAP_S01-UP.AT2"
-    assert (first["event"], first["station"]) == ("Loma Prieta 1989", "Station 1")
+    assert (first["earthquake"], first["station"]) == ("Loma Prieta 1989", "Station 1")
     assert (first["magnitude"], first["distance_km"]) == ("6.93", "5.0")
     assert first["scale_factor"] == "1.1"
     assert (table["vertical"] == "").sum() == 10

@@ -13,7 +13,7 @@ from rockfrag.study.loading import load_any
 from .conftest import study_content, write_study
 from .running import ROOT, snakemake
 
-EXPLANATION = {
+SENSITIVITY_ANALYSIS = {
     "statue_restitution": [0.9],
     "interface_restitution": [0.95],
     "ground_restitution": [1.5],
@@ -30,7 +30,7 @@ EXPLANATION = {
 }
 
 SYNTHETIC_TESTS = (
-    "test,object,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark\n"
+    "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark\n"
     "synthetic 1,T1,NP,First,GF,0.5,0.55,none,statue,1,synthetic\n"
     "synthetic 2,T1,P,First,GF,0.45,0.5,none,statue,1,synthetic\n"
     "synthetic 3,T1,NP,Second,GF,0.6,0.65,none,statue,1,synthetic\n"
@@ -55,7 +55,7 @@ def full_study(folder: Path) -> Path:
             "shaker": "shaker.yaml",
             "measured_tests": "tests.csv",
             "building_sensitivity": {"first_period_s": [0.5], "floors": [{"F3": 3, "F5": 6}]},
-            "explanation": EXPLANATION,
+            "sensitivity_analysis": SENSITIVITY_ANALYSIS,
         },
     )
 
@@ -68,15 +68,18 @@ def full_study(folder: Path) -> Path:
         ({"building_sensitivity": {"periods": [1]}}, ["building_sensitivity.periods"]),
         ({"building_sensitivity": {"floors": [{"F5": 9}]}}, ["floors[0].F5", "up to 6", "9"]),
         ({"building_sensitivity": {"floors": [{"attic": 6}]}}, ["floors[0].attic", "GF, F3, F5"]),
-        ({"explanation": {**EXPLANATION, "replicates": 0}}, ["explanation.replicates"]),
         (
-            {"explanation": {**EXPLANATION, "friction": {"ground": [0.4]}}},
-            ["explanation.friction", "interface"],
+            {"sensitivity_analysis": {**SENSITIVITY_ANALYSIS, "replicates": 0}},
+            ["sensitivity_analysis.replicates"],
+        ),
+        (
+            {"sensitivity_analysis": {**SENSITIVITY_ANALYSIS, "friction": {"ground": [0.4]}}},
+            ["sensitivity_analysis.friction", "interface"],
         ),
         ({"building": None}, ["building"]),
         (
             {"bodies": {**study_content()["bodies"], "use": ["T1", "T2"]}},
-            ["key explanation", "with and without"],
+            ["key sensitivity_analysis", "with and without"],
         ),
     ],
 )
@@ -101,21 +104,21 @@ def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
 
     tests = pd.read_csv(results / "tests.csv")
     shaker = pd.read_csv(results / "shaker.csv").set_index("motion")["limit_g"]
-    limited = tests[tests["reading"] == "step_protocol_shaker"]
+    limited = tests[tests["definition"] == "step_protocol_shaker"]
     assert len(limited) == 3 * 3 * 4
     assert (limited["lower_g"] <= limited["motion"].map(shaker) * (1 + 1e-9)).all()
 
     beside = pd.read_csv(results / "measured" / "beside.csv")
     assert len(beside) == 4
     assert beside["ratio"].notna().sum() == 3
-    claims = pd.read_parquet(results / "measured" / "claims.parquet")
-    about_data = claims[claims["kind"] != "identity"]
-    assert (about_data["verdict"] == "open").all()
+    hypotheses = pd.read_parquet(results / "measured" / "hypotheses.parquet")
+    about_data = hypotheses[hypotheses["kind"] != "identity"]
+    assert (about_data["outcome"] == "open").all()
 
     margins = pd.read_csv(results / "building_sensitivity" / "margins.csv")
     assert set(margins["label"]) == {"reference", "first period 0.5 s", "levels F3 3, F5 6"}
-    effects = pd.read_csv(results / "explanation" / "effects.csv")
-    single = {name for name, levels in EXPLANATION.items() if isinstance(levels, list)}
+    effects = pd.read_csv(results / "sensitivity_analysis" / "effects.csv")
+    single = {name for name, levels in SENSITIVITY_ANALYSIS.items() if isinstance(levels, list)}
     single.remove("table_mass_kg")
     # restitutions by every law that they may follow, and the table's mass in two ways
     laws = {"statue_restitution_ratio", "interface_restitution_ratio", "ground_restitution_ratio"}
@@ -125,10 +128,10 @@ def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
 
     nrml = ElementTree.parse(results / "exports" / "fragility_pga.xml").getroot()
     assert nrml.tag.endswith("nrml")
-    choice = pd.read_csv(results / "measure_choice.csv")
+    choice = pd.read_csv(results / "measure_selection.csv")
     assert choice.groupby("configuration")["recommended"].sum().eq(1).all()
 
     page = (results / "report.html").read_text()
-    for anchor in ("measures", "explanation", "shaker", "sensitivity", "measured"):
+    for anchor in ("measures", "sensitivity_analysis", "shaker", "sensitivity", "measured"):
         assert f'id="{anchor}"' in page
     assert 'src="http' not in page

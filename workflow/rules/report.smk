@@ -5,7 +5,7 @@ rule report:
     """Draw the figures and write the page."""
     input:
         rules.motions.output,
-        SWEEPS,
+        IDA_CURVES,
         table("as_recorded"),
         rules.tests.output,
         rules.fragility.output,

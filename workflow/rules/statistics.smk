@@ -2,10 +2,10 @@
 
 
 rule tests:
-    """Read the sweeps as a laboratory would, within the limits of its shaker, and look at the contact forces."""
+    """Read the IDA curves as a laboratory would, within the limits of its shaker, and look at the contact forces."""
     input:
         motions=SHAKING,
-        sweeps=SWEEPS,
+        ida_curves=IDA_CURVES,
         bodies=STUDY.body_files,
         shaker=STUDY.more.shaker_file or [],
     output:
@@ -34,11 +34,11 @@ rule fragility:
     """Fit fragility curves, compare intensity measures, and write curves for OpenQuake and SimCenter."""
     input:
         read("measures", "motions/records"),
-        sweeps=SWEEPS,
+        ida_curves=IDA_CURVES,
     output:
-        table("fragility", "fragility_bands", "fragility_bins", "fragility_shares"),
-        table("fragility_floors", "fragility_floors_shares"),
-        table("survival_windows", "measure_choice"),
+        table("fragility", "fragility_bands", "fragility_bins", "fragility_fractions"),
+        table("fragility_floors", "fragility_floors_fractions"),
+        table("find_resurrections", "measure_selection"),
         table("fragility_two_measures", "fragility_contours", "fragility_cells"),
         exports=directory(f"{RESULTS}/exports"),
     log:
@@ -66,7 +66,7 @@ rule pedestal:
         bodies=STUDY.body_files,
     output:
         table("pedestal/pairs", "pedestal/effects", "pedestal/whole"),
-        table("pedestal/without_event", "pedestal/ranks", "pedestal/notes"),
+        table("pedestal/without_earthquake", "pedestal/ranks", "pedestal/notes"),
     log:
         f"{RESULTS}/logs/pedestal.log",
     # seconds, less than a cluster takes to start it

@@ -13,9 +13,22 @@ from rockfrag.assess.conversion import Conversion, find_conversion
 from rockfrag.assess.direction import Directions, find_directions
 from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.hazard.measure import PGA, PGV, Measure
+from rockfrag.assess.mitigations import Mitigation, compare, mitigations_of
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.moved import Moved
-from rockfrag.assess.remedies import Remedy, compare, remedies_of
+from rockfrag.assess.outcomes import (
+    FEW_LEVELS,
+    FEWEST_LEVELS,
+    LEVELS,
+    IntensityLevels,
+    ObjectOutcomes,
+    fraction_with_sliding,
+    make_intensity_levels,
+    on_pad,
+    outcomes_of,
+    outcomes_of_all,
+    outcomes_of_each,
+)
 from rockfrag.assess.request import Level, Request
 from rockfrag.assess.risk import (
     Estimate,
@@ -23,24 +36,11 @@ from rockfrag.assess.risk import (
     amplitude_target,
     estimate,
     estimate_rocking,
+    fraction_target,
     risk_target,
-    share_target,
 )
 from rockfrag.assess.rules import RuleCheck, check_rules
 from rockfrag.assess.sources import SPACE
-from rockfrag.assess.verdicts import (
-    FEW_LEVELS,
-    FEWEST_LEVELS,
-    LEVELS,
-    Ladder,
-    Verdicts,
-    make_ladder,
-    on_pad,
-    share_with_sliding,
-    verdicts_of,
-    verdicts_of_all,
-    verdicts_of_each,
-)
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
@@ -67,14 +67,14 @@ class Assessment:
     counted
         What each motion as recorded does to the object as it stands.
     arrangements
-        Verdicts of each way in which the object can stand, as it stands first, under motions with the velocity of
+        Outcomes of each way in which the object can stand, as it stands first, under motions with the velocity of
         the site.
     rocking
-        Share of the motions at the level that make it rock; None without a level.
+        Fraction of the motions at the level that make it rock; None without a level.
     rocks_from
         Least level at which any motion makes it rock, in the measure's unit; infinite where none does.
-    share
-        Share of the motions at the level that topple it; None without a level.
+    fraction
+        Fraction of the motions at the level that topple it; None without a level.
     probability
         Probability of toppling in the years asked for; None without a hazard.
     counts
@@ -91,25 +91,25 @@ class Assessment:
         What hazard in another measure than PGV leaves open; None in PGV.
     directions
         The worst direction; None where no record has two components.
-    remedies
+    mitigations
         What helps, most helpful first.
     effects
         What each assumption does to the answer: what is estimated with it smaller and larger.
     rules
-        Engineers' rules held against the verdicts.
-    sliding_share
-        Share of the motions at the level that topple it if it may slide [-]; NaN without friction or level.
+        Engineers' rules held against the outcomes.
+    sliding_fraction
+        Fraction of the motions at the level that topple it if it may slide [-]; NaN without friction or level.
     """
 
     request: Request
     motions: MotionSet
     level: Level | None
     hazard: HazardCurve | None
-    counted: Verdicts
-    arrangements: Mapping[str, Verdicts]
+    counted: ObjectOutcomes
+    arrangements: Mapping[str, ObjectOutcomes]
     rocking: Estimate | None
     rocks_from: float
-    share: Estimate | None
+    fraction: Estimate | None
     probability: Estimate | None
     counts: tuple[int, int, int] | None
     amplitudes: Mapping[float, Estimate]
@@ -117,27 +117,27 @@ class Assessment:
     curve: Fragility | None
     conversion: Conversion | None
     directions: Directions | None
-    remedies: tuple[Remedy, ...]
+    mitigations: tuple[Mitigation, ...]
     effects: tuple[Moved[float], ...]
     rules: tuple[RuleCheck, ...]
-    sliding_share: float
+    sliding_fraction: float
 
     __repr__ = short_repr
 
     @property
     def measure(self) -> Measure:
         """Measure of the levels."""
-        return self.verdicts.ladder.measure
+        return self.outcomes.intensity_levels.measure
 
     @property
-    def verdicts(self) -> Verdicts:
+    def outcomes(self) -> ObjectOutcomes:
         """Outcomes of the object as it stands."""
         return next(iter(self.arrangements.values()))
 
     @property
     def main(self) -> Estimate:
-        """What is asked for first: the probability, else the share, else the amplitude that topples half."""
-        return self.probability or self.share or self.amplitudes[0.5]
+        """What is asked for first: the probability, else the fraction, else the amplitude that topples half."""
+        return self.probability or self.fraction or self.amplitudes[0.5]
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +154,7 @@ class Plan:
         The hazard that counts, and that of PGV beside it if there is one.
     level
         Level of shaking at the site.
-    ladder, fewer_ladder
+    intensity_levels, fewer_intensity_levels
         Levels of both sets.
     brief
         Whether directions are left out, and changes compared with few motions and levels.
@@ -164,8 +164,8 @@ class Plan:
     fewer: MotionSet
     curves: tuple[HazardCurve, ...]
     level: Level | None
-    ladder: Ladder
-    fewer_ladder: Ladder
+    intensity_levels: IntensityLevels
+    fewer_intensity_levels: IntensityLevels
     brief: bool
 
     @property
@@ -188,10 +188,10 @@ class Shaken:
         Outcomes as it stands, and with each mitigation, under the same motions.
     """
 
-    arrangements: Mapping[str, Verdicts]
-    moved: Sequence[Moved[Verdicts]]
-    before: Verdicts
-    changed: Mapping[str, Verdicts]
+    arrangements: Mapping[str, ObjectOutcomes]
+    moved: Sequence[Moved[ObjectOutcomes]]
+    before: ObjectOutcomes
+    changed: Mapping[str, ObjectOutcomes]
 
 
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
@@ -204,7 +204,7 @@ def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = Fal
     records
         Folder of fetched records.
     brief
-        Leave out directions and remedies, as for one line of an inventory.
+        Leave out directions and mitigation measures, as for one line of an inventory.
 
     Returns
     -------
@@ -263,8 +263,8 @@ def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
         fewer,
         curves,
         level,
-        make_ladder(motions, measure, asked, FEW_LEVELS if few else LEVELS),
-        make_ladder(fewer, measure, asked, FEWEST_LEVELS if brief else FEW_LEVELS),
+        make_intensity_levels(motions, measure, asked, FEW_LEVELS if few else LEVELS),
+        make_intensity_levels(fewer, measure, asked, FEWEST_LEVELS if brief else FEW_LEVELS),
         brief,
     )
 
@@ -279,33 +279,42 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     plan
         Motions and levels.
     """
-    objects = [one.objects for one in requests]
-    ways = [dict(one.arrangements) for one in objects]
+    objects = [request.objects for request in requests]
+    ways = [dict(item.arrangements) for item in objects]
     if plan.brief:
         ways = [dict(list(bodies.items())[:1]) for bodies in ways]
-    arrangements = verdicts_of_each(objects, ways, plan.motions, plan.ladder)
+    arrangements = outcomes_of_each(objects, ways, plan.motions, plan.intensity_levels)
     # of few motions the object as it stands comes first, then with each mitigation
-    changes = [{"": one.body, **remedies_of(one)} for one in objects]
-    under = (plan.fewer, plan.fewer_ladder) if plan.brief else (plan.motions, plan.ladder)
-    compared = verdicts_of_each(objects, changes, *under)
+    changes = [{"": item.body, **mitigations_of(item)} for item in objects]
+    under = (
+        (plan.fewer, plan.fewer_intensity_levels)
+        if plan.brief
+        else (plan.motions, plan.intensity_levels)
+    )
+    compared = outcomes_of_each(objects, changes, *under)
     moved = _moved(requests, plan)
     found = []
-    for one, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
+    for item, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
         before = change.pop("")
-        if one.pad_friction is not None:
-            outcomes, slip = on_pad(one, one.pad_friction, *under)
-            change[_pad_words(one.pad_friction, slip, plan, under[1])] = outcomes
+        if item.pad_friction is not None:
+            outcomes, slip = on_pad(item, item.pad_friction, *under)
+            change[_pad_words(item.pad_friction, slip, plan, under[1])] = outcomes
         found.append(Shaken(way, sides, before, change))
     return found
 
 
-def _pad_words(friction: float, slip: NDArray[np.float64], plan: Plan, ladder: Ladder) -> str:
+def _pad_words(
+    friction: float, slip: NDArray[np.float64], plan: Plan, intensity_levels: IntensityLevels
+) -> str:
     """The pad, and how far the object slides on it at the site's level."""
     words = f"a pad of friction {friction:g}"
     if plan.level is None:
         return words
-    at = min(int(ladder.levels.searchsorted(plan.level.value)), ladder.levels.size - 1)
-    here = slip[ladder.allowed[:, at], at]
+    at = min(
+        int(intensity_levels.levels.searchsorted(plan.level.value)),
+        intensity_levels.levels.size - 1,
+    )
+    here = slip[intensity_levels.allowed[:, at], at]
     if not here.size:
         return words
     return f"{words}, on which it slides up to {100 * here.max():.3g} cm at {plan.level.words},"
@@ -325,7 +334,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     """
     objects, motions, level = request.objects, plan.motions, plan.level
     hazard = plan.curves[0] if plan.curves else None
-    measure = plan.ladder.measure
+    measure = plan.intensity_levels.measure
     counted = next(iter(shaken.arrangements.values()))
     target = _target(level, hazard, request.years)
     exact = _starts_by_statics(request, measure)
@@ -342,7 +351,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         )
     shaken = _at_site(shaken, plan, conversion)
     arrangements, moved = shaken.arrangements, shaken.moved
-    both_sides = {one.name: one.sides for one in moved}
+    both_sides = {change.name: change.sides for change in moved}
     shifts = {"model": MODEL_ERRORS[SCAN if objects.scan else CUT].beyond}
     if not objects.round:
         shifts["space"] = SPACE
@@ -352,19 +361,19 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
             both_sides["together"] = together
     now = next(iter(arrangements.values()))
 
-    def estimated(one: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
-        return estimate(one, now, both_sides, fixed or {}, shifts)
+    def estimated(target: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
+        return estimate(target, now, both_sides, fixed or {}, shifts)
 
     probability = None
     if hazard:
         fixed = _of_quantiles(now, hazard)
         probability = estimated(risk_target(hazard, request.years), fixed)
-    rocking, share = None, None
+    rocking, fraction = None, None
     rocks_from = _rocks_from(request, counted)
     if level:
         rocking = estimate_rocking(level.value, now, both_sides, exact=exact)
-        share = _no_more_than(estimated(share_target(level.value)), rocking)
-        rocking = _no_less_than(rocking, share)
+        fraction = _no_more_than(estimated(fraction_target(level.value)), rocking)
+        rocking = _no_less_than(rocking, fraction)
     at = level.value if level else None
     brief = plan.brief
     return Assessment(
@@ -376,24 +385,26 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         arrangements=arrangements,
         rocking=rocking,
         rocks_from=rocks_from,
-        share=share,
+        fraction=fraction,
         probability=probability,
         counts=_counts(counted, level) if now is counted else None,
         amplitudes={p: estimated(amplitude_target(p)) for p in (0.1, 0.5)},
-        by_arrangement={name: target.value(one) for name, one in arrangements.items()},
+        by_arrangement={
+            name: target.value(arrangement) for name, arrangement in arrangements.items()
+        },
         curve=None if brief or now is not counted else fragility_of(now.outcomes()),
         conversion=conversion,
         directions=None
         if brief or objects.round or objects.many
         else find_directions(
-            objects, motions, make_ladder(motions, measure, plan.asked, FEW_LEVELS), at
+            objects, motions, make_intensity_levels(motions, measure, plan.asked, FEW_LEVELS), at
         ),
-        remedies=_remedies(request, target, shaken),
-        effects=tuple(one.turned(target.value) for one in moved),
+        mitigations=_mitigations(request, target, shaken),
+        effects=tuple(change.turned(target.value) for change in moved),
         rules=() if brief or objects.round else tuple(check_rules(objects, motions, counted)),
-        sliding_share=math.nan
+        sliding_fraction=math.nan
         if brief or at is None or objects.friction is None
-        else share_with_sliding(objects, motions, measure, at),
+        else fraction_with_sliding(objects, motions, measure, at),
     )
 
 
@@ -404,17 +415,20 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
     few = conversion.of(plan.fewer)
     compared = few if plan.brief else conversion
     return Shaken(
-        {name: conversion.at_site(one) for name, one in shaken.arrangements.items()},
-        [one.turned(few.at_site) for one in shaken.moved],
+        {
+            name: conversion.at_site(arrangement)
+            for name, arrangement in shaken.arrangements.items()
+        },
+        [change.turned(few.at_site) for change in shaken.moved],
         compared.at_site(shaken.before),
-        {name: compared.at_site(one) for name, one in shaken.changed.items()},
+        {name: compared.at_site(item) for name, item in shaken.changed.items()},
     )
 
 
 def _target(level: Level | None, hazard: HazardCurve | None, years: float) -> Target:
     if hazard:
         return risk_target(hazard, years)
-    return share_target(level.value) if level else amplitude_target(0.5)
+    return fraction_target(level.value) if level else amplitude_target(0.5)
 
 
 def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
@@ -424,9 +438,9 @@ def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
     about.
     """
     asked = request.level.measure if request.level else None
-    curves = [one for one in request.hazard if one.measure == asked] or request.hazard
-    others = [one for one in curves if one.measure != PGV]
-    velocity = [one for one in request.hazard if one.measure == PGV]
+    curves = [item for item in request.hazard if item.measure == asked] or request.hazard
+    others = [curve for curve in curves if curve.measure != PGV]
+    velocity = [item for item in request.hazard if item.measure == PGV]
     if not others:
         return tuple(velocity)
     if len(others) == 1:
@@ -435,8 +449,8 @@ def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
     name, body = next(iter(objects.arrangements.items()))
 
     def scatter(curve: HazardCurve) -> float:
-        ladder = make_ladder(motions, curve.measure)
-        first = verdicts_of(objects, {name: body}, motions, ladder)[name].first_levels()
+        intensity_levels = make_intensity_levels(motions, curve.measure)
+        first = outcomes_of(objects, {name: body}, motions, intensity_levels)[name].first_levels()
         known = np.log(first[np.isfinite(first)])
         return float(known.std()) if known.size > 1 else math.inf
 
@@ -460,58 +474,60 @@ def _starts_by_statics(request: Request, measure: Measure) -> bool:
     return measure == PGA and (request.place.shakes_as_ground or request.records.on_floor)
 
 
-def _rocks_from(request: Request, now: Verdicts) -> float:
+def _rocks_from(request: Request, now: ObjectOutcomes) -> float:
     """Least level that makes the object rock: by statics where it decides, else the least that was tried."""
-    if _starts_by_statics(request, now.ladder.measure):
+    if _starts_by_statics(request, now.intensity_levels.measure):
         return request.objects.least_uplift
-    rocked = np.flatnonzero(now.shares(rocks=True) > 0)
-    return float(now.ladder.levels[rocked[0]]) if rocked.size else math.inf
+    rocked = np.flatnonzero(now.fractions(rocks=True) > 0)
+    return float(now.intensity_levels.levels[rocked[0]]) if rocked.size else math.inf
 
 
-def _no_more_than(share: Estimate, rocking: Estimate) -> Estimate:
+def _no_more_than(fraction: Estimate, rocking: Estimate) -> Estimate:
     """What does not rock cannot topple."""
     if rocking.value > 0:
-        return share
-    return replace(share, upper=min(share.upper, rocking.upper))
+        return fraction
+    return replace(fraction, upper=min(fraction.upper, rocking.upper))
 
 
-def _no_less_than(rocking: Estimate, share: Estimate) -> Estimate:
+def _no_less_than(rocking: Estimate, fraction: Estimate) -> Estimate:
     """What topples rocks: limits of rocking are at least those of toppling."""
     return replace(
-        rocking, lower=max(rocking.lower, share.lower), upper=max(rocking.upper, share.upper)
+        rocking, lower=max(rocking.lower, fraction.lower), upper=max(rocking.upper, fraction.upper)
     )
 
 
-def _counts(now: Verdicts, level: Level | None) -> tuple[int, int, int] | None:
+def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | None:
     if level is None:
         return None
-    at = int(now.ladder.levels.searchsorted(level.value))
-    if at == now.ladder.levels.size or now.ladder.levels[at] != level.value:
+    at = int(now.intensity_levels.levels.searchsorted(level.value))
+    if at == now.intensity_levels.levels.size or now.intensity_levels.levels[at] != level.value:
         return None
-    allowed = now.ladder.allowed[:, at]
+    allowed = now.intensity_levels.allowed[:, at]
     if not allowed.any():
         return None
     rocked, fell = (int(what[allowed, at].sum()) for what in (now.rocked, now.overturned))
     return int(allowed.sum()), rocked, fell
 
 
-def _moved(requests: Sequence[Request], plan: Plan) -> list[list[Moved[Verdicts]]]:
+def _moved(requests: Sequence[Request], plan: Plan) -> list[list[Moved[ObjectOutcomes]]]:
     """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
-    variants = [one.objects.variants() for one in requests]
-    sides = [side for each in variants for one in each for side in one.sides]
-    shaken = iter(verdicts_of_all(sides, plan.fewer, plan.fewer_ladder))
-    found = [[one.turned(lambda _: next(shaken)) for one in each] for each in variants]
-    objects = [one.objects for one in requests]
+    variants = [request.objects.variants() for request in requests]
+    sides = [side for each in variants for item in each for side in item.sides]
+    shaken = iter(outcomes_of_all(sides, plan.fewer, plan.fewer_intensity_levels))
+    found = [[item.turned(lambda _: next(shaken)) for item in each] for each in variants]
+    objects = [request.objects for request in requests]
     for moved in requests[0].place.variants():
         floors = moved.turned(
-            lambda place: verdicts_of_all(objects, plan.fewer.at(place), plan.fewer_ladder)
+            lambda place: outcomes_of_all(
+                objects, plan.fewer.at(place), plan.fewer_intensity_levels
+            )
         )
         for each, lower, upper in zip(found, *floors.sides, strict=True):
             each.append(Moved(moved.name, moved.spread, lower, upper))
     return found
 
 
-def _of_quantiles(now: Verdicts, hazard: HazardCurve) -> dict[str, float]:
+def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
     """Standard deviation of ln rate that the quantiles of the hazard stand for."""
     logs = {q: risk_target(curve, 1.0).on_scale(now) for q, curve in hazard.quantiles.items()}
     finite = {q: value for q, value in logs.items() if math.isfinite(value)}
@@ -522,7 +538,7 @@ def _of_quantiles(now: Verdicts, hazard: HazardCurve) -> dict[str, float]:
     return {"hazard": abs(finite[high] - finite[low]) / width}
 
 
-def _remedies(request: Request, target: Target, shaken: Shaken) -> tuple[Remedy, ...]:
+def _mitigations(request: Request, target: Target, shaken: Shaken) -> tuple[Mitigation, ...]:
     found = compare(target, shaken.before, shaken.changed)
     # an amplitude helps by growing, a probability by shrinking
     grows = request.level is None and not request.hazard

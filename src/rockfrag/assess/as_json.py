@@ -9,7 +9,7 @@ import numpy as np
 from rockfrag import __version__
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.risk import LEVEL, Estimate
-from rockfrag.assess.words import assumptions, does_not_move, doubts, five_lines
+from rockfrag.assess.words import assumptions, does_not_move, five_lines, quality_flags
 
 
 def as_json(found: Assessment) -> str:
@@ -20,7 +20,7 @@ def as_json(found: Assessment) -> str:
     found
         The assessment.
     """
-    verdicts = found.verdicts
+    outcomes = found.outcomes
     request = found.request
     answer = {
         "rockfrag": __version__,
@@ -35,21 +35,21 @@ def as_json(found: Assessment) -> str:
         "interval_level": LEVEL,
         "rocks_from": found.rocks_from,
         "does_not_move": does_not_move(found),
-        "share_rocking": _estimate(found.rocking),
+        "fraction_rocking": _estimate(found.rocking),
         "counts": found.counts
         and dict(zip(("motions", "rock", "topple"), found.counts, strict=True)),
-        "share_toppling_with_sliding": found.sliding_share,
-        "share_toppling": _estimate(found.share),
+        "fraction_toppling_with_sliding": found.sliding_fraction,
+        "fraction_toppling": _estimate(found.fraction),
         "probability": _estimate(found.probability),
         "amplitude_toppling": {f"{p:g}": _estimate(e) for p, e in found.amplitudes.items()},
         "arrangements": found.by_arrangement,
         "directions": found.directions and vars(found.directions),
-        "remedies": [vars(remedy) for remedy in found.remedies],
+        "mitigations": [vars(mitigation) for mitigation in found.mitigations],
         "rules_of_thumb": [vars(rule) for rule in found.rules],
         "effects": [vars(effect) for effect in found.effects],
         "fragility": {
-            "levels": verdicts.ladder.levels.tolist(),
-            "share": verdicts.shares().tolist(),
+            "levels": outcomes.intensity_levels.levels.tolist(),
+            "fraction": outcomes.fractions().tolist(),
             **_curve(found),
         },
         "two_measures": _two_measures(found),
@@ -60,16 +60,16 @@ def as_json(found: Assessment) -> str:
             "annual_rates": found.hazard.rates.tolist(),
         },
         "motions": [
-            {"name": motion.name, "event": event, "value": value}
-            for motion, event, value in zip(
+            {"name": motion.name, "earthquake": earthquake, "value": value}
+            for motion, earthquake, value in zip(
                 found.motions.ground,
-                found.motions.events,
+                found.motions.earthquakes,
                 found.motions.values(found.measure).tolist(),
                 strict=True,
             )
         ],
         "assumed": assumptions(found),
-        "doubts": doubts(found),
+        "quality_flags": quality_flags(found),
     }
     return json.dumps(_plain(answer), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 

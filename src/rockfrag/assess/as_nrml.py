@@ -1,4 +1,4 @@
-"""The counted shares of motions as a fragility function that OpenQuake reads (NRML 0.5, discrete)."""
+"""The counted fractions of motions as a fragility function that OpenQuake reads (NRML 0.5, discrete)."""
 
 from xml.etree import ElementTree
 
@@ -18,7 +18,7 @@ def as_nrml(found: Assessment) -> str:
     found
         The assessment.
     """
-    verdicts = found.verdicts
+    outcomes = found.outcomes
     name = found.request.name
     taxonomy = identifiers([name], "_:-")[name]
     root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})
@@ -29,18 +29,20 @@ def as_nrml(found: Assessment) -> str:
     )
     ElementTree.SubElement(
         model, "description"
-    ).text = f"{name}, {found.request.place.words}: share of {found.motions.words} that topple it."
+    ).text = (
+        f"{name}, {found.request.place.words}: fraction of {found.motions.words} that topple it."
+    )
     ElementTree.SubElement(model, "limitStates").text = "overturned"
     function = ElementTree.SubElement(
         model, "fragilityFunction", {"id": taxonomy, "format": "discrete"}
     )
-    levels = verdicts.ladder.levels
+    levels = outcomes.intensity_levels.levels
     imls = ElementTree.SubElement(
         function, "imls", {"imt": found.measure.name, "noDamageLimit": f"{levels[0]:.10g}"}
     )
     imls.text = " ".join(f"{level:.10g}" for level in levels)
     poes = ElementTree.SubElement(function, "poes", {"ls": "overturned"})
-    poes.text = " ".join(f"{share:.10g}" for share in verdicts.shares())
+    poes.text = " ".join(f"{fraction:.10g}" for fraction in outcomes.fractions())
     ElementTree.indent(root)
     return (
         '<?xml version="1.0" encoding="utf-8"?>\n'

@@ -256,11 +256,11 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     from rockfrag.assess.answer import assess
     from rockfrag.assess.as_json import as_json
     from rockfrag.assess.page import write_answer
-    from rockfrag.assess.words import doubts, five_lines
+    from rockfrag.assess.words import five_lines, quality_flags
 
     found = assess(_request(options, given), options.records)
-    for doubt in doubts(found):
-        print(f"warning: {doubt}", file=sys.stderr)
+    for quality_flag in quality_flags(found):
+        print(f"warning: {quality_flag}", file=sys.stderr)
     place = write_answer(found, options.output)
     if options.pdf:
         from rockfrag.report.pdf import print_page
@@ -346,9 +346,9 @@ def _building(options: argparse.Namespace) -> dict[str, Any] | None:
 
     known: dict[str, Any] = {}
     if options.storey_height:
-        one = len(options.storey_height) == 1
-        known["storey_height" if one else "storey_heights"] = (
-            options.storey_height[0] if one else options.storey_height
+        item = len(options.storey_height) == 1
+        known["storey_height" if item else "storey_heights"] = (
+            options.storey_height[0] if item else options.storey_height
         )
     if options.period:
         try:
@@ -364,13 +364,13 @@ def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:
     """The pedestal as a file would have it, or several from above."""
     if given is None:
         return None
-    for one in given:
-        if len(one) not in (2, 3):
+    for item in given:
+        if len(item) not in (2, 3):
             raise InputError(
                 "--pedestal: expected width, height and, if known, mass, such as 50cm 90cm 400kg; got "
-                f"{' '.join(one)}."
+                f"{' '.join(item)}."
             )
-    found = [dict(zip(("width", "height", "mass"), one, strict=False)) for one in given]
+    found = [dict(zip(("width", "height", "mass"), item, strict=False)) for item in given]
     return found if len(found) > 1 else found[0]
 
 

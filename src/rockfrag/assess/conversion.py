@@ -27,8 +27,8 @@ from scipy import special
 from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.hazard.measure import PGV, VELOCITY_PER_G, Measure
 from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.request import Level, Records
-from rockfrag.assess.verdicts import Verdicts
 from rockfrag.errors import InputError
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.fragility.vector import VectorFragility, fit_vector
@@ -131,59 +131,59 @@ class Conversion:
         )
         return f"A PGV of {_per_unit(mean, self.measure)} is that of no motion ({ends}); check both levels."
 
-    def at_site(self, verdicts: Verdicts) -> Verdicts:
+    def at_site(self, outcomes: ObjectOutcomes) -> ObjectOutcomes:
         """Outcomes under motions with the velocity of the site; as they are where nothing is known of it.
 
         Parameters
         ----------
-        verdicts
+        outcomes
             Outcomes under the motions as recorded.
         """
-        return verdicts if self.known is None else self._moved(verdicts, self.known)
+        return outcomes if self.known is None else self._moved(outcomes, self.known)
 
-    def sides(self, verdicts: Verdicts) -> tuple[Verdicts, Verdicts] | None:
+    def sides(self, outcomes: ObjectOutcomes) -> tuple[ObjectOutcomes, ObjectOutcomes] | None:
         """The same with less and more spread of velocities at a given level; None where that is not open."""
         if not isinstance(self.known, OfTwoCurves):
             return None
         lower, upper = (
-            self._moved(verdicts, self.known.with_spread(self.known.spread * factor))
+            self._moved(outcomes, self.known.with_spread(self.known.spread * factor))
             for factor in (1 - TOGETHER, 1 + TOGETHER)
         )
         return lower, upper
 
-    def _moved(self, verdicts: Verdicts, site: SiteVelocity) -> Verdicts:
+    def _moved(self, outcomes: ObjectOutcomes, site: SiteVelocity) -> ObjectOutcomes:
         """Each motion at the level at which it is as strong for the object as with the velocity of the site."""
-        ladder = verdicts.ladder
-        x = np.log(ladder.levels)
+        intensity_levels = outcomes.intensity_levels
+        x = np.log(intensity_levels.levels)
         count = NODES if site.spread > 0 else 1
         nodes = special.ndtri((np.arange(count) + 0.5) / count)
         nodes *= site.spread / nodes.std() if count > 1 else 0.0
-        wanted = site.log_ratio(ladder.levels) + nodes[:, np.newaxis]
+        wanted = site.log_ratio(intensity_levels.levels) + nodes[:, np.newaxis]
         # (motions, nodes, levels), then a row for each motion at each node
         moved = x + self.weight * (wanted - self.logs[:, np.newaxis, np.newaxis])
         moved = moved.reshape(-1, x.size)
         row = np.repeat(np.arange(self.logs.size), count)[:, np.newaxis]
         place = np.rint(np.interp(moved, x, np.arange(x.size))).astype(np.intp)
         inside = (moved >= x[0]) & (moved <= x[-1])
-        overturned = verdicts.overturned[row, place]
-        rocked = np.repeat(verdicts.rocked, count, axis=0)
+        overturned = outcomes.overturned[row, place]
+        rocked = np.repeat(outcomes.rocked, count, axis=0)
         if self.by_statics:
             overturned &= rocked
         return replace(
-            verdicts,
-            ladder=replace(
-                ladder,
-                scales=ladder.scales[row, place],
-                allowed=ladder.allowed[row, place] & inside,
+            outcomes,
+            intensity_levels=replace(
+                intensity_levels,
+                scales=intensity_levels.scales[row, place],
+                allowed=intensity_levels.allowed[row, place] & inside,
             ),
             overturned=overturned,
             rocked=rocked | overturned,
-            events=np.repeat(verdicts.events, count),
+            earthquakes=np.repeat(outcomes.earthquakes, count),
         )
 
 
 def find_conversion(
-    verdicts: Verdicts,
+    outcomes: ObjectOutcomes,
     motions: MotionSet,
     given: Records | None = None,
     *,
@@ -196,7 +196,7 @@ def find_conversion(
 
     Parameters
     ----------
-    verdicts
+    outcomes
         Of the object, in the measure that is known.
     motions
         The motions.
@@ -215,11 +215,11 @@ def find_conversion(
     -------
     The conversion; None in PGV, or where the outcomes allow no fit.
     """
-    measure = verdicts.ladder.measure
+    measure = outcomes.intensity_levels.measure
     if measure == PGV:
         return None
     logs = motions.log_ratios(measure)
-    fit = _fitted(verdicts, logs, brief)
+    fit = _fitted(outcomes, logs, brief)
     if fit is None:
         return None
     weight, error = _weight(fit, float(np.median(logs)))
@@ -228,7 +228,7 @@ def find_conversion(
     known, spread = _known(measure, motions, given or Records(), level, curves)
     away = 0.0
     if known is not None:
-        x = verdicts.ladder.levels
+        x = outcomes.intensity_levels.levels
         away = float(np.abs(known.log_ratio(x) - np.median(logs)).mean())
     return Conversion(
         measure,
@@ -243,17 +243,17 @@ def find_conversion(
     )
 
 
-def _fitted(verdicts: Verdicts, logs: Floats, brief: bool) -> VectorFragility | None:
-    ladder = verdicts.ladder
-    step = -(-ladder.levels.size // MOST_LEVELS)
-    motion, level = np.nonzero(ladder.allowed[:, ::step])
+def _fitted(outcomes: ObjectOutcomes, logs: Floats, brief: bool) -> VectorFragility | None:
+    intensity_levels = outcomes.intensity_levels
+    step = -(-intensity_levels.levels.size // MOST_LEVELS)
+    motion, level = np.nonzero(intensity_levels.allowed[:, ::step])
     level *= step
     table = pd.DataFrame(
         {
-            "im": ladder.levels[level],
+            "im": intensity_levels.levels[level],
             "ratio_s": np.exp(logs[motion]),
-            "overturned": verdicts.overturned[motion, level].astype(np.float64),
-            "event": verdicts.events[motion],
+            "overturned": outcomes.overturned[motion, level].astype(np.float64),
+            "earthquake": outcomes.earthquakes[motion],
         }
     )
     try:
@@ -373,7 +373,9 @@ class VelocityRelation:
         """
         table = pd.DataFrame(
             {
-                "record": [f"{a.get('event')} {a.get('station', i)}" for i, a in enumerate(about)],
+                "record": [
+                    f"{a.get('earthquake')} {a.get('station', i)}" for i, a in enumerate(about)
+                ],
                 "magnitude": [_number(a, "magnitude") for a in about],
                 "ln_distance": [math.log(_number(a, "distance_km")) for a in about],
                 "ln_vs30": [math.log(_number(a, "vs30_m_s")) for a in about],

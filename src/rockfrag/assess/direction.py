@@ -6,7 +6,7 @@ import numpy as np
 
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
-from rockfrag.assess.verdicts import Ladder, believable_scales, simulated
+from rockfrag.assess.outcomes import IntensityLevels, believable_scales, simulated
 from rockfrag.motions.rotation import rotate
 from rockfrag.system.system import System
 
@@ -16,28 +16,28 @@ STEP_DEG = 15
 
 @dataclass(frozen=True)
 class Directions:
-    """Share of the records that topple the object, by how it stands to them.
+    """Fraction of the records that topple the object, by how it stands to them.
 
     Attributes
     ----------
     factor
         Level that topples half of the records in their worst direction over the one in any direction [-]; NaN
         where neither reaches half.
-    share, worst_share
-        Share of records and directions, and of records in their worst direction, that topple the object at the
+    fraction, worst_fraction
+        Fraction of records and directions, and of records in their worst direction, that topple the object at the
         level asked about; NaN where none was.
     records
         Number of records with two components.
     """
 
     factor: float
-    share: float
-    worst_share: float
+    fraction: float
+    worst_fraction: float
     records: int
 
 
 def find_directions(
-    objects: Objects, motions: MotionSet, ladder: Ladder, level: float | None
+    objects: Objects, motions: MotionSet, intensity_levels: IntensityLevels, level: float | None
 ) -> Directions | None:
     """Turn every record of two components through all directions.
 
@@ -49,7 +49,7 @@ def find_directions(
         The object, which rocks in one plane.
     motions
         The motions.
-    ladder
+    intensity_levels
         Levels of the measure.
     level
         Level asked about, in the measure's unit; None if there is none.
@@ -62,35 +62,35 @@ def find_directions(
         return None
     system = objects.system_of(objects.body)
     angles = range(0, 180 if _is_symmetric(system) else 360, STEP_DEG)
-    values = motions.values(ladder.measure)
+    values = motions.values(intensity_levels.measure)
     shaking, scales = [], []
     for pair in motions.pairs:
-        one, other = common_pair(motions, pair)
+        first, other = common_pair(motions, pair)
         middle = float(np.sqrt(values[pair[0]] * values[pair[1]]))
         for angle in angles:
-            shaking.append(rotate(one, other, angle))
-            scales.append(ladder.levels / middle)
+            shaking.append(rotate(first, other, angle))
+            scales.append(intensity_levels.levels / middle)
     believable = np.minimum(np.array(scales), believable_scales(shaking))
     found, _ = simulated([system], shaking, believable)
     fallen = found.overturned[0]
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
-    x = np.log(ladder.levels)
+    x = np.log(intensity_levels.levels)
     at = np.nan if level is None else np.log(level)
     return Directions(
         factor=float(np.exp(_half(x, worst) - _half(x, anyhow))),
-        share=float(np.interp(at, x, anyhow)),
-        worst_share=float(np.interp(at, x, worst)),
+        fraction=float(np.interp(at, x, anyhow)),
+        worst_fraction=float(np.interp(at, x, worst)),
         records=len(motions.pairs),
     )
 
 
-def _half(x: np.ndarray, share: np.ndarray) -> float:
-    reached = np.flatnonzero(share >= 0.5)
+def _half(x: np.ndarray, fraction: np.ndarray) -> float:
+    reached = np.flatnonzero(fraction >= 0.5)
     if not reached.size or reached[0] == 0:
         return float("nan")
     i = int(reached[0])
-    return float(np.interp(0.5, share[i - 1 : i + 1], x[i - 1 : i + 1]))
+    return float(np.interp(0.5, fraction[i - 1 : i + 1], x[i - 1 : i + 1]))
 
 
 def _is_symmetric(system: System) -> bool:

@@ -8,24 +8,24 @@ from rockfrag.assess.words import NAMES
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, figure_style, new_figure, plain_log
 
 _REACHED = 0.995
-"""Share of motions up to which the curves are shown."""
+"""Fraction of motions up to which the curves are shown."""
 
 
-def shares_figure(found: Assessment) -> Figure:
-    """Share of the motions that topple the object over the level of shaking, for each arrangement."""
+def fractions_figure(found: Assessment) -> Figure:
+    """Fraction of the motions that topple the object over the level of shaking, for each arrangement."""
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 2.7)
         axes = figure.subplots()
         ends = []
-        for colour, (name, verdicts) in zip(OKABE_ITO, found.arrangements.items(), strict=False):
-            levels, shares = verdicts.ladder.levels, verdicts.shares()
-            if verdicts is found.verdicts:
-                low, high = verdicts.band()
+        for colour, (name, outcomes) in zip(OKABE_ITO, found.arrangements.items(), strict=False):
+            levels, fractions = outcomes.intensity_levels.levels, outcomes.fractions()
+            if outcomes is found.outcomes:
+                low, high = outcomes.band()
                 axes.fill_between(
                     levels, 100 * low, 100 * high, color=colour, alpha=0.18, linewidth=0
                 )
-            axes.plot(levels, 100 * shares, color=colour, label=name)
-            shown = levels[(shares > 0) & (shares < _REACHED)]
+            axes.plot(levels, 100 * fractions, color=colour, label=name)
+            shown = levels[(fractions > 0) & (fractions < _REACHED)]
             ends += [shown.min(), shown.max()] if shown.size else [levels[0], levels[-1]]
         if found.level is not None:
             axes.axvline(found.level.value, color="#555555", linestyle="--", linewidth=0.9)

@@ -19,17 +19,17 @@ from rockfrag.assess.answer import (
     shake_all,
 )
 from rockfrag.assess.joint import JointRisk, joint_risk
+from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.page import write_answer
-from rockfrag.assess.remedies import Remedy
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.scale import SCALE_WORDS, step_of
 from rockfrag.assess.words import (
     does_not_move,
     estimate_words,
+    fraction_words,
+    mitigation_words,
     range_words,
-    remedy_words,
-    share_words,
 )
 from rockfrag.errors import InputError
 from rockfrag.files import check_name, file_name, write_table
@@ -118,22 +118,24 @@ def assess_inventory(
         raise FaultyRows(faults)
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
     found = _all_assessed(requests, motions)
-    values = {one.name: one.value if math.isfinite(one.value) else 1.0 for one in requests}
+    values = {
+        request.name: request.value if math.isfinite(request.value) else 1.0 for request in requests
+    }
     joint = joint_risk(found, values)
     order = {}
     if joint is not None:
         order = dict(zip(joint.objects["name"], joint.objects["annual_loss"], strict=True))
-    found.sort(key=lambda one: (order.get(one.request.name, 0.0), *_risk(one)), reverse=True)
+    found.sort(key=lambda item: (order.get(item.request.name, 0.0), *_risk(item)), reverse=True)
     return Inventory(found, motions, joint, faults)
 
 
 def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Assessment]:
     """Assess objects, those in places that shake alike at once."""
     groups: dict[object, list[int]] = {}
-    for i, one in enumerate(requests):
-        kind = one.place.key, one.objects.round, one.objects.many
+    for i, request in enumerate(requests):
+        kind = request.place.key, request.objects.round, request.objects.many
         # of several curves the one that counts may differ from object to object
-        alone = i if len(one.hazard) > 2 else -1
+        alone = i if len(request.hazard) > 2 else -1
         groups.setdefault((*kind, alone), []).append(i)
     found: dict[int, Assessment] = {}
     for members in groups.values():
@@ -182,7 +184,7 @@ def read_inventory(
             requests.append(_request(row, name, shared))
         except InputError as error:
             faults.append(str(error))
-    without = [one.name for one in requests if math.isnan(one.value)]
+    without = [request.name for request in requests if math.isnan(request.value)]
     if without and len(without) < len(requests):
         raise InputError(f"{path}: {without[0]} has no value; give that of all objects or of none.")
     return requests, faults
@@ -257,8 +259,8 @@ def _yes(row: Row, column: str) -> bool:
 
 
 def _risk(found: Assessment) -> tuple[float, float, float]:
-    """What objects are sorted by: the probability, the share, and how little topples half of the motions."""
-    main = [0.0 if one is None else one.value for one in (found.probability, found.share)]
+    """What objects are sorted by: the probability, the fraction, and how little topples half of the motions."""
+    main = [0.0 if item is None else item.value for item in (found.probability, found.fraction)]
     return main[0], main[1], -found.amplitudes[0.5].value
 
 
@@ -267,15 +269,15 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
     rows = []
     for found in inventory.found:
         row: dict[str, Any] = {"name": found.request.name, "place": found.request.place.words}
-        for name, one in (("probability", found.probability), ("share", found.share)):
-            if one is not None:
-                row |= {name: one.value, f"{name}_lower": one.lower, f"{name}_upper": one.upper}
+        for name, item in (("probability", found.probability), ("fraction", found.fraction)):
+            if item is not None:
+                row |= {name: item.value, f"{name}_lower": item.lower, f"{name}_upper": item.upper}
         row |= {
             f"{found.measure.column}_tenth": found.amplitudes[0.1].value,
             f"{found.measure.column}_half": found.amplitudes[0.5].value,
         }
         if found.rocking is not None:
-            row["share_rocking"] = found.rocking.value
+            row["fraction_rocking"] = found.rocking.value
         best = best_change(found)
         if best is not None:
             row |= {"best_change": best.name, "factor": best.factor}
@@ -285,9 +287,9 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
     return table if inventory.joint is None else table.merge(inventory.joint.objects, on="name")
 
 
-def best_change(found: Assessment) -> Remedy | None:
+def best_change(found: Assessment) -> Mitigation | None:
     """The change that helps an object most; None where none does or none is needed."""
-    first = found.remedies[0] if found.remedies else None
+    first = found.mitigations[0] if found.mitigations else None
     return first if first is not None and first.helps and found.main.value > 0 else None
 
 
@@ -298,7 +300,7 @@ def joint_lines(inventory: Inventory) -> list[str]:
         return []
     columns = ["at_least", "probability", "probability_lower", "probability_upper"]
     at_least = ", ".join(
-        f"{least:g}: {share_words(value)} ({range_words(lower, upper)})"
+        f"{least:g}: {fraction_words(value)} ({range_words(lower, upper)})"
         for least, value, lower, upper in joint.numbers[columns].to_numpy(dtype=float).tolist()
     )
     years = f"{first.request.years:g} years"
@@ -315,7 +317,7 @@ def joint_lines(inventory: Inventory) -> list[str]:
         )
     best = best_change(first)
     if best is not None:
-        lines.append(f"For {first.request.name}: {remedy_words(first, best)}.")
+        lines.append(f"For {first.request.name}: {mitigation_words(first, best)}.")
     return lines
 
 
@@ -330,7 +332,7 @@ def inventory_lines(inventory: Inventory) -> list[str]:
             f"scale ({SCALE_WORDS})"
         )
     elif first.level:
-        head += f": share of the motions that topple it at {first.level.words} (90 % interval)"
+        head += f": fraction of the motions that topple it at {first.level.words} (90 % interval)"
     if inventory.faults:
         head += f"; {counted(len(inventory.faults), 'row')} left out"
     lines = [f"{head}."]
@@ -346,9 +348,9 @@ def _words(found: Assessment) -> str:
     if found.probability:
         step = step_of(found.probability.value, found.request.years)
         return f"{estimate_words(found.probability)}, {step.name}"
-    if found.share is None:
+    if found.fraction is None:
         return ""
-    return "does not move" if does_not_move(found) else estimate_words(found.share)
+    return "does not move" if does_not_move(found) else estimate_words(found.fraction)
 
 
 def _half(found: Assessment) -> str:

@@ -13,9 +13,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.assess.answer import Assessment
+from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import estimate, probability_in, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
-from rockfrag.assess.verdicts import Verdicts
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 
 NUMBERS = (1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000, 2000, 5000, 10_000)
@@ -69,18 +69,26 @@ def joint_risk(found: Sequence[Assessment], values: Mapping[str, float]) -> Join
     The :class:`JointRisk`; None without a hazard, or where objects are counted in different measures.
     """
     hazard = found[0].hazard
-    if hazard is None or any(one.measure != found[0].measure for one in found):
+    if hazard is None or any(item.measure != found[0].measure for item in found):
         return None
-    outcomes = [one.verdicts for one in found]
+    outcomes = [item.outcomes for item in found]
     # with the velocity of the site a motion stands for several; all objects have the same of them
-    ladder = outcomes[0].ladder
-    fell = np.array([one.overturned for one in outcomes])
-    allowed = np.logical_and.reduce([one.ladder.allowed for one in outcomes])
-    together = replace(outcomes[0], ladder=replace(ladder, allowed=allowed))
-    worth = np.array([values[one.request.name] for one in found])
-    per_level = [toppling_rate(ladder.levels, unit, hazard) for unit in np.eye(ladder.levels.size)]
-    rates = np.array([toppling_rate(ladder.levels, one.shares(), hazard) for one in outcomes])
-    names = [one.request.name for one in found]
+    intensity_levels = outcomes[0].intensity_levels
+    fell = np.array([outcome.overturned for outcome in outcomes])
+    allowed = np.logical_and.reduce([outcome.intensity_levels.allowed for outcome in outcomes])
+    together = replace(outcomes[0], intensity_levels=replace(intensity_levels, allowed=allowed))
+    worth = np.array([values[item.request.name] for item in found])
+    per_level = [
+        toppling_rate(intensity_levels.levels, unit, hazard)
+        for unit in np.eye(intensity_levels.levels.size)
+    ]
+    rates = np.array(
+        [
+            toppling_rate(intensity_levels.levels, outcome.fractions(), hazard)
+            for outcome in outcomes
+        ]
+    )
+    names = [item.request.name for item in found]
     return JointRisk(
         _by_object(names, rates, worth),
         _numbers(found[0], together, fell.sum(axis=0)),
@@ -107,20 +115,20 @@ def _by_object(names: list[str], rates: Floats, worth: Floats) -> pd.DataFrame:
     return table.sort_values("annual_loss", ascending=False, kind="stable", ignore_index=True)
 
 
-def _numbers(first: Assessment, together: Verdicts, count: NDArray[np.int64]) -> pd.DataFrame:
+def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int64]) -> pd.DataFrame:
     """How often at least so many topple, with what earthquakes and the model leave open."""
     assert first.hazard is not None and first.level is not None
     years = first.request.years
     target = risk_target(first.hazard, years)
     # what is not known of one body says nothing about the others; these two are common to all
     shifts = {"model": MODEL_ERRORS[CUT].blind, "space": SPACE}
-    at = int(together.ladder.levels.searchsorted(first.level.value))
+    at = int(together.intensity_levels.levels.searchsorted(first.level.value))
     rows = []
     for least in [n for n in NUMBERS if n <= count.max()] or [1]:
         many = replace(together, overturned=count >= least, rocked=np.ones_like(together.rocked))
-        shares = many.shares()
+        fractions = many.fractions()
         found = estimate(target, many, {}, {}, shifts)
-        rate = toppling_rate(many.ladder.levels, shares, first.hazard)
+        rate = toppling_rate(many.intensity_levels.levels, fractions, first.hazard)
         rows.append(
             {
                 "at_least": least,
@@ -128,13 +136,15 @@ def _numbers(first: Assessment, together: Verdicts, count: NDArray[np.int64]) ->
                 "probability": probability_in(rate, years),
                 "probability_lower": found.lower,
                 "probability_upper": found.upper,
-                "at_the_site": shares[min(at, shares.size - 1)],
+                "at_the_site": fractions[min(at, fractions.size - 1)],
             }
         )
     return pd.DataFrame(rows)
 
 
-def _losses(together: Verdicts, fell: Bools, worth: Floats, per_level: Floats) -> pd.DataFrame:
+def _losses(
+    together: ObjectOutcomes, fell: Bools, worth: Floats, per_level: Floats
+) -> pd.DataFrame:
     """How often losses are exceeded, from the least object to everything."""
     lost = np.tensordot(worth, fell, axes=1)
     if not lost.any():
@@ -142,7 +152,7 @@ def _losses(together: Verdicts, fell: Bools, worth: Floats, per_level: Floats) -
     steps = np.geomspace(max(lost[lost > 0].min(), 1e-6 * lost.max()), lost.max(), LOSSES)
     # rounding must not take away what reaches a step exactly
     rates = [
-        float(replace(together, overturned=lost >= step * (1 - 1e-12)).shares() @ per_level)
+        float(replace(together, overturned=lost >= step * (1 - 1e-12)).fractions() @ per_level)
         for step in steps
     ]
     return pd.DataFrame({"loss": steps, "annual_rate": rates})

@@ -28,7 +28,7 @@ NEAREST = 40
 MAGNITUDE_SCALE, DISTANCE_SCALE = 0.5, 0.7
 """Differences of magnitude and of ln distance that count alike when records are chosen."""
 
-FEWEST_EVENTS = 4
+FEWEST_EARTHQUAKES = 4
 """Earthquakes below which an interval over motions was not validated."""
 
 Floats = NDArray[np.float64]
@@ -97,9 +97,11 @@ class MotionSet:
         return self.measured[measure]
 
     @cached_property
-    def events(self) -> NDArray[np.object_]:
+    def earthquakes(self) -> NDArray[np.object_]:
         """Earthquake of each motion, shape (n,); its own name where none is known."""
-        return np.array([str(m.metadata.get("event") or m.name) for m in self.ground], dtype=object)
+        return np.array(
+            [str(m.metadata.get("earthquake") or m.name) for m in self.ground], dtype=object
+        )
 
     def values(self, measure: Measure) -> Floats:
         """Value of each ground motion in a measure, in its unit, shape (n,)."""
@@ -131,8 +133,8 @@ class MotionSet:
         """
         found = []
         for pair in self.pairs:
-            one, other = common_pair(self, pair)
-            found.append((pair[0], [rotate(one, other, a) for a in range(0, 180, step_deg)]))
+            first, other = common_pair(self, pair)
+            found.append((pair[0], [rotate(first, other, a) for a in range(0, 180, step_deg)]))
         paired = {i for pair in self.pairs for i in pair}
         return found + [(i, [m]) for i, m in enumerate(self.base) if i not in paired]
 
@@ -205,10 +207,10 @@ def _default(records: Records, folder: Path) -> MotionSet:
     pairs = [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")]
     chosen = _nearest(pairs, records)
     motions = tuple(motion for pair in chosen for motion in pair)
-    events = len({str(motion.metadata["event"]) for motion in motions})
+    earthquakes = len({str(motion.metadata["earthquake"]) for motion in motions})
     pulses = sum(pair[0].metadata["set"] == "nearfield_pulse" for pair in chosen)
     words = (
-        f"{len(motions)} recorded components of {events} earthquakes, {2 * pulses} of them pulse-like "
+        f"{len(motions)} recorded components of {earthquakes} earthquakes, {2 * pulses} of them pulse-like "
         "(FEMA P-695)"
     )
     warnings: tuple[str, ...] = ()
@@ -272,18 +274,18 @@ def _own(records: Records, folder: Path) -> MotionSet:
     names = [motion.name for motion in motions]
     pairs = _pairs(motions)
     found = MotionSet(tuple(motions), tuple(motions), pairs, "", tuple(warnings))
-    events = len(set(found.events))
+    earthquakes = len(set(found.earthquakes))
     if len(set(names)) < len(names):
         raise InputError(
             "records: two motions have the same name; leave one out or give a catalogue."
         )
-    words = f"{counted(len(motions), 'own motion')} of {counted(events, 'earthquake')}"
-    if events < FEWEST_EVENTS:
+    words = f"{counted(len(motions), 'own motion')} of {counted(earthquakes, 'earthquake')}"
+    if earthquakes < FEWEST_EARTHQUAKES:
         found = replace(
             found,
             warnings=(
                 *found.warnings,
-                f"{counted(events, 'earthquake')} cannot say how different others are.",
+                f"{counted(earthquakes, 'earthquake')} cannot say how different others are.",
             ),
         )
     return replace(found, words=words)
@@ -313,7 +315,7 @@ def _pairs(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
     """Positions of the components of records whose rows name each other's file as the second one."""
     places: dict[tuple[str, str], list[int]] = {}
     for i, motion in enumerate(motions):
-        key = (str(motion.metadata.get("event", "")), str(motion.metadata.get("station", "")))
+        key = (str(motion.metadata.get("earthquake", "")), str(motion.metadata.get("station", "")))
         if all(key):
             places.setdefault(key, []).append(i)
     return tuple((both[0], both[1]) for both in places.values() if len(both) == 2)
@@ -329,5 +331,5 @@ def common_pair(found: MotionSet, pair: tuple[int, int]) -> tuple[Motion, Motion
     pair
         Positions of the two.
     """
-    one, other = common_time([found.base[pair[0]], found.base[pair[1]]])
-    return one, other
+    first, other = common_time([found.base[pair[0]], found.base[pair[1]]])
+    return first, other

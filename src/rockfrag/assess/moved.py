@@ -10,7 +10,7 @@ U = TypeVar("U")
 
 @dataclass(frozen=True)
 class Moved(Generic[T]):
-    """Something with one property moved by its standard deviation: an object, a place, verdicts, an answer.
+    """Something with one property moved by its standard deviation: an object, a place, outcomes, an answer.
 
     Attributes
     ----------

@@ -10,10 +10,10 @@ from rockfrag.assess.risk import Estimate
 from rockfrag.assess.sources import SOURCES, Measurement
 
 LIKELY, UNLIKELY = 0.5, 0.01
-"""An interval of a share that holds both tells nothing."""
+"""An interval of a fraction that holds both tells nothing."""
 
 LEAST_GAIN = 0.15
-"""Share of the variance that a measurement must take away to be worth naming."""
+"""Fraction of the variance that a measurement must take away to be worth naming."""
 
 MOST_NAMED = 2
 """Measurements that are named together."""

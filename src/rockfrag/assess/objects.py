@@ -62,7 +62,7 @@ class Objects:
         In words, in which direction it rocks.
     assumed
         What was not given.
-    doubts
+    quality_flags
         Sentences, one for each thing that looks wrong.
     pad_friction
         Coefficient of friction of a pad that is tried under the object [-]; None to try none.
@@ -78,7 +78,7 @@ class Objects:
     scan: Scan | None = None
     livelier: float = 1.0
     assumed: tuple[Assumption, ...] = ()
-    doubts: tuple[str, ...] = ()
+    quality_flags: tuple[str, ...] = ()
     pad_friction: float | None = None
 
     @property
@@ -132,13 +132,13 @@ class Objects:
         return system_of(system, restitution=each if below else each[0])
 
     def _ratios(self, shape: geometry.Shape, rolls: bool) -> tuple[float, float]:
-        right, left = (self._ratio(shape, pole, rolls) for pole in (1, -1))
+        right, left = (self._ratio(shape, pivot, rolls) for pivot in (1, -1))
         return right, left
 
-    def _ratio(self, shape: geometry.Shape, pole: int, rolls: bool) -> float:
+    def _ratio(self, shape: geometry.Shape, pivot: int, rolls: bool) -> float:
         measured = ROLLING if rolls else self.restitution
-        e = geometry.momentum_restitution(shape, pole) if measured is None else measured
-        return min(max(e, 0.0) * self.livelier, geometry.largest_restitution(shape, pole))
+        e = geometry.momentum_restitution(shape, pivot) if measured is None else measured
+        return min(max(e, 0.0) * self.livelier, geometry.largest_restitution(shape, pivot))
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
@@ -216,21 +216,21 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         If they could be of no solid, cannot stand, or a dimension is missing.
     """
     assumed: list[Assumption] = []
-    doubts: list[str] = []
+    quality_flags: list[str] = []
     is_round = bool(settings.get("round", False))
     scan = None
     if "mesh" in settings:
         scan, statue, plane = _from_mesh(settings, folder, assumed)
     else:
-        statue, plane = _from_dimensions(settings, assumed, doubts)
+        statue, plane = _from_dimensions(settings, assumed, quality_flags)
     pedestals = _pedestals(settings, assumed)
     try:
         stacked((*pedestals, statue))
     except InputError as error:
         raise InputError(f"key pedestal: {error}") from None
     for block in (statue, *pedestals):
-        if doubt := size_warning(block.width, block.height):
-            doubts.append(doubt + ".")
+        if quality_flag := size_warning(block.width, block.height):
+            quality_flags.append(quality_flag + ".")
     first = [_of_the_base(is_round, "mesh" in settings)]
     if not is_round and "restitution" not in settings:
         first.append(_ON_POINTS if scan else _RESTITUTION)
@@ -246,7 +246,7 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         round=is_round,
         scan=scan,
         assumed=(*first, *assumed),
-        doubts=tuple(doubts),
+        quality_flags=tuple(quality_flags),
         pad_friction=settings.get("pad_friction"),
     )
     if objects.round and objects.pad_friction is not None:
@@ -317,7 +317,7 @@ def _check_restitution(objects: Objects) -> None:
             "key restitution: a round base rolls on its rim and is taken to lose nothing; leave it out."
         )
     shapes = objects.body.system().carried
-    most = min(geometry.largest_restitution(shape, pole) for shape in shapes for pole in (1, -1))
+    most = min(geometry.largest_restitution(shape, pivot) for shape in shapes for pivot in (1, -1))
     if e > most:
         raise InputError(
             f"key restitution: with {e:g} an impact of this object would gain energy, as its centre of gravity "
@@ -326,7 +326,7 @@ def _check_restitution(objects: Objects) -> None:
 
 
 def _from_dimensions(
-    settings: Mapping[str, Any], assumed: list[Assumption], doubts: list[str]
+    settings: Mapping[str, Any], assumed: list[Assumption], quality_flags: list[str]
 ) -> tuple[Block, str]:
     missing = [name for name in ("width", "height") if f"{name}_m" not in settings]
     if missing:
@@ -365,7 +365,7 @@ def _from_dimensions(
         )
     check_density(width, height, float(mass))
     if "depth_m" in settings:
-        doubts += _density_doubts(float(mass), width * depth * height)
+        quality_flags += _density_flags(float(mass), width * depth * height)
     if "cg_height_m" not in settings:
         assumed.append(
             Assumption(
@@ -390,7 +390,7 @@ def _from_dimensions(
     return block, plane
 
 
-def _density_doubts(mass: float, volume: float) -> list[str]:
+def _density_flags(mass: float, volume: float) -> list[str]:
     """Say that the density of the box around the object is unusual; refuse one that no solid has."""
     density = mass / volume
     words = f"{mass:g} kg in a box of {volume:.3g} m³ are {density:.3g} kg/m³"
@@ -469,8 +469,8 @@ def _pedestals(settings: Mapping[str, Any], assumed: list[Assumption]) -> tuple[
     """What the object stands on, from below."""
     given = settings.get("pedestal", [])
     found = [
-        _pedestal(one, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
-        for i, one in enumerate(given, start=1)
+        _pedestal(item, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
+        for i, item in enumerate(given, start=1)
     ]
     return tuple(reversed(found))
 

@@ -14,24 +14,24 @@ from markupsafe import Markup
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.as_json import as_json
 from rockfrag.assess.as_nrml import as_nrml
-from rockfrag.assess.figures import shares_figure, sources_figure
+from rockfrag.assess.figures import fractions_figure, sources_figure
 from rockfrag.assess.glossary import words_used
-from rockfrag.assess.remedies import without_simulation
+from rockfrag.assess.mitigations import without_simulation
 from rockfrag.assess.scale import SCALE_WORDS
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.words import (
     NAMES,
     assumptions,
     at_the_site,
-    doubts,
     estimate_words,
+    fraction_words,
     headline,
     helps,
     main_assumptions,
+    mitigation_words,
     positions,
-    remedy_words,
+    quality_flags,
     risk,
-    share_words,
     uncertainty,
     value_words,
     worst_direction,
@@ -111,10 +111,10 @@ def _live(found: Assessment) -> Markup:
 def _name_of(found: Assessment, i: int) -> str:
     """A motion as a reader knows it: earthquake, station and component."""
     motion = found.motions.ground[i]
-    event, station = (str(motion.metadata.get(key, "")) for key in ("event", "station"))
-    if not (event and station):
+    earthquake, station = (str(motion.metadata.get(key, "")) for key in ("earthquake", "station"))
+    if not (earthquake and station):
         return motion.name
-    return f"{event}, {station} ({motion.name})"
+    return f"{earthquake}, {station} ({motion.name})"
 
 
 def _drawn(specs: list[FigureSpec]) -> Mapping[str, Picture]:
@@ -123,7 +123,7 @@ def _drawn(specs: list[FigureSpec]) -> Mapping[str, Picture]:
 
 
 def _answer(found: Assessment) -> Answer:
-    doubtful = [*doubts(found), *uncertainty(found), worst_direction(found)]
+    doubtful = [*quality_flags(found), *uncertainty(found), worst_direction(found)]
     return Answer(
         asked="Does it topple, how probable is that, and what helps?",
         sentences=[
@@ -132,17 +132,17 @@ def _answer(found: Assessment) -> Answer:
             Finding("What helps", helps(found)),
         ],
         figure=FigureSpec(
-            "shares",
+            "fractions",
             f"Motions that topple the object by the level of shaking. {at_the_site(found)}",
             "Motions that topple it when they are scaled to a level of shaking; the band is what another choice "
             "of "
             "as many earthquakes could show (90 %).",
-            lambda: shares_figure(found),
+            lambda: fractions_figure(found),
         ),
         rests_on=[f"{found.motions.words}.", *main_assumptions(found)],
         could_change=doubtful,
         questions=[
-            ("What helps?", "remedies"),
+            ("What helps?", "mitigations"),
             ("How does it stand best?", "arrangements"),
             ("How sure is that?", "sure"),
             ("What was assumed?", "assumed"),
@@ -157,7 +157,7 @@ def _capital(text: str) -> str:
 
 def _sections(found: Assessment) -> list[Section]:
     return [
-        _remedies(found),
+        _mitigations(found),
         _arrangements(found),
         _sure(found),
         _assumed(found),
@@ -168,12 +168,14 @@ def _sections(found: Assessment) -> list[Section]:
     ]
 
 
-def _remedies(found: Assessment) -> Section:
+def _mitigations(found: Assessment) -> Section:
     table = pd.DataFrame(
         {
-            "name": [_capital(remedy.name) for remedy in found.remedies],
-            "value": [value_words(found, remedy.value) for remedy in found.remedies],
-            "effect": [_capital(remedy_words(found, remedy)) for remedy in found.remedies],
+            "name": [_capital(mitigation.name) for mitigation in found.mitigations],
+            "value": [value_words(found, mitigation.value) for mitigation in found.mitigations],
+            "effect": [
+                _capital(mitigation_words(found, mitigation)) for mitigation in found.mitigations
+            ],
         }
     )
     columns = (
@@ -182,7 +184,7 @@ def _remedies(found: Assessment) -> Section:
         Column("effect", "What it does (90 % interval)"),
     )
     return Section(
-        "remedies",
+        "mitigations",
         "What helps",
         helps(found),
         without_simulation(),
@@ -212,10 +214,10 @@ def _arrangements(found: Assessment) -> Section:
             "from "
             f"its worst one, {100 * directions.factor:.0f} % of the shaking would topple the object"
             + (
-                f", and {100 * directions.worst_share:.0f} % instead of {100 * directions.share:.0f} % of the "
+                f", and {100 * directions.worst_fraction:.0f} % instead of {100 * directions.fraction:.0f} % of the "
                 "records "
                 "at the site's level."
-                if np.isfinite(directions.share)
+                if np.isfinite(directions.fraction)
                 else "."
             )
             + " The figures of this page are for directions at random; the worst one is not counted in them. Both "
@@ -250,7 +252,7 @@ def _sure(found: Assessment) -> Section:
         "The interval holds what is not known; the variances of all its sources are added. What differs from one "
         "earthquake to the next is not ignorance and stands in the result itself."
     ]
-    if found.probability or found.share:
+    if found.probability or found.fraction:
         words.insert(0, f"The result is {estimate_words(found.main)}.")
     if found.probability:
         words.append(f"Our scale of risk: {SCALE_WORDS}. The steps are ours.")
@@ -320,7 +322,7 @@ def _rules(found: Assessment) -> Section:
             "rule": [rule.rule for rule in found.rules],
             "bias": [rule.bias for rule in found.rules],
             "scatter": [rule.scatter for rule in found.rules],
-            "unsafe": [share_words(rule.unsafe) for rule in found.rules],
+            "unsafe": [fraction_words(rule.unsafe) for rule in found.rules],
         }
     )
     columns = (
@@ -342,17 +344,17 @@ def _rules(found: Assessment) -> Section:
 
 
 def _levels(found: Assessment) -> Section:
-    verdicts = found.verdicts
-    shares = verdicts.shares()
-    rocks = verdicts.shares(rocks=True)
-    shown = np.flatnonzero((rocks > 0) & (np.append(0, shares[:-1]) < 0.99))[::4]
-    low, high = verdicts.band()
+    outcomes = found.outcomes
+    fractions = outcomes.fractions()
+    rocks = outcomes.fractions(rocks=True)
+    shown = np.flatnonzero((rocks > 0) & (np.append(0, fractions[:-1]) < 0.99))[::4]
+    low, high = outcomes.band()
     table = pd.DataFrame(
         {
-            "level": verdicts.ladder.levels[shown],
+            "level": outcomes.intensity_levels.levels[shown],
             "rocks": [f"{100 * value:.0f} %" for value in rocks[shown]],
             "topples": [
-                f"{100 * shares[i]:.0f} % ({100 * low[i]:.0f} to {100 * high[i]:.0f} %)"
+                f"{100 * fractions[i]:.0f} % ({100 * low[i]:.0f} to {100 * high[i]:.0f} %)"
                 for i in shown
             ],
         }
@@ -423,11 +425,11 @@ def _motions(found: Assessment) -> Section:
     table = pd.DataFrame(
         {
             "name": [found.motions.ground[i].name for i in order],
-            "event": [
+            "earthquake": [
                 ", ".join(
                     dict.fromkeys(
                         [
-                            str(found.motions.events[i]),
+                            str(found.motions.earthquakes[i]),
                             str(found.motions.ground[i].metadata.get("station", "")),
                         ]
                     )
@@ -440,7 +442,7 @@ def _motions(found: Assessment) -> Section:
     )
     columns = (
         Column("name", "Motion"),
-        Column("event", "Earthquake and station"),
+        Column("earthquake", "Earthquake and station"),
         Column("recorded", f"As recorded [{found.measure.unit}]", 2),
         Column("first", f"Topples it from [{found.measure.unit}]", 2),
     )

@@ -267,7 +267,7 @@ def _sketched(floor: str, known: Mapping[str, Any], settings: Mapping[str, Any])
 
 def _of_storeys(known: Mapping[str, Any], heights: tuple[float, ...]) -> str:
     if "storey_heights_m" in known:
-        return "storeys of " + ", ".join(f"{one:g}" for one in heights) + " m"
+        return "storeys of " + ", ".join(f"{height:g}" for height in heights) + " m"
     assumed = "" if "storey_height_m" in known else ", assumed"
     return f"storeys of {heights[0]:g} m{assumed}"
 
@@ -279,7 +279,7 @@ def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:
         raise InputError(
             "key building.storey_height: the heights of all storeys are given too; leave one out."
         )
-    heights = tuple(float(one) for one in known["storey_heights_m"])
+    heights = tuple(float(item) for item in known["storey_heights_m"])
     if len(heights) != storeys:
         raise InputError(
             f"key building.storey_heights: {len(heights)} heights are given for {storeys} storeys; give one a "
@@ -297,7 +297,9 @@ def _level(floor: str) -> tuple[int, int]:
             "the ground, level 2 what Europe calls the second floor and America the third."
         )
     # no number of storeys has more digits
-    level, storeys = (int(one) if len(one) <= 3 else HIGHEST_BUILDING + 1 for one in found.groups())
+    level, storeys = (
+        int(group) if len(group) <= 3 else HIGHEST_BUILDING + 1 for group in found.groups()
+    )
     if not (level <= storeys and 1 <= storeys <= HIGHEST_BUILDING):
         raise InputError(
             f"key floor: {floor[:40]} does not exist; levels run from 0, the ground, to the number of storeys, "

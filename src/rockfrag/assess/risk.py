@@ -1,12 +1,12 @@
-"""From shares of motions and a hazard curve to a probability with an interval.
+"""From fractions of motions and a hazard curve to a probability with an interval.
 
-The rate of toppling is λ = ∫ P(x) |dH(x)|, with P the share of motions that topple the object at level x
-and H the annual rate at which x is exceeded.  P is linear in ln x between levels of the ladder and H a
+The rate of toppling is λ = ∫ P(x) |dH(x)|, with P the fraction of motions that topple the object at level x
+and H the annual rate at which x is exceeded.  P is linear in ln x between levels of the series of levels and H a
 power law, so that each piece is integrated in closed form.  In 50 years the probability is 1 - exp(-50 λ)
 (Poisson).
 
-Its interval is taken on ln λ (on the logit of a share): the variances of its sources are added, each from its own
-calculation, and Student's t has the degrees of freedom of Welch and Satterthwaite.
+Its interval is taken on ln λ (on the logit of a fraction): the variances of its sources are added, each from its
+own calculation, and Student's t has the degrees of freedom of Welch and Satterthwaite.
 
 - motions: jackknife that leaves out an earthquake at a time;
 - body, floor: each property moved by its standard deviation to both sides;
@@ -14,7 +14,7 @@ calculation, and Student's t has the degrees of freedom of Welch and Satterthwai
 - conversion: where hazard in PGA or Sa speaks about velocity, see :mod:`rockfrag.assess.conversion`;
 - hazard: its quantiles, where they are given.
 
-For the widths of a share half an earthquake that topples the object and half of one that does not are added
+For the widths of a fraction half an earthquake that topples the object and half of one that does not are added
 (Haldane 1956, Anscombe 1956), without which few earthquakes that almost agree would leave the interval without
 bound; for the rate only where one earthquake holds every toppling.
 """
@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from scipy import special, stats
 
 from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.verdicts import Verdicts
+from rockfrag.assess.outcomes import ObjectOutcomes
 
 Floats = NDArray[np.float64]
 
@@ -37,52 +37,54 @@ LEVEL = 0.90
 """Confidence of the intervals."""
 
 HALF = 0.5
-"""Part of an earthquake that is added on either side of counted shares (Haldane 1956, Anscombe 1956)."""
+"""Part of an earthquake that is added on either side of counted fractions (Haldane 1956, Anscombe 1956)."""
 
 _Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
 
 
-def toppling_rate(levels: Floats, shares: Floats, hazard: HazardCurve, shift: float = 0.0) -> float:
+def toppling_rate(
+    levels: Floats, fractions: Floats, hazard: HazardCurve, shift: float = 0.0
+) -> float:
     """Annual rate of toppling [1/year].
 
-    Nothing topples below the first level, and above the last one the last share stays.
+    Nothing topples below the first level, and above the last one the last fraction stays.
 
     Parameters
     ----------
     levels
-        Levels of the ladder, rising, shape (n,).
-    shares
-        Share of motions that topple the object at each, shape (n,).
+        Levels of the series of levels, rising, shape (n,).
+    fractions
+        Fraction of motions that topple the object at each, shape (n,).
     hazard
         Hazard curve of the same measure.
     shift
         Logarithm of a factor on all levels: the object bears so much more.
     """
-    return float(shares @ _rate_weights(levels.tobytes(), hazard, shift))
+    return float(fractions @ _rate_weights(levels.tobytes(), hazard, shift))
 
 
 @lru_cache(maxsize=512)
 def _rate_weights(levels: bytes, hazard: HazardCurve, shift: float) -> Floats:
     """The rate of toppling where one level alone topples all, shape (levels,): rates are linear in shares."""
     x = np.log(np.frombuffer(levels)) + shift
-    # pieces end at levels of the ladder and at points of the hazard curve, where its slope changes
+    # pieces end at levels of the series of levels and at points of the hazard curve, where its slope changes
     knots = np.log(hazard.levels)
     inside = knots[(knots > x[0]) & (knots < x[-1])]
     ends = np.union1d(x, inside)
-    share = np.array([np.interp(ends, x, unit) for unit in np.eye(x.size)])
+    fraction = np.array([np.interp(ends, x, unit) for unit in np.eye(x.size)])
     rate = hazard.rate(np.exp(ends))
     slope = -np.diff(np.log(rate)) / np.diff(ends)
     width = np.diff(ends)
-    low, high = share[:, :-1], share[:, 1:]
+    low, high = fraction[:, :-1], fraction[:, 1:]
     # ∫ (P0 + b u) k H0 e^{-ku} du over u = 0..w is P0 H0 - P1 H1 + b (H0 - H1) / k
     parts = (
         low * rate[:-1] - high * rate[1:] + (high - low) / width * (rate[:-1] - rate[1:]) / slope
     )
-    return np.asarray(parts.sum(axis=1) + share[:, -1] * rate[-1])
+    return np.asarray(parts.sum(axis=1) + fraction[:, -1] * rate[-1])
 
 
 def probability_in(rate: float, years: float) -> float:
-    """Probability of at least one event of a Poisson process [-].
+    """Probability of at least one earthquake of a Poisson process [-].
 
     Parameters
     ----------
@@ -121,7 +123,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Target:
-    """What is estimated from shares of motions: the probability in some years, or the share at a level.
+    """What is estimated from fractions of motions: the probability in some years, or the fraction at a level.
 
     Attributes
     ----------
@@ -130,7 +132,7 @@ class Target:
     forward, back
         To the scale on which intervals are symmetric and back.
     rocks
-        Whether the shares are those of motions that make the object rock.
+        Whether the fractions are those of motions that make the object rock.
     added
         What is added of earthquakes for the widths of sources, see :meth:`on_scale`.
     certain
@@ -146,7 +148,7 @@ class Target:
 
     def on_scale(
         self,
-        verdicts: Verdicts,
+        outcomes: ObjectOutcomes,
         weights: Floats | None = None,
         shift: float = 0.0,
         *,
@@ -156,7 +158,7 @@ class Target:
 
         Parameters
         ----------
-        verdicts
+        outcomes
             What happened.
         weights
             Weight of each motion, shape (motions,); all alike if None.
@@ -166,27 +168,27 @@ class Target:
             Earthquakes that are added, of which one topples the object wherever it rocks and one does not: a
             part of each [-].
         """
-        shares = verdicts.shares(weights, rocks=self.rocks)
+        fractions = outcomes.fractions(weights, rocks=self.rocks)
         if added:
-            count = len(set(verdicts.events)) - (weights is not None)
-            could = verdicts.shares(weights, rocks=True) > 0
-            shares = (count * shares + added * could) / (count + 2 * added)
-        return self.forward(self.of(verdicts.ladder.levels, shares, shift))
+            count = len(set(outcomes.earthquakes)) - (weights is not None)
+            could = outcomes.fractions(weights, rocks=True) > 0
+            fractions = (count * fractions + added * could) / (count + 2 * added)
+        return self.forward(self.of(outcomes.intensity_levels.levels, fractions, shift))
 
-    def value(self, verdicts: Verdicts, weights: Floats | None = None) -> float:
+    def value(self, outcomes: ObjectOutcomes, weights: Floats | None = None) -> float:
         """What is estimated."""
-        return self.back(self.on_scale(verdicts, weights))
+        return self.back(self.on_scale(outcomes, weights))
 
-    def without_each(self, verdicts: Verdicts) -> Floats:
+    def without_each(self, outcomes: ObjectOutcomes) -> Floats:
         """Values on the scale without one earthquake each, shape (earthquakes,).
 
         Where one of them decides alone, half an earthquake on either side is added to those that are left.
         """
-        weights = event_weights(verdicts.events)
-        found = np.array([self.on_scale(verdicts, w, added=self.added) for w in weights])
+        weights = earthquake_weights(outcomes.earthquakes)
+        found = np.array([self.on_scale(outcomes, w, added=self.added) for w in weights])
         if np.isfinite(found).all():
             return found
-        return np.array([self.on_scale(verdicts, w, added=HALF) for w in weights])
+        return np.array([self.on_scale(outcomes, w, added=HALF) for w in weights])
 
 
 def _log(value: float) -> float:
@@ -204,71 +206,71 @@ def risk_target(hazard: HazardCurve, years: float) -> Target:
     Parameters
     ----------
     hazard
-        Hazard curve in the measure of the ladder.
+        Hazard curve in the measure of the series of levels.
     years
         Time [year].
     """
     return Target(
-        of=lambda levels, shares, shift: toppling_rate(levels, shares, hazard, shift),
+        of=lambda levels, fractions, shift: toppling_rate(levels, fractions, hazard, shift),
         forward=_log,
         back=lambda value: probability_in(_exp(value), years),
     )
 
 
-def share_target(level: float, *, rocks: bool = False) -> Target:
-    """The share of motions that topple the object at a level.
+def fraction_target(level: float, *, rocks: bool = False) -> Target:
+    """The fraction of motions that topple the object at a level.
 
     Parameters
     ----------
     level
-        Level in the unit of the ladder.
+        Level in the unit of the series of levels.
     rocks
         That of motions that make it rock instead.
     """
     return Target(
-        of=lambda levels, shares, shift: float(
-            np.interp(math.log(level) - shift, np.log(levels), shares)
+        of=lambda levels, fractions, shift: float(
+            np.interp(math.log(level) - shift, np.log(levels), fractions)
         ),
-        forward=lambda share: float(special.logit(share)),
+        forward=lambda fraction: float(special.logit(fraction)),
         back=lambda value: float(special.expit(value)),
         rocks=rocks,
         added=HALF,
     )
 
 
-def amplitude_target(share: float) -> Target:
-    """The level at which a share of the motions topples the object.
+def amplitude_target(fraction: float) -> Target:
+    """The level at which a fraction of the motions topples the object.
 
     Parameters
     ----------
-    share
-        Share of the motions [-].
+    fraction
+        Fraction of the motions [-].
     """
 
-    def level(levels: Floats, shares: Floats, shift: float) -> float:
-        reached = np.flatnonzero(shares >= share)
+    def level(levels: Floats, fractions: Floats, shift: float) -> float:
+        reached = np.flatnonzero(fractions >= fraction)
         if not reached.size:
             return math.inf
         i = int(reached[0])
         if i == 0:
             return float(levels[0])
-        part = (share - shares[i - 1]) / (shares[i] - shares[i - 1])
+        part = (fraction - fractions[i - 1]) / (fractions[i] - fractions[i - 1])
         x = np.log(levels)
         return float(np.exp(x[i - 1] + part * (x[i] - x[i - 1]) + shift))
 
     return Target(of=level, forward=_log, back=_exp, certain=math.inf)
 
 
-def event_weights(events: NDArray[np.object_]) -> Floats:
+def earthquake_weights(earthquakes: NDArray[np.object_]) -> Floats:
     """Weights that leave out one earthquake at a time, shape (earthquakes, motions)."""
-    names = list(dict.fromkeys(events))
-    return np.array([(events != name).astype(np.float64) for name in names])
+    names = list(dict.fromkeys(earthquakes))
+    return np.array([(earthquakes != name).astype(np.float64) for name in names])
 
 
 def estimate(
     target: Target,
-    verdicts: Verdicts,
-    moved: Mapping[str, tuple[Verdicts, Verdicts]],
+    outcomes: ObjectOutcomes,
+    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]],
     fixed: Mapping[str, float],
     shifts: Mapping[str, float],
 ) -> Estimate:
@@ -278,7 +280,7 @@ def estimate(
     ----------
     target
         What is estimated.
-    verdicts
+    outcomes
         Of the object as it is.
     moved
         Of each property moved to both sides by its standard deviation.
@@ -287,26 +289,26 @@ def estimate(
     shifts
         Standard deviations of ln level, such as of the model.
     """
-    middle = target.on_scale(verdicts)
+    middle = target.on_scale(outcomes)
     if not math.isfinite(middle):
-        return _bounded(target, verdicts, middle, moved, shifts)
+        return _bounded(target, outcomes, middle, moved, shifts)
 
-    def near(one: Verdicts, shift: float = 0.0) -> float:
-        return target.on_scale(one, shift=shift, added=target.added)
+    def near(changed: ObjectOutcomes, shift: float = 0.0) -> float:
+        return target.on_scale(changed, shift=shift, added=target.added)
 
     sources: dict[str, float] = {}
-    left_out = target.without_each(verdicts)
+    left_out = target.without_each(outcomes)
     sources["motions"] = _jackknife(left_out, middle)
     for name, (lower, upper) in moved.items():
-        sources[name] = _half_width(near(lower), near(upper), near(verdicts))
+        sources[name] = _half_width(near(lower), near(upper), near(outcomes))
     for name, spread in shifts.items():
-        low, high = (near(verdicts, sign * spread) for sign in (-1, 1))
-        sources[name] = _half_width(low, high, near(verdicts))
+        low, high = (near(outcomes, sign * spread) for sign in (-1, 1))
+        sources[name] = _half_width(low, high, near(outcomes))
     sources |= fixed
     total = math.sqrt(sum(value**2 for value in sources.values()))
     half = _quantile(sources["motions"], total, len(left_out)) * total
     # what was added must not make an interval narrower than that of motions which all agree
-    low, high = sorted((middle, near(verdicts)))
+    low, high = sorted((middle, near(outcomes)))
     return Estimate(target.back(middle), target.back(low - half), target.back(high + half), sources)
 
 
@@ -340,65 +342,69 @@ def _quantile(of_motions: float, total: float, groups: int) -> float:
 
 def _bounded(
     target: Target,
-    verdicts: Verdicts,
+    outcomes: ObjectOutcomes,
     middle: float,
-    moved: Mapping[str, tuple[Verdicts, Verdicts]],
+    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]],
     shifts: Mapping[str, float],
 ) -> Estimate:
     """Where every motion agrees: as many others could disagree as this number of earthquakes cannot exclude."""
-    hidden = 1 - (1 - LEVEL) ** (1 / len(set(verdicts.events)))
+    hidden = 1 - (1 - LEVEL) ** (1 / len(set(outcomes.earthquakes)))
     shift = _Z * math.sqrt(sum(spread**2 for spread in shifts.values()))
 
-    def most(one: Verdicts, shift: float = 0.0) -> float:
-        shares = np.maximum(one.shares(rocks=target.rocks), hidden)
-        could = np.where(one.shares(rocks=True) > 0, shares, 0.0)
-        return target.of(one.ladder.levels, could, -shift)
+    def most(changed: ObjectOutcomes, shift: float = 0.0) -> float:
+        fractions = np.maximum(changed.fractions(rocks=target.rocks), hidden)
+        could = np.where(changed.fractions(rocks=True) > 0, fractions, 0.0)
+        return target.of(changed.intensity_levels.levels, could, -shift)
 
-    def least(one: Verdicts, shift: float = 0.0) -> float:
-        shares = np.minimum(one.shares(rocks=target.rocks), 1 - hidden)
-        return target.of(one.ladder.levels, shares, shift)
+    def least(changed: ObjectOutcomes, shift: float = 0.0) -> float:
+        fractions = np.minimum(changed.fractions(rocks=target.rocks), 1 - hidden)
+        return target.of(changed.intensity_levels.levels, fractions, shift)
 
     if math.isinf(target.certain):
         # never reached: hidden motions could be enough at some level, or it lies above the last one
-        reached = min(most(verdicts, shift), float(verdicts.ladder.levels[-1]))
+        reached = min(most(outcomes, shift), float(outcomes.intensity_levels.levels[-1]))
         return Estimate(math.inf, reached, math.inf, {})
     if middle > 0:
         return Estimate(
-            1.0, target.back(_limit(target, least, verdicts, moved, shift, -1)), 1.0, {}
+            1.0, target.back(_limit(target, least, outcomes, moved, shift, -1)), 1.0, {}
         )
-    return Estimate(0.0, 0.0, target.back(_limit(target, most, verdicts, moved, shift, 1)), {})
+    return Estimate(0.0, 0.0, target.back(_limit(target, most, outcomes, moved, shift, 1)), {})
 
 
 def _limit(
     target: Target,
     of: Callable[..., float],
-    verdicts: Verdicts,
-    moved: Mapping[str, tuple[Verdicts, Verdicts]],
+    outcomes: ObjectOutcomes,
+    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]],
     shift: float,
     sign: int,
 ) -> float:
     """Limit on the scale, above (1) or below (-1): the bound, with what is not known of the properties."""
-    bound, plain = (target.forward(of(verdicts, by)) for by in (shift, 0.0))
+    bound, plain = (target.forward(of(outcomes, by)) for by in (shift, 0.0))
     ends = [max(sign * target.forward(of(side)) for side in both) for both in moved.values()]
     if not math.isfinite(plain):
         # at rest as it is: what could move it decides
         return sign * max([sign * bound, *ends])
     further = [max(0.0, end - sign * plain) for end in ends]
-    return bound + sign * _Z * math.sqrt(sum(one**2 for one in further))
+    return bound + sign * _Z * math.sqrt(sum(item**2 for item in further))
 
 
 def estimate_rocking(
-    level: float, verdicts: Verdicts, moved: Mapping[str, tuple[Verdicts, Verdicts]], *, exact: bool
+    level: float,
+    outcomes: ObjectOutcomes,
+    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]],
+    *,
+    exact: bool,
 ) -> Estimate:
-    """Estimate the share of motions at a level that make the object rock.
+    """Estimate the fraction of motions at a level that make the object rock.
 
     The error of the rocking model does not enter: a contact opens by statics.
 
     Parameters
     ----------
     level
-        Level in the unit of the ladder.
-    verdicts
+        Level in the unit of the series of levels.
+    outcomes
         Of the object as it is.
     moved
         Of each property moved to both sides by its standard deviation.
@@ -406,12 +412,12 @@ def estimate_rocking(
         Whether the level alone decides, as a peak acceleration of what it stands on does; other earthquakes then
         say the same.
     """
-    target = share_target(level, rocks=True)
-    found = estimate(target, verdicts, moved, {}, {})
+    target = fraction_target(level, rocks=True)
+    found = estimate(target, outcomes, moved, {}, {})
     if 0 < found.value < 1:
         return found
     sides = [target.value(side) for both in moved.values() for side in both]
-    hidden = 0.0 if exact else 1 - (1 - LEVEL) ** (1 / len(set(verdicts.events)))
+    hidden = 0.0 if exact else 1 - (1 - LEVEL) ** (1 / len(set(outcomes.earthquakes)))
     if found.value == 0:
         return Estimate(0.0, 0.0, max([hidden, *sides]), {})
     return Estimate(1.0, min([1 - hidden, *sides]), 1.0, {})

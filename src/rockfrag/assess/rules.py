@@ -10,9 +10,9 @@ import pandas as pd
 from rockfrag.assess.hazard.measure import PGA
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.objects import Objects
+from rockfrag.assess.outcomes import ObjectOutcomes, make_intensity_levels, outcomes_of
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, make_request
-from rockfrag.assess.verdicts import Verdicts, make_ladder, verdicts_of
 from rockfrag.rocking.rules_of_thumb import RULES, bias, predicted
 from rockfrag.schema import checked
 from rockfrag.yaml_file import read_yaml
@@ -31,7 +31,7 @@ class RuleCheck:
     scatter
         Standard deviation of the logarithm of that [-].
     unsafe
-        Share of the motions that topple the object at less than the rule says [-].
+        Fraction of the motions that topple the object at less than the rule says [-].
     motions
         Number of motions that topple it at all.
     """
@@ -43,8 +43,8 @@ class RuleCheck:
     motions: int
 
 
-def check_rules(objects: Objects, motions: MotionSet, verdicts: Verdicts) -> list[RuleCheck]:
-    """Hold every rule against the verdicts of an object.
+def check_rules(objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes) -> list[RuleCheck]:
+    """Hold every rule against the outcomes of an object.
 
     Parameters
     ----------
@@ -52,10 +52,10 @@ def check_rules(objects: Objects, motions: MotionSet, verdicts: Verdicts) -> lis
         The object.
     motions
         The motions, as they shake it.
-    verdicts
-        Its verdicts.
+    outcomes
+        Its outcomes.
     """
-    simulated = first_scales(verdicts)
+    simulated = first_scales(outcomes)
     found = []
     for name, rule in RULES.items():
         factors = np.array([predicted(objects.body, motion, rule) for motion in motions.base])
@@ -66,10 +66,12 @@ def check_rules(objects: Objects, motions: MotionSet, verdicts: Verdicts) -> lis
     return found
 
 
-def first_scales(verdicts: Verdicts) -> np.ndarray:
+def first_scales(outcomes: ObjectOutcomes) -> np.ndarray:
     """Least factor on each motion that topples the object; NaN where none does, shape (motions,)."""
-    first = verdicts.first()
-    return np.where(first >= 0, verdicts.ladder.scales[np.arange(first.size), first], np.nan)
+    first = outcomes.first()
+    return np.where(
+        first >= 0, outcomes.intensity_levels.scales[np.arange(first.size), first], np.nan
+    )
 
 
 def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFrame:
@@ -94,17 +96,17 @@ def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFra
     """
     given = checked(read_yaml(path), "rules_of_thumb", str(path))
     requests = [
-        make_request(one, f"{path}, object {i}", Path(path).parent)
-        for i, one in enumerate(given["objects"], start=1)
+        make_request(item, f"{path}, object {i}", Path(path).parent)
+        for i, item in enumerate(given["objects"], start=1)
     ]
     motions = motion_set(Records(), Place(), Path(records))
-    ladder = make_ladder(motions, PGA)
+    intensity_levels = make_intensity_levels(motions, PGA)
     rows = []
     for request in requests:
         objects = request.objects
-        verdicts = verdicts_of(objects, {"": objects.body}, motions, ladder)[""]
+        outcomes = outcomes_of(objects, {"": objects.body}, motions, intensity_levels)[""]
         rows += [
             {"object": request.name, **vars(check)}
-            for check in check_rules(objects, motions, verdicts)
+            for check in check_rules(objects, motions, outcomes)
         ]
     return pd.DataFrame(rows)

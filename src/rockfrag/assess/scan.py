@@ -127,16 +127,16 @@ def make_scan(
     exact = {name: float(value) for name, value in given.items() if value is not None}
     # what is wrong with the mesh is said of its middle tolerance
     shape.contact_polygon(unknowns["contact_tolerance_mm"].quantile(0.5) / 1e3)
-    open_ones = {name: one for name, one in unknowns.items() if name not in exact}
+    open_ones = {name: unknown for name, unknown in unknowns.items() if name not in exact}
     ways = ways_to_stand(shape, open_ones, WAYS, 1, exact).table
     ways = ways.sort_values("alpha_deg", kind="stable", ignore_index=True)
     assumed = [
         Assumption(
-            f"{one.words} was not measured",
-            f"{one.words.capitalize()}: {one.source}.",
+            f"{item.words} was not measured",
+            f"{item.words.capitalize()}: {item.source}.",
             (SOURCE_OF[name],),
         )
-        for name, one in open_ones.items()
+        for name, item in open_ones.items()
         if name != "contact_tolerance_mm" or tolerance is None
     ]
     return Scan(shape, ways, _parts(ways, list(open_ones))), assumed

@@ -1,7 +1,7 @@
 """What is not known, source by source: its words, where its size comes from, and what would make it smaller.
 
 Only what is not known stands here and widens intervals. What differs from one earthquake to the next, such as the
-velocity that comes with a given PGA, is in the motions and so in the shares and probabilities themselves.
+velocity that comes with a given PGA, is in the motions and so in the fractions and probabilities themselves.
 """
 
 from collections.abc import Mapping
@@ -107,7 +107,8 @@ SOURCES: Mapping[str, Source] = {
         "the error of the planar rocking model",
         "Simulated against measured medians, "
         + "; ".join(
-            f"{kind}: {one.beyond:g} of ln level, {one.words}" for kind, one in MODEL_ERRORS.items()
+            f"{kind}: {error.beyond:g} of ln level, {error.words}"
+            for kind, error in MODEL_ERRORS.items()
         ),
     ),
     "space": Source(

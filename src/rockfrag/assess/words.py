@@ -5,12 +5,12 @@ from collections.abc import Mapping
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.assumed import Assumption
+from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.narrowing import MEASUREMENTS, Narrowed, is_wide, narrowed
-from rockfrag.assess.remedies import Remedy
+from rockfrag.assess.outcomes import LARGEST_FACTOR
 from rockfrag.assess.risk import LEVEL, Estimate
 from rockfrag.assess.scale import SCALE_WORDS, classes
 from rockfrag.assess.sources import SOURCES, parts_of
-from rockfrag.assess.verdicts import LARGEST_FACTOR
 from rockfrag.report.wording import counted
 
 NAMES: Mapping[str, str] = {name: source.words for name, source in SOURCES.items()}
@@ -23,10 +23,10 @@ LEAST_PART = 0.05
 """Part of the variance from which a source is worth naming [-]."""
 
 MANY = 0.5
-"""Share of motions from which an object is said to topple."""
+"""Fraction of motions from which an object is said to topple."""
 
 FEW = 0.01
-"""Share of motions up to which it is said to be unlikely to topple."""
+"""Fraction of motions up to which it is said to be unlikely to topple."""
 
 ROCK, TOPPLE = 1, 2
 """Places of what motions do in the counts of an assessment."""
@@ -35,7 +35,7 @@ MOST_ASSUMPTIONS = 3
 """Assumptions that are named in a line; the page has all."""
 
 
-def share_words(value: float) -> str:
+def fraction_words(value: float) -> str:
     """A probability or share in per cent, to two digits."""
     if not math.isfinite(value):
         return "unknown"
@@ -53,12 +53,12 @@ def estimate_words(estimate: Estimate) -> str:
     if estimate.value == 0:
         if estimate.upper == 0:
             return "0 %"
-        return f"0 % (upper limit {share_words(estimate.upper)})"
+        return f"0 % (upper limit {fraction_words(estimate.upper)})"
     if estimate.value == 1:
-        return f"100 % (lower limit {share_words(estimate.lower)})"
+        return f"100 % (lower limit {fraction_words(estimate.lower)})"
     if not _has_interval(estimate):
-        return share_words(estimate.value)
-    return f"{share_words(estimate.value)} ({_range(estimate)})"
+        return fraction_words(estimate.value)
+    return f"{fraction_words(estimate.value)} ({_range(estimate)})"
 
 
 def _range(estimate: Estimate) -> str:
@@ -71,9 +71,9 @@ def range_words(lower: float, upper: float) -> str:
     return f"{_limit(lower)} to {_limit(upper)} %"
 
 
-def _limit(share: float) -> str:
+def _limit(fraction: float) -> str:
     """A limit in per cent: whole numbers from 10 on, two digits from 1 on, one below."""
-    percent = 100 * share
+    percent = 100 * fraction
     if percent < 5e-4:
         return "0"
     if percent >= 10:
@@ -87,9 +87,9 @@ def _has_interval(estimate: Estimate) -> bool:
 
 
 def value_words(found: Assessment, value: float) -> str:
-    """What is estimated, as a share in per cent or as an amplitude with its unit."""
-    if found.probability or found.share:
-        return share_words(value)
+    """What is estimated, as a fraction in per cent or as an amplitude with its unit."""
+    if found.probability or found.fraction:
+        return fraction_words(value)
     if not math.isfinite(value):
         return "not reached"
     return f"{value:.2g} {found.measure.unit}"
@@ -115,7 +115,7 @@ def five_lines(found: Assessment) -> list[str]:
 def headline(found: Assessment) -> str:
     """Say in a few words whether the object rocks and topples; the heading of the page."""
     name = _subject(found)
-    if found.share is None or found.level is None or found.rocking is None:
+    if found.fraction is None or found.level is None or found.rocking is None:
         half = found.amplitudes[0.5].value
         if not math.isfinite(half):
             return f"{name}: no shaking that was tried topples it in half of the motions"
@@ -127,9 +127,9 @@ def headline(found: Assessment) -> str:
         return f"{name} is not expected to move at {at}"
     if not_decidable(found):
         return f"{name} rocks at {at}; whether it topples is open"
-    if found.share.value >= MANY:
+    if found.fraction.value >= MANY:
         return f"{name} is likely to topple at {at}"
-    if found.share.value > FEW:
+    if found.fraction.value > FEW:
         return f"{name} may topple at {at}"
     return f"{name} may rock at {at} but is unlikely to topple"
 
@@ -141,7 +141,7 @@ def does_not_move(found: Assessment) -> bool:
 
 def not_decidable(found: Assessment) -> bool:
     """Whether the interval reaches from unlikely to likely toppling."""
-    return found.share is not None and is_wide(found.share)
+    return found.fraction is not None and is_wide(found.fraction)
 
 
 def _subject(found: Assessment) -> str:
@@ -157,35 +157,35 @@ def _where(found: Assessment) -> str:
 def at_the_site(found: Assessment) -> str:
     """What happens at the level asked about, or which levels topple the object."""
     who = f"{_subject(found)} {_where(found)}"
-    if found.level is None or found.share is None or found.rocking is None:
+    if found.level is None or found.fraction is None or found.rocking is None:
         return f"{who}: {_amplitudes(found)}"
     period = " (exceeded once in 475 years on average)" if found.request.level is None else ""
     at = f"at {found.level.words}{period}"
     if found.rocking.value == 0:
         return f"{who} {_at_rest(found, at)}"
     rocks = f"{_counted(found, ROCK)} it rock"
-    if found.share.value == 0:
+    if found.fraction.value == 0:
         return (
             f"{who} is unlikely to topple {at}: none of {_total(found)} motions topples it (upper limit "
-            f"{share_words(found.share.upper)}); {rocks}."
+            f"{fraction_words(found.fraction.upper)}); {rocks}."
         )
-    said = f"{_counted(found, TOPPLE)} it{_interval(found.share)}; {rocks}."
+    said = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}; {rocks}."
     if not_decidable(found):
         whether = f"Whether {found.request.name} {_where(found)} topples {at}"
         return (
             f"{whether} is not decidable with what was given: {said} {_would_narrow(found)}".strip()
         )
-    may = "is likely to topple" if found.share.value >= MANY else "may topple"
+    may = "is likely to topple" if found.fraction.value >= MANY else "may topple"
     return f"{who} {may} {at}: {said}"
 
 
 def _at_rest(found: Assessment, at: str) -> str:
     """What is said of an object that no motion makes rock."""
-    assert found.share is not None and found.level is not None
+    assert found.fraction is not None and found.level is not None
     starts = _starts(found)
     if does_not_move(found):
         return f"does not move {at}; it starts to rock at {starts}."
-    limit = f"upper limit of toppling {share_words(found.share.upper)}"
+    limit = f"upper limit of toppling {fraction_words(found.fraction.upper)}"
     if found.rocks_from > found.level.value:
         return (
             f"is not expected to move {at}: it starts to rock at {starts}, which what is not known of it could "
@@ -207,27 +207,27 @@ def _total(found: Assessment) -> int:
 
 def _counted(found: Assessment, what: int) -> str:
     """How many motions do it, such as ``1 of 100 motions topples``."""
-    one, many = {ROCK: ("makes", "make"), TOPPLE: ("topples", "topple")}[what]
+    item, many = {ROCK: ("makes", "make"), TOPPLE: ("topples", "topple")}[what]
     if found.counts is None:
-        share = found.rocking if what == ROCK else found.share
-        assert share is not None
-        return f"{share_words(share.value)} of the motions {many}"
+        fraction = found.rocking if what == ROCK else found.fraction
+        assert fraction is not None
+        return f"{fraction_words(fraction.value)} of the motions {many}"
     number, total = found.counts[what], found.counts[0]
     if number == total:
         return f"all {total} motions {many}"
-    return f"{number} of {total} motions {one if number == 1 else many}"
+    return f"{number} of {total} motions {item if number == 1 else many}"
 
 
 def _interval(estimate: Estimate) -> str:
     if estimate.value == 1:
-        return f" (lower limit {share_words(estimate.lower)})"
+        return f" (lower limit {fraction_words(estimate.lower)})"
     if not _has_interval(estimate):
         return " (no interval can be given)"
     return f" ({100 * LEVEL:.0f} % interval {_range(estimate)})"
 
 
 def _would_narrow(found: Assessment) -> str:
-    better = narrowed(found.share) if found.share else None
+    better = narrowed(found.fraction) if found.fraction else None
     return f"{_capital(_narrowing(better))}." if better else ""
 
 
@@ -267,11 +267,11 @@ def risk(found: Assessment) -> str:
     if found.probability.value == 0:
         first = (
             "None of the motions topples it at any level that was tried; the probability in "
-            f"{years:g} years is at most {share_words(found.probability.upper)}"
+            f"{years:g} years is at most {fraction_words(found.probability.upper)}"
         )
     else:
         first = (
-            f"It topples with a probability of {share_words(found.probability.value)} in {years:g} years"
+            f"It topples with a probability of {fraction_words(found.probability.value)} in {years:g} years"
             f"{_interval(found.probability)}"
         )
     weaker = (
@@ -300,7 +300,7 @@ def _position_value(found: Assessment, value: float) -> str:
 
 def _ranked(found: Assessment) -> list[tuple[str, float]]:
     """Arrangements with what is estimated, the safest first."""
-    grows = found.probability is None and found.share is None
+    grows = found.probability is None and found.fraction is None
     return sorted(found.by_arrangement.items(), key=lambda item: -item[1] if grows else item[1])
 
 
@@ -325,39 +325,39 @@ def worst_direction(found: Assessment) -> str:
 
 def helps(found: Assessment) -> str:
     """Changes that help, most helpful first."""
-    if not found.remedies:
+    if not found.mitigations:
         return "Nothing was tried."
     target = found.main
     if target.value == 0:
         return "No change is needed for this: none of the motions topples it as it stands."
-    best = [remedy for remedy in found.remedies if remedy.helps][:3]
+    best = [mitigation for mitigation in found.mitigations if mitigation.helps][:3]
     if not best:
         return "None of the changes that were tried helps."
-    return _capital("; ".join(remedy_words(found, one) for one in best)) + "."
+    return _capital("; ".join(mitigation_words(found, item) for item in best)) + "."
 
 
-def remedy_words(found: Assessment, remedy: Remedy) -> str:
+def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
     """A change and what it does to the risk, or to the shaking that the object bears."""
-    of_amplitude = found.probability is None and found.share is None
-    if math.isnan(remedy.factor):
-        return f"{remedy.name}: {value_words(found, remedy.value)}"
+    of_amplitude = found.probability is None and found.fraction is None
+    if math.isnan(mitigation.factor):
+        return f"{mitigation.name}: {value_words(found, mitigation.value)}"
     if of_amplitude:
-        change = 100 * (remedy.factor - 1)
+        change = 100 * (mitigation.factor - 1)
         more = "more" if change >= 0 else "less"
-        return f"{remedy.name} lets it bear {abs(change):.0f} % {more} shaking{_limits(remedy, -1)}"
-    if remedy.factor == 0:
-        return f"{remedy.name} leaves no motion that topples it"
-    change = 100 * (1 - remedy.factor)
+        return f"{mitigation.name} lets it bear {abs(change):.0f} % {more} shaking{_limits(mitigation, -1)}"
+    if mitigation.factor == 0:
+        return f"{mitigation.name} leaves no motion that topples it"
+    change = 100 * (1 - mitigation.factor)
     if change < 0:
-        return f"{remedy.name} makes the risk {remedy.factor:.2g} times as large"
-    return f"{remedy.name} reduces the risk by {change:.0f} %{_limits(remedy, 1)}"
+        return f"{mitigation.name} makes the risk {mitigation.factor:.2g} times as large"
+    return f"{mitigation.name} reduces the risk by {change:.0f} %{_limits(mitigation, 1)}"
 
 
-def _limits(remedy: Remedy, sign: int) -> str:
+def _limits(mitigation: Mitigation, sign: int) -> str:
     """Limits of a reduction (1) or a gain (-1) in per cent."""
-    if not math.isfinite(remedy.lower):
+    if not math.isfinite(mitigation.lower):
         return ""
-    low, high = sorted(sign * 100 * (1 - one) for one in (remedy.lower, remedy.upper))
+    low, high = sorted(sign * 100 * (1 - item) for item in (mitigation.lower, mitigation.upper))
     return f" ({low:.0f} to {high:.0f} %)".replace("-", "−")
 
 
@@ -377,15 +377,15 @@ def uncertainty(found: Assessment) -> list[str]:
     ]
     if named:
         lines.append(f"The variance of the interval comes to {_listed(named[:MOST_SOURCES])}.")
-    better = narrowed(main) if found.probability or found.share else None
-    if better is not None and not (not_decidable(found) and main is found.share):
+    better = narrowed(main) if found.probability or found.fraction else None
+    if better is not None and not (not_decidable(found) and main is found.fraction):
         lines.append(f"{_capital(_narrowing(better))}.")
     return lines
 
 
 def main_assumptions(found: Assessment) -> list[str]:
     """What was assumed that matters most, a sentence each."""
-    return [one.words for one in all_assumed(found) if one.short][:MOST_ASSUMPTIONS]
+    return [item.words for item in all_assumed(found) if item.short][:MOST_ASSUMPTIONS]
 
 
 def _listed(words: list[str]) -> str:
@@ -402,8 +402,8 @@ def _assumed(found: Assessment) -> list[str]:
 
 def _main_assumptions(found: Assessment) -> tuple[list[str], int]:
     """What matters most, in a few words each, and how many more there are."""
-    lines = [one for one in all_assumed(found) if one.short]
-    return [one.short for one in lines[:MOST_ASSUMPTIONS]], max(0, len(lines) - MOST_ASSUMPTIONS)
+    lines = [item for item in all_assumed(found) if item.short]
+    return [line.short for line in lines[:MOST_ASSUMPTIONS]], max(0, len(lines) - MOST_ASSUMPTIONS)
 
 
 def all_assumed(found: Assessment) -> list[Assumption]:
@@ -411,8 +411,8 @@ def all_assumed(found: Assessment) -> list[Assumption]:
     sources = found.main.sources
     lines = [*found.request.place.assumed, *found.request.objects.assumed]
 
-    def size(one: Assumption) -> float:
-        return sum(sources.get(name, 0.0) ** 2 for name in one.sources)
+    def size(assumption: Assumption) -> float:
+        return sum(sources.get(name, 0.0) ** 2 for name in assumption.sources)
 
     return sorted(lines, key=size, reverse=True)
 
@@ -420,7 +420,7 @@ def all_assumed(found: Assessment) -> list[Assumption]:
 def assumptions(found: Assessment) -> list[str]:
     """Sentences of all that was assumed and of all that a reader must know."""
     request = found.request
-    lines = [one.words for one in all_assumed(found)]
+    lines = [item.words for item in all_assumed(found)]
     if request.place.building is not None:
         lines.append(
             "The building stays elastic; one that cracks shakes its floors less strongly and more slowly."
@@ -432,11 +432,11 @@ def assumptions(found: Assessment) -> list[str]:
             "counted "
             "in the figures; that both components act at once is counted in their intervals, as for a square box."
         )
-    if math.isfinite(found.sliding_share) and found.share is not None:
+    if math.isfinite(found.sliding_fraction) and found.fraction is not None:
         lines.append(
             f"With a friction of {request.objects.friction:g} it may slide, and "
-            f"{share_words(found.sliding_share)} of "
-            f"the motions at that level topple it instead of {share_words(found.share.value)}; all other "
+            f"{fraction_words(found.sliding_fraction)} of "
+            f"the motions at that level topple it instead of {fraction_words(found.fraction.value)}; all other "
             "numbers are "
             "without sliding."
         )
@@ -446,7 +446,7 @@ def assumptions(found: Assessment) -> list[str]:
         lines.append(found.conversion.words)
     if found.hazard:
         lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.name}.")
-    factor = found.counted.ladder.allowed.mean()
+    factor = found.counted.intensity_levels.allowed.mean()
     lines.append(
         f"Motions are scaled by {1 / LARGEST_FACTOR:g} to {LARGEST_FACTOR:g} at most, which admits "
         f"{100 * factor:.0f} % "
@@ -455,9 +455,9 @@ def assumptions(found: Assessment) -> list[str]:
     return lines
 
 
-def doubts(found: Assessment) -> list[str]:
+def quality_flags(found: Assessment) -> list[str]:
     """Sentences of what looks wrong."""
-    lines = [*found.request.objects.doubts, *found.motions.warnings]
+    lines = [*found.request.objects.quality_flags, *found.motions.warnings]
     if found.hazard is not None and found.request.level is not None:
         rate = float(found.hazard.rate(found.request.level.value))
         if rate > 0.2 or rate < 1e-6:
@@ -479,13 +479,15 @@ def doubts(found: Assessment) -> list[str]:
         lines.append(
             "No record has two components, so that the worst direction of a round base could not be tried."
         )
-    if found.verdicts.light:
+    if found.outcomes.light:
         lines.append(
             "Under the strongest shaking that was tried a squat body may leave the ground, which this model "
             "does not let it."
         )
-    for event, share in _influential(found):
-        lines.append(f"{share:.0%} of the motions that topple it at that level are of {event}.")
+    for earthquake, fraction in _influential(found):
+        lines.append(
+            f"{fraction:.0%} of the motions that topple it at that level are of {earthquake}."
+        )
     return lines
 
 
@@ -493,14 +495,14 @@ def _influential(found: Assessment) -> list[tuple[str, float]]:
     """Earthquakes of which most of the motions are that topple the object at the level asked about."""
     if found.level is None:
         return []
-    verdicts = found.verdicts
-    at = int(verdicts.ladder.levels.searchsorted(found.level.value))
-    fell = verdicts.overturned[:, min(at, verdicts.ladder.levels.size - 1)]
+    outcomes = found.outcomes
+    at = int(outcomes.intensity_levels.levels.searchsorted(found.level.value))
+    fell = outcomes.overturned[:, min(at, outcomes.intensity_levels.levels.size - 1)]
     if fell.sum() < 4:
         return []
-    names = verdicts.events[fell]
+    names = outcomes.earthquakes[fell]
     counts = {name: (names == name).mean() for name in dict.fromkeys(names)}
-    return [(str(name), float(share)) for name, share in counts.items() if share > 0.5]
+    return [(str(name), float(fraction)) for name, fraction in counts.items() if fraction > 0.5]
 
 
 def _capital(text: str) -> str:

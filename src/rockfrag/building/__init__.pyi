@@ -1,5 +1,5 @@
 from .drift import (
-    DriftVerdict as DriftVerdict,
+    DriftOutcome as DriftOutcome,
     judge_drift as judge_drift,
 )
 from .floors import (
@@ -24,7 +24,7 @@ from .modes import (
 )
 from .response import (
     BuildingResponse as BuildingResponse,
-    EnergyLedger as EnergyLedger,
+    EnergyBalance as EnergyBalance,
     respond_elastically as respond_elastically,
 )
 from .settings import (

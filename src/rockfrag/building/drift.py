@@ -10,7 +10,7 @@ from rockfrag.building.response import BuildingResponse
 
 
 @dataclass(frozen=True)
-class DriftVerdict:
+class DriftOutcome:
     """State of the storey that is worst off.
 
     Attributes
@@ -19,7 +19,7 @@ class DriftVerdict:
         Its number, from 1.
     drift
         Its largest drift over height [-].
-    strength_share
+    strength_fraction
         Largest shear over the shear strength [-]; only an elastic model can exceed 1.
     state
         ``uncracked``, ``cracked``, ``beyond strength`` (of an elastic model), ``beyond yield``,
@@ -33,13 +33,13 @@ class DriftVerdict:
 
     storey: int
     drift: float
-    strength_share: float
+    strength_fraction: float
     state: str
     credible: bool
     statement: str
 
 
-def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftVerdict:
+def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftOutcome:
     """Judge a response by the masonry law of the building.
 
     Parameters
@@ -51,41 +51,41 @@ def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftVer
 
     Returns
     -------
-    The :class:`DriftVerdict`.
+    The :class:`DriftOutcome`.
     """
     if building.model == "elastic":
         return _judge_elastic(building, response)
     return _judge_hysteretic(building, response)
 
 
-def _judge_elastic(building: ShearBuilding, response: BuildingResponse) -> DriftVerdict:
+def _judge_elastic(building: ShearBuilding, response: BuildingResponse) -> DriftOutcome:
     law = building.masonry
     shear = np.asarray(building.stiffnesses) * np.asarray(building.heights) * response.peak_drift
-    shares = shear / shear_strengths(building)
-    worst = int(np.argmax(shares))
-    share, drift = float(shares[worst]), float(response.peak_drift[worst])
+    fractions = shear / shear_strengths(building)
+    worst = int(np.argmax(fractions))
+    fraction, drift = float(fractions[worst]), float(response.peak_drift[worst])
     begin = (
         f"{building.name}, elastic: storey {worst + 1} drifts {drift:.2%} of its height and carries "
-        f"{share:.2f} of its shear strength"
+        f"{fraction:.2f} of its shear strength"
     )
-    if share <= law.cracking:
+    if fraction <= law.cracking:
         state, end = "uncracked", "below cracking, so the elastic model holds"
-    elif share <= 1:
+    elif fraction <= 1:
         state, end = "cracked", "beyond cracking, so a cracked stiffness is the one to use"
     else:
         state = "beyond strength"
         end = "far beyond cracking, so these are floor motions of a house that cannot break"
-    return DriftVerdict(worst + 1, drift, share, state, share <= 1, f"{begin}: {end}.")
+    return DriftOutcome(worst + 1, drift, fraction, state, fraction <= 1, f"{begin}: {end}.")
 
 
-def _judge_hysteretic(building: ShearBuilding, response: BuildingResponse) -> DriftVerdict:
+def _judge_hysteretic(building: ShearBuilding, response: BuildingResponse) -> DriftOutcome:
     law = building.masonry
     worst = int(np.argmax(response.peak_drift))
     drift = float(response.peak_drift[worst])
     elastic = float(building.stiffnesses[worst] * building.heights[worst] * drift)
-    share = min(1.0, elastic / float(shear_strengths(building)[worst]))
+    fraction = min(1.0, elastic / float(shear_strengths(building)[worst]))
     begin = f"{building.name}, hysteretic: storey {worst + 1} drifts {drift:.2%} of its height"
-    if share <= law.cracking:
+    if fraction <= law.cracking:
         state, end = "uncracked", "below cracking"
     elif drift <= law.yield_drift:
         state, end = "cracked", f"cracked but below yield ({law.yield_drift:.2%})"
@@ -101,4 +101,4 @@ def _judge_hysteretic(building: ShearBuilding, response: BuildingResponse) -> Dr
             "mean nothing"
         )
     credible = drift <= law.rocking_drift
-    return DriftVerdict(worst + 1, drift, share, state, credible, f"{begin}, {end}.")
+    return DriftOutcome(worst + 1, drift, fraction, state, credible, f"{begin}, {end}.")

@@ -104,7 +104,7 @@ def _floor_motion(
         floor=label,
         level=level,
         largest_drift=float(response.peak_drift.max()),
-        verdict=judge_drift(building, response).statement,
+        outcome=judge_drift(building, response).statement,
     )
     return _named(moved, label, level, ground_motion=motion.name)
 

@@ -24,7 +24,7 @@ from rockfrag.building.hysteresis import (
 )
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.modes import damping_matrix, find_modes
-from rockfrag.building.response import BuildingResponse, EnergyLedger
+from rockfrag.building.response import BuildingResponse, EnergyBalance
 from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
 
@@ -76,7 +76,7 @@ def respond_hysteretically(
         time=motion.time,
         acceleration=np.vstack([motion.acceleration, total]),
         drift=shift / np.asarray(building.heights)[:, None],
-        energy=EnergyLedger(*energy),
+        energy=EnergyBalance(*energy),
     )
 
 

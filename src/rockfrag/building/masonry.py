@@ -29,8 +29,8 @@ class MasonryLaw:
     pinch_force
         Force at the point through which a storey reloads, over the force it aims for [-].
     pinch_drift
-        Displacement of that point: its share of the way from zero force to the line of unloading
-        through the aim [-].  Both shares 1 is no pinching.
+        Displacement of that point: its fraction of the way from zero force to the line of unloading
+        through the aim [-].  Both fractions 1 is no pinching.
     damage_ductility, damage_energy
         Growth of the drift aimed for at each reversal, per unit of ductility beyond cracking and of
         energy over the area under both sides of the envelope [-]; repeated cycles lose force by it.
@@ -51,15 +51,15 @@ class MasonryLaw:
     unloading: float = 0.3
 
     def __post_init__(self) -> None:
-        for one in fields(self):
-            value = float(getattr(self, one.name))
+        for field in fields(self):
+            value = float(getattr(self, field.name))
             if not (math.isfinite(value) and value >= 0):
-                raise InputError(f"masonry: {one.name} must be zero or more, got {value}.")
-            object.__setattr__(self, one.name, value)
-        for share in ("cracking", "residual", "pinch_force", "pinch_drift", "unloading"):
-            if getattr(self, share) > 1:
+                raise InputError(f"masonry: {field.name} must be zero or more, got {value}.")
+            object.__setattr__(self, field.name, value)
+        for fraction in ("cracking", "residual", "pinch_force", "pinch_drift", "unloading"):
+            if getattr(self, fraction) > 1:
                 raise InputError(
-                    f"masonry: {share} is a share and at most 1, got {getattr(self, share)}."
+                    f"masonry: {fraction} is a fraction and at most 1, got {getattr(self, fraction)}."
                 )
         if not (self.base_shear > 0 and self.cracking > 0):
             raise InputError("masonry: base_shear and cracking must be greater than zero.")

@@ -23,7 +23,7 @@ class Modes:
         Shapes [-], shape (floors, modes).
     participation
         Participation factors Γ [-], shape (modes,); Γ times the shape sums to one at every floor.
-    mass_share
+    mass_fraction
         Effective modal mass over the total mass [-], shape (modes,).
     damping
         Fraction of critical damping [-], shape (modes,).
@@ -32,7 +32,7 @@ class Modes:
     period: Floats
     shape: Floats
     participation: Floats
-    mass_share: Floats
+    mass_fraction: Floats
     damping: Floats
 
     __repr__ = short_repr
@@ -68,7 +68,7 @@ def find_modes(building: ShearBuilding) -> Modes:
         period=2 * np.pi / frequency,
         shape=shape,
         participation=excited / modal_mass,
-        mass_share=excited**2 / modal_mass / mass.sum(),
+        mass_fraction=excited**2 / modal_mass / mass.sum(),
         damping=_damping_ratios(building, frequency),
     )
 

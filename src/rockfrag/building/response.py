@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class EnergyLedger:
+class EnergyBalance:
     """Where the energy is, relative to the ground (Uang & Bertero 1990); each [J], shape (n,).
 
     Attributes
@@ -66,7 +66,7 @@ class BuildingResponse:
     time: Floats
     acceleration: Floats
     drift: Floats
-    energy: EnergyLedger | None = None
+    energy: EnergyBalance | None = None
 
     __repr__ = short_repr
 
@@ -93,13 +93,13 @@ def respond_elastically(building: ShearBuilding, motion: Motion) -> BuildingResp
     modes = find_modes(building)
     displacement = np.zeros((building.storeys, motion.acceleration.size))
     acceleration = np.zeros_like(displacement)
-    for period, damping, share in zip(
+    for period, damping, fraction in zip(
         modes.period, modes.damping, (modes.participation * modes.shape).T, strict=True
     ):
         u, _, total = oscillator_response(motion, float(period), float(damping))
-        displacement += np.outer(share, u)
-        # the shares of all modes sum to one at a floor, so the total accelerations superpose too
-        acceleration += np.outer(share, total)
+        displacement += np.outer(fraction, u)
+        # the fractions of all modes sum to one at a floor, so the total accelerations superpose too
+        acceleration += np.outer(fraction, total)
     return BuildingResponse(
         time=motion.time,
         acceleration=np.vstack([motion.acceleration, acceleration]),

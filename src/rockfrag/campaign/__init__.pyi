@@ -15,4 +15,4 @@ from .validation import (
     Validated as Validated,
     cross_validate as cross_validate,
 )
-from .verdicts import simulate_tests as simulate_tests
+from .outcomes import simulate_tests as simulate_tests

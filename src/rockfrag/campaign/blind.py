@@ -127,7 +127,7 @@ def model_error(answers: Sequence[BlindAnswer]) -> tuple[float, float]:
     tuple of float
         All of it, and what is beyond the ways to stand.
     """
-    square = float(np.mean([one.error**2 for one in answers]))
-    sampling = float(np.mean([one.sampling**2 for one in answers]))
-    ways = float(np.mean([one.ways**2 for one in answers]))
+    square = float(np.mean([answer.error**2 for answer in answers]))
+    sampling = float(np.mean([answer.sampling**2 for answer in answers]))
+    ways = float(np.mean([answer.ways**2 for answer in answers]))
     return math.sqrt(square + sampling), math.sqrt(max(0.0, square - ways) + sampling)

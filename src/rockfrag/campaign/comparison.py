@@ -11,35 +11,35 @@ from rockfrag.campaign.validation import Bools, Floats, Validated, clustered_err
 from rockfrag.fragility.batch_glm import fit_batch
 
 NEAR_CRITICAL = (0.1, 0.9)
-"""A test is near-critical if plausible trials disagree: this share of votes or more says each verdict."""
+"""A test is near-critical if plausible trials disagree: this fraction of votes or more says each outcome."""
 
 
 def agreement_row(
-    name: str, verdicts: Bools, measured: Bools, groups: NDArray[np.int64], level: float
+    name: str, outcomes: Bools, measured: Bools, groups: NDArray[np.int64], level: float
 ) -> dict[str, object]:
-    """Share of right verdicts with an interval over motions, and both kinds of error.
+    """Fraction of right outcomes with an interval over motions, and both kinds of error.
 
     Parameters
     ----------
     name
-        Who gave the verdicts.
-    verdicts
+        Who gave the outcomes.
+    outcomes
         Shape (repeats, tests) or (tests,); repeats are divisions into folds and are averaged.
     measured, groups
         What the laboratory saw, and the group of each test.
     level
         Of the interval: Student's t over the groups.
     """
-    each = np.atleast_2d(verdicts)
+    each = np.atleast_2d(outcomes)
     right = (each == measured).mean(axis=0)
     error = clustered_error(right, groups)
     width = stats.t.ppf(0.5 + level / 2, len(np.unique(groups)) - 1) * error
-    share = float(right.mean())
+    fraction = float(right.mean())
     return {
         "who": name,
-        "right": share,
-        "lower": max(0.0, share - width),
-        "upper": min(1.0, share + width),
+        "right": fraction,
+        "lower": max(0.0, fraction - width),
+        "upper": min(1.0, fraction + width),
         "false_alarms": float((each & ~measured).sum(axis=1).mean()),
         "missed": float((~each & measured).sum(axis=1).mean()),
         "tests": len(measured),
@@ -53,9 +53,9 @@ def paired_row(
 
     Returns
     -------
-    ``better`` (difference of the shares of right verdicts) with ``better_lower`` and ``better_upper`` (Student's
-    t over the groups) and ``p``: two-sided, by changing the sign of whole groups at random (McNemar's test for
-    tests that are not independent).
+    ``better`` (difference of the fractions of right outcomes) with ``better_lower`` and ``better_upper``
+    (Student's t over the groups) and ``p``: two-sided, by changing the sign of whole groups at random (McNemar's
+    test for tests that are not independent).
     """
     difference = (np.atleast_2d(ours) == measured).mean(axis=0) - (
         np.atleast_2d(theirs) == measured
@@ -88,14 +88,14 @@ def fragility_beside(
     replicates: int,
     seed: int,
 ) -> pd.DataFrame:
-    """Lognormal fragility of the measured and of simulated verdicts, with their ratio.
+    """Lognormal fragility of the measured and of simulated outcomes, with their ratio.
 
     Parameters
     ----------
     measure
         Intensity measure of each test.
     simulated
-        Verdicts by name, or the part of votes to overturn, shape (tests,) each.
+        Outcomes by name, or the part of votes to overturn, shape (tests,) each.
     groups
         Motions; the bootstrap draws them whole.
     level, replicates, seed
@@ -103,7 +103,7 @@ def fragility_beside(
 
     Returns
     -------
-    A row per set of verdicts: ``who``, ``theta`` and ``beta`` with limits, and, for simulated ones,
+    A row per set of outcomes: ``who``, ``theta`` and ``beta`` with limits, and, for simulated ones,
     ``theta_ratio`` and ``beta_ratio`` to the measured curve with limits.
     """
     rng = np.random.default_rng(seed)
@@ -114,8 +114,8 @@ def fragility_beside(
     )
     weights = np.vstack([np.ones((1, len(measure))), weights])
     curves = {
-        name: curves_of(measure, verdicts, weights)
-        for name, verdicts in {"measured": measured, **simulated}.items()
+        name: curves_of(measure, outcomes, weights)
+        for name, outcomes in {"measured": measured, **simulated}.items()
     }
     tails = [(1 - level) / 2, (1 + level) / 2]
     rows = []
@@ -139,14 +139,14 @@ def _limits(values: Floats, tails: Sequence[float]) -> Floats:
     return np.quantile(known, tails) if known.size else np.full(len(tails), np.nan)
 
 
-def curves_of(measure: Floats, verdicts: Bools | Floats, weights: Floats) -> Floats:
+def curves_of(measure: Floats, outcomes: Bools | Floats, weights: Floats) -> Floats:
     """Fit a lognormal curve for each row of weights.
 
     Parameters
     ----------
     measure
         Intensity measure of each test, shape (tests,).
-    verdicts
+    outcomes
         Whether, or in which part of its votes, each overturned, shape (tests,) or (rows, tests).
     weights
         Weight of each test, shape (rows, tests).
@@ -156,15 +156,15 @@ def curves_of(measure: Floats, verdicts: Bools | Floats, weights: Floats) -> Flo
     θ and β, shape (rows, 2); NaN where no curve rises.
     """
     design = np.column_stack([np.ones(len(measure)), np.log(measure)])
-    coefficients = fit_batch(design, weights * verdicts, weights).coefficients
+    coefficients = fit_batch(design, weights * outcomes, weights).coefficients
     slope = np.where(coefficients[:, 1] > 0, coefficients[:, 1], np.nan)
     return np.column_stack([np.exp(-coefficients[:, 0] / slope), 1 / slope])
 
 
 def by_region(
-    tests: pd.DataFrame, first: str, second: str, verdict: Bools, measured: Bools
+    tests: pd.DataFrame, first: str, second: str, outcome: Bools, measured: Bools
 ) -> pd.DataFrame:
-    """Share of right verdicts in thirds of two measures.
+    """Fraction of right outcomes in thirds of two measures.
 
     Returns
     -------
@@ -180,9 +180,9 @@ def by_region(
                 row[f"{name}_from"], row[f"{name}_to"] = thirds[name][0][k : k + 2]
             row["tests"] = int(inside.sum())
             row["overturned"] = int(measured[inside].sum())
-            row["simulated"] = int(verdict[inside].sum())
+            row["simulated"] = int(outcome[inside].sum())
             row["right"] = (
-                float((verdict == measured)[inside].mean()) if inside.any() else float("nan")
+                float((outcome == measured)[inside].mean()) if inside.any() else float("nan")
             )
             rows.append(row)
     return pd.DataFrame(rows)
@@ -194,11 +194,11 @@ def _thirds(values: Floats) -> tuple[Floats, NDArray[np.int64]]:
 
 
 def judged_tests(tests: pd.DataFrame, validated: Validated, measured: Bools) -> pd.DataFrame:
-    """Each test with its votes, its verdict, whether that is right, and whether it is near-critical."""
+    """Each test with its votes, its outcome, whether that is right, and whether it is near-critical."""
     votes = validated.mean_votes
     return tests.assign(
         votes_to_overturn=votes,
-        simulated=validated.verdict,
-        right=validated.verdict == measured,
+        simulated=validated.outcome,
+        right=validated.outcome == measured,
         near_critical=(votes > NEAR_CRITICAL[0]) & (votes < NEAR_CRITICAL[1]),
     )

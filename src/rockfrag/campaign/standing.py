@@ -147,7 +147,7 @@ def ways_to_stand(
     rows, systems = [], []
     for point in points:
         way = dict(known or {}) | {
-            name: one.quantile(u) for (name, one), u in zip(unknowns.items(), point, strict=True)
+            name: item.quantile(u) for (name, item), u in zip(unknowns.items(), point, strict=True)
         }
         try:
             block = block_of(thing, way)

@@ -33,7 +33,7 @@ class Campaign:
     measures
         Names of the columns with intensity measures.
     codes
-        Verdicts of other programs, a bool column each, a row per row of ``tests``.
+        Outcomes of other programs, a bool column each, a row per row of ``tests``.
     """
 
     tests: pd.DataFrame
@@ -58,7 +58,7 @@ def read_campaign(
     measures: Mapping[str, Sequence[str | float]],
     other_codes: str | os.PathLike[str] | None = None,
 ) -> Campaign:
-    """Read a table of tests and, if there is one, a table of other programs' verdicts.
+    """Read a table of tests and, if there is one, a table of other programs' outcomes.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def read_campaign(
     measures
         For each intensity measure the columns and numbers whose product it is.
     other_codes
-        CSV with the column of test names and one column of verdicts per program.
+        CSV with the column of test names and one column of outcomes per program.
 
     Returns
     -------
@@ -90,8 +90,11 @@ def read_campaign(
     raw = read_columns(
         path,
         labels=[columns[key] for key in ("test", "motion", "group", "which_way") if key in columns],
-        positive=[*(one for recipe in recipes for one in recipe if isinstance(one, str)), *peaks],
-        verdicts=[columns[key] for key in (MEASURED, *NOTED) if key in columns],
+        positive=[
+            *(item for recipe in recipes for item in recipe if isinstance(item, str)),
+            *peaks,
+        ],
+        outcomes=[columns[key] for key in (MEASURED, *NOTED) if key in columns],
     )
     tests = pd.DataFrame(
         {
@@ -104,7 +107,7 @@ def read_campaign(
     if len(doubled):
         raise InputError(f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test.")
     for name, recipe in measures.items():
-        factors = [raw[one] if isinstance(one, str) else one for one in recipe]
+        factors = [raw[item] if isinstance(item, str) else item for item in recipe]
         tests[name] = math.prod(factors)
     if "motion" not in columns:
         tests["motion"] = settings_of(tests, list(measures))
@@ -114,7 +117,7 @@ def read_campaign(
             tests[key] = raw[columns[key]].astype(bool)
     if "which_way" in columns:
         tests["which_way"] = raw[columns["which_way"]]
-    tests = _with_verdicts(tests, raw, columns, source)
+    tests = _with_outcomes(tests, raw, columns, source)
     return Campaign(tests, tuple(measures), _codes(other_codes, columns["test"], tests["test"]))
 
 
@@ -124,10 +127,10 @@ def settings_of(tests: pd.DataFrame, measures: Sequence[str]) -> list[str]:
     return [", ".join(f"{m} {v:g}" for m, v in zip(measures, row, strict=True)) for row in rows]
 
 
-def _with_verdicts(
+def _with_outcomes(
     tests: pd.DataFrame, raw: pd.DataFrame, columns: Mapping[str, str], source: str
 ) -> pd.DataFrame:
-    """Add verdict and amplitude; an amplitude of overturning makes one test survived and one overturned."""
+    """Add outcome and amplitude; an amplitude of overturning makes one test survived and one overturned."""
     if "overturned" in columns:
         tests[MEASURED] = raw[columns["overturned"]].astype(bool)
         tests["amplitude_g"] = raw[columns["amplitude_g"]] if "amplitude_g" in columns else np.nan
@@ -155,7 +158,7 @@ def _codes(
         return pd.DataFrame(index=range(len(tests)))
     source = Path(path).name
     names = [name for name in read_titles(path) if name != column]
-    table = read_columns(path, labels=[column], verdicts=names).set_index(column)
+    table = read_columns(path, labels=[column], outcomes=names).set_index(column)
     if not set(tests) & set(table.index):
         raise InputError(
             f"{source}: has none of the {len(tests)} tests; check that the column {column!r} has their names."

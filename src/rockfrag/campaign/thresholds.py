@@ -25,7 +25,7 @@ def best_threshold(measure: Floats, overturned: Bools) -> float:
     """
     order = np.argsort(measure, kind="stable")
     fell = overturned[order]
-    # right verdicts if the first k tests are taken as survived
+    # right outcomes if the first k tests are taken as survived
     right = np.concatenate([[0], np.cumsum(~fell)]) + np.concatenate(
         [np.cumsum(fell[::-1])[::-1], [0]]
     )
@@ -47,7 +47,7 @@ def cross_validated_threshold(
     repeats: int,
     seed: int,
 ) -> Bools:
-    """Verdicts by thresholds that tests of other motions chose.
+    """Outcomes by thresholds that tests of other motions chose.
 
     Parameters
     ----------
@@ -61,15 +61,15 @@ def cross_validated_threshold(
     Shape (repeats, tests).
     """
     rng = np.random.default_rng(seed)
-    verdicts = np.empty((repeats, len(overturned)), dtype=bool)
+    outcomes = np.empty((repeats, len(overturned)), dtype=bool)
     for repeat in range(repeats):
         fold = folds_by_group(groups, folds, rng)
         for number in range(folds):
             chosen_by = fold != number
-            verdicts[repeat, ~chosen_by] = _predicted(
+            outcomes[repeat, ~chosen_by] = _predicted(
                 measures[chosen_by], overturned[chosen_by], measures[~chosen_by]
             )
-    return verdicts
+    return outcomes
 
 
 def _predicted(known: Floats, overturned: Bools, asked: Floats) -> Bools:

@@ -166,11 +166,11 @@ def block_of(thing: Shape | Block, guess: Mapping[str, float]) -> Block:
     return replace(thing, width=thing.width - 2 * retreat)
 
 
-def _value(name: str, limits: tuple[float, float], share: float) -> float:
+def _value(name: str, limits: tuple[float, float], fraction: float) -> float:
     low, high = limits
     if name in _LOGARITHMIC:
-        return float(low * (high / low) ** share)
-    return float(low + (high - low) * share)
+        return float(low * (high / low) ** fraction)
+    return float(low + (high - low) * fraction)
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:

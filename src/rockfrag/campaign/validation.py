@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rockfrag.short_repr import short_repr
 
 STANDARD_ERRORS = 2.0
-"""A trial is plausible if its share of right verdicts is within this many standard errors of the best."""
+"""A trial is plausible if its fraction of right outcomes is within this many standard errors of the best."""
 
 FEWEST_VOTERS = 10
 """Plausible trials below which votes say little: with ten they are tenths."""
@@ -30,7 +30,7 @@ class Validated:
     Attributes
     ----------
     votes
-        Share of plausible trials under which the object overturns in each test, chosen by tests with other
+        Fraction of plausible trials under which the object overturns in each test, chosen by tests with other
         motions, shape (repeats, tests).
     plausible
         Number of trials that voted, shape (repeats, folds).
@@ -42,7 +42,7 @@ class Validated:
     __repr__ = short_repr
 
     @property
-    def verdicts(self) -> Bools:
+    def outcomes(self) -> Bools:
         """Overturned where at least half of the votes say so, shape (repeats, tests)."""
         return self.votes >= 0.5
 
@@ -52,8 +52,8 @@ class Validated:
         return np.asarray(self.votes.mean(axis=0))
 
     @property
-    def verdict(self) -> Bools:
-        """One verdict a test: by the votes averaged over the repeats, shape (tests,)."""
+    def outcome(self) -> Bools:
+        """One outcome a test: by the votes averaged over the repeats, shape (tests,)."""
         return self.mean_votes >= 0.5
 
 
@@ -92,20 +92,20 @@ def plausible_trials(right: Bools, groups: NDArray[np.int64]) -> Bools:
     Parameters
     ----------
     right
-        Whether each trial's verdict is the measured one, shape (trials, tests).
+        Whether each trial's outcome is the measured one, shape (trials, tests).
     groups
         Group of each test.
     """
-    share = right.mean(axis=1)
-    best = int(share.argmax())
+    fraction = right.mean(axis=1)
+    best = int(fraction.argmax())
     error = clustered_error(right[best].astype(np.float64), groups)
     # with one group there is no standard error, and only the best remain
     slack = STANDARD_ERRORS * error if np.isfinite(error) else 0.0
-    return np.asarray(share >= share[best] - slack - 1e-12)
+    return np.asarray(fraction >= fraction[best] - slack - 1e-12)
 
 
 def cross_validate(
-    verdicts: Bools,
+    outcomes: Bools,
     measured: Bools,
     groups: NDArray[np.int64],
     *,
@@ -118,8 +118,8 @@ def cross_validate(
 
     Parameters
     ----------
-    verdicts
-        Simulated verdicts, shape (trials, tests).
+    outcomes
+        Simulated outcomes, shape (trials, tests).
     measured
         What the laboratory saw, shape (tests,).
     groups
@@ -129,15 +129,15 @@ def cross_validate(
     seed
         Of the divisions.
     asked
-        What the plausible trials vote on, if not the verdicts that they are chosen by, shape (trials, tests).
+        What the plausible trials vote on, if not the outcomes that they are chosen by, shape (trials, tests).
 
     Returns
     -------
     The :class:`Validated`.
     """
     rng = np.random.default_rng(seed)
-    right = verdicts == measured
-    answers = verdicts if asked is None else asked
+    right = outcomes == measured
+    answers = outcomes if asked is None else asked
     votes = np.empty((repeats, len(measured)))
     plausible = np.empty((repeats, folds), dtype=np.int64)
     for repeat in range(repeats):

@@ -57,19 +57,19 @@ def centres(system: System, state: NDArray[np.int64], theta: Array) -> Array:
 
     lowest = system.shapes[0]
     if system.count == 1:
-        for pole in (+1, -1):
-            rows, arm = signs[:, 0] == pole, geometry.arm(lowest, pole)
+        for pivot in (+1, -1):
+            rows, arm = signs[:, 0] == pivot, geometry.arm(lowest, pivot)
             found[rows, 0] = turned(arm, rows, 0)
             found[rows, 0, 0] += lowest.x - arm[0]
         return found
     pile = system.pile
-    for one in (+1, -1):
-        arm = geometry.arm(lowest, one)
+    for side in (+1, -1):
+        arm = geometry.arm(lowest, side)
         for two in (+1, -1):
-            rows = (signs[:, 0] == one) & (signs[:, 1] == two)
+            rows = (signs[:, 0] == side) & (signs[:, 1] == two)
             found[rows, 0] = turned(arm, rows, 0)
-            found[rows, 1] = turned(geometry.reach(pile, one, two), rows, 0)
-            found[rows, 1] += turned(geometry.statue_arm(pile, two), rows, 1)
+            found[rows, 1] = turned(geometry.reach(pile, side, two), rows, 0)
+            found[rows, 1] += turned(geometry.upper_arm(pile, two), rows, 1)
             found[rows, :, 0] += lowest.x - arm[0]
     return found
 
@@ -114,22 +114,22 @@ def contact_forces(
 
     lowest = system.shapes[0]
     if system.count == 1:
-        for pole in (+1, -1):
-            rows = (state[:, 0] == pole) | (state[:, 0] == 0) & (pole == 1)
-            ax, ay = _acceleration(geometry.arm(lowest, pole), turning(rows, 0))
+        for pivot in (+1, -1):
+            rows = (state[:, 0] == pivot) | (state[:, 0] == 0) & (pivot == 1)
+            ax, ay = _acceleration(geometry.arm(lowest, pivot), turning(rows, 0))
             friction[rows, 0] = lowest.mass * (ground[rows] + ax)
             normal[rows, 0] = lowest.mass * (gravity[rows] + ay)
         return normal, friction
     pile = system.pile
-    m1, m2 = pile.pedestal.mass, pile.statue.mass
-    for one in (+1, -1):
+    m1, m2 = pile.lower.mass, pile.upper.mass
+    for side in (+1, -1):
         for two in (+1, -1):
-            rows = (state[:, 0] == one) | (state[:, 0] == 0) & (one == 1)
+            rows = (state[:, 0] == side) | (state[:, 0] == 0) & (side == 1)
             rows &= (state[:, 1] == two) | (state[:, 1] == 0) & (two == 1)
             first, second = turning(rows, 0), turning(rows, 1)
-            x1, y1 = _acceleration(geometry.arm(lowest, one), first)
-            xd, yd = _acceleration(geometry.reach(pile, one, two), first)
-            x2, y2 = _acceleration(geometry.statue_arm(pile, two), second)
+            x1, y1 = _acceleration(geometry.arm(lowest, side), first)
+            xd, yd = _acceleration(geometry.reach(pile, side, two), first)
+            x2, y2 = _acceleration(geometry.upper_arm(pile, two), second)
             friction[rows, 1] = m2 * (ground[rows] + xd + x2)
             normal[rows, 1] = m2 * (gravity[rows] + yd + y2)
             friction[rows, 0] = friction[rows, 1] + m1 * (ground[rows] + x1)

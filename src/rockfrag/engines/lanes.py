@@ -28,7 +28,7 @@ def intervals_of(cases: Cases) -> Array:
     return np.array([motion.dt for motion in cases.motions])
 
 
-def march(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any) -> None:
+def integrate(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any) -> None:
     """Let threads call an entry kernel, each with memory of its own, until no case is left."""
     ensemble, *others = arguments
     with compiling_alone(kernel):
@@ -136,7 +136,7 @@ def write_rocking(into: Outcomes, rows: Sequence[int], found: NDArray[np.void]) 
         into.slip[place, ..., k] = into.peak_slip[place, ..., k] = 0.0
     into.impacts[place] = found["impacts"]
     into.given_way[place] = found["given_way"]
-    into.unstable_distance[place] = found["closest"]
+    into.unstable_distance[place] = found["unstable_distance"]
 
 
 def write_lanes(into: Outcomes, found: NDArray[np.void], interval: Array) -> None:

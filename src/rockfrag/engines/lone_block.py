@@ -26,13 +26,13 @@ class LoneBlock:
         """Return the outcomes of cases."""
         from rockfrag.engines.kernels.lanes import block
         from rockfrag.engines.kernels.lanes.case import OUTCOME, Ensemble
-        from rockfrag.engines.lanes import march, sampled, write_lanes
+        from rockfrag.engines.lanes import integrate, sampled, write_lanes
 
         g = cases.request.g
         motions, rows, intervals = sampled(cases, 1.0)
-        pivots = np.empty((*intervals.shape, 2), block.POLE)
+        pivots = np.empty((*intervals.shape, 2), block.PIVOT)
         for i, system in enumerate(cases.systems):
-            pivots[i] = _pivots(system, g, block.POLE)
+            pivots[i] = _pivots(system, g, block.PIVOT)
         pivots["swing"] *= intervals[:, :, np.newaxis] ** 2
         pivots["per_swing"] /= intervals[:, :, np.newaxis] ** 2
         count = len(cases.systems) * cases.scales.size
@@ -47,7 +47,7 @@ class LoneBlock:
             free=np.zeros(intervals.shape, np.int64),
         )
         found = np.empty(count, OUTCOME)
-        march(block.march_blocks, block.worker, cases.threads, ensemble, motions, found)
+        integrate(block.integrate_blocks, block.worker, cases.threads, ensemble, motions, found)
         outcomes = empty_outcomes(cases.names, cases.scales, (self.name,))
         write_lanes(outcomes, found.reshape(cases.shape), intervals[:, :, np.newaxis])
         return outcomes

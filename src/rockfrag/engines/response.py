@@ -16,7 +16,7 @@ from rockfrag.system.system import System
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PATTERNS = {
+ROCKING_MODES = {
     (0, 0): "rest",
     (1, 1): "1a",
     (-1, -1): "1b",
@@ -45,16 +45,16 @@ LETTERS = {0: "0", +1: "R", -1: "L", FLIGHT: "F"}
 """Letter of each contact state, in the pattern of three and more bodies."""
 
 
-def pattern_name(states: Sequence[int]) -> str:
+def rocking_mode_name(states: Sequence[int]) -> str:
     """Name of a pattern, of the contact states from below.
 
-    Of one and two bodies that of `PATTERNS`, or "flight"; of more a letter per contact from below: 0 stands, R and
-    L rocks on its right and left end, F flies.
+    Of one and two bodies that of `ROCKING_MODES`, or "flight"; of more a letter per contact from below: 0 stands,
+    R and L rocks on its right and left end, F flies.
     """
     if len(states) > 2:
         return "".join(LETTERS[int(state)] for state in states)
     ground, interface = (0, *states)[-2:]
-    return "flight" if FLIGHT in (ground, interface) else PATTERNS[int(ground), int(interface)]
+    return "flight" if FLIGHT in (ground, interface) else ROCKING_MODES[int(ground), int(interface)]
 
 
 def mode_name(state: int, slides: int) -> str:
@@ -85,7 +85,7 @@ class Response:
     theta, omega, alpha
         Rotations [rad], angular velocities [rad/s] and accelerations [rad/s²], shape (n, blocks).
     state
-        Contact states +1, -1 (rocking on the right, left pole), 0 (full contact) or, with friction, 2 (flight),
+        Contact states +1, -1 (rocking on the right, left pivot), 0 (full contact) or, with friction, 2 (flight),
         shape (n, blocks).
     slides
         Whether the upper side of each interface sticks (0) or slides to the right (+1) or left (-1), shape
@@ -93,7 +93,7 @@ class Response:
     slip
         Displacement along each interface of the corner that carries, from where it stood at first [m], shape
         (n, blocks); positive to the right.
-    events
+    contact_events
         One row per opening, impact or closed chatter: ``time`` [s], ``kind``, ``from``, ``to`` (patterns),
         ``omega_before``, ``omega_after`` [rad/s], ``theta`` [rad] (tuples), ``energy_before``, ``energy_after``
         (kinetic) [J].  With friction there are also the kinds ``slip`` and ``stick``, ``flight``, ``edge`` (a
@@ -125,14 +125,14 @@ class Response:
     impacts, grazings
         Numbers of impacts, and of contacts that met with less than 1e-3 rad/s.
     paradoxes, forced
-        With friction, times that no mode of contact was consistent, and that accumulating events were ended more
-        coarsely than usual (``docs/contact.md``).
+        With friction, times that no mode of contact was consistent, and that accumulating contact events were
+        ended more coarsely than usual (``docs/contact.md``).
     given_way
         Number of impacts in which the law of a measured restitution had to give way, lest energy grow.
     unstable_distance
         Least distance of the response from an unstable equilibrium, in units of the critical angle (and of
-        p times it for the velocity).  A verdict with a small one hangs on little; a large one promises nothing,
-        since impacts and chaos decide too (see :func:`rockfrag.rocking.sureness.verdict_sureness`).  NaN once
+        p times it for the velocity).  An outcome with a small one hangs on little; a large one promises nothing,
+        since impacts and chaos decide too (see :func:`rockfrag.rocking.robustness.outcome_robustness`).  NaN once
         a block has slid or flown.
     """
 
@@ -146,7 +146,7 @@ class Response:
     state: NDArray[np.int64]
     slides: NDArray[np.int64]
     slip: NDArray[np.float64]
-    events: pd.DataFrame
+    contact_events: pd.DataFrame
     overturned: bool
     overturned_body: str
     overturning_time: float
@@ -173,9 +173,9 @@ class Response:
         return response_figure(self, title)
 
     @property
-    def pattern(self) -> NDArray[np.str_]:
+    def rocking_mode(self) -> NDArray[np.str_]:
         """Pattern of rocking at each sample ("rest", "4a", …, "flight"), shape (n,)."""
-        return np.array([pattern_name(states) for states in self.state.tolist()])
+        return np.array([rocking_mode_name(states) for states in self.state.tolist()])
 
     @property
     def mode(self) -> NDArray[np.str_]:

@@ -19,10 +19,10 @@ from rockfrag.system import geometry
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
-MOST_PATTERNS = len(OKABE_ITO)
+MOST_ROCKING_MODES = len(OKABE_ITO)
 """Rows of patterns; more are counted."""
 
-_PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
+_ROCKING_MODES = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 
 
 def response_figure(response: Response, title: str) -> Figure:
@@ -38,7 +38,7 @@ def response_figure(response: Response, title: str) -> Figure:
         panels = figure.subplots(
             len(heights), 1, sharex=True, gridspec_kw={"height_ratios": heights}
         )
-        ground, rotation, *between, pattern = panels
+        ground, rotation, *between, rocking_mode = panels
         ground.plot(response.time, response.ground_acceleration / GRAVITY, color=BLACK, lw=0.5)
         ground.set_ylabel("Ground [g]")
         ground.set_title(title, loc="left")
@@ -56,7 +56,7 @@ def response_figure(response: Response, title: str) -> Figure:
         largest = float(np.abs(response.theta / critical).max()) or 1.0
         rotation.set_ylim(-min(1.6, 1.15 * largest), min(1.6, 1.15 * largest))
         rotation.set_ylabel("Rotation / critical [-]")
-        impacts = response.events.loc[response.events["kind"] == "impact", "time"]
+        impacts = response.contact_events.loc[response.contact_events["kind"] == "impact", "time"]
         rotation.plot(
             impacts, np.zeros(len(impacts)), "|", color=BLACK, ms=5, mew=0.5, label="impact"
         )
@@ -67,9 +67,9 @@ def response_figure(response: Response, title: str) -> Figure:
                 panel.axvline(response.overturning_time, color=RED, lw=0.8)
         for panel in between:
             _slips(panel, response, colours)
-        _patterns(pattern, response)
-        pattern.set_xlabel("Time [s]")
-        pattern.set_xlim(0, response.time[-1])
+        _rocking_modes(rocking_mode, response)
+        rocking_mode.set_xlabel("Time [s]")
+        rocking_mode.set_xlim(0, response.time[-1])
         return figure
 
 
@@ -91,12 +91,12 @@ def _slips(panel: Axes, response: Response, colours: list[str]) -> None:
         panel.legend(loc="upper right", ncols=2)
 
 
-def _patterns(panel: Axes, response: Response) -> None:
+def _rocking_modes(panel: Axes, response: Response) -> None:
     """Mark at which times each pattern of rocking is there."""
-    labels = response.pattern
-    known = _PATTERNS if len(response.system.names) < 3 else sorted(set(labels))
+    labels = response.rocking_mode
+    known = _ROCKING_MODES if len(response.system.names) < 3 else sorted(set(labels))
     seen = [name for name in known if (labels == name).any()]
-    if len(seen) > MOST_PATTERNS:
+    if len(seen) > MOST_ROCKING_MODES:
         # of a long column the number of bodies that rock or fly tells more than a row for each pattern
         moving = (response.state != 0).sum(axis=1)
         panel.step(response.time, moving, color=BLACK, lw=0.6)

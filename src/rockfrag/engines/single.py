@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
-from rockfrag.engines.response import PATTERNS, Response
+from rockfrag.engines.response import ROCKING_MODES, Response
 from rockfrag.engines.two_blocks import pair_support
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
@@ -38,7 +38,7 @@ class Single:
     def run(self, cases: Cases) -> Outcomes:
         """Return the outcomes of cases, whose histories are not kept."""
         from rockfrag.engines.kernels.lanes.case import OUTCOME
-        from rockfrag.engines.kernels.record import EVENT, SAMPLE, SUMMARY
+        from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE, SUMMARY
         from rockfrag.engines.lanes import write_rocking
         from rockfrag.engines.records import body_record
 
@@ -47,17 +47,17 @@ class Single:
         starts = [initial_state(system) for system in cases.systems]
         found = np.zeros(cases.shape, OUTCOME)
         summaries = np.zeros(cases.shape, SUMMARY)
-        nothing = np.empty(0, SAMPLE), np.empty(0, EVENT)
+        nothing = np.empty(0, SAMPLE), np.empty(0, CONTACT_EVENT)
 
         def work(place: tuple[int, int, int]) -> None:
             i, j, k = place
             case = Case(
                 cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request
             )
-            done, summary = run_march(records[i], shaking_of(case), starts[i], *nothing)
+            done, summary = run_integration(records[i], shaking_of(case), starts[i], *nothing)
             found[place] = (
                 summary["fallen"], done - 1, summary["ratio1"], summary["ratio2"],
-                summary["speed2"] * case.motion.dt, summary["closest"], summary["impacts"],
+                summary["speed2"] * case.motion.dt, summary["unstable_distance"], summary["impacts"],
                 summary["given_way"],
             )  # fmt: skip
             summaries[place] = summary
@@ -79,7 +79,7 @@ class Single:
         InputError
             If its samples are more than are admitted.
         """
-        from rockfrag.engines.kernels.record import EVENT, SAMPLE
+        from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
         from rockfrag.engines.records import body_record
         from rockfrag.engines.steps import MOST_SAMPLES
 
@@ -94,13 +94,18 @@ class Single:
         history = np.zeros(most, SAMPLE)
         capacity = 4096
         while True:
-            events = np.zeros(capacity, EVENT)
-            done, summary = run_march(record, shaking, initial, history, events)
-            if summary["events"] <= capacity:
+            contact_events = np.zeros(capacity, CONTACT_EVENT)
+            done, summary = run_integration(record, shaking, initial, history, contact_events)
+            if summary["contact_events"] <= capacity:
                 break
-            capacity = int(summary["events"])
+            capacity = int(summary["contact_events"])
         return _response(
-            case.system, record, shaking, history[:done], events[: summary["events"]], summary
+            case.system,
+            record,
+            shaking,
+            history[:done],
+            contact_events[: summary["contact_events"]],
+            summary,
         )
 
 
@@ -111,13 +116,15 @@ def samples_of(case: Case) -> tuple[Array, Array, Array, NDArray[Any]]:
     -------
     Times of shape (n,), and the others as in :class:`Response`, shape (n, bodies).
     """
-    from rockfrag.engines.kernels.record import EVENT, SAMPLE
+    from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
     from rockfrag.engines.records import body_record
 
     record = body_record(case.system, case.request.linear, case.request.g)
     shaking = shaking_of(case)
     rows = np.empty(case.motion.x.acceleration.size + shaking.free_samples, SAMPLE)
-    done, _ = run_march(record, shaking, initial_state(case.system), rows, np.empty(0, EVENT))
+    done, _ = run_integration(
+        record, shaking, initial_state(case.system), rows, np.empty(0, CONTACT_EVENT)
+    )
     blocks = BLOCKS[-case.system.count :]
     theta, omega, state = (
         np.column_stack([rows[name + block][:done] for block in blocks])
@@ -174,21 +181,21 @@ def shaking_of(case: Case) -> Any:
     )
 
 
-def run_march(
+def run_integration(
     record: np.void,
     shaking: Any,
     initial: np.void,
     history: NDArray[np.void],
-    events: NDArray[np.void],
+    contact_events: NDArray[np.void],
 ) -> tuple[int, np.void]:
     """Integrate one system; return the number of samples done and the summary."""
     from rockfrag.engines.kernels.jit import compiling_alone
     from rockfrag.engines.kernels.record import SUMMARY
-    from rockfrag.engines.kernels.single import march, scratch
+    from rockfrag.engines.kernels.single import integrate, scratch
 
     summary: np.void = np.zeros(1, SUMMARY)[0]
-    with compiling_alone(march):
-        done = march(record, shaking, initial, history, events, summary, scratch())
+    with compiling_alone(integrate):
+        done = integrate(record, shaking, initial, history, contact_events, summary, scratch())
     return int(done), summary
 
 
@@ -197,7 +204,7 @@ def _response(
     record: np.void,
     shaking: Any,
     history: NDArray[np.void],
-    events: NDArray[np.void],
+    contact_events: NDArray[np.void],
     summary: np.void,
 ) -> Response:
     """Put the response of a system together."""
@@ -229,11 +236,11 @@ def _response(
         state=state,
         slides=np.zeros_like(state),
         slip=np.zeros_like(theta),
-        events=_event_table(events, blocks),
+        contact_events=_contact_event_table(contact_events, blocks),
         overturned=fallen > 0,
         overturned_body=("", *system.names)[which],
         overturning_time=float(summary["fall_time"]),
-        energy=_energy_table(record, time, history, events, system.count == 1),
+        energy=_energy_table(record, time, history, contact_events, system.count == 1),
         normal_force=normal,
         friction_force=friction,
         impacts=int(summary["impacts"]),
@@ -244,42 +251,47 @@ def _response(
         friction_demand=np.array([summary["demand"]["friction" + block] for block in blocks]),
         least_normal_force=np.array([summary["demand"]["normal" + block] for block in blocks]),
         lost_contact=float(summary["lost_contact"]),
-        unstable_distance=float(summary["closest"]),
+        unstable_distance=float(summary["unstable_distance"]),
     )
 
 
-def _event_table(events: NDArray[np.void], blocks: list[str]) -> pd.DataFrame:
-    """Make the table of events of a response."""
+def _contact_event_table(contact_events: NDArray[np.void], blocks: list[str]) -> pd.DataFrame:
+    """Make the table of contact events of a response."""
     from rockfrag.engines.kernels.record import CHATTER, CLOSING, LIFTING, OPENING
 
     kinds = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter", LIFTING: "lift-off"}
-    before, after = events["before"], events["after"]
+    before, after = contact_events["before"], contact_events["after"]
 
     def each(state: NDArray[np.void], name: str) -> list[tuple[float, ...]]:
         return list(zip(*(state[name + block].tolist() for block in blocks), strict=True))
 
-    def patterns(state: NDArray[np.void]) -> list[str]:
+    def rocking_modes(state: NDArray[np.void]) -> list[str]:
         return [
-            PATTERNS[pair] for pair in zip(state["c1"].tolist(), state["c2"].tolist(), strict=True)
+            ROCKING_MODES[pair]
+            for pair in zip(state["c1"].tolist(), state["c2"].tolist(), strict=True)
         ]
 
     return pd.DataFrame(
         {
-            "time": events["time"],
-            "kind": [kinds[kind] for kind in events["kind"].tolist()],
-            "from": patterns(before),
-            "to": patterns(after),
+            "time": contact_events["time"],
+            "kind": [kinds[kind] for kind in contact_events["kind"].tolist()],
+            "from": rocking_modes(before),
+            "to": rocking_modes(after),
             "omega_before": each(before, "omega"),
             "omega_after": each(after, "omega"),
             "theta": each(after, "theta"),
-            "energy_before": events["energy_before"],
-            "energy_after": events["energy_after"],
+            "energy_before": contact_events["energy_before"],
+            "energy_after": contact_events["energy_after"],
         }
     )
 
 
 def _energy_table(
-    record: np.void, time: Array, history: NDArray[np.void], events: NDArray[np.void], lone: bool
+    record: np.void,
+    time: Array,
+    history: NDArray[np.void],
+    contact_events: NDArray[np.void],
+    lone: bool,
 ) -> pd.DataFrame:
     """Ledger of energy by cause over time [J]."""
     from rockfrag.engines.kernels.equations import STATE
@@ -291,12 +303,14 @@ def _energy_table(
     with compiling_alone(fill_energies):
         fill_energies(record, history, kinetic, potential, np.zeros(1, STATE)[0])
     # an impact closes the ground if the pedestal's contact changed, the interface otherwise
-    before = events["before"]["c1"]
-    by_ground = (before != 0) & (before != events["after"]["c1"])
+    before = contact_events["before"]["c1"]
+    by_ground = (before != 0) & (before != contact_events["after"]["c1"])
     loss = np.where(
-        events["kind"] == OPENING, 0.0, events["energy_before"] - events["energy_after"]
+        contact_events["kind"] == OPENING,
+        0.0,
+        contact_events["energy_before"] - contact_events["energy_after"],
     )
-    at = np.searchsorted(time, events["time"] - 1e-12 * max(1.0, time[-1]))
+    at = np.searchsorted(time, contact_events["time"] - 1e-12 * max(1.0, time[-1]))
 
     def so_far(values: Array) -> Array:
         total = np.zeros(len(time) + 1)

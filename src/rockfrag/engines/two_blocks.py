@@ -26,8 +26,8 @@ class TwoBlocks:
         from rockfrag.engines.kernels.equations import BODY
         from rockfrag.engines.kernels.lanes import stack_case
         from rockfrag.engines.kernels.lanes.case import OUTCOME, Ensemble
-        from rockfrag.engines.kernels.lanes.scheduler import march_stacks
-        from rockfrag.engines.lanes import march, sampled, step_of, write_lanes
+        from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
+        from rockfrag.engines.lanes import integrate, sampled, step_of, write_lanes
         from rockfrag.engines.records import body_record
         from rockfrag.engines.steps import STACK_STEP, free_samples, step_count
 
@@ -46,7 +46,7 @@ class TwoBlocks:
             free=np.array([free_samples(system, h, g) for system, h in each]),
         )
         found = np.empty(count, OUTCOME)
-        march(march_stacks, stack_case.worker, cases.threads, ensemble, motions, found)
+        integrate(integrate_stacks, stack_case.worker, cases.threads, ensemble, motions, found)
         outcomes = empty_outcomes(cases.names, cases.scales, (self.name,))
         write_lanes(outcomes, found.reshape(cases.shape), intervals[:, :, np.newaxis])
         return outcomes
@@ -71,7 +71,7 @@ def pair_support(system: System) -> Support:
     lower = system.in_plane().bodies[0]
     if lower.face != lower.base:
         return Support(reason="the lower body's face is not as wide as its base")
-    return Support(reason=_REASONS.get(geometry.fault_of(system.pile), ""))
+    return Support(reason=_REASONS.get(geometry.failed_stability_check(system.pile), ""))
 
 
 ENGINE = TwoBlocks()

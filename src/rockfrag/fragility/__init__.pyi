@@ -9,9 +9,9 @@ from .discrete_hazard import (
     fit_step_hazard as fit_step_hazard,
 )
 from .empirical import (
-    local_share as local_share,
-    share_in_bins as share_in_bins,
-    survival_windows as survival_windows,
+    local_fraction as local_fraction,
+    fraction_in_bins as fraction_in_bins,
+    find_resurrections as find_resurrections,
     wilson_interval as wilson_interval,
 )
 from .estimators import (
@@ -35,12 +35,12 @@ from .lognormal import (
     FragilityFit as FragilityFit,
     fit_lognormal as fit_lognormal,
 )
-from .measure_choice import (
-    MeasureChoice as MeasureChoice,
+from .measure_selection import (
+    MeasureSelection as MeasureSelection,
     area_under_curve as area_under_curve,
     recommend_measure as recommend_measure,
 )
-from .measure_choice_sweeps import recommend_sweep_measure as recommend_sweep_measure
+from .measure_selection_ida import recommend_ida_measure as recommend_ida_measure
 from .nrml import write_nrml as write_nrml
 from .observations import (
     Outcomes as Outcomes,
@@ -59,7 +59,7 @@ from .surface import (
     FragilitySurface as FragilitySurface,
     fit_surface as fit_surface,
 )
-from .sweeps import (
+from .ida_curves import (
     fragility_row as fragility_row,
     fragility_table as fragility_table,
     record_set_hash as record_set_hash,

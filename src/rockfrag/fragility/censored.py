@@ -46,7 +46,7 @@ class Brackets:
     lower, upper
         Bounds in ``unit``, shape (n,): lower 0 means overturned at the first step, upper infinite
         means never overturned (right-censored), equal bounds an amplitude known exactly.
-    motion, event
+    motion, earthquake
         Labels, shape (n,).
     name, unit
         The intensity measure.
@@ -55,7 +55,7 @@ class Brackets:
     lower: Floats
     upper: Floats
     motion: NDArray[np.object_]
-    event: NDArray[np.object_]
+    earthquake: NDArray[np.object_]
     name: str = "PGA"
     unit: str = "g"
 
@@ -73,7 +73,7 @@ def brackets_from_table(
     lower: str = "lower_g",
     upper: str = "upper_g",
     motion: str | None = "motion",
-    event: str | None = None,
+    earthquake: str | None = None,
     measure: str = "pga_g",
     source: str = "table",
 ) -> Brackets:
@@ -92,8 +92,8 @@ def brackets_from_table(
         Column of the amplitude that overturned.
     motion
         Column with the name of the motion; None where tests have none.
-    event
-        Column with the name of the event; None where it is not known.
+    earthquake
+        Column with the name of the earthquake; None where it is not known.
     measure
         Name of the measure that the bounds are given in.
     source
@@ -125,8 +125,8 @@ def brackets_from_table(
             "empty if it never overturned."
         )
     motions = labels(table, motion, source)
-    events = motions if event is None else labels(table, event, source)
-    return Brackets(low, high, motions, events, *name_and_unit(measure))
+    earthquakes = motions if earthquake is None else labels(table, earthquake, source)
+    return Brackets(low, high, motions, earthquakes, *name_and_unit(measure))
 
 
 def fit_brackets(brackets: Brackets) -> FragilityFit:
@@ -184,7 +184,7 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
     weights = np.ones((1, n))
     coefficients, information, log_likelihood = _fit_weighted(low, high, weights)
     theta, beta, spread = curve_parameters(coefficients[0], _inverse(information[0]))
-    if _share_a_point(low, high, weights)[0]:
+    if _fraction_a_point(low, high, weights)[0]:
         notes = (
             *notes,
             f"All brackets share the amplitudes from {brackets.lower.max():g} to "
@@ -202,8 +202,8 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
 
 
 def bracket_fitter(brackets: Brackets, over: Over = "motion") -> tuple[WeightedFit, int]:
-    """Make the function that refits θ and β to reweighted motions or events."""
-    groups = brackets.motion if over == "motion" else brackets.event
+    """Make the function that refits θ and β to reweighted motions or earthquakes."""
+    groups = brackets.motion if over == "motion" else brackets.earthquake
     codes, names = pd.factorize(pd.Series(groups))
     low, high = _logs(brackets)
 
@@ -219,7 +219,7 @@ def bracket_fitter(brackets: Brackets, over: Over = "motion") -> tuple[WeightedF
 def bracket_interval(
     brackets: Brackets, *, over: Over | None = None, level: float = 0.90
 ) -> Interval:
-    """Confidence limits of a curve fitted to brackets, by leaving out whole motions or events.
+    """Confidence limits of a curve fitted to brackets, by leaving out whole motions or earthquakes.
 
     Parameters
     ----------
@@ -232,8 +232,10 @@ def bracket_interval(
     -------
     The :class:`Interval`.
     """
-    motions, events = (len(pd.unique(pd.Series(of))) for of in (brackets.motion, brackets.event))
-    over, notes = population(motions, events, over)
+    motions, earthquakes = (
+        len(pd.unique(pd.Series(of))) for of in (brackets.motion, brackets.earthquake)
+    )
+    over, notes = population(motions, earthquakes, over)
     fit, groups = bracket_fitter(brackets, over)
     found = resampled_interval(fit, groups, over=over, notes=notes, level=level)
     if found.method == "none" and groups > 1 and brackets.n_overturned:
@@ -274,10 +276,10 @@ def _logs(brackets: Brackets) -> tuple[Floats, Floats]:
 def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
     """Fit (intercept, slope) without each of many blocks: a step of Newton's from the fit to all.
 
-    What the step neglects is of second order in a block's share of all, a hundredth.
+    What the step neglects is of second order in a block's fraction of all, a hundredth.
     """
     whole = np.ones((1, low.size))
-    if _share_a_point(low, high, weights).any():
+    if _fraction_a_point(low, high, weights).any():
         return _fit_weighted(low, high, weights)[0]
     coefficients, _, value = _newton(low, high, whole)
     if not (np.isfinite(value).all() and coefficients[0, 1] >= LEAST_SLOPE):
@@ -288,7 +290,7 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
     return np.asarray(coefficients - step / (h00 * h11 - h01**2)[:, None])
 
 
-def _share_a_point(low: Floats, high: Floats, weights: Floats) -> NDArray[np.bool_]:
+def _fraction_a_point(low: Floats, high: Floats, weights: Floats) -> NDArray[np.bool_]:
     used = weights > 0
     largest = np.where(used, low, -np.inf).max(axis=1)
     smallest = np.where(used, high, np.inf).min(axis=1)
@@ -301,7 +303,7 @@ def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, F
     coefficients = np.full((batch, 2), np.nan)
     information = np.full((batch, 2, 2), np.nan)
     log_likelihood = np.full(batch, np.nan)
-    overlap = _share_a_point(low, high, weights)
+    overlap = _fraction_a_point(low, high, weights)
     if overlap.any():
         coefficients[overlap] = _common_bracket(low, high, weights[overlap])
     rest = np.flatnonzero(~overlap)
@@ -382,7 +384,7 @@ def _likelihood(
 
 def _weighted(weights: Floats, pulls: tuple[Floats, ...]) -> tuple[Floats, Floats, Floats]:
     """Sum what each bracket adds to log-likelihood, score and Hessian."""
-    value, score0, score1, h00, h01, h11 = ((weights * one).sum(axis=1) for one in pulls)
+    value, score0, score1, h00, h01, h11 = ((weights * pull).sum(axis=1) for pull in pulls)
     score = np.stack([score0, score1], axis=1)
     hessian = np.stack([np.stack([h00, h01], axis=1), np.stack([h01, h11], axis=1)], axis=1)
     return value, score, hessian
@@ -399,22 +401,22 @@ def _pulls(low: Floats, high: Floats, coefficients: Floats) -> tuple[Floats, ...
         return of_density
     z_low = np.where(np.isneginf(low), -np.inf, c0 + c1 * x_low)
     z_high = np.where(np.isposinf(high), np.inf, c0 + c1 * x_high)
-    log_share = _log_difference(z_low, z_high)
-    ratio_low = np.exp(-0.5 * z_low**2 - _LOG_ROOT_TWO_PI - log_share)
-    ratio_high = np.exp(-0.5 * z_high**2 - _LOG_ROOT_TWO_PI - log_share)
+    log_fraction = _log_difference(z_low, z_high)
+    ratio_low = np.exp(-0.5 * z_low**2 - _LOG_ROOT_TWO_PI - log_fraction)
+    ratio_high = np.exp(-0.5 * z_high**2 - _LOG_ROOT_TWO_PI - log_fraction)
     bend_low = np.where(np.isinf(z_low), 0.0, z_low) * ratio_low
     bend_high = np.where(np.isinf(z_high), 0.0, z_high) * ratio_high
     g0 = ratio_high - ratio_low
     g1 = ratio_high * x_high - ratio_low * x_low
-    of_share = (
-        log_share,
+    of_fraction = (
+        log_fraction,
         g0,
         g1,
         bend_low - bend_high - g0**2,
         bend_low * x_low - bend_high * x_high - g0 * g1,
         bend_low * x_low**2 - bend_high * x_high**2 - g1**2,
     )
-    return tuple(np.where(exact, *pair) for pair in zip(of_density, of_share, strict=True))
+    return tuple(np.where(exact, *pair) for pair in zip(of_density, of_fraction, strict=True))
 
 
 def _density_pulls(c0: Floats, c1: Floats, x: Floats) -> tuple[Floats, ...]:

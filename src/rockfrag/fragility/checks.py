@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from statsmodels.stats.diagnostic import lilliefors
 
 from rockfrag.fragility.curve_facts import REJECTED
+from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
 from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Outcomes
-from rockfrag.fragility.shares import Shares, shares_of_capacities, shares_of_verdicts
 
 TAILS = (
     "The limits of β assume lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
@@ -40,17 +40,17 @@ class Checks:
     test
         How that was tested.
     largest_residual
-        Observed less fitted share of overturned tests in the bin where they differ most [-].
+        Observed less fitted fraction of overturned tests in the bin where they differ most [-].
     influential
-        Motion (event) without which θ changes most; empty where there is none.
+        Motion (earthquake) without which θ changes most; empty where there is none.
     influence
         θ without it over θ [-].
-    shares
-        The curve without a form, to use where the fitted one is rejected.
+    fractions
+        The non-parametric fragility function, to use where the fitted one is rejected.
     warnings
         Sentences.
     goodness
-        The test of a curve fitted to verdicts in full; None without such a curve.
+        The test of a curve fitted to outcomes in full; None without such a curve.
     """
 
     p_fit: float
@@ -58,7 +58,7 @@ class Checks:
     largest_residual: float
     influential: str
     influence: float
-    shares: Shares
+    fractions: Fractions
     warnings: tuple[str, ...]
     goodness: GoodnessOfFit | None = None
 
@@ -68,14 +68,14 @@ class Checks:
         return self.p_fit < REJECTED
 
 
-def checks_of_verdicts(
+def checks_of_outcomes(
     outcomes: Outcomes,
     fit: FragilityFit,
     interval: Interval,
     dependence: Literal["tests", "motions"] | None = None,
     seed: int = 0,
 ) -> Checks:
-    """Judge a curve fitted to verdicts.
+    """Judge a curve fitted to outcomes.
 
     ``dependence`` and ``seed`` are those of :func:`rockfrag.fragility.goodness.goodness_of_fit`.
     """
@@ -86,9 +86,9 @@ def checks_of_verdicts(
         p_fit, test = found.p_value, f"deviance, parametric bootstrap of {found.dependence}"
         apart = (found.calibration["observed"] - found.calibration["predicted"]).to_numpy()
         residual = float(apart[np.abs(apart).argmax()])
-    groups = outcomes.motion if interval.over == "motion" else outcomes.event
-    shares = shares_of_verdicts(outcomes, groups, interval.level)
-    checks = _checks(fit, interval, groups, (p_fit, test, residual), shares)
+    groups = outcomes.motion if interval.over == "motion" else outcomes.earthquake
+    fractions = fractions_of_outcomes(outcomes, groups, interval.level)
+    checks = _checks(fit, interval, groups, (p_fit, test, residual), fractions)
     return replace(checks, goodness=found)
 
 
@@ -102,7 +102,7 @@ def checks_of_brackets(
     lower, upper
         Bounds of each capacity, shape (n,).
     groups
-        Label of each capacity's motion or event, as ``interval`` resampled them, shape (n,).
+        Label of each capacity's motion or earthquake, as ``interval`` resampled them, shape (n,).
     """
     closed = np.isfinite(upper) & (lower > 0)
     middle = 0.5 * np.log(lower[closed] * upper[closed])
@@ -110,14 +110,14 @@ def checks_of_brackets(
     if closed.all() and middle.size > 3 and np.ptp(middle) > 0 and np.isfinite(fit.theta):
         p_fit = float(lilliefors(middle, dist="norm")[1])
         test = "Lilliefors, middles of the brackets"
-        share = (np.arange(middle.size) + 0.5) / middle.size
-        apart = share - fit.probability(np.exp(np.sort(middle)))
+        fraction = (np.arange(middle.size) + 0.5) / middle.size
+        apart = fraction - fit.probability(np.exp(np.sort(middle)))
         residual = float(apart[np.abs(apart).argmax()])
     # a motion that never overturned counts above all others
     middles = np.where(np.isfinite(upper), 0.5 * np.log(np.maximum(lower, 1e-300) * upper), np.inf)
     capacity = np.where(lower > 0, middles, -np.inf)
-    shares = shares_of_capacities(capacity, groups, interval.level)
-    return _checks(fit, interval, groups, (p_fit, test, residual), shares)
+    fractions = fractions_of_capacities(capacity, groups, interval.level)
+    return _checks(fit, interval, groups, (p_fit, test, residual), fractions)
 
 
 def _checks(
@@ -125,14 +125,14 @@ def _checks(
     interval: Interval,
     groups: NDArray[np.object_],
     judged: tuple[float, str, float],
-    shares: Shares,
+    fractions: Fractions,
 ) -> Checks:
     p_fit, test, residual = judged
     notes: list[str] = []
     if p_fit < REJECTED:
         notes.append(
             f"The lognormal curve is rejected (p = {p_fit:.3f}): use the nonparametric monotone curve"
-            f"{_known_points(shares, fit.unit, interval.level)}."
+            f"{_known_points(fractions, fit.unit, interval.level)}."
         )
     if interval.method == "jackknife" and np.isfinite(interval.beta).all():
         notes.append(TAILS)
@@ -142,17 +142,17 @@ def _checks(
             "little else."
         )
     name, influence = _influence(interval, groups)
-    return Checks(p_fit, test, residual, name, influence, shares, tuple(notes))
+    return Checks(p_fit, test, residual, name, influence, fractions, tuple(notes))
 
 
-def _known_points(shares: Shares, unit: str, level: float) -> str:
-    """Say the median and β of the shares as far as these go from 16 to 84 %, with their limits."""
-    if not np.isfinite(shares.theta):
+def _known_points(fractions: Fractions, unit: str, level: float) -> str:
+    """Say the median and β of the fractions as far as these go from 16 to 84 %, with their limits."""
+    if not np.isfinite(fractions.theta):
         return ", which does not reach a half"
-    median = f"{shares.theta:.3g} {unit}{_limits_text(shares.theta_limits, level)}"
-    if not np.isfinite(shares.beta):
+    median = f"{fractions.theta:.3g} {unit}{_limits_text(fractions.theta_limits, level)}"
+    if not np.isfinite(fractions.beta):
         return f", whose median is {median} and which does not go from 16 to 84 %"
-    return f", whose median is {median} and β {shares.beta:.2f}{_limits_text(shares.beta_limits, level)}"
+    return f", whose median is {median} and β {fractions.beta:.2f}{_limits_text(fractions.beta_limits, level)}"
 
 
 def _limits_text(limits: tuple[float, float], level: float) -> str:

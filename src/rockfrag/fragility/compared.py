@@ -39,7 +39,7 @@ def compared_curves(rows: pd.DataFrame, nonparametric: bool | None = None) -> Co
     Parameters
     ----------
     rows
-        Rows of :func:`rockfrag.fragility.fragility_table` of one measure and one reading.
+        Rows of :func:`rockfrag.fragility.fragility_table` of one measure and one definition.
     nonparametric
         The estimator where these rows are a part of a larger comparison, which decides.
 

@@ -1,6 +1,6 @@
-"""Verdicts of large sweeps as counts: what curves are fitted to, in memory that does not grow with the amplitudes.
+"""Outcomes of large IDA curves as counts: what curves are fitted to, in memory that does not grow with the amplitudes.
 
-A motion raised through n amplitudes gives n verdicts. Estimates and their limits need only how many of them lie
+A motion raised through n amplitudes gives n outcomes. Estimates and their limits need only how many of them lie
 in each narrow cell of the measure and how many of those overturned, by what is resampled together; the
 goodness of fit needs the motions' own scales as well. Cells are a two-thousandth of the range wide.
 """
@@ -12,10 +12,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.fragility.empirical import windows_of_swept
+from rockfrag.fragility.empirical import resurrections_of
+from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.fragility.intervals import blocks_of
 from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit, positive
-from rockfrag.fragility.sweeps import scale_power
 from rockfrag.machine_code import cached_njit
 from rockfrag.shaketable.swept import Swept
 
@@ -25,14 +25,14 @@ CELLS = 2000
 
 @dataclass(frozen=True)
 class CountedOutcomes(Outcomes):
-    """Outcomes whose rows are the cells of each block of motions (events), see :class:`Outcomes`.
+    """Outcomes whose rows are the cells of each block of motions (earthquakes), see :class:`Outcomes`.
 
     Attributes
     ----------
-    motions, events
+    motions, earthquakes
         How many there are.
     block
-        Block of each motion or event, whichever is resampled, shape (groups,).
+        Block of each motion or earthquake, whichever is resampled, shape (groups,).
     edges
         Ends of the cells in ln IM, shape (cells + 1,).
     scale
@@ -42,7 +42,7 @@ class CountedOutcomes(Outcomes):
     """
 
     motions: int = 0
-    events: int = 0
+    earthquakes: int = 0
     block: NDArray[np.intp] | None = None
     edges: Floats | None = None
     scale: Floats | None = None
@@ -54,13 +54,13 @@ class CountedOutcomes(Outcomes):
         return self.motions
 
     @property
-    def n_events(self) -> int:
-        """Number of different events."""
-        return self.events
+    def n_earthquakes(self) -> int:
+        """Number of different earthquakes."""
+        return self.earthquakes
 
     @property
     def n_repeated(self) -> int:
-        """No sweep repeats an amplitude."""
+        """No IDA curve repeats an amplitude."""
         return 0
 
     @property
@@ -87,7 +87,7 @@ class CountedOutcomes(Outcomes):
         return Outcomes(values, fell, trials, labels, labels, self.name, self.unit)
 
     def group_weights(self, weights: Floats) -> Floats:
-        """Weights of the blocks from those of motions or events, which are equal within a block."""
+        """Weights of the blocks from those of motions or earthquakes, which are equal within a block."""
         assert self.block is not None
         first = np.unique(self.block, return_index=True)[1]
         found = weights[:, first]
@@ -102,7 +102,7 @@ class CountedOutcomes(Outcomes):
         return count, float(count)
 
     def drawn(self, capacity: Floats, cell: NDArray[np.intp]) -> Floats:
-        """Verdicts by cell where each motion has one capacity [ln IM], shape (replicates, cells).
+        """Outcomes by cell where each motion has one capacity [ln IM], shape (replicates, cells).
 
         Parameters
         ----------
@@ -134,13 +134,13 @@ class CountedOutcomes(Outcomes):
         low = self._edge_below(im[:1])[0]
         high = self.edges[np.searchsorted(self.edges, np.log(im[1]), side="right")]
         return np.column_stack(
-            [np.searchsorted(self.rise, one - self.scale) for one in (low, high)]
+            [np.searchsorted(self.rise, item - self.scale) for item in (low, high)]
         )
 
 
 @cached_njit(error_model="numpy")
 def _fallen(capacity: Floats, rise: Floats, below: NDArray[np.intp]) -> Floats:
-    """Verdicts by cell, (replicates, cells), of motions that fall above a capacity each, (replicates, motions).
+    """Outcomes by cell, (replicates, cells), of motions that fall above a capacity each, (replicates, motions).
 
     ``below`` has the number of each motion's amplitudes below the beginning of every cell and, last, in all.
     """
@@ -166,7 +166,7 @@ def _count(
     fell: Floats,
     total: Floats,
 ) -> None:
-    """Add verdicts of motions, (motions, n), to those of blocks, (blocks, cells), and ln IM to its sum."""
+    """Add outcomes of motions, (motions, n), to those of blocks, (blocks, cells), and ln IM to its sum."""
     cells = total.size
     width = (edges[-1] - edges[0]) / cells
     for motion in range(scale.size):
@@ -179,13 +179,13 @@ def _count(
             total[cell] += log_im
 
 
-class CountedSweep:
-    """Sweeps of one configuration, counted part by part.
+class CountedIda:
+    """IDA curves of one configuration, counted part by part.
 
     Parameters
     ----------
     parts, again
-        The sweeps, read twice: once for their windows, once to be counted.
+        The IDA curves, read twice: once for their windows, once to be counted.
     measures
         One row per motion as recorded, with ``name`` and ``pga_g``.
     columns
@@ -199,8 +199,8 @@ class CountedSweep:
         measures: pd.DataFrame,
         columns: Mapping[str, Sequence[str]],
     ) -> None:
-        self._windows = windows_of_swept(parts)
-        self.motions = self._windows[["configuration", "event", "floor", "motion"]]
+        self._resurrections = resurrections_of(parts)
+        self.motions = self._resurrections[["configuration", "earthquake", "floor", "motion"]]
         known = measures.set_index("name").loc[self.motions["motion"]].reset_index()
         self._counts: dict[tuple[str, str], _Counts] = {}
         place = {name: row for row, name in enumerate(self.motions["motion"])}
@@ -215,41 +215,43 @@ class CountedSweep:
             for count in self._counts.values():
                 count.add(rows, part.overturned)
 
-    def of_floor(self, floor: str) -> "FloorSweep":
-        """Sweeps on one floor, or on all of them with the empty name."""
-        return FloorSweep(self, floor)
+    def of_floor(self, floor: str) -> "FloorIda":
+        """IDA curves on one floor, or on all of them with the empty name."""
+        return FloorIda(self, floor)
 
-    def windows(self, floor: str) -> pd.DataFrame:
-        """Survival windows of the sweeps on a floor, a row a motion."""
-        rows = self._windows
+    def resurrections(self, floor: str) -> pd.DataFrame:
+        """Survival windows of the IDA curves on a floor, a row a motion."""
+        rows = self._resurrections
         return rows if not floor else rows[rows["floor"] == floor]
 
     def outcomes(self, floor: str, column: str) -> Outcomes:
-        """Verdicts on a floor with a measure."""
+        """Outcomes on a floor with a measure."""
         return self._counts[floor, column].outcomes()
 
 
 @dataclass(frozen=True)
-class FloorSweep:
-    """Sweeps of one configuration on one floor, or on all of them where its name is empty."""
+class FloorIda:
+    """IDA curves of one configuration on one floor, or on all of them where its name is empty."""
 
-    sweep: CountedSweep
+    ida: CountedIda
     floor: str
 
-    def windows(self, amplitude: str, by: list[str]) -> pd.DataFrame:
-        """See :func:`rockfrag.fragility.empirical.survival_windows`; ``amplitude`` is the one in g."""
-        found = self.sweep.windows(self.floor)
-        others = [name for name in ("configuration", "event", "floor", "motion") if name not in by]
+    def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
+        """See :func:`rockfrag.fragility.empirical.find_resurrections`; ``amplitude`` is the one in g."""
+        found = self.ida.resurrections(self.floor)
+        others = [
+            name for name in ("configuration", "earthquake", "floor", "motion") if name not in by
+        ]
         others += by
         return found[[*by, *found.columns.drop(others)]].sort_values(by, ignore_index=True)
 
     def outcomes(self, column: str) -> Outcomes:
-        """Verdicts with a measure."""
-        return self.sweep.outcomes(self.floor, column)
+        """Outcomes with a measure."""
+        return self.ida.outcomes(self.floor, column)
 
     def motions(self) -> pd.DataFrame:
-        """One row per motion: ``configuration``, ``event``, ``floor``, ``motion``."""
-        rows = self.sweep.motions
+        """One row per motion: ``configuration``, ``earthquake``, ``floor``, ``motion``."""
+        rows = self.ida.motions
         return rows if not self.floor else rows[rows["floor"] == self.floor]
 
 
@@ -271,10 +273,10 @@ class _Counts:
         self.column, self.here = column, here
         self.scale = np.log(value) - power * np.log(pga)
         self.rise = power * np.log(amplitude_g)
-        event = pd.factorize(motions["event"].iloc[here])[0]
-        self.events = int(event.max()) + 1
-        # what is resampled: events where some have several motions
-        group = event if self.events < here.size else np.arange(here.size)
+        earthquake = pd.factorize(motions["earthquake"].iloc[here])[0]
+        self.earthquakes = int(earthquake.max()) + 1
+        # what is resampled: earthquakes where some have several motions
+        group = earthquake if self.earthquakes < here.size else np.arange(here.size)
         self.block = blocks_of(int(group.max()) + 1)
         self.of_motion = np.full(len(motions), -1)
         self.of_motion[here] = np.arange(here.size)
@@ -301,7 +303,7 @@ class _Counts:
         block, cell = np.nonzero(self.trials)
         with np.errstate(invalid="ignore", divide="ignore"):
             middle = np.exp(self.total / self.trials.sum(axis=0))
-        names = [f"block {one + 1}" for one in range(len(self.trials))]
+        names = [f"block {item + 1}" for item in range(len(self.trials))]
         labels = np.array(names, dtype=object)[block]
         return CountedOutcomes(
             middle[cell],
@@ -311,7 +313,7 @@ class _Counts:
             labels,
             *name_and_unit(self.column),
             motions=self.here.size,
-            events=self.events,
+            earthquakes=self.earthquakes,
             block=self.block,
             edges=self.edges,
             scale=self.scale,

@@ -26,8 +26,10 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
     """Say of a row of a fragility table what it rests on, in sentences; empty where nothing is known."""
     parts = []
     if _known(row, "n_motions"):
-        events = f" of {int(row['n_events'])} earthquakes" if _known(row, "n_events") else ""
-        parts.append(f"{int(row['n_motions'])} motions{events}.")
+        earthquakes = (
+            f" of {int(row['n_earthquakes'])} earthquakes" if _known(row, "n_earthquakes") else ""
+        )
+        parts.append(f"{int(row['n_motions'])} motions{earthquakes}.")
     if _known(row, "theta_lower") and _known(row, "beta_lower"):
         parts.append(
             f"{100 * float(row['level']):g} % limits: theta {row['theta_lower']:.4g} to "
@@ -46,7 +48,7 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
     if _known(row, "p_fit"):
         parts.append(f"Goodness of fit p = {float(row['p_fit']):.3f}.")
         if float(row["p_fit"]) < REJECTED and _known(row, "theta_isotonic"):
-            parts.append(_without_form(row))
+            parts.append(_nonparametric(row))
     if row.get("influential"):
         parts.append(
             f"Without {row['influential']} theta is {float(row['influence']):.2f} times as large."
@@ -70,7 +72,7 @@ def _known(row: Mapping[Hashable, Any], name: str) -> bool:
     return value is not None and math.isfinite(float(value))
 
 
-def _without_form(row: Mapping[Hashable, Any]) -> str:
+def _nonparametric(row: Mapping[Hashable, Any]) -> str:
     """Median and dispersion of the curve that stands in the place of a rejected one."""
     words = []
     for name in ("theta", "beta"):

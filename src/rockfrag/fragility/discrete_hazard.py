@@ -21,7 +21,7 @@ from statsmodels.tools.sm_exceptions import (
 from statsmodels.tools.tools import add_constant
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.observations import Floats, labels, name_and_unit, positive, verdicts
+from rockfrag.fragility.observations import Floats, labels, name_and_unit, positive, read_outcomes
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def fit_step_hazard(
     amplitude
         Column of the amplitude.
     overturned
-        Column with the verdicts.
+        Column with the outcomes.
     motion
         Column with the name of the motion; None where tests have none.
     source
@@ -117,7 +117,7 @@ def fit_step_hazard(
             "test": labels(shakes, test, source),
             "motion": labels(shakes, motion, source),
             "log_im": np.log(positive(shakes, amplitude, source)),
-            "overturned": verdicts(shakes, overturned, source),
+            "overturned": read_outcomes(shakes, overturned, source),
         }
     )
     if table.empty:

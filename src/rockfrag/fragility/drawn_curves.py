@@ -1,4 +1,4 @@
-"""Points of fragility curves for drawing: the curve with its band, and the verdicts that it is fitted to."""
+"""Points of fragility curves for drawing: the curve with its band, and the outcomes that it is fitted to."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.fragility.empirical import local_share, share_in_bins
+from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility
 from rockfrag.fragility.observations import Outcomes
 
@@ -25,8 +25,8 @@ def curve_points(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes)
     pandas.DataFrame
         ``labels``; ``im``, ``unit``; ``x``: the measure, rising; ``probability`` of overturning, with
         ``lower`` and ``upper`` at the interval's level (missing where there is no interval); ``local``:
-        share of overturned tests near x, which may fall where the curve cannot (missing where all
-        tests are at one value); ``share`` with ``share_lower`` and ``share_upper``: the curve without a
+        fraction of overturned tests near x, which may fall where the curve cannot (missing where all
+        tests are at one value); ``fraction`` with ``fraction_lower`` and ``fraction_upper``: the curve without a
         form, which is to be used where the fitted one is rejected. Without a curve ``probability`` is
         missing.
     """
@@ -44,8 +44,8 @@ def curve_points(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes)
     inside = (x >= outcomes.im.min()) & (x <= outcomes.im.max()) & (np.ptp(outcomes.log_im) > 0)
     local = nothing.copy()
     if inside.any():
-        local[inside] = local_share(outcomes, x[inside])
-    share, share_lower, share_upper = item.checks.shares.at(x)
+        local[inside] = local_fraction(outcomes, x[inside])
+    fraction, fraction_lower, fraction_upper = item.checks.fractions.at(x)
     return pd.DataFrame(
         {
             **labels,
@@ -56,41 +56,41 @@ def curve_points(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes)
             "lower": lower,
             "upper": upper,
             "local": local,
-            "share": share,
-            "share_lower": share_lower,
-            "share_upper": share_upper,
+            "fraction": fraction,
+            "fraction_lower": fraction_lower,
+            "fraction_upper": fraction_upper,
         }
     )
 
 
-def share_points(labels: Mapping[str, Any], item: Fragility) -> pd.DataFrame:
-    """Points of the curve without a form, if the fitted one is rejected; no row otherwise.
+def fraction_points(labels: Mapping[str, Any], item: Fragility) -> pd.DataFrame:
+    """Points of the non-parametric fragility function, if the fitted one is rejected; no row otherwise.
 
     Returns
     -------
     pandas.DataFrame
-        ``labels``, ``im``, ``unit``; ``x``: the measure, rising; ``share`` of overturned tests, never falling
+        ``labels``, ``im``, ``unit``; ``x``: the measure, rising; ``fraction`` of overturned tests, never falling
         and straight over ln x between the points, with ``lower`` and ``upper`` at the interval's level.
     """
-    shares = item.checks.shares
-    x = shares.knots()[0] if item.checks.rejected else np.empty(0)
-    share, lower, upper = shares.at(x) if x.size else (x, x, x)
+    fractions = item.checks.fractions
+    x = fractions.knots()[0] if item.checks.rejected else np.empty(0)
+    fraction, lower, upper = fractions.at(x) if x.size else (x, x, x)
     about = pd.DataFrame(
         {**labels, "im": item.fit.im, "unit": item.fit.unit}, index=pd.RangeIndex(x.size)
     )
-    return about.assign(x=x, share=share, lower=lower, upper=upper)
+    return about.assign(x=x, fraction=fraction, lower=lower, upper=upper)
 
 
-def verdict_bins(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes) -> pd.DataFrame:
-    """Shares of overturned tests in bins, under the labels of their curve.
+def outcome_bins(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes) -> pd.DataFrame:
+    """Fractions of overturned tests in bins, under the labels of their curve.
 
     Returns
     -------
     pandas.DataFrame
         ``labels``, ``im``, ``unit``, and the columns of
-        :func:`rockfrag.fragility.empirical.share_in_bins`, where the measure is called ``x``.
+        :func:`rockfrag.fragility.empirical.fraction_in_bins`, where the measure is called ``x``.
     """
     names = {"im": "x", "im_lower": "x_lower", "im_upper": "x_upper"}
-    table = share_in_bins(outcomes).rename(columns=names)
+    table = fraction_in_bins(outcomes).rename(columns=names)
     about = pd.DataFrame({**labels, "im": item.fit.im, "unit": item.fit.unit}, index=table.index)
     return pd.concat([about, table], axis=1)

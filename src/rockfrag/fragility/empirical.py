@@ -1,4 +1,4 @@
-"""What the verdicts say without a curve: shares in bins and near a value, survival windows.
+"""What the outcomes say without a curve: shares in bins and near a value, structural resurrections.
 
 Rocking bodies overturn at one amplitude and survive a larger one; a fitted curve cannot show it, so
 these stand beside it.
@@ -13,14 +13,14 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.observations import Floats, Outcomes, positive, verdicts
+from rockfrag.fragility.observations import Floats, Outcomes, positive, read_outcomes
 from rockfrag.shaketable.swept import Swept
 
 
 def wilson_interval(
     overturned: ArrayLike, trials: ArrayLike, level: float = 0.90
 ) -> tuple[Floats, Floats]:
-    """Confidence limits of a binomial share (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212).
+    """Confidence limits of a binomial fraction (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212).
 
     Parameters
     ----------
@@ -54,15 +54,15 @@ def bin_codes(outcomes: Outcomes, bins: int = 10) -> NDArray[np.int64]:
     return np.asarray(middle[level] / outcomes.n * bins, dtype=np.int64)
 
 
-def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd.DataFrame:
-    """Share of overturned tests in bins of about equal numbers of tests.
+def fraction_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd.DataFrame:
+    """Fraction of overturned tests in bins of about equal numbers of tests.
 
     Stripes with at most ``bins`` levels keep their levels.
 
     Parameters
     ----------
     outcomes
-        Verdicts with their measure, see :class:`Outcomes`.
+        Outcomes with their measure, see :class:`Outcomes`.
     bins
         Number of bins.
     level
@@ -72,7 +72,7 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
     -------
     pandas.DataFrame
         ``im`` (geometric mean), ``im_lower``, ``im_upper``, ``tests``, ``motions``, ``overturned``,
-        ``share``, ``share_lower``, ``share_upper`` (binomial limits, in which several rows of one
+        ``fraction``, ``fraction_lower``, ``fraction_upper`` (binomial limits, in which several rows of one
         motion in a bin count once).
     """
     code = bin_codes(outcomes, bins)
@@ -90,17 +90,17 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
                 "tests": int(n),
                 "motions": motions,
                 "overturned": int(outcomes.overturned[inside].sum()),
-                "share": outcomes.overturned[inside].sum() / n,
+                "fraction": outcomes.overturned[inside].sum() / n,
             }
         )
     table = pd.DataFrame(rows)
     alone = np.array(independent)
-    lower, upper = wilson_interval(table["share"].to_numpy() * alone, alone, level)
-    return table.assign(share_lower=lower, share_upper=upper)
+    lower, upper = wilson_interval(table["fraction"].to_numpy() * alone, alone, level)
+    return table.assign(fraction_lower=lower, fraction_upper=upper)
 
 
-def local_share(outcomes: Outcomes, im: ArrayLike, bandwidth: float | None = None) -> Floats:
-    """Share of overturned tests near each ``im``, weighted by a normal kernel in ln IM; may fall.
+def local_fraction(outcomes: Outcomes, im: ArrayLike, bandwidth: float | None = None) -> Floats:
+    """Fraction of overturned tests near each ``im``, weighted by a normal kernel in ln IM; may fall.
 
     Parameters
     ----------
@@ -125,37 +125,37 @@ def local_share(outcomes: Outcomes, im: ArrayLike, bandwidth: float | None = Non
             f"bandwidth: the kernel needs a width above zero in ln IM, got {bandwidth:g}; give "
             "one if all tests share one value."
         )
-    share = outcomes.overturned / outcomes.trials
+    fraction = outcomes.overturned / outcomes.trials
     found = []
     # one after the other, so that memory holds one row of weights
     for middle in np.log(np.atleast_1d(np.asarray(im, dtype=np.float64))):
         # the largest exponent is taken out so that far values still have weights
         power = -0.5 * ((middle - x) / bandwidth) ** 2
         weight = np.exp(power - power.max()) * outcomes.trials
-        found.append((weight * share).sum() / weight.sum())
+        found.append((weight * fraction).sum() / weight.sum())
     return np.array(found)
 
 
-def survival_windows(
-    sweep: pd.DataFrame, *, amplitude: str = "amplitude_g", by: str | list[str] = "motion"
+def find_resurrections(
+    ida: pd.DataFrame, *, amplitude: str = "amplitude_g", by: str | list[str] = "motion"
 ) -> pd.DataFrame:
     """Find where each motion first overturns, where it always does, and the windows between.
 
     Parameters
     ----------
-    sweep
+    ida
         One row per motion and amplitude, with ``overturned``.
     amplitude
         Column of the amplitude.
     by
-        Column or columns that tell the sweeps apart.
+        Column or columns that tell the IDA curves apart.
 
     Returns
     -------
     pandas.DataFrame
-        One row per sweep: the columns ``by``; ``first_lower``, ``first_upper``: the largest
+        One row per IDA curve: the columns ``by``; ``first_lower``, ``first_upper``: the largest
         amplitude below the first overturning and that overturning; ``always_lower``,
-        ``always_upper``: the largest amplitude survived and the next one; ``windows``: number of
+        ``always_upper``: the largest amplitude survived and the next one; ``resurrections``: number of
         ranges survived above the first overturning; ``window_width``: sum of their widths in ln
         amplitude, each counted between the middles of its bounding steps. Lower bounds are 0 where
         nothing lower was tried, upper ones NaN where nothing overturned.
@@ -163,42 +163,42 @@ def survival_windows(
     Raises
     ------
     InputError
-        If an amplitude is not above zero, a verdict is not 0 or 1, or a sweep repeats an amplitude.
+        If an amplitude is not above zero, an outcome is not 0 or 1, or an IDA curve repeats an amplitude.
     """
     keys = [by] if isinstance(by, str) else by
-    values = positive(sweep, amplitude)
-    table = sweep[keys].assign(amplitude=values, overturned=verdicts(sweep, "overturned") == 1)
+    values = positive(ida, amplitude)
+    table = ida[keys].assign(amplitude=values, overturned=read_outcomes(ida, "overturned") == 1)
     doubled = table.duplicated([*keys, "amplitude"])
     if doubled.any():
         row = int(np.flatnonzero(doubled)[0])
         raise InputError(
-            f"table, row {row + 1}, column {amplitude!r}: the sweep of "
+            f"table, row {row + 1}, column {amplitude!r}: the IDA curve of "
             f"{', '.join(str(table[key].iloc[row]) for key in keys)} already has the amplitude "
             f"{values[row]:g}; leave the repetition out."
         )
     rows = []
     for name, group in table.groupby(keys, sort=True):
         ordered = group.sort_values("amplitude")
-        found = _windows(ordered["amplitude"].to_numpy(), ordered["overturned"].to_numpy())
+        found = _resurrections(ordered["amplitude"].to_numpy(), ordered["overturned"].to_numpy())
         rows.append({**dict(zip(keys, name, strict=True)), **found})
     return pd.DataFrame(rows)
 
 
-def windows_of_swept(parts: Iterable[Swept]) -> pd.DataFrame:
-    """Survival windows of sweeps, part after part, by configuration, event, floor and motion.
+def resurrections_of(parts: Iterable[Swept]) -> pd.DataFrame:
+    """Survival windows of IDA curves, part after part, by configuration, earthquake, floor and motion.
 
     Parameters
     ----------
     parts
-        Sweeps, see :func:`rockfrag.shaketable.swept.read_swept`.
+        IDA curves, see :func:`rockfrag.shaketable.swept.read_swept`.
 
     Returns
     -------
-    As :func:`survival_windows` with these columns for ``by``.
+    As :func:`find_resurrections` with these columns for ``by``.
     """
-    keys = ["configuration", "event", "floor", "motion"]
+    keys = ["configuration", "earthquake", "floor", "motion"]
     rows = [
-        {**about, **_windows(part.amplitude_g, overturned)}
+        {**about, **_resurrections(part.amplitude_g, overturned)}
         for part in parts
         for about, overturned in zip(
             part.about[keys].to_dict("records"), part.overturned, strict=True
@@ -207,7 +207,7 @@ def windows_of_swept(parts: Iterable[Swept]) -> pd.DataFrame:
     return pd.DataFrame(rows).sort_values(keys, ignore_index=True)
 
 
-def _windows(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str, float | int]:
+def _resurrections(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str, float | int]:
     nan = float("nan")
     padded = np.concatenate([[0.0], amplitude, [nan]])
     fell, stood = np.flatnonzero(overturned), np.flatnonzero(~overturned)
@@ -228,6 +228,6 @@ def _windows(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str, floa
         "first_upper": float(padded[first + 1]),
         "always_lower": float(padded[always]),
         "always_upper": float(padded[always + 1]),
-        "windows": closed,
+        "resurrections": closed,
         "window_width": width,
     }

@@ -1,4 +1,4 @@
-"""Fragility from the data that the field knows: clouds, stripes, sweeps, step protocols."""
+"""Fragility from the data that the field knows: clouds, stripes, IDA curves, step protocols."""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -14,11 +14,11 @@ from rockfrag.fragility.censored import (
     brackets_from_table,
     fit_brackets,
 )
-from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_verdicts
+from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_outcomes
+from rockfrag.fragility.ida_data import IdaData, TableIda
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Outcomes, outcomes_from_table
-from rockfrag.fragility.sweep_data import SweepData, TableSweep
 from rockfrag.keywords import named_keywords
 from rockfrag.short_repr import short_repr
 
@@ -60,7 +60,7 @@ class Fragility:
 
 @dataclass(frozen=True)
 class IncrementalFragility:
-    """Three readings of the same amplitude sweeps; they differ where there are survival windows.
+    """Three definitions of the same incremental dynamic analyses; they differ where there are structural resurrections.
 
     Attributes
     ----------
@@ -69,18 +69,18 @@ class IncrementalFragility:
     always
         Amplitude above which each motion always overturns, as far as it was raised.
     probability
-        Mean P(overturn | amplitude) over the motions, survival windows included.
-    windows
-        Table of :func:`rockfrag.fragility.empirical.survival_windows`.
-    share_with_windows
-        Share of the motions that overturned and have at least one window.
+        Mean P(overturn | amplitude) over the motions, structural resurrections included.
+    resurrections
+        Table of :func:`rockfrag.fragility.empirical.find_resurrections`.
+    fraction_with_resurrections
+        Fraction of the motions that overturned and have at least one window.
     """
 
     first: Fragility
     always: Fragility
     probability: Fragility
-    windows: pd.DataFrame
-    share_with_windows: float
+    resurrections: pd.DataFrame
+    fraction_with_resurrections: float
 
     __repr__ = short_repr
 
@@ -93,12 +93,12 @@ def fragility_of(
     seed: int = 0,
     dependence: Literal["tests", "motions"] | None = None,
 ) -> Fragility:
-    """Fit a curve to verdicts and give it limits over motions, or events where they are known.
+    """Fit a curve to outcomes and give it limits over motions, or earthquakes where they are known.
 
     Parameters
     ----------
     outcomes
-        Verdicts with their measure, see :class:`Outcomes`.
+        Outcomes with their measure, see :class:`Outcomes`.
     link
         ``probit`` (lognormal curve) or ``logit``.
     level
@@ -112,7 +112,7 @@ def fragility_of(
     """
     fit = fit_lognormal(outcomes, link=link)
     limits = interval_over_motions(outcomes, level=level, link=link)
-    return Fragility(fit, limits, checks_of_verdicts(outcomes, fit, limits, dependence, seed))
+    return Fragility(fit, limits, checks_of_outcomes(outcomes, fit, limits, dependence, seed))
 
 
 @named_keywords
@@ -122,7 +122,7 @@ def fit_cloud(
     *,
     overturned: str = "overturned",
     motion: str | None = "motion",
-    event: str | None = None,
+    earthquake: str | None = None,
     level: float = 0.90,
 ) -> Fragility:
     """Fit a curve to single tests at scattered values of the measure (cloud analysis).
@@ -134,11 +134,11 @@ def fit_cloud(
     im
         Column of the intensity measure.
     overturned
-        Column with the verdicts.
+        Column with the outcomes.
     motion
         Column with the name of the motion; None where tests have none.
-    event
-        Column with the name of the event; None where it is not known.
+    earthquake
+        Column with the name of the earthquake; None where it is not known.
     level
         Of the confidence limits [-], 0 to 1.
 
@@ -146,7 +146,9 @@ def fit_cloud(
     -------
     The :class:`Fragility`.
     """
-    outcomes = outcomes_from_table(table, im, overturned=overturned, motion=motion, event=event)
+    outcomes = outcomes_from_table(
+        table, im, overturned=overturned, motion=motion, earthquake=earthquake
+    )
     return fragility_of(outcomes, level=level)
 
 
@@ -158,7 +160,7 @@ def fit_stripes(
     overturned: str = "overturned",
     trials: str | None = None,
     motion: str | None = "motion",
-    event: str | None = None,
+    earthquake: str | None = None,
     level: float = 0.90,
 ) -> Fragility:
     """Fit a curve to counts at a few levels of the measure (multiple stripe analysis).
@@ -170,7 +172,7 @@ def fit_stripes(
 
     Parameters
     ----------
-    table, im, overturned, motion, event, level
+    table, im, overturned, motion, earthquake, level
         As of :func:`fit_cloud`.
     trials
         Column with the number of tests in a row; None where a row is one test.
@@ -180,7 +182,7 @@ def fit_stripes(
     The :class:`Fragility`.
     """
     outcomes = outcomes_from_table(
-        table, im, overturned=overturned, trials=trials, motion=motion, event=event
+        table, im, overturned=overturned, trials=trials, motion=motion, earthquake=earthquake
     )
     whole = fragility_of(outcomes, level=level)
     return whole if trials is not None else replace(whole, fit=fit_lognormal(_pooled(outcomes)))
@@ -188,20 +190,20 @@ def fit_stripes(
 
 @named_keywords
 def fit_incremental(
-    sweep: pd.DataFrame | SweepData,
+    ida: pd.DataFrame | IdaData,
     *,
     amplitude: str = "amplitude_g",
     motion: str = "motion",
-    event: str | None = None,
+    earthquake: str | None = None,
     level: float = 0.90,
 ) -> IncrementalFragility:
-    """Fit first overturning, always overturning, and mean probability to amplitude sweeps.
+    """Fit first overturning, always overturning, and mean probability to incremental dynamic analyses.
 
     Parameters
     ----------
-    sweep
-        One row per motion and amplitude, with ``overturned``; or the sweeps in another form. One body.
-    amplitude, motion, event
+    ida
+        One row per motion and amplitude, with ``overturned``; or the IDA curves in another form. One body.
+    amplitude, motion, earthquake
         Names of the columns.
     level
         Of the confidence limits [-], 0 to 1.
@@ -210,27 +212,31 @@ def fit_incremental(
     -------
     The :class:`IncrementalFragility`.
     """
-    data = TableSweep(sweep, event, motion) if isinstance(sweep, pd.DataFrame) else sweep
-    windows = data.windows(amplitude, [motion] if event is None else [motion, event])
-    readings = {}
-    for reading in ("first", "always"):
+    data = TableIda(ida, earthquake, motion) if isinstance(ida, pd.DataFrame) else ida
+    resurrections = data.resurrections(
+        amplitude, [motion] if earthquake is None else [motion, earthquake]
+    )
+    definitions = {}
+    for definition in ("first", "always"):
         brackets = brackets_from_table(
-            windows,
-            lower=f"{reading}_lower",
-            upper=f"{reading}_upper",
+            resurrections,
+            lower=f"{definition}_lower",
+            upper=f"{definition}_upper",
             motion=motion,
-            event=event,
+            earthquake=earthquake,
             measure=amplitude,
         )
-        readings[reading] = fragility_of_brackets(brackets, level)
-    fell = windows["first_upper"].notna()
-    share = float((windows.loc[fell, "windows"] > 0).mean()) if fell.any() else float("nan")
+        definitions[definition] = fragility_of_brackets(brackets, level)
+    fell = resurrections["first_upper"].notna()
+    fraction = (
+        float((resurrections.loc[fell, "resurrections"] > 0).mean()) if fell.any() else float("nan")
+    )
     return IncrementalFragility(
-        readings["first"],
-        readings["always"],
+        definitions["first"],
+        definitions["always"],
         fragility_of(data.outcomes(amplitude), level=level),
-        windows,
-        share,
+        resurrections,
+        fraction,
     )
 
 
@@ -240,7 +246,7 @@ def fit_step_tests(
     lower: str = "lower_g",
     upper: str = "upper_g",
     motion: str | None = "motion",
-    event: str | None = "event",
+    earthquake: str | None = "earthquake",
     level: float = 0.90,
 ) -> Fragility:
     """Fit a curve to tests of a step protocol, one row per test, interval- or right-censored.
@@ -253,21 +259,23 @@ def fit_step_tests(
         Column of the largest amplitude survived.
     upper
         Column of the amplitude that overturned.
-    motion, event, level
+    motion, earthquake, level
         As of :func:`fit_cloud`.
 
     Returns
     -------
     The :class:`Fragility`.
     """
-    brackets = brackets_from_table(tests, lower=lower, upper=upper, motion=motion, event=event)
+    brackets = brackets_from_table(
+        tests, lower=lower, upper=upper, motion=motion, earthquake=earthquake
+    )
     return fragility_of_brackets(brackets, level)
 
 
 def fragility_of_brackets(brackets: Brackets, level: float) -> Fragility:
-    """Fit a curve to bracketed amplitudes and give it limits over motions, or events where known."""
+    """Fit a curve to bracketed amplitudes and give it limits over motions, or earthquakes where known."""
     fit, interval = fit_brackets(brackets), bracket_interval(brackets, level=level)
-    groups = brackets.motion if interval.over == "motion" else brackets.event
+    groups = brackets.motion if interval.over == "motion" else brackets.earthquake
     checks = checks_of_brackets(brackets.lower, brackets.upper, groups, fit, interval)
     return Fragility(fit, interval, checks)
 

@@ -1,4 +1,4 @@
-"""Does the fitted curve describe the verdicts? Deviance, parametric bootstrap, calibration."""
+"""Does the fitted curve describe the outcomes? Deviance, parametric bootstrap, calibration."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -17,26 +17,26 @@ from rockfrag.fragility.pooling import cells
 from rockfrag.short_repr import short_repr
 
 CELLS = 60
-"""Cells of the measure in which simulated verdicts are refitted; finer ones move p values by one replicate."""
+"""Cells of the measure in which simulated outcomes are refitted; finer ones move p values by one replicate."""
 
 
 @dataclass(frozen=True)
 class GoodnessOfFit:
-    """How well a curve describes the verdicts it was fitted to.
+    """How well a curve describes the outcomes it was fitted to.
 
     Attributes
     ----------
     deviance
         Binomial deviance of bins of the measure against the curve.
     p_value
-        Share of data sets simulated from the curve (and refitted) whose deviance is at least as
+        Fraction of data sets simulated from the curve (and refitted) whose deviance is at least as
         large.
     dependence
         What was simulated, see :func:`goodness_of_fit`.
     replicates
         Number of simulated data sets.
     brier
-        Mean squared difference of verdict and fitted probability.
+        Mean squared difference of outcome and fitted probability.
     calibration
         One row per bin: ``im``, ``tests``, ``predicted`` (mean fitted probability), ``observed``,
         ``observed_lower``, ``observed_upper`` (90 % binomial limits).
@@ -69,10 +69,10 @@ def goodness_of_fit(
     Parameters
     ----------
     outcomes, fit
-        The verdicts and the curve fitted to them.
+        The outcomes and the curve fitted to them.
     dependence
-        ``tests`` simulates each verdict by itself; ``motions`` gives each motion one capacity from
-        the curve, so that its verdicts hang together as in an amplitude sweep. None takes
+        ``tests`` simulates each outcome by itself; ``motions`` gives each motion one capacity from
+        the curve, so that its outcomes hang together as in an incremental dynamic analysis. None takes
         ``motions`` where motions have more than one row.
     bins
         Most bins of the measure.
@@ -117,9 +117,11 @@ def goodness_of_fit(
         values - 1e3 * home, np.asarray(np.bincount(cell, outcomes.trials), dtype=np.float64), home
     )
     if dependence == "tests":
-        share = np.bincount(cell, outcomes.trials * probability) / pooled.trials
+        fraction = np.bincount(cell, outcomes.trials * probability) / pooled.trials
         drawn = rng.binomial(
-            pooled.trials.astype(np.int64), np.minimum(share, 1.0), size=(replicates, share.size)
+            pooled.trials.astype(np.int64),
+            np.minimum(fraction, 1.0),
+            size=(replicates, fraction.size),
         ).astype(np.float64)
     else:
         size = (replicates, outcomes.n_motions)
@@ -192,12 +194,12 @@ def _refitted_deviance(pooled: _Pooled, fit: FragilityFit, drawn: Floats) -> Flo
 
 
 def _words(deviance: float, p_value: float, bins: int, dependence: str) -> str:
-    verdict = (
+    outcome = (
         "the curve is rejected; use the nonparametric monotone curve"
         if p_value < 0.05
         else "the curve is not rejected"
     )
     return (
         f"Deviance {deviance:.1f} in {bins} bins, p = {p_value:.3f} (parametric bootstrap of "
-        f"{dependence}): {verdict}."
+        f"{dependence}): {outcome}."
     )

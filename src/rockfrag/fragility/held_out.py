@@ -1,4 +1,4 @@
-"""How well a curve foretells what it was not fitted to: motions (events) held out in turn.
+"""How well a curve predicts what it was not fitted to: motions (earthquakes) held out in turn.
 
 Tests under one motion, and motions of one earthquake, hang together; criteria such as AIC count them as
 independent and become too sure.  Here whole groups are held out, each group's log score under the curve
@@ -18,7 +18,7 @@ FOLDS = 20
 """Groups are held out one by one up to so many, and beyond in so many blocks."""
 
 WORST_SCORE = -20.0
-"""Log score of a verdict that a curve calls impossible [-]."""
+"""Log score of an outcome that a curve calls impossible [-]."""
 
 
 def folds_of(groups: int) -> NDArray[np.intp]:
@@ -26,14 +26,14 @@ def folds_of(groups: int) -> NDArray[np.intp]:
     return np.arange(groups) % FOLDS
 
 
-def verdict_scores(
+def outcome_scores(
     logs: Floats,
     overturned: Floats,
     trials: Floats,
     group: NDArray[np.intp],
     fitted: int | None = None,
 ) -> Floats:
-    """Log score of each group's verdicts under the probit fitted to the other folds.
+    """Log score of each group's outcomes under the probit fitted to the other folds.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def verdict_scores(
     overturned, trials
         Counts, shape (n,).
     group
-        Number of each row's motion or event, shape (n,).
+        Number of each row's motion or earthquake, shape (n,).
     fitted
         Number of leading measures that the curve knows; by default all. The others only share in
         putting tests into cells, so that scores with and without them compare.
@@ -103,8 +103,8 @@ def paired_p(best: Floats, other: Floats) -> float:
     return float(stats.ttest_1samp(difference, 0.0).pvalue)
 
 
-def share_best(scores: Floats, replicates: int, seed: int) -> Floats:
-    """Share of bootstrap samples of the groups in which each measure scores best, (measures,).
+def fraction_best(scores: Floats, replicates: int, seed: int) -> Floats:
+    """Fraction of bootstrap samples of the groups in which each measure scores best, (measures,).
 
     Parameters
     ----------

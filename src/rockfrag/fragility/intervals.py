@@ -1,4 +1,4 @@
-"""Confidence intervals by resampling whole motions or events, never amplitudes of a motion.
+"""Confidence intervals by resampling whole motions or earthquakes, never amplitudes of a motion.
 
 The method is the delete-one-group jackknife with Student's t (Tukey, 1958, Ann. Math. Stat. 29: 614).
 ``docs/validation-fragility.md`` shows how often it covers the truth for few and many groups, and that a
@@ -28,9 +28,9 @@ MOST_BLOCKS = 100
 """More groups than this are left out in random blocks, which costs little and changes little."""
 
 BETA_POWER = -0.1
-"""Power of β that is jackknifed. With ln β limits held in 86 % where events dominate, see the validation."""
+"""Power of β that is jackknifed. With ln β limits held in 86 % where earthquakes dominate, see the validation."""
 
-Over = Literal["motion", "event"]
+Over = Literal["motion", "earthquake"]
 WeightedFit = Callable[[Floats], Floats]
 """Turns weights of the groups, shape (batch, groups), into (intercept, slope), shape (batch, 2)."""
 
@@ -51,7 +51,7 @@ class Interval:
     groups
         Number of independent groups that were resampled.
     over
-        What a group is: ``motion`` or ``event``.
+        What a group is: ``motion`` or ``earthquake``.
     estimate
         Intercept and slope of the fit that the interval belongs to.
     replicates
@@ -88,19 +88,19 @@ class Interval:
         return np.asarray(function(centre - half)), np.asarray(function(centre + half))
 
 
-def population(motions: int, events: int, over: Over | None) -> tuple[Over, tuple[str, ...]]:
-    """Choose what to resample, and warn where motions stand in for the few events they share."""
+def population(motions: int, earthquakes: int, over: Over | None) -> tuple[Over, tuple[str, ...]]:
+    """Choose what to resample, and warn where motions stand in for the few earthquakes they share."""
     if over is None:
-        over = "event" if events < motions else "motion"
-    if over == "motion" and events < motions:
+        over = "earthquake" if earthquakes < motions else "motion"
+    if over == "motion" and earthquakes < motions:
         return over, (
-            f"The {motions} motions come from {events} events: limits over motions hold for other "
-            "motions of these events only, and were too narrow for other events in the validation.",
+            f"The {motions} motions come from {earthquakes} earthquakes: limits over motions hold for other "
+            "motions of these earthquakes only, and were too narrow for other earthquakes in the validation.",
         )
     return over, ()
 
 
-def verdict_fitter(
+def outcome_fitter(
     outcomes: Outcomes, labels: NDArray[np.object_], link: Link = "probit"
 ) -> tuple[WeightedFit, int]:
     """Make the function that refits a curve to reweighted groups of tests.
@@ -142,15 +142,15 @@ def verdict_fitter(
 def interval_over_motions(
     outcomes: Outcomes, *, over: Over | None = None, level: float = 0.90, link: Link = "probit"
 ) -> Interval:
-    """Confidence limits of a curve fitted to verdicts, by leaving out whole motions or events.
+    """Confidence limits of a curve fitted to outcomes, by leaving out whole motions or earthquakes.
 
     Parameters
     ----------
     outcomes
         The tests.
     over
-        ``motion`` answers for other motions of the same events, ``event`` for other events; None
-        takes events where they are known and some have several motions.
+        ``motion`` answers for other motions of the same earthquakes, ``earthquake`` for other earthquakes; None
+        takes earthquakes where they are known and some have several motions.
     level
         Of the confidence limits [-], 0 to 1.
     link
@@ -160,10 +160,10 @@ def interval_over_motions(
     -------
     The :class:`Interval`, with limits of median and dispersion.
     """
-    over, notes = population(outcomes.n_motions, outcomes.n_events, over)
-    labels = outcomes.motion if over == "motion" else outcomes.event
-    fit = verdict_fitter(outcomes, labels, link)[0]
-    groups = outcomes.n_motions if over == "motion" else outcomes.n_events
+    over, notes = population(outcomes.n_motions, outcomes.n_earthquakes, over)
+    labels = outcomes.motion if over == "motion" else outcomes.earthquake
+    fit = outcome_fitter(outcomes, labels, link)[0]
+    groups = outcomes.n_motions if over == "motion" else outcomes.n_earthquakes
     found = resampled_interval(fit, groups, over=over, notes=notes, level=level, link=link)
     apart = separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None] + 0.0)[0]
     if not apart:
@@ -192,8 +192,8 @@ def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
     """
     if not 0 < lower < upper < np.inf or nothing.estimate[1] < LEAST_SLOPE:
         return nothing
-    share = (1.0 - nothing.level) ** (1.0 / nothing.groups)
-    beta = np.log(upper / lower) / (2.0 * float(stats.norm.ppf(0.5 + 0.5 * share)))
+    fraction = (1.0 - nothing.level) ** (1.0 / nothing.groups)
+    beta = np.log(upper / lower) / (2.0 * float(stats.norm.ppf(0.5 + 0.5 * fraction)))
     beta = max(beta, 1.0 / nothing.estimate[1])
     sure = 1.0 - 2.0 ** (1 - nothing.groups)
     note = (
@@ -223,7 +223,7 @@ def resampled_interval(
     Parameters
     ----------
     fit, groups
-        As :func:`verdict_fitter` returns them.
+        As :func:`outcome_fitter` returns them.
     over, level, link
         As of :func:`interval_over_motions`.
     notes

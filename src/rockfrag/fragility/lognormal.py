@@ -22,7 +22,7 @@ from rockfrag.keywords import named_keywords
 from rockfrag.short_repr import short_repr
 
 LEAST_SLOPE = 1e-3
-"""A curve with a smaller slope in ln IM (β above 1000) is flat: the measure foretells nothing."""
+"""A curve with a smaller slope in ln IM (β above 1000) is flat: the measure predicts nothing."""
 
 MOST_ROWS = 100_000
 """Rows beyond which tests are fitted in 10 000 cells of nearly equal values, which moves θ by less than 1e-6."""
@@ -123,7 +123,7 @@ def curve_parameters(coefficients: Floats, covariance: Floats) -> Curve:
 
 @named_keywords
 def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
-    """Fit a curve to verdicts by maximum likelihood (statsmodels GLM, binomial).
+    """Fit a curve to outcomes by maximum likelihood (statsmodels GLM, binomial).
 
     Where one value of the measure separates survival from overturning the likelihood has no maximum
     (θ is only known to an interval, β tends to zero); the fit is then penalised (Firth, 1993) and
@@ -134,7 +134,7 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
     Parameters
     ----------
     outcomes
-        Verdicts with their measure, see :class:`Outcomes`.
+        Outcomes with their measure, see :class:`Outcomes`.
     link
         ``probit`` (lognormal curve) or ``logit``.
 
@@ -252,7 +252,7 @@ def _notes(outcomes: Outcomes) -> tuple[str, ...]:
     if outcomes.n_repeated:
         notes.append(
             f"{outcomes.n_repeated} of {outcomes.im.size} rows repeat the motion, value and "
-            "verdict of another row; they count as repetitions of the test."
+            "outcome of another row; they count as repetitions of the test."
         )
     return tuple(notes)
 

@@ -44,7 +44,7 @@ def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
     """
     measure = measure_labelled(name)
     if measure is None or not measure.openquake or name == measure.floor_label:
-        known = ", ".join(dict.fromkeys(one.openquake for one in declared() if one.openquake))
+        known = ", ".join(dict.fromkeys(item.openquake for item in declared() if item.openquake))
         raise InputError(
             f"NRML: {name} is no intensity measure of ground motion in OpenQuake; export curves in one of {known}."
         )
@@ -69,7 +69,7 @@ def write_nrml(
     *,
     identifier: str = "rockfrag",
     by: str = "configuration",
-    shares: pd.DataFrame | None = None,
+    fractions: pd.DataFrame | None = None,
 ) -> None:
     """Write rows of a fragility table as an NRML 0.5 fragility model.
 
@@ -80,7 +80,7 @@ def write_nrml(
     ----------
     table
         One row per configuration and limit state (one estimator and one measure each), as
-        :func:`rockfrag.fragility.sweeps.fragility_table` gives them; a column ``state`` names the limit
+        :func:`rockfrag.fragility.ida_curves.fragility_table` gives them; a column ``state`` names the limit
         state (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. A column ``floor`` must be
         empty: only motions of the ground are known to OpenQuake.
     path
@@ -90,10 +90,11 @@ def write_nrml(
     by
         Column whose value names the function (OpenQuake's taxonomy); what OpenQuake
         does not take in a name becomes ``_``.
-    shares
-        Points of the curves without a form (:func:`rockfrag.fragility.drawn_curves.share_points`), with columns
-        ``by`` and ``state``. A function of which a state has such points is written as discrete levels; so is one
-        whose lognormal curves would make a state more probable than the one that comes before it.
+    fractions
+        Points of the non-parametric fragility function (:func:`rockfrag.fragility.drawn_curves.fraction_points`),
+        with columns ``by`` and ``state``. A function of which a state has such points is written as discrete
+        levels; so is one whose lognormal curves would make a state more probable than the one that comes before
+        it.
 
     Raises
     ------
@@ -139,7 +140,7 @@ def write_nrml(
         # two hyphens would end the comment
         model.append(ElementTree.Comment(f" {name}: {said} ".replace("--", "- -")))
         warned += [str(rows[name][state].get("warnings") or "") for state in known]
-        model.append(_function(name, {state: rows[name][state] for state in known}, by, shares))
+        model.append(_function(name, {state: rows[name][state] for state in known}, by, fractions))
     description.text = " ".join(
         [
             "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
@@ -155,18 +156,18 @@ def write_nrml(
 def said_once(notes: Sequence[str]) -> list[str]:
     """Sentences of several warnings, each once, without what is said of a single rejected curve."""
     sentences = [
-        one
+        item
         for note in notes
-        for one in re.split(r"(?<=\.)\s+(?=[A-Z])", REJECTION.sub("", note).strip())
+        for item in re.split(r"(?<=\.)\s+(?=[A-Z])", REJECTION.sub("", note).strip())
     ]
-    return [one for one in dict.fromkeys(sentences) if one]
+    return [sentence for sentence in dict.fromkeys(sentences) if sentence]
 
 
 def _function(
     taxonomy: str,
     states: Mapping[str, Mapping[Hashable, Any]],
     by: str,
-    shares: pd.DataFrame | None,
+    fractions: pd.DataFrame | None,
 ) -> ElementTree.Element:
     curves: dict[str, tuple[float, float]] = {}
     free: dict[str, tuple[Floats, Floats]] = {}
@@ -187,9 +188,9 @@ def _function(
         imt, factor = intensity_measure_type(str(row["im"]), str(row["unit"]))
         measures.add(imt)
         curves[state] = theta * factor, max(beta, STEP)
-        levels, share = points_of(shares, by, name, state)
+        levels, fraction = points_of(fractions, by, name, state)
         if levels.size:
-            free[state] = levels * factor, share
+            free[state] = levels * factor, fraction
     if len(measures) > 1:
         raise InputError(
             f"NRML: the limit states of {taxonomy!r} are in {' and '.join(sorted(measures))}; one "
@@ -214,12 +215,14 @@ def _function(
     return function
 
 
-def points_of(shares: pd.DataFrame | None, by: str, name: str, state: str) -> tuple[Floats, Floats]:
-    """Levels and shares of the curve without a form; empty where the lognormal one stands."""
-    if shares is None:
+def points_of(
+    fractions: pd.DataFrame | None, by: str, name: str, state: str
+) -> tuple[Floats, Floats]:
+    """Levels and fractions of the non-parametric fragility function; empty where the lognormal one stands."""
+    if fractions is None:
         return np.empty(0), np.empty(0)
-    own = shares[(shares[by].astype(str) == name) & (shares["state"] == state)]
-    return own["x"].to_numpy(dtype=np.float64), own["share"].to_numpy(dtype=np.float64)
+    own = fractions[(fractions[by].astype(str) == name) & (fractions["state"] == state)]
+    return own["x"].to_numpy(dtype=np.float64), own["fraction"].to_numpy(dtype=np.float64)
 
 
 def _nested(
@@ -233,8 +236,8 @@ def _nested(
     for state, (theta, beta) in curves.items():
         chance = special.ndtr(np.log(levels / theta) / beta)
         if state in free:
-            x, share = free[state]
-            chance = np.interp(np.log(levels), np.log(x), share)
+            x, fraction = free[state]
+            chance = np.interp(np.log(levels), np.log(x), fraction)
         lowered = max(lowered, float((chance - before).max()))
         before = np.minimum(chance, before)
         found[state] = before

@@ -29,9 +29,9 @@ class Outcomes:
         Number of tests of the row, shape (n,); 1 for single tests.
     motion
         Label of the motion, shape (n,): rows of one motion are not independent.
-    event
-        Label of the earthquake, shape (n,): motions of one event may share an effect. The motion's
-        label where no event is known.
+    earthquake
+        Label of the earthquake, shape (n,): motions of one earthquake may share an effect. The motion's
+        label where no earthquake is known.
     name, unit
         The intensity measure as the field writes it, for example ``PGA`` and ``g``.
     """
@@ -40,7 +40,7 @@ class Outcomes:
     overturned: Floats
     trials: Floats
     motion: NDArray[np.object_]
-    event: NDArray[np.object_]
+    earthquake: NDArray[np.object_]
     name: str = "IM"
     unit: str = ""
 
@@ -67,13 +67,13 @@ class Outcomes:
         return len(pd.unique(pd.Series(self.motion)))
 
     @property
-    def n_events(self) -> int:
-        """Number of different events."""
-        return len(pd.unique(pd.Series(self.event)))
+    def n_earthquakes(self) -> int:
+        """Number of different earthquakes."""
+        return len(pd.unique(pd.Series(self.earthquake)))
 
     @property
     def n_repeated(self) -> int:
-        """Number of rows that repeat the motion, the value and the verdict of an earlier row."""
+        """Number of rows that repeat the motion, the value and the outcome of an earlier row."""
         rows = pd.DataFrame({"m": self.motion, "x": self.im, "y": self.overturned / self.trials})
         return int(rows.duplicated().sum())
 
@@ -98,7 +98,7 @@ class Outcomes:
         return self
 
     def group_weights(self, weights: Floats) -> Floats:
-        """Weights of the groups that rows are labelled with from those of motions or events."""
+        """Weights of the groups that rows are labelled with from those of motions or earthquakes."""
         return weights
 
     def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:
@@ -107,7 +107,7 @@ class Outcomes:
         return int(pd.Series(self.motion[inside]).nunique()), float(largest.sum())
 
     def drawn(self, capacity: Floats, cell: NDArray[np.intp]) -> Floats:
-        """Verdicts by cell where each motion has one capacity [ln IM], shape (replicates, cells).
+        """Outcomes by cell where each motion has one capacity [ln IM], shape (replicates, cells).
 
         Parameters
         ----------
@@ -119,7 +119,7 @@ class Outcomes:
         codes = pd.factorize(pd.Series(self.motion))[0]
         log_im = self.log_im
         return np.array(
-            [np.bincount(cell, (log_im > one[codes]) * self.trials) for one in capacity]
+            [np.bincount(cell, (log_im > item[codes]) * self.trials) for item in capacity]
         )
 
 
@@ -176,8 +176,8 @@ def positive(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
     return values
 
 
-def verdicts(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
-    """Return a column of yes/no verdicts as 0 and 1, shape (n,).
+def read_outcomes(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
+    """Return a column of yes/no outcomes as 0 and 1, shape (n,).
 
     Raises
     ------
@@ -224,10 +224,10 @@ def outcomes_from_table(
     overturned: str = "overturned",
     trials: str | None = None,
     motion: str | None = "motion",
-    event: str | None = None,
+    earthquake: str | None = None,
     source: str = "table",
 ) -> Outcomes:
-    """Read verdicts and one intensity measure out of a table.
+    """Read outcomes and one intensity measure out of a table.
 
     Parameters
     ----------
@@ -236,11 +236,11 @@ def outcomes_from_table(
     im
         Column of the intensity measure; its unit is read from the name (``pga_g``, ``pgv_cm_s``).
     overturned
-        Column of verdicts (0/1, false/true), or of counts when ``trials`` is given.
+        Column of outcomes (0/1, false/true), or of counts when ``trials`` is given.
     trials
         Column with the number of tests of each row.
-    motion, event
-        Columns with the labels of motion and earthquake; None where every row is a motion (event)
+    motion, earthquake
+        Columns with the labels of motion and earthquake; None where every row is a motion (earthquake)
         of its own.
     source
         What to call the table in an error message, for example its file name.
@@ -253,14 +253,14 @@ def outcomes_from_table(
     ------
     InputError
         If the table is empty, a column is absent, a value is missing or not finite, an intensity
-        measure is not above zero, a verdict is not 0 or 1, or counts are outside 0 … trials.
+        measure is not above zero, an outcome is not 0 or 1, or counts are outside 0 … trials.
     """
     if len(table) == 0:
         raise InputError(f"{source}: there is no row; give at least one test.")
     values = positive(table, im, source)
     if trials is None:
         counts = np.ones(len(table))
-        failed = verdicts(table, overturned, source)
+        failed = read_outcomes(table, overturned, source)
     else:
         counts = numbers(table, trials, source)
         failed = numbers(table, overturned, source)
@@ -269,9 +269,9 @@ def outcomes_from_table(
             row = bad[0]
             raise InputError(
                 f"{source}, row {row + 1}, column {overturned!r}: {failed[row]:g} overturned of "
-                f"{counts[row]:g} tests is not a share between 0 and 1; correct the counts."
+                f"{counts[row]:g} tests is not a fraction between 0 and 1; correct the counts."
             )
     motions = labels(table, motion, source)
-    events = motions if event is None else labels(table, event, source)
+    earthquakes = motions if earthquake is None else labels(table, earthquake, source)
     name, unit = name_and_unit(im)
-    return Outcomes(values, failed, counts, motions, events, name, unit)
+    return Outcomes(values, failed, counts, motions, earthquakes, name, unit)

@@ -25,18 +25,18 @@ class OverturningRate:
         Probability of at least one overturning in ``years`` (Poisson).
     years
         Time for ``probability`` [year].
-    share_below, share_above
-        Shares of the rate from shaking below the first and above the last point of the hazard
+    fraction_below, fraction_above
+        Fractions of the rate from shaking below the first and above the last point of the hazard
         curve, where the curve was continued.
     warnings
-        Set where such a share exceeds 1 %.
+        Set where such a fraction exceeds 1 %.
     """
 
     annual_rate: float
     probability: float
     years: float
-    share_below: float
-    share_above: float
+    fraction_below: float
+    fraction_above: float
     warnings: tuple[str, ...] = ()
 
 
@@ -89,9 +89,9 @@ def overturning_rate(
     total = float(parts.sum())
     below, above = float(parts[0] / total), float(parts[-1] / total)
     notes = tuple(
-        f"{share:.0%} of the rate comes from shaking {side} the hazard curve; extend the curve."
-        for share, side in ((below, "below"), (above, "above"))
-        if share > 0.01
+        f"{fraction:.0%} of the rate comes from shaking {side} the hazard curve; extend the curve."
+        for fraction, side in ((below, "below"), (above, "above"))
+        if fraction > 0.01
     )
     return OverturningRate(total, float(-np.expm1(-years * total)), years, below, above, notes)
 
@@ -112,8 +112,8 @@ def _power_law_parts(fit: FragilityFit, x: Floats, rate: Floats) -> Floats:
     upper = (edges[1:] - mean + slope * beta**2) / beta
     lower = (edges[:-1] - mean + slope * beta**2) / beta
     flip = lower > 0
-    share = np.where(
+    fraction = np.where(
         flip, special.ndtr(-lower) - special.ndtr(-upper), special.ndtr(upper) - special.ndtr(lower)
     )
     power = log_rate[start] + slope * (log_x[start] - mean) + 0.5 * (slope * beta) ** 2
-    return np.asarray(np.exp(power) * share)
+    return np.asarray(np.exp(power) * fraction)

@@ -22,16 +22,16 @@ _UNITS = {"g": {"g": "g", "m/s²": "mps2"}, "cm/s": {"cm/s": "cmps", "m/s": "mps
 """What SimCenter calls the units of measures in these."""
 
 BEYOND = 2.0
-"""Where a curve without a form that ends below 1 reaches it, as a multiple of its last level."""
+"""Where a non-parametric fragility function that ends below 1 reaches it, as a multiple of its last level."""
 
 
 def _demands() -> dict[str, tuple[str, dict[str, str]]]:
     """Name and units of each demand, by what curves call the measure at the ground and on a floor."""
-    known = [one for one in declared() if one.demand]
+    known = [item for item in declared() if item.demand]
     return {
-        label: (f"Peak {place} {one.demand}", _UNITS[one.unit])
-        for one in known
-        for label, place in ((one.label, "Ground"), (one.floor_label, "Floor"))
+        label: (f"Peak {place} {item.demand}", _UNITS[item.unit])
+        for item in known
+        for label, place in ((item.label, "Ground"), (item.floor_label, "Floor"))
         if label
     }
 
@@ -42,7 +42,7 @@ def write_simcenter(
     json_path: str | os.PathLike[str],
     *,
     by: str = "configuration",
-    shares: pd.DataFrame | None = None,
+    fractions: pd.DataFrame | None = None,
 ) -> None:
     """Write rows of a fragility table as a damage model.
 
@@ -50,16 +50,16 @@ def write_simcenter(
     ----------
     table
         One row per configuration and limit state (one estimator and one measure each), as
-        :func:`rockfrag.fragility.sweeps.fragility_table` gives them; a column ``state`` names the limit
+        :func:`rockfrag.fragility.ida_curves.fragility_table` gives them; a column ``state`` names the limit
         state (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. PGA and PGV
         are demands of the ground, PFA and PFV of the floor on which the object stands.
     csv_path, json_path
         Files to write.
     by
         Column that names the curve; the ID is ``ROCKFRAG.`` and its letters and digits.
-    shares
-        Points of the curves without a form, as of :func:`rockfrag.fragility.nrml.write_nrml`; a state that has
-        them is written with the family ``multilinear_CDF``.
+    fractions
+        Points of the non-parametric fragility function, as of :func:`rockfrag.fragility.nrml.write_nrml`; a state
+        that has them is written with the family ``multilinear_CDF``.
 
     Raises
     ------
@@ -88,8 +88,10 @@ def write_simcenter(
             )
         states[state] = row
     for name, states in components.items():
-        ordered = {one.name: states[one.name] for one in limit_states() if one.name in states}
-        line, notes[name] = _component(name, ordered, by, shares)
+        ordered = {
+            state.name: states[state.name] for state in limit_states() if state.name in states
+        }
+        line, notes[name] = _component(name, ordered, by, fractions)
         rows.append(line)
     write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
     write_text(json.dumps(notes, indent=2, ensure_ascii=False, sort_keys=True) + "\n", json_path)
@@ -99,7 +101,7 @@ def _component(
     identifier: str,
     states: Mapping[str, Mapping[Hashable, Any]],
     by: str,
-    shares: pd.DataFrame | None,
+    fractions: pd.DataFrame | None,
 ) -> tuple[dict[str, object], dict[str, object]]:
     demands: set[tuple[str, str]] = set()
     limit_states: dict[str, object] = {}
@@ -120,11 +122,11 @@ def _component(
             )
         demand, units = known[im]
         demands.add((demand, units[unit]))
-        levels, share = points_of(shares, by, name, state)
+        levels, fraction = points_of(fractions, by, name, state)
         family: str = "lognormal"
         parameters: tuple[float | str, float | str] = (theta, max(beta, STEP))
         if levels.size:
-            family, parameters = "multilinear_CDF", (_multilinear(levels, share), "")
+            family, parameters = "multilinear_CDF", (_multilinear(levels, fraction), "")
         line |= {
             f"LS{number}-Family": family,
             f"LS{number}-Theta_0": parameters[0],
@@ -136,7 +138,7 @@ def _component(
         damage = {"Description": words, "RepairAction": reached.repair}
         limit_states[f"LS{number}"] = {f"DS{number}": damage}
         facts = curve_facts(row)
-        if levels.size and share[-1] < 1.0:
+        if levels.size and fraction[-1] < 1.0:
             facts += f" Beyond {levels[-1]:.4g} {unit} nothing was tried: all is put at {BEYOND:g} times it."
         said.append(f"{words}: {facts}")
     if len(demands) > 1:
@@ -164,9 +166,9 @@ def _component(
     return line, note
 
 
-def _multilinear(levels: Floats, share: Floats) -> str:
+def _multilinear(levels: Floats, fraction: Floats) -> str:
     """Points of a distribution from 0 to 1, as pelicun's ``multilinear_CDF`` takes them."""
-    if share[-1] < 1.0:
-        levels, share = np.append(levels, BEYOND * levels[-1]), np.append(share, 1.0)
-    texts = (",".join(repr(float(value)) for value in values) for values in (levels, share))
+    if fraction[-1] < 1.0:
+        levels, fraction = np.append(levels, BEYOND * levels[-1]), np.append(fraction, 1.0)
+    texts = (",".join(repr(float(value)) for value in values) for values in (levels, fraction))
     return "|".join(texts)

@@ -15,7 +15,7 @@ from rockfrag.fragility.observations import (
     numbers,
     outcomes_from_table,
     positive,
-    verdicts,
+    read_outcomes,
 )
 from rockfrag.short_repr import short_repr
 
@@ -25,7 +25,7 @@ def fit_uplift(
     im: str,
     *,
     motion: str = "motion",
-    event: str | None = "event",
+    earthquake: str | None = "earthquake",
     level: float = 0.90,
 ) -> Fragility:
     """Curve of P(rock | IM) from motions scaled to the peak acceleration at which rocking starts.
@@ -39,13 +39,13 @@ def fit_uplift(
         One row per motion, scaled to the threshold.
     im
         Column of the measure at that scale.
-    motion, event, level
+    motion, earthquake, level
         As of :func:`rockfrag.fragility.estimators.fit_step_tests`.
     """
     at = positive(motions, im)
     names = labels(motions, motion, "table")
-    events = names if event is None else labels(motions, event, "table")
-    return fragility_of_brackets(Brackets(at, at, names, events, *name_and_unit(im)), level)
+    earthquakes = names if earthquake is None else labels(motions, earthquake, "table")
+    return fragility_of_brackets(Brackets(at, at, names, earthquakes, *name_and_unit(im)), level)
 
 
 @dataclass(frozen=True)
@@ -99,10 +99,10 @@ def fit_three_states(
     *,
     acceleration: str = "amplitude_g",
     motion: str | None = "motion",
-    event: str | None = None,
+    earthquake: str | None = None,
     level: float = 0.90,
 ) -> ThreeStates:
-    """Fit the three states to tests with known peak acceleration and verdict.
+    """Fit the three states to tests with known peak acceleration and outcome.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def fit_three_states(
         Column of the intensity measure of the curves.
     acceleration
         Column of the peak acceleration of the test [g].
-    motion, event, level
+    motion, earthquake, level
         As of :func:`rockfrag.fragility.fit_cloud`.
 
     Returns
@@ -130,7 +130,7 @@ def fit_three_states(
     if not threshold_g > 0:
         raise InputError(f"threshold_g: must be above zero, got {threshold_g:g}.")
     rocked = peak > threshold_g
-    fell = verdicts(table, "overturned") == 1
+    fell = read_outcomes(table, "overturned") == 1
     bad = np.flatnonzero(fell & ~rocked)
     if bad.size:
         raise InputError(
@@ -144,13 +144,13 @@ def fit_three_states(
             "rocked; give stronger tests."
         )
     overturn = fragility_of(
-        outcomes_from_table(table[rocked], im, motion=motion, event=event), level=level
+        outcomes_from_table(table[rocked], im, motion=motion, earthquake=earthquake), level=level
     )
     rock = None
     if not np.array_equal(numbers(table, im), peak):
         with_rock = table.assign(overturned=rocked)
         rock = fragility_of(
-            outcomes_from_table(with_rock, im, motion=motion, event=event), level=level
+            outcomes_from_table(with_rock, im, motion=motion, earthquake=earthquake), level=level
         )
     return ThreeStates(
         float(threshold_g), rock, overturn, len(table), int(rocked.sum()), int(fell.sum())

@@ -14,7 +14,7 @@ from statsmodels.tools.sm_exceptions import PerfectSeparationError, PerfectSepar
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
-from rockfrag.fragility.observations import Floats, positive, verdicts
+from rockfrag.fragility.observations import Floats, positive, read_outcomes
 from rockfrag.short_repr import short_repr
 
 MOST_FOR_THE_PLANE = 20_000
@@ -80,7 +80,7 @@ def fit_surface(
     interaction
         Add the product of the logarithms of two measures.
     overturned
-        Column with the verdicts.
+        Column with the outcomes.
     source
         What messages call the table.
 
@@ -95,11 +95,11 @@ def fit_surface(
         If a value is missing or out of range, all tests agree, or measures are proportional.
     """
     logs = [np.log(positive(table, column, source)) for column in measures]
-    verdict = verdicts(table, overturned, source)
-    if verdict.min() == verdict.max():
+    outcome = read_outcomes(table, overturned, source)
+    if outcome.min() == outcome.max():
         raise InputError(
-            f"{source}, column {overturned!r}: all {verdict.size} tests have the verdict "
-            f"{verdict[0]:g}; a surface needs both."
+            f"{source}, column {overturned!r}: all {outcome.size} tests have the outcome "
+            f"{outcome[0]:g}; a surface needs both."
         )
     design = design_of(logs, interaction)
     if np.linalg.matrix_rank(design) < design.shape[1]:
@@ -109,21 +109,21 @@ def fit_surface(
         )
     method = "probit, maximum likelihood (GLM)"
     # among so many tests no plane parts what a fit does not find parted
-    if verdict.size <= MOST_FOR_THE_PLANE and linearly_separable(design, verdict):
-        coefficients, information = _penalised(design, verdict)
+    if outcome.size <= MOST_FOR_THE_PLANE and linearly_separable(design, outcome):
+        coefficients, information = _penalised(design, outcome)
         method = "probit, penalised likelihood (Firth)"
     else:
-        model = GLM(verdict, design, family=families.Binomial(families.links.Probit()))
+        model = GLM(outcome, design, family=families.Binomial(families.links.Probit()))
         with python_warnings.catch_warnings():
             python_warnings.simplefilter("error", PerfectSeparationWarning)
             try:
                 coefficients = np.asarray(model.fit(tol=1e-12, maxiter=200).params)
                 information = -np.asarray(model.hessian(coefficients, observed=False))
             except (PerfectSeparationError, PerfectSeparationWarning):
-                coefficients, information = _penalised(design, verdict)
+                coefficients, information = _penalised(design, outcome)
                 method = "probit, penalised likelihood (Firth)"
     eta = design @ coefficients
-    log_likelihood = float(special.log_ndtr(np.where(verdict > 0, eta, -eta)).sum())
+    log_likelihood = float(special.log_ndtr(np.where(outcome > 0, eta, -eta)).sum())
     covariance = np.linalg.inv(information)
     return FragilitySurface(
         tuple(float(value) for value in coefficients),
@@ -131,7 +131,7 @@ def fit_surface(
         tuple(measures),
         log_likelihood,
         2.0 * design.shape[1] - 2.0 * log_likelihood,
-        int(verdict.size),
+        int(outcome.size),
         method,
     )
 
@@ -142,19 +142,19 @@ def design_of(logs: Sequence[Floats], interaction: bool) -> Floats:
     return np.column_stack([np.ones(logs[0].size), *logs, *product])
 
 
-def linearly_separable(design: Floats, verdict: Floats) -> bool:
+def linearly_separable(design: Floats, outcome: Floats) -> bool:
     """Tell whether a plane parts overturned from survived tests (ties on the plane allowed).
 
     Solves for the direction c, |c| ≤ 1, that maximises Σ s x·c subject to s x·c ≥ 0, with s = ±1
-    the verdict; a maximum above zero means separation (Konis, 2007, ch. 4).
+    the outcome; a maximum above zero means separation (Konis, 2007, ch. 4).
     """
-    signed = np.where(verdict > 0, 1.0, -1.0)[:, None] * design
+    signed = np.where(outcome > 0, 1.0, -1.0)[:, None] * design
     found = optimize.linprog(
         -signed.sum(axis=0), A_ub=-signed, b_ub=np.zeros(len(signed)), bounds=(-1.0, 1.0)
     )
     return bool(-found.fun > 1e-9)
 
 
-def _penalised(design: Floats, verdict: Floats) -> tuple[Floats, Floats]:
-    fit = fit_batch(design, verdict[None, :], np.ones((1, verdict.size)), penalised=True)
+def _penalised(design: Floats, outcome: Floats) -> tuple[Floats, Floats]:
+    fit = fit_batch(design, outcome[None, :], np.ones((1, outcome.size)), penalised=True)
     return fit.coefficients[0], fit.information[0]

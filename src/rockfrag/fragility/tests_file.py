@@ -44,7 +44,7 @@ def read_tests(
     *,
     overturned: str = "overturned",
     motion: str | None = None,
-    event: str | None = None,
+    earthquake: str | None = None,
     given: Sequence[str] = (),
     keep: Sequence[str] = (),
 ) -> pd.DataFrame:
@@ -58,8 +58,8 @@ def read_tests(
         Columns of the file, named with their unit (``pga_g``, ``pgv_cm_s``), or for each new column the
         columns and numbers whose product it is.
     overturned
-        Column of verdicts: 0/1, yes/no, true/false, overturned/survived.
-    motion, event
+        Column of outcomes: 0/1, yes/no, true/false, overturned/survived.
+    motion, earthquake
         Columns that name motion and earthquake; without them every row is a motion of its own.
     given
         Further columns of numbers.
@@ -69,7 +69,7 @@ def read_tests(
     Returns
     -------
     pandas.DataFrame
-        ``motion``, ``event`` (text), ``overturned`` (0 or 1), the measures (above zero), ``given``, ``keep``.
+        ``motion``, ``earthquake`` (text), ``overturned`` (0 or 1), the measures (above zero), ``given``, ``keep``.
 
     Raises
     ------
@@ -89,8 +89,8 @@ def read_tests(
                 f"measures, {name!r}: the name does not tell a unit; end it with one, such as pga_g, "
                 f"pgv_cm_s or sa_0_3s_g (write {name}_g: [{name}] for a column of the file in g)."
             )
-    factors = [one for recipe in recipes.values() for one in recipe if isinstance(one, str)]
-    labels = [name for name in (motion, event, *keep) if name is not None]
+    factors = [item for recipe in recipes.values() for item in recipe if isinstance(item, str)]
+    labels = [name for name in (motion, earthquake, *keep) if name is not None]
     needed = list(dict.fromkeys([overturned, *labels, *factors, *given]))
     parts, first = [], 0
     with closing(_pieces(path, source, needed)) as pieces:
@@ -98,8 +98,8 @@ def read_tests(
             number = _Numbers(piece, source, first, decimal_comma)
             columns: dict[str, object] = {
                 "motion": number.labels(motion),
-                "event": number.labels(event if event is not None else motion),
-                "overturned": number.verdicts(overturned),
+                "earthquake": number.labels(earthquake if earthquake is not None else motion),
+                "overturned": number.outcomes(overturned),
             }
             for name, recipe in recipes.items():
                 columns[name] = number.product(recipe)
@@ -147,7 +147,7 @@ def read_columns(
     *,
     labels: Sequence[str] = (),
     positive: Sequence[str] = (),
-    verdicts: Sequence[str] = (),
+    outcomes: Sequence[str] = (),
 ) -> pd.DataFrame:
     """Read single columns of a table of tests.
 
@@ -155,8 +155,8 @@ def read_columns(
     ----------
     path
         Text file with a header.
-    labels, positive, verdicts
-        Columns of text, of numbers above zero, and of verdicts (0 and 1 in the result).
+    labels, positive, outcomes
+        Columns of text, of numbers above zero, and of outcomes (0 and 1 in the result).
 
     Raises
     ------
@@ -164,14 +164,14 @@ def read_columns(
         As :func:`read_tests`.
     """
     source = Path(path).name
-    needed = list(dict.fromkeys([*labels, *positive, *verdicts]))
+    needed = list(dict.fromkeys([*labels, *positive, *outcomes]))
     parts, first = [], 0
     with closing(_pieces(path, source, needed)) as pieces:
         for piece, decimal_comma in pieces:
             number = _Numbers(piece, source, first, decimal_comma)
             columns: dict[str, object] = {name: number.labels(name) for name in labels}
             columns |= {name: number.product([name]) for name in positive}
-            columns |= {name: number.verdicts(name) for name in verdicts}
+            columns |= {name: number.outcomes(name) for name in outcomes}
             parts.append(pd.DataFrame(columns))
             first += len(piece)
     if not first:
@@ -320,15 +320,15 @@ class _Numbers:
             result = result * values
         return result
 
-    def verdicts(self, column: str) -> Floats:
-        """Verdicts as 0 and 1, shape (rows,)."""
+    def outcomes(self, column: str) -> Floats:
+        """Outcomes as 0 and 1, shape (rows,)."""
         text = self.piece[column].fillna("").str.strip().str.lower()
         text = text.str.replace(r"^([01])[.,]0*$", r"\1", regex=True)
         known = text.isin(_YES | _NO).to_numpy()
         if not known.all():
             row = int(np.flatnonzero(~known)[0])
             raise InputError(
-                f"{self.where(row, column)}: {self.piece[column].iloc[row]!r} is no verdict; write 1 or yes "
+                f"{self.where(row, column)}: {self.piece[column].iloc[row]!r} is no outcome; write 1 or yes "
                 "for overturned, 0 or no for survived."
             )
         return np.asarray(text.isin(_YES), dtype=np.float64)

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pandas as pd
 
-from rockfrag.fragility.empirical import share_in_bins
+from rockfrag.fragility.empirical import fraction_in_bins
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.goodness import GoodnessOfFit
-from rockfrag.fragility.measure_choice import MeasureChoice, recommend_measure
+from rockfrag.fragility.ida_curves import fragility_row, table_hash
+from rockfrag.fragility.measure_selection import MeasureSelection, recommend_measure
 from rockfrag.fragility.observations import Outcomes, outcomes_from_table
 from rockfrag.fragility.surface import FragilitySurface, fit_surface
-from rockfrag.fragility.sweeps import fragility_row, table_hash
 from rockfrag.fragility.tests_file import Measures, read_tests
 from rockfrag.short_repr import short_repr
 
@@ -25,7 +25,7 @@ class UserFragility:
     Attributes
     ----------
     tests
-        The table as used: ``motion``, ``event``, ``overturned`` and a column per measure.
+        The table as used: ``motion``, ``earthquake``, ``overturned`` and a column per measure.
     outcomes, fits, goodness
         By measure, in the order given; ``goodness`` only where there is a curve.
     choice
@@ -33,16 +33,16 @@ class UserFragility:
     surface
         Probit surface in the first two measures; None with one measure or where all tests agree.
     table
-        Tidy table of curves, see :func:`rockfrag.fragility.sweeps.fragility_table`.
+        Tidy table of curves, see :func:`rockfrag.fragility.ida_curves.fragility_table`.
     bins
-        Empirical shares in bins, by measure (column ``measure``).
+        Empirical fractions in bins, by measure (column ``measure``).
     """
 
     tests: pd.DataFrame
     outcomes: Mapping[str, Outcomes]
     fits: Mapping[str, Fragility]
     goodness: Mapping[str, GoodnessOfFit]
-    choice: MeasureChoice
+    choice: MeasureSelection
     surface: FragilitySurface | None
     table: pd.DataFrame
     bins: pd.DataFrame
@@ -56,7 +56,7 @@ def fit_user_table(
     *,
     overturned: str = "overturned",
     motion: str | None = None,
-    event: str | None = None,
+    earthquake: str | None = None,
     given: Sequence[str] = (),
     level: float = 0.90,
     replicates: int = 200,
@@ -71,7 +71,7 @@ def fit_user_table(
     measures
         As of :func:`rockfrag.fragility.tests_file.read_tests`, for example
         ``{"pga_g": ["pga_g"], "pgv_cm_s": ["pga_g", "pgv_over_pga_s", 980.665]}``.
-    overturned, motion, event
+    overturned, motion, earthquake
         Columns, likewise.
     given
         Columns against which sufficiency is tested.
@@ -90,34 +90,34 @@ def fit_user_table(
     """
     source = Path(path).name
     tests = read_tests(
-        path, measures, overturned=overturned, motion=motion, event=event, given=given
+        path, measures, overturned=overturned, motion=motion, earthquake=earthquake, given=given
     )
     columns = list(measures)
-    event_column = "event" if event is not None else None
+    earthquake_column = "earthquake" if earthquake is not None else None
     outcomes, fits, goodness, rows, bins = {}, {}, {}, [], []
     digest = table_hash(tests)
     for column in columns:
-        data = outcomes_from_table(tests, column, event=event_column, source=source)
-        # rows of one motion are tests at different scales, each with its own verdict
+        data = outcomes_from_table(tests, column, earthquake=earthquake_column, source=source)
+        # rows of one motion are tests at different scales, each with its own outcome
         result = fragility_of(data, level=level, dependence="tests", seed=seed)
         outcomes[column], fits[column] = data, result
         if result.checks.goodness is not None:
             goodness[column] = result.checks.goodness
         rows.append(fragility_row(result, {"source": source, "measure": column}, "cloud", digest))
-        bins.append(share_in_bins(data, level=level).assign(measure=column))
+        bins.append(fraction_in_bins(data, level=level).assign(measure=column))
     choice = recommend_measure(
         tests,
         columns,
         given=given,
-        event=event_column,
+        earthquake=earthquake_column,
         level=level,
         replicates=replicates,
         seed=seed,
         source=source,
     )
-    verdict = tests["overturned"]
+    outcome = tests["overturned"]
     surface = None
-    if len(columns) > 1 and verdict.nunique() == 2:
+    if len(columns) > 1 and outcome.nunique() == 2:
         surface = fit_surface(tests, columns[:2], source=source)
     return UserFragility(
         tests,

@@ -18,7 +18,7 @@ class VarianceSplit:
     Attributes
     ----------
     table
-        ``component``, ``variance``, ``share`` (of the total), ``standard_deviation``. Components:
+        ``component``, ``variance``, ``fraction`` (of the total), ``standard_deviation``. Components:
         ``motion``; ``parameters``; below it one row per given parameter and ``other parameters``
         where parameters are named (their sum is ``parameters``); ``motion x parameters`` (what is
         left, chance included); ``total``; ``fit``: the variance of ln θ itself because motions are
@@ -60,7 +60,7 @@ def split_variance(
     motion, sample
         Columns with the labels.
     parameters
-        Columns with the value of each parameter (restitution, width, …) in the sample; their shares
+        Columns with the value of each parameter (restitution, width, …) in the sample; their fractions
         are the squared slopes of a linear regression of the samples' means, less the square of
         their standard error.
 
@@ -122,7 +122,7 @@ def split_variance(
         ("fit", float(grid.mean(axis=1).var(ddof=1) / motions)),
     ]
     table = pd.DataFrame(rows, columns=["component", "variance"])
-    table["share"] = table["variance"] / total if total > 0 else np.nan
+    table["fraction"] = table["variance"] / total if total > 0 else np.nan
     table["standard_deviation"] = np.sqrt(table["variance"])
     return VarianceSplit(
         table, float(grid.mean()), float(np.sqrt(total)), motions, samples, tuple(notes)

@@ -17,7 +17,7 @@ from scipy import special, stats
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
-from rockfrag.fragility.held_out import verdict_scores
+from rockfrag.fragility.held_out import outcome_scores
 from rockfrag.fragility.intervals import (
     FEWEST_GROUPS,
     all_but_one,
@@ -25,7 +25,7 @@ from rockfrag.fragility.intervals import (
     student,
 )
 from rockfrag.fragility.observations import Floats, labels, name_and_unit, positive
-from rockfrag.fragility.observations import verdicts as read_outcomes
+from rockfrag.fragility.observations import read_outcomes as read_outcomes
 from rockfrag.fragility.surface import FragilitySurface, design_of, fit_surface
 
 INTERACTION_LEVEL = 0.05
@@ -183,7 +183,7 @@ def fit_vector(
     measures: tuple[str, str],
     *,
     overturned: str = "overturned",
-    earthquake: str | None = "event",
+    earthquake: str | None = "earthquake",
     level: float = 0.90,
     source: str = "table",
     try_interaction: bool = True,
@@ -282,8 +282,8 @@ def _interaction(
     ones = np.ones(outcome.size)
     predictors = design[:, 1:]
     gain = (
-        verdict_scores(predictors, outcome, ones, group)
-        - verdict_scores(predictors, outcome, ones, group, fitted=2)
+        outcome_scores(predictors, outcome, ones, group)
+        - outcome_scores(predictors, outcome, ones, group, fitted=2)
     ).sum() / outcome.size
     kept = bool(p < INTERACTION_LEVEL and gain > 0 and "penalised" not in full.method)
     return Interaction(p, ratio, float(gain), kept)

@@ -12,7 +12,7 @@ from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.goodness import binned_deviance
 from rockfrag.fragility.observations import Floats, labels, positive
-from rockfrag.fragility.observations import verdicts as read_outcomes
+from rockfrag.fragility.observations import read_outcomes as read_outcomes
 from rockfrag.fragility.pooling import cells
 from rockfrag.fragility.surface import design_of
 from rockfrag.fragility.vector import VectorFragility

@@ -55,7 +55,7 @@ def vector_tables(
     pairs: tuple[tuple[str, str], ...],
     *,
     label: str = "configuration",
-    earthquake: str | None = "event",
+    earthquake: str | None = "earthquake",
     motion: str | None = "motion",
     level: float = 0.90,
     seed: int = 0,

@@ -99,7 +99,7 @@ class IntensityMeasure:
         return replace(self, name=name, label=label, period=period)
 
     def of(self, subject: Any) -> Any:
-        """Return its value of a motion, or of what measures share of it, in its unit."""
+        """Return its value of a motion, or of what measures fraction of it, in its unit."""
         value = self.value(subject)
         if self.unit == "g":
             return value / GRAVITY
@@ -162,19 +162,23 @@ def intensity_measures(
 ) -> tuple[IntensityMeasure, ...]:
     """Return the measures that a table of motions has, in its order, spectral ones at these periods [s]."""
     found: list[IntensityMeasure] = []
-    spectral = [one for one in declared() if one.spectral]
-    for one in declared():
-        if one.of_block or one in spectral[1:]:
+    spectral = [item for item in declared() if item.spectral]
+    for item in declared():
+        if item.of_block or item in spectral[1:]:
             continue
         found += (
-            [each.at(period) for period in periods for each in spectral] if one.spectral else [one]
+            [each.at(period) for period in periods for each in spectral]
+            if item.spectral
+            else [item]
         )
     return tuple(found)
 
 
 def measure_columns(growing: bool = False) -> tuple[str, ...]:
     """Return the columns of the measures of motions; only of those that grow with the amplitude if asked."""
-    return tuple(one.column for one in intensity_measures() if one.power > 0 or not growing)
+    return tuple(
+        measure.column for measure in intensity_measures() if measure.power > 0 or not growing
+    )
 
 
 def split_column(column: str) -> tuple[str, str]:
@@ -199,9 +203,9 @@ def measure_of(column: str) -> IntensityMeasure | None:
     if spectral and spectral["name"] in _MEASURES:
         period = float(f"{spectral['whole']}.{spectral['part'] or 0}")
         return replace(_MEASURES[spectral["name"]].at(period), unit=unit)
-    for one in _MEASURES.values():
-        if one.floor_label and name == one.floor_label.lower():
-            return replace(one, label=one.floor_label, unit=unit)
+    for measure in _MEASURES.values():
+        if measure.floor_label and name == measure.floor_label.lower():
+            return replace(measure, label=measure.floor_label, unit=unit)
     if name in _MEASURES:
         return replace(_MEASURES[name], unit=unit)
     return None
@@ -210,9 +214,9 @@ def measure_of(column: str) -> IntensityMeasure | None:
 def measure_labelled(label: str) -> IntensityMeasure | None:
     """Return the measure of a label: ``PGA``, ``SA(0.3s)`` or, of a floor, ``PFA``; None if there is none."""
     kind, _, rest = label.partition("(")
-    for one in declared():
-        if label in (one.label, one.floor_label):
-            return one
-        if one.spectral and kind == one.label and rest.endswith("s)"):
-            return one.at(float(rest.removesuffix("s)")))
+    for item in declared():
+        if label in (item.label, item.floor_label):
+            return item
+        if item.spectral and kind == item.label and rest.endswith("s)"):
+            return item.at(float(rest.removesuffix("s)")))
     return None

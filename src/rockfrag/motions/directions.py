@@ -81,7 +81,7 @@ def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tup
     others = [row["vertical"], *([row["second"]] if direction else [])]
     components = [
         load_motion(row, folder, records),
-        *(_scaled(load_component(row, one, folder, records), row) for one in others),
+        *(_scaled(load_component(row, other, folder, records), row) for other in others),
     ]
     motion, vertical, *second = common_time(components, verticals=(1,))
     if second:
@@ -180,8 +180,11 @@ def measure_records(
             factor = row.get("scale_factor", math.nan)
             scale = 1.0 if math.isnan(factor) else factor
             first, second = (
-                process(one.after("scale", one.acceleration * scale, factor=scale), processing)
-                for one in components.values()
+                process(
+                    component.after("scale", component.acceleration * scale, factor=scale),
+                    processing,
+                )
+                for component in components.values()
             )
             known[pair] = measure_pair(first, second)
         table.append({"name": row["name"], **known[pair]})

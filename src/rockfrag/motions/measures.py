@@ -35,7 +35,7 @@ def measure_motion(
 
     Returns
     -------
-    ``name``, ``event`` and ``floor`` (from the metadata, empty where not known), then ``pga_g``,
+    ``name``, ``earthquake`` and ``floor`` (from the metadata, empty where not known), then ``pga_g``,
     ``pgv_cm_s``, ``pgd_cm``, ``pgv_over_pga_s``, ``arias_m_s``, ``cav_m_s``, ``d5_75_s``,
     ``d5_95_s``, ``mean_period_s``, ``predominant_period_s``; for each period such as 0.3 s
     ``sa_0_3s_g`` (pseudo), ``sv_0_3s_cm_s`` and ``sd_0_3s_cm``; ``avgsa_g``, ``housner_cm``, ``pulse_period_s``,
@@ -49,7 +49,7 @@ def measure_motion(
     """
     values: dict[str, Any] = {
         "name": motion.name,
-        "event": str(motion.metadata.get("event", "")),
+        "earthquake": str(motion.metadata.get("earthquake", "")),
         "floor": str(motion.metadata.get("floor", "")),
     }
     spectral = _spectral(motion, periods, damping)
@@ -91,7 +91,7 @@ def measure_motions(
     InputError
         If two motions have the same name, or as :func:`measure_motion`.
     """
-    rows = in_processes(lambda one: measure_motion(one, periods, damping), motions, processes)
+    rows = in_processes(lambda item: measure_motion(item, periods, damping), motions, processes)
     table = pd.DataFrame(rows)
     if rows and table["name"].duplicated().any():
         twice = table.loc[table["name"].duplicated(), "name"].iloc[0]
@@ -192,7 +192,7 @@ def measure_pair(
     def all_measures(motion: Motion) -> dict[str, float]:
         spectral = _spectral(motion, periods, damping)
         return {
-            **{one.column: one.of(motion) for one in declared() if one.name in ("pga", "pgv")},
+            **{item.column: item.of(motion) for item in declared() if item.name in ("pga", "pgv")},
             **{name: value for name, value in spectral.items() if name.startswith("sa_")},
         }
 
@@ -208,9 +208,9 @@ def _spectral(motion: Motion, periods: Sequence[float], damping: float) -> dict[
     if not periods:
         return {}
     spectrum = response_spectrum(motion, periods, damping)
-    families = [one for one in declared() if one.spectral]
+    families = [item for item in declared() if item.spectral]
     return {
-        one.at(period).column: float(one.of(spectrum)[i])
+        family.at(period).column: float(family.of(spectrum)[i])
         for i, period in enumerate(spectrum.period.tolist())
-        for one in families
+        for family in families
     }

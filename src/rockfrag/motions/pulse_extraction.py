@@ -47,7 +47,7 @@ class StrongestPulse:
     time
         Middle of the pulse [s].
     explained
-        Share of the record's ∫ v² dt that goes when the pulse is subtracted, 0 to 1: the matching
+        Fraction of the record's ∫ v² dt that goes when the pulse is subtracted, 0 to 1: the matching
         index.
     """
 
@@ -66,7 +66,7 @@ NO_PULSE = StrongestPulse(*[math.nan] * 6)
 
 
 def strongest_pulse(motion: Motion) -> StrongestPulse:
-    """Find the velocity pulse that explains the largest share of a record's velocity.
+    """Find the velocity pulse that explains the largest fraction of a record's velocity.
 
     Pulses of the form of Mavroeidis & Papageorgiou (2003, Bull. Seism. Soc. Am. 93(3), 1099-1131)
     are slid along the velocity, as in the extended wavelet transform of Vassiliou & Makris (2011,

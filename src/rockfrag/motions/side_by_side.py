@@ -7,8 +7,8 @@ through again that may hold the peak.  Where u turns, u'' is bounded by the grou
 |u''| (1 - ch) ≤ PGA + k |u| with c = 2ζω, k = ω² and step h.  One end of the step is within h/2 of the turn, so
 that the peak exceeds the larger of the two ends by q (PGA/k + |u|) at most, with q = k (h/2)²/2/(1 - ch).
 
-The march ends where nothing larger can come: the free vibration only decays, and the rest of the motion moves
-the oscillator by (1 + r)/(1 - r) times its peak over k at most, with r = exp(-πζ/√(1 - ζ²)) the ratio of one
+The integration ends where nothing larger can come: the free vibration only decays, and the rest of the motion
+moves the oscillator by (1 + r)/(1 - r) times its peak over k at most, with r = exp(-πζ/√(1 - ζ²)) the ratio of one
 peak of free vibration to the one before.
 """
 
@@ -86,8 +86,8 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
     peaks = np.empty(periods.size)
     to_come = _still_to_come(motion.acceleration)
     for group in _groups(periods.tobytes(), damping, motion.dt, True):
-        march = _marched(group, motion.acceleration, to_come)
-        peaks[group.which] = _looked_between(march, motion.acceleration)
+        integration = _integrated(group, motion.acceleration, to_come)
+        peaks[group.which] = _looked_between(integration, motion.acceleration)
     return peaks
 
 
@@ -115,18 +115,20 @@ def largest_pseudo_acceleration(motion: Motion, periods: Floats, damping: float)
         psa[group.which], bound[group.which] = _bounds(
             group, acceleration, square[group.which], to_come, slope
         )
-    marched = []
+    integrated = []
     # from the highest bound on
     for i in np.argsort([float(bound[group.which].max()) for group in groups])[::-1]:
         which = groups[i].which
         if bound[which].max() >= psa.max():
-            march = _marched(groups[i], acceleration, to_come)
-            psa[which], bound[which] = (square[which] * one for one in march.peaks_and_bounds())
-            marched.append(march)
-    for march in marched:
-        which = march.group.which
+            integration = _integrated(groups[i], acceleration, to_come)
+            psa[which], bound[which] = (
+                square[which] * bound for bound in integration.peaks_and_bounds()
+            )
+            integrated.append(integration)
+    for integration in integrated:
+        which = integration.group.which
         if bound[which].max() >= psa.max():
-            psa[which] = square[which] * _looked_between(march, acceleration)
+            psa[which] = square[which] * _looked_between(integration, acceleration)
     return int(np.argmax(psa))
 
 
@@ -142,8 +144,8 @@ def _squared_velocity(acceleration: Floats, dt: float, periods: Floats) -> Float
     )
 
 
-class _Marched(NamedTuple):
-    """A group after its march: its table, and of each stretch the state before it and its peaks."""
+class _Integrated(NamedTuple):
+    """A group after its integration: its table, and of each stretch the state before it and its peaks."""
 
     group: _Group
     table: Floats
@@ -159,21 +161,23 @@ class _Marched(NamedTuple):
         return peaks, (peaks + added) / kept * (1 + 1e-9)
 
 
-def _marched(group: _Group, acceleration: Floats, to_come: Floats) -> _Marched:
+def _integrated(group: _Group, acceleration: Floats, to_come: Floats) -> _Integrated:
     table = group.table.copy()
     table[_ADDED : _ADDED + LANES] *= to_come[0]
     stretches = np.empty((-(-(acceleration.size - 1 + group.quiet) // LOOK_EVERY), 3 * LANES))
     ground = np.empty((2, LOOK_EVERY * group.parts))
     steps = (group.quiet, group.step, group.parts)
-    count = _march(acceleration, to_come, *steps, table, stretches, ground)
-    return _Marched(group, table, stretches, count, ground)
+    count = _integrate(acceleration, to_come, *steps, table, stretches, ground)
+    return _Integrated(group, table, stretches, count, ground)
 
 
-def _looked_between(march: _Marched, acceleration: Floats) -> Floats:
+def _looked_between(integration: _Integrated, acceleration: Floats) -> Floats:
     """Sd of a group [m]."""
-    group, table = march.group, march.table
+    group, table = integration.group, integration.table
     steps = (group.quiet, group.step, group.parts)
-    _look(acceleration, *steps, table, march.stretches[: march.number], march.ground)
+    _look(
+        acceleration, *steps, table, integration.stretches[: integration.number], integration.ground
+    )
     return table[_LARGEST : _LARGEST + group.which.size]
 
 
@@ -186,7 +190,7 @@ def _bounds(
     free vibration that only decays.
     """
     table = group.table.copy()
-    _march_free(acceleration, to_come, group.quiet, group.step, table)
+    _integrate_free(acceleration, to_come, group.quiet, group.step, table)
     size = group.which.size
     forced = to_come[0] + square * table[_PER_S : _PER_S + size] * slope
     free = square * np.sqrt(table[_FREE : _FREE + size])
@@ -254,7 +258,7 @@ def _sample(acceleration: Floats, i: int) -> float:
 
 
 @cached_njit(error_model="numpy")
-def _march(
+def _integrate(
     acceleration: Floats,
     to_come: Floats,
     quiet: int,
@@ -409,7 +413,9 @@ def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
 
 
 @cached_njit(error_model="numpy")
-def _march_free(acceleration: Floats, to_come: Floats, quiet: int, step: float, x: Floats) -> None:
+def _integrate_free(
+    acceleration: Floats, to_come: Floats, quiet: int, step: float, x: Floats
+) -> None:
     """Take all lanes through a motion and find the largest amplitudes of their free vibration."""
     end = acceleration.size - 1 + quiet
     ground = np.empty((2, LOOK_EVERY))

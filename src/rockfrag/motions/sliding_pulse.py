@@ -126,14 +126,14 @@ def best_pulse(
     """
     hopeless = 0.0
     for period in periods:
-        for one in cycles:
-            length = one * period
+        for cycle in cycles:
+            length = cycle * period
             if length <= hopeless or 2 * half_length(length, dt) + 1 > velocity.size:
                 continue
             # less by what rounding may do, so that equals are looked at
             known = best[0] / every * (1 - 1e-9)
-            gain = best_place(velocity, energy, dt, period, one, known)[0]
-            found = (every * gain, period, one)
+            gain = best_place(velocity, energy, dt, period, cycle, known)[0]
+            found = (every * gain, period, cycle)
             best = found if found > best else best
             # a shorter window of the same samples holds no more
             hopeless = length if gain == 0 else hopeless

@@ -13,7 +13,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.orientation import is_vertical
 
 _WHOLE = 1e-3
-"""Share of a sampling interval within which a shift counts as one of whole samples."""
+"""Fraction of a sampling interval within which a shift counts as one of whole samples."""
 
 
 def common_time(

@@ -1,6 +1,6 @@
 """Limit states: what may become of an object, each declared once.
 
-Sweeps have a column for each that is counted; curves, exports, figures and assessments read them by name.
+IDA curves have a column for each that is counted; curves, exports, figures and assessments read them by name.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from rockfrag.system.system import System
 Predicate = Callable[[Outcomes], NDArray[np.bool_]]
 
 OVERTURNS = "overturns"
-"""Name of the limit state that every sweep counts."""
+"""Name of the limit state that every IDA curve counts."""
 
 VISIBLE = 0.001
 """Slip above which a body counts as having slid [m]: a displacement that one sees."""
@@ -40,7 +40,7 @@ class LimitState:
     damage, repair
         What it means for the object, and what is done then, for models of damage.
     exact
-        Whether it is reached at a peak acceleration that is known exactly, so that sweeps do not count it.
+        Whether it is reached at a peak acceleration that is known exactly, so that IDA curves do not count it.
     slipping
         Whether only systems with friction reach it.
     """
@@ -56,11 +56,11 @@ class LimitState:
 
     @property
     def column(self) -> str:
-        """Name of its column in the table of a sweep."""
+        """Name of its column in the table of an IDA curve."""
         return "overturned" if self.name == OVERTURNS else self.name
 
     def counted(self, system: System) -> bool:
-        """Whether the sweep of a system has a column for it."""
+        """Whether the IDA curve of a system has a column for it."""
         return not self.exact and (system.loose or not self.slipping)
 
 

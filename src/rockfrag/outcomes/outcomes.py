@@ -182,14 +182,14 @@ class Outcomes:
             ``peak_slip_contact_1_m``.
         """
         found = {}
-        for one in (each for each in columns() if each.name in columns_of):
-            values = getattr(self, one.name)[system]
-            if one.table == "cases":
-                found[one.title] = values.ravel()
+        for item in (each for each in columns() if each.name in columns_of):
+            values = getattr(self, item.name)[system]
+            if item.table == "cases":
+                found[item.title] = values.ravel()
                 continue
-            part = "body" if one.table == "bodies" else "contact"
+            part = "body" if item.table == "bodies" else "contact"
             for k in range(self.counts[system]):
-                name = f"{one.name}_{part}_{k + 1}{SUFFIXES[one.unit]}"
+                name = f"{item.name}_{part}_{k + 1}{SUFFIXES[item.unit]}"
                 found[name] = values[..., k].ravel()
         return found
 
@@ -212,13 +212,13 @@ class Outcomes:
         under body k) and ``name`` of that body, and the columns of :func:`columns`, with their units in the names;
         of cases ``engine`` too.
         """
-        chosen = [one for one in columns(which) if columns_of is None or one.name in columns_of]
+        chosen = [item for item in columns(which) if columns_of is None or item.name in columns_of]
         shape = self.shape
         system = np.arange(shape[0])[:, np.newaxis, np.newaxis]
         motion = np.arange(shape[1])[:, np.newaxis]
         made: dict[str, Any] = {"system": system, "motion": motion, "scale": self.scales}
         if which == "cases":
-            made |= {one.title: getattr(self, one.name) for one in chosen}
+            made |= {item.title: getattr(self, item.name) for item in chosen}
             made["engine"] = np.array(self.engines, dtype=object)[self.engine]
             return pd.DataFrame(
                 {name: np.broadcast_to(values, shape).ravel() for name, values in made.items()}
@@ -229,7 +229,7 @@ class Outcomes:
         made["body" if which == "bodies" else "contact"] = np.arange(1, most + 1)
         padded = [[*names, *[""] * (most - len(names))] for names in self.names]
         made["name"] = np.array(padded, dtype=object)[:, np.newaxis, np.newaxis, :]
-        made |= {one.title: getattr(self, one.name) for one in chosen}
+        made |= {item.title: getattr(self, item.name) for item in chosen}
         there = np.arange(most) < np.array(self.counts)[:, np.newaxis, np.newaxis, np.newaxis]
         rows = np.broadcast_to(there, full).ravel()
         return pd.DataFrame(
@@ -240,9 +240,9 @@ class Outcomes:
 def columns(table: Table | None = None) -> tuple[Column, ...]:
     """Return the columns of a table of outcomes, or of all three, in their order."""
     return tuple(
-        Column(one.name, **one.metadata)
-        for one in fields(Outcomes)
-        if one.metadata and table in (None, one.metadata["table"])
+        Column(field.name, **field.metadata)
+        for field in fields(Outcomes)
+        if field.metadata and table in (None, field.metadata["table"])
     )
 
 
@@ -263,8 +263,10 @@ def empty_outcomes(
     shape = (len(names), *scales.shape)
     most = max((len(each) for each in names), default=0)
     arrays = {
-        one.name: np.full(shape if one.table == "cases" else (*shape, most), one.empty, one.dtype)
-        for one in columns()
+        item.name: np.full(
+            shape if item.table == "cases" else (*shape, most), item.empty, item.dtype
+        )
+        for item in columns()
     }
     return Outcomes(
         names=tuple(tuple(each) for each in names),
@@ -290,9 +292,9 @@ def merge_outcomes(into: Outcomes, rows: Sequence[int], found: Outcomes) -> None
     place = np.asarray(rows, dtype=np.intp)
     numbers = np.array([into.engines.index(name) for name in found.engines], dtype=np.int8)
     into.engine[place] = numbers[found.engine]
-    for one in columns():
-        values = getattr(found, one.name)
-        if one.table == "cases":
-            getattr(into, one.name)[place] = values
+    for item in columns():
+        values = getattr(found, item.name)
+        if item.table == "cases":
+            getattr(into, item.name)[place] = values
         else:
-            getattr(into, one.name)[place, ..., : values.shape[-1]] = values
+            getattr(into, item.name)[place, ..., : values.shape[-1]] = values

@@ -1,4 +1,4 @@
-"""How often each level is the largest when motions or events are drawn again."""
+"""How often each level is the largest when motions or earthquakes are drawn again."""
 
 from collections.abc import Iterator
 
@@ -31,13 +31,13 @@ def rank_probabilities(
     table
         Rows with the columns ``factor``, ``cluster``, ``value``.
     factor
-        Levels that are ranked: object, floor or event.
+        Levels that are ranked: object, floor or earthquake.
     cluster
-        What is drawn with replacement: ``event`` or ``motion``; all rows of a drawn cluster come.
+        What is drawn with replacement: ``earthquake`` or ``motion``; all rows of a drawn cluster come.
     seed
         Of the resampling.
     within
-        Draw clusters separately inside each level (the motions of each event); otherwise the same
+        Draw clusters separately inside each level (the motions of each earthquake); otherwise the same
         clusters for all levels, which keeps what the levels share.
 
     Returns
@@ -65,8 +65,8 @@ def rank_probabilities(
         {
             "level": levels,
             "mean": table.groupby(factor)[value].mean()[levels].to_numpy(),
-            "p_largest": _share_of(drawn == drawn.max(axis=1, keepdims=True)),
-            "p_smallest": _share_of(drawn == drawn.min(axis=1, keepdims=True)),
+            "p_largest": _fraction_of(drawn == drawn.max(axis=1, keepdims=True)),
+            "p_smallest": _fraction_of(drawn == drawn.min(axis=1, keepdims=True)),
         }
     )
 
@@ -83,5 +83,5 @@ def _samples(rng: np.random.Generator, n: int, draws: int) -> Iterator[npt.NDArr
         yield rng.integers(0, n, size=(min(at_once, draws - begin), n))
 
 
-def _share_of(extreme: npt.NDArray[np.bool_]) -> Array:
+def _fraction_of(extreme: npt.NDArray[np.bool_]) -> Array:
     return np.asarray((extreme / extreme.sum(axis=1, keepdims=True)).mean(axis=0), dtype=float)

@@ -25,7 +25,7 @@ Rows = npt.NDArray[np.intp]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 """Gauss-Legendre quadrature on (-1, 1)."""
 MOST_REFITTED = 50
-"""Events up to which the likelihood is fitted anew without each; of more, each one's pull is linear."""
+"""Earthquakes up to which the likelihood is fitted anew without each; of more, each one's pull is linear."""
 MOST_PAIRS = 2_000
 """More pairs than this are put together where they are alike."""
 STEP = 1e-4
@@ -41,7 +41,7 @@ class CensoredFit:
     Parameters
     ----------
     effect
-        δ = ln(P/NP) with the interval of the jackknife over events [-].
+        δ = ln(P/NP) with the interval of the jackknife over earthquakes [-].
     sd_pair, sd_test
         τ and σ [-].
     loglik
@@ -82,7 +82,7 @@ def fit_censored(tests: pd.DataFrame) -> CensoredFit:
     """Estimate the pedestal's effect from exact, interval- and right-censored tests.
 
     Fixed effects are the object, the floor, and the pedestal.  The
-    interval of the effect comes from leaving out one event at a time, since events were sampled, not
+    interval of the effect comes from leaving out one earthquake at a time, since earthquakes were sampled, not
     tests.
 
     Parameters
@@ -111,7 +111,7 @@ def fit_censored(tests: pd.DataFrame) -> CensoredFit:
             "scatter to model; the ratio is 1."
         )
     best, design = _maximum(clean)
-    many = clean["event"].nunique() > MOST_REFITTED
+    many = clean["earthquake"].nunique() > MOST_REFITTED
     effect = _linear(clean, best.x, design) if many else _jackknife(clean, best.x)
     return CensoredFit(
         effect=effect,
@@ -131,15 +131,15 @@ def _sides_agree(clean: pd.DataFrame) -> bool:
 
 
 def _jackknife(clean: pd.DataFrame, start: Array) -> Estimate:
-    """Pseudo-values over events; a subset on which a side is wholly censored is not usable."""
+    """Pseudo-values over earthquakes; a subset on which a side is wholly censored is not usable."""
     delta = float(start[0])
-    events = sorted(clean["event"].unique())
-    k = len(events)
+    earthquakes = sorted(clean["earthquake"].unique())
+    k = len(earthquakes)
     if k < 2:
         return Estimate(delta, math.nan, k, math.nan, math.nan, math.nan)
     values = []
-    for event in events:
-        rest = clean[clean["event"] != event]
+    for earthquake in earthquakes:
+        rest = clean[clean["earthquake"] != earthquake]
         exact = rest[rest["censored"] == "none"]
         if set(exact["pedestal"]) != {"P", "NP"}:
             return Estimate(delta, math.nan, k, math.nan, math.nan, math.nan)
@@ -148,34 +148,36 @@ def _jackknife(clean: pd.DataFrame, start: Array) -> Estimate:
 
 
 def _linear(clean: pd.DataFrame, best: Array, design: _Design) -> Estimate:
-    """Infinitesimal jackknife over events: what each pulls at the effect, from derivatives at the maximum."""
-    codes, names = pd.factorize(clean["event"], sort=True)
+    """Infinitesimal jackknife over earthquakes: what each pulls at the effect, from derivatives at the maximum."""
+    codes, names = pd.factorize(clean["earthquake"], sort=True)
     k, size = len(names), len(best)
 
-    def by_event(parameters: Array) -> Array:
+    def by_earthquake(parameters: Array) -> Array:
         pairs, single = _of_each(parameters, design)
         found = np.bincount(codes[design.pairs], pairs[design.place], minlength=k)
         return np.asarray(found + np.bincount(codes[design.single], single, minlength=k))
 
     steps = STEP * np.eye(size)
-    score = np.column_stack([by_event(best + h) - by_event(best - h) for h in steps]) / (2 * STEP)
+    score = np.column_stack([by_earthquake(best + h) - by_earthquake(best - h) for h in steps]) / (
+        2 * STEP
+    )
     hessian = np.empty((size, size))
-    for i, one in enumerate(steps):
+    for i, step in enumerate(steps):
         for j, other in enumerate(steps[: i + 1]):
             corners = (
-                _loglik(best + one + other, design)
-                - _loglik(best + one - other, design)
-                - _loglik(best - one + other, design)
-                + _loglik(best - one - other, design)
+                _loglik(best + step + other, design)
+                - _loglik(best + step - other, design)
+                - _loglik(best - step + other, design)
+                + _loglik(best - step - other, design)
             )
             hessian[i, j] = hessian[j, i] = corners / (4 * STEP**2)
-    # an event left out takes its share of the information with it
+    # an earthquake left out takes its fraction of the information with it
     without = best[0] + k / (k - 1) * (score @ np.linalg.pinv(hessian)[:, 0])
     return _from_pseudo_values(float(best[0]), without)
 
 
 def _from_pseudo_values(delta: float, without: Array) -> Estimate:
-    """Effect with the interval of the jackknife, from the effects without each event."""
+    """Effect with the interval of the jackknife, from the effects without each earthquake."""
     k = len(without)
     spread = t_estimate(k * delta - (k - 1) * without)
     shift = delta - spread.mean
@@ -196,7 +198,7 @@ def _design(clean: pd.DataFrame) -> _Design:
     members = clean.reset_index(drop=True).groupby([*KEY, "repetition"]).indices
     rows = [np.sort(index) for index in members.values()]
     two = np.array([index for index in rows if len(index) == 2], dtype=int).reshape(-1, 2)
-    one = np.array([index[0] for index in rows if len(index) == 1], dtype=int)
+    item = np.array([index[0] for index in rows if len(index) == 1], dtype=int)
     first, second = two[:, 0], two[:, 1]
     place, weight = np.arange(len(two)), np.ones(len(two))
     if len(two) > MOST_PAIRS:
@@ -205,7 +207,7 @@ def _design(clean: pd.DataFrame) -> _Design:
         found = np.unique(alike, axis=0, return_index=True, return_inverse=True, return_counts=True)
         place, weight = found[2].ravel(), found[3].astype(float)
         first, second = first[found[1]], second[found[1]]
-    return _Design(lower, upper, x, first, second, weight, one, two[:, 0], place)
+    return _Design(lower, upper, x, first, second, weight, item, two[:, 0], place)
 
 
 def _maximum(
@@ -246,10 +248,10 @@ def _of_each(parameters: Array, design: _Design) -> tuple[Array, Array]:
     mean = design.x @ parameters[:-2]
     low, high = (design.lower - mean) / sd, (design.upper - mean) / sd
     single = _log_single(low[design.single], high[design.single], sd)
-    one, two = design.first, design.second
+    item, two = design.first, design.second
     # the axis integrated by quadrature is the one with the exact figure, if there is one
-    swap = (low[two] == high[two]) & (low[one] != high[one])
-    first, second = np.where(swap, two, one), np.where(swap, one, two)
+    swap = (low[two] == high[two]) & (low[item] != high[item])
+    first, second = np.where(swap, two, item), np.where(swap, item, two)
     exact = low[first] == high[first]
     residual = math.sqrt(1 - rho**2)
     pairs = np.zeros(len(first))

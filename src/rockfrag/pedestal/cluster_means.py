@@ -2,13 +2,13 @@
 
 Pairs are not independent: pairs under one motion share it, motions of one earthquake share the
 earthquake.  With objects and floors fixed and earthquakes sampled, the mean of d over one earthquake
-is one observation, independent of the others whatever the variances of event, motion and pair are.
-A t test on the k event means, with k - 1 degrees of freedom, is therefore exact for normal data in a
+is one observation, independent of the others whatever the variances of earthquake, motion and pair are.
+A t test on the k earthquake means, with k - 1 degrees of freedom, is therefore exact for normal data in a
 balanced design.  Any contrast, a difference of floors or a slope on slenderness, is computed inside
-each event first and then tested in the same way.
+each earthquake first and then tested in the same way.
 
-Amplitudes from a ladder of steps are known to a step only, so d = ln a_P - ln a_NP is known to its
-``resolution``, d ± ln(1 + step).  Where pairs differ among themselves the ladder's rounding is part of
+Amplitudes from a series of steps are known to a step only, so d = ln a_P - ln a_NP is known to its
+``resolution``, d ± ln(1 + step).  Where pairs differ among themselves the series of levels's rounding is part of
 their scatter and averages out; where they agree it does not show, and a shift of up to the resolution
 may hide in each of them.  The resolution of a mean is therefore that of the pairs that share the most
 frequent value, times their share; no interval is narrower than it, and no difference within it is
@@ -200,7 +200,7 @@ def unit_means(table: pd.DataFrame, unit: str, value: str = "d") -> pd.Series:
     table
         Pairs with the columns ``unit``, motion and ``value``.
     unit
-        ``event`` or ``motion``.
+        ``earthquake`` or ``motion``.
 
     Returns
     -------
@@ -213,14 +213,14 @@ def unit_means(table: pd.DataFrame, unit: str, value: str = "d") -> pd.Series:
 
 
 def sampled_unit(table: pd.DataFrame) -> str:
-    """Say what was sampled: events, or the motions of the single event in the table."""
-    return "event" if len(set(table["event"])) > 1 else "motion"
+    """Say what was sampled: earthquakes, or the motions of the single earthquake in the table."""
+    return "earthquake" if len(set(table["earthquake"])) > 1 else "motion"
 
 
 def mean_effect(table: pd.DataFrame, confidence: float = CONFIDENCE) -> Estimate:
     """Mean of d with interval and p value that hold in the crossed design.
 
-    The units are the events; within a single event they are its motions. A column ``resolution``,
+    The units are the earthquakes; within a single earthquake they are its motions. A column ``resolution``,
     the half-width to which each d is known, widens the interval where pairs agree.
     """
     return next(iter(mean_effects(table.assign(whole=""), "whole", confidence).values()))
@@ -240,7 +240,7 @@ def effect_of(units: "Units", confidence: float = CONFIDENCE) -> Estimate:
 
 
 class Units(NamedTuple):
-    """What was sampled: the events of some pairs, or the motions of their single event.
+    """What was sampled: the earthquakes of some pairs, or the motions of their single earthquake.
 
     Attributes
     ----------
@@ -261,17 +261,19 @@ def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
     groups = table.groupby(by, sort=True).indices
     for rows in groups.values():
         hidden[rows] = tied_resolution(d[rows], known[rows])
-    work = table[[by, "event", "motion", "d"]].assign(hidden=hidden)
-    motions = work.groupby([by, "event", "motion"])[["d", "hidden"]].mean()
-    events = motions.groupby(level=[by, "event"]).mean()
-    of_motions, of_events = (means.groupby(level=by).indices for means in (motions, events))
-    # what was sampled of a single event are its motions
-    by_motion, by_event = (
-        Units(means["d"].to_numpy(), means["hidden"].to_numpy()) for means in (motions, events)
+    work = table[[by, "earthquake", "motion", "d"]].assign(hidden=hidden)
+    motions = work.groupby([by, "earthquake", "motion"])[["d", "hidden"]].mean()
+    earthquakes = motions.groupby(level=[by, "earthquake"]).mean()
+    of_motions, of_earthquakes = (
+        means.groupby(level=by).indices for means in (motions, earthquakes)
+    )
+    # what was sampled of a single earthquake are its motions
+    by_motion, by_earthquake = (
+        Units(means["d"].to_numpy(), means["hidden"].to_numpy()) for means in (motions, earthquakes)
     )
     found = {}
-    for name, places in of_events.items():
-        chosen, rows = (by_event, places) if len(places) > 1 else (by_motion, of_motions[name])
+    for name, places in of_earthquakes.items():
+        chosen, rows = (by_earthquake, places) if len(places) > 1 else (by_motion, of_motions[name])
         found[name] = Units(chosen.d[rows], chosen.hidden[rows])
     return found
 
@@ -279,54 +281,54 @@ def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
 def slope_effect(
     table: pd.DataFrame, x: str = "s_c", value: str = "d", confidence: float = CONFIDENCE
 ) -> Estimate:
-    """Slope of ``value`` on ``x``: least squares inside each event, then t over the events.
+    """Slope of ``value`` on ``x``: least squares inside each earthquake, then t over the earthquakes.
 
     Only differences between the objects of one motion (and one side, if there is a column side) enter.
     """
-    by_motion = [table[name] for name in ("event", "motion", "side") if name in table.columns]
+    by_motion = [table[name] for name in ("earthquake", "motion", "side") if name in table.columns]
     across = table[x] - table[x].groupby(by_motion).transform("mean")
     hidden = tied_resolution(table[value], _resolution_of(table))
     sums = pd.DataFrame(
         {"xy": across * table[value], "xx": across**2, "hidden": across.abs() * hidden}
     )
-    by_event = sums.groupby(table["event"]).sum()
-    by_event = by_event[by_event["xx"] > 0]
-    resolution = (by_event["hidden"] / by_event["xx"]).mean()
-    return t_estimate(by_event["xy"] / by_event["xx"], confidence, float(resolution))
+    by_earthquake = sums.groupby(table["earthquake"]).sum()
+    by_earthquake = by_earthquake[by_earthquake["xx"] > 0]
+    resolution = (by_earthquake["hidden"] / by_earthquake["xx"]).mean()
+    return t_estimate(by_earthquake["xy"] / by_earthquake["xx"], confidence, float(resolution))
 
 
 def contrast(
     table: pd.DataFrame,
     factor: str,
-    one: str,
+    word: str,
     other: str,
-    block: str = "event",
+    block: str = "earthquake",
     value: str = "d",
     confidence: float = CONFIDENCE,
 ) -> Estimate:
     """Difference of the mean of ``value`` between two levels of a factor, block by block.
 
-    Like is compared with like: both levels must be there for the same object, event, floor (and side).
+    Like is compared with like: both levels must be there for the same object, earthquake, floor (and side).
 
     Parameters
     ----------
     factor, one, other
         Column and its two levels; the estimate is ``one`` minus ``other``.
     block
-        Column within which the levels are compared: the events for floors and objects, the floors
-        for a comparison of two events.
+        Column within which the levels are compared: the earthquakes for floors and objects, the floors
+        for a comparison of two earthquakes.
     """
-    design = ("event", "floor", "object", "side")
+    design = ("earthquake", "floor", "object", "side")
     matched = [name for name in design if name in table.columns and name != factor]
     work = table.assign(known=_resolution_of(table))
     cells = work.pivot_table(
         index=matched, columns=factor, values=[value, "known"], aggfunc="mean", observed=True
     )
-    for level in (one, other):
+    for level in (word, other):
         if (value, level) not in cells:
             raise TooFewUnitsError(f"no row has {factor} {level}")
-    difference = (cells[value, one] - cells[value, other]).dropna()
-    known = (cells["known", one] + cells["known", other]).reindex(difference.index)
+    difference = (cells[value, word] - cells[value, other]).dropna()
+    known = (cells["known", word] + cells["known", other]).reindex(difference.index)
     hidden = pd.Series(tied_resolution(difference, known), index=difference.index)
     resolution = float(hidden.groupby(level=block).mean().mean())
     return t_estimate(difference.groupby(level=block).mean(), confidence, resolution)

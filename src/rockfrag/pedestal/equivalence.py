@@ -11,7 +11,7 @@ MARGIN = 0.10
 def equivalence(effect: Estimate, margin: float = MARGIN) -> float:
     """Test that a mean log ratio lies within ±ln(1 + margin), by two one-sided tests (Schuirmann 1987).
 
-    It is never shown where the estimate's resolution reaches beyond a bound: a ladder of 5 % cannot
+    It is never shown where the estimate's resolution reaches beyond a bound: a series of 5 % cannot
     show equivalence to ±1 %.
 
     Returns

@@ -1,8 +1,9 @@
 """Pairing of tests: the same object and motion, with (P) and without (NP) the pedestal.
 
-The unit of everything that follows is d = ln a_P - ln a_NP of one pair.  An amplitude from a ladder of
+The unit of everything that follows is d = ln a_P - ln a_NP of one pair.  An amplitude from a series of
 steps lies anywhere in its step, so d is known to its ``resolution``: half the two steps' widths together,
-ln(1 + step) where both sides climbed the same ladder.  A test that never overturned bounds d on one side.
+ln(1 + step) where both sides climbed the same series of levels.  A test that never overturned bounds d on one
+side.
 """
 
 import math
@@ -18,8 +19,8 @@ from rockfrag.short_repr import short_repr
 MOST_NAMED = 100
 """Pairs and tests that notes call by their names; of more the number."""
 
-KEY = ["object", "event", "floor", "motion"]
-_NEEDED = ("object", "pedestal", "event", "floor", "amplitude_g")
+KEY = ["object", "earthquake", "floor", "motion"]
+_NEEDED = ("object", "pedestal", "earthquake", "floor", "amplitude_g")
 
 
 @dataclass(frozen=True)
@@ -29,15 +30,15 @@ class Pairs:
     Parameters
     ----------
     table
-        One row per pair: object, event, floor, motion, slenderness, s_c (slenderness less the mean of
+        One row per pair: object, earthquake, floor, motion, slenderness, s_c (slenderness less the mean of
         the objects'; both NaN where it is not known), a_np_g, a_p_g [g], d, resolution (half-width to
         which d is known [-]; 0 where amplitudes came without brackets), bound ("at least" or "at most"
         where one of the tests never overturned and d is the bound that follows, else empty).
     censored
-        One row per pair of which at least one test never overturned: object, event, floor, motion,
+        One row per pair of which at least one test never overturned: object, earthquake, floor, motion,
         d_lower, d_upper (infinite where unbounded). Those with both infinite are not in ``table``.
     unpaired
-        One row per object and motion that was tested on one side only: object, event, floor, motion,
+        One row per object and motion that was tested on one side only: object, earthquake, floor, motion,
         missing ("P" or "NP").
     """
 
@@ -103,7 +104,7 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     tests
-        One row per test: object, pedestal ("P" or "NP"), event, floor, amplitude_g [g] and, where
+        One row per test: object, pedestal ("P" or "NP"), earthquake, floor, amplitude_g [g] and, where
         present, motion, lower_g, upper_g [g], censored ("none", "right"; "left" for a test that
         overturned at its first step, lower_g 0), repetition, reading.
 
@@ -117,7 +118,7 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     ------
     InputError
         If a column is missing, a value is not one of those allowed, an amplitude is not a positive
-        number, a test is given twice, or several readings of one sweep are mixed.
+        number, a test is given twice, or several definitions of one IDA curve are mixed.
     """
     missing = [name for name in _NEEDED if name not in tests.columns]
     if missing:
@@ -128,13 +129,13 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     if tests.empty:
         raise InputError("Table of tests: it has no rows; give at least one test per line.")
     clean = tests.reset_index(drop=True).copy()
-    for name in ("object", "pedestal", "event", "floor"):
+    for name in ("object", "pedestal", "earthquake", "floor"):
         bad = clean.index[clean[name].isna()]
         if len(bad):
             raise InputError(f"Table of tests, row {bad[0] + 1}: {name} is empty; fill it in.")
         clean[name] = clean[name].astype(str)
     if "motion" not in clean:
-        clean["motion"] = clean["event"] + "/" + clean["floor"]
+        clean["motion"] = clean["earthquake"] + "/" + clean["floor"]
     if "censored" not in clean:
         clean["censored"] = "none"
     clean["censored"] = clean["censored"].fillna("none").astype(str)
@@ -147,14 +148,14 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
                 f"Table of tests, row {bad[0] + 1}: {name} is {clean.loc[bad[0], name]!r}; "
                 f"it must be one of {', '.join(allowed)}."
             )
-    if "reading" in clean and len(set(clean["reading"].astype(str))) > 1:
+    if "definition" in clean and len(set(clean["definition"].astype(str))) > 1:
         raise InputError(
-            "Table of tests: several readings of the same sweep are mixed "
-            f"({', '.join(sorted(clean['reading'].astype(str).unique()))}); keep one of them."
+            "Table of tests: several definitions of the same IDA curve are mixed "
+            f"({', '.join(sorted(clean['definition'].astype(str).unique()))}); keep one of them."
         )
     _check_amplitudes(clean)
     _check_duplicates(clean)
-    order = ["object", "event", "floor", "motion", "pedestal", "repetition"]
+    order = ["object", "earthquake", "floor", "motion", "pedestal", "repetition"]
     return clean.sort_values(order, kind="stable", ignore_index=True)
 
 
@@ -231,12 +232,12 @@ def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
         return tests, {}
     parts = [tests[~tests["object"].isin(list(several.index))]]
     origin: dict[str, str] = {}
-    for one, configurations in several.items():
-        rows = tests[tests["object"] == one]
+    for item, configurations in several.items():
+        rows = tests[tests["object"] == item]
         for name in configurations:
             here = (rows["pedestal"] == "NP") | (rows["configuration"] == name)
             parts.append(rows[here].assign(object=name))
-            origin[str(name)] = str(one)
+            origin[str(name)] = str(item)
     return pd.concat(parts, ignore_index=True), origin
 
 
@@ -338,7 +339,7 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = No
         slenderness = dict.fromkeys(clean["object"].unique(), math.nan)
     slenderness = {
         **slenderness,
-        **{name: slenderness[one] for name, one in origin.items() if one in slenderness},
+        **{name: slenderness[item] for name, item in origin.items() if item in slenderness},
     }
     slenderness_of(clean, slenderness)
     sides = _sides(clean)

@@ -1,4 +1,4 @@
-"""The exact test that needs no normal distribution, sign flips; and the effect without each event."""
+"""The exact test that needs no normal distribution, sign flips; and the effect without each earthquake."""
 
 import math
 from dataclasses import dataclass
@@ -20,10 +20,10 @@ MOST_DRAWN = 500
 """Units beyond which the mean under flipped signs has the normal distribution."""
 
 MOST_LEFT_OUT = 100
-"""Events up to which each is left out in turn; of more, none says much."""
+"""Earthquakes up to which each is left out in turn; of more, none says much."""
 
 WITHOUT_COLUMNS = ["without", "ratio", "lower", "upper", "p", "largest_change"]
-"""Columns of `leave_one_event_out`."""
+"""Columns of `leave_one_earthquake_out`."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def sign_flip_test(values: npt.ArrayLike, seed: int = 0) -> SignFlips:
     Parameters
     ----------
     values
-        One value per unit, here the mean of d of each event, shape (k,).
+        One value per unit, here the mean of d of each earthquake, shape (k,).
     seed
         Of the patterns drawn when there are more than `DRAWS` of them.
     """
@@ -92,29 +92,29 @@ def _sign_patterns(units: int) -> Array:
     return np.array(list(product((1.0, -1.0), repeat=units)))
 
 
-def leave_one_event_out(table: pd.DataFrame) -> pd.DataFrame:
-    """Effect without each event in turn.
+def leave_one_earthquake_out(table: pd.DataFrame) -> pd.DataFrame:
+    """Effect without each earthquake in turn.
 
     Returns
     -------
     pandas.DataFrame
-        without, ratio, lower, upper [-], p, largest_change (True for the event that moves the
-        estimate most); no row for a single event and for more than `MOST_LEFT_OUT`.
+        without, ratio, lower, upper [-], p, largest_change (True for the earthquake that moves the
+        estimate most); no row for a single earthquake and for more than `MOST_LEFT_OUT`.
     """
-    events = sorted(table["event"].unique())
-    if not 1 < len(events) <= MOST_LEFT_OUT:
+    earthquakes = sorted(table["earthquake"].unique())
+    if not 1 < len(earthquakes) <= MOST_LEFT_OUT:
         return pd.DataFrame(columns=WITHOUT_COLUMNS)
-    rest = {name: mean_effect(table[table["event"] != name]) for name in events}
+    rest = {name: mean_effect(table[table["earthquake"] != name]) for name in earthquakes}
     result = pd.DataFrame(
         [
             {
-                "without": event,
+                "without": earthquake,
                 "ratio": effect.ratio,
                 "lower": effect.ratio_lower,
                 "upper": effect.ratio_upper,
                 "p": effect.p,
             }
-            for event, effect in rest.items()
+            for earthquake, effect in rest.items()
         ]
     )
     everything = mean_effect(table).mean

@@ -82,14 +82,14 @@ def units_needed(effect: Estimate, power: float = POWER) -> float:
     return float(math.ceil(found))
 
 
-def power_note(effect: Estimate, unit: str = "event") -> str:
+def power_note(effect: Estimate, unit: str = "earthquake") -> str:
     """Say in words what the data could have shown and how much more would be needed."""
     if effect.units < 2:
         return f"one {unit} alone has no power"
     if not effect.se > 0:
         return f"all {unit}s agree and their steps are not known, so the power is not known"
     detectable = 100 * (detectable_ratio(effect) - 1)
-    unit = {"event": "earthquake"}.get(unit, unit)
+    unit = {"earthquake": "earthquake"}.get(unit, unit)
     seen = f"{effect.units} {unit}s can detect a change of {detectable:.1f} % or more (80 % power)"
     if abs(effect.mean) <= effect.resolution:
         finest = 100 * math.expm1(effect.resolution)

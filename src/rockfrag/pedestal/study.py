@@ -21,21 +21,21 @@ from rockfrag.pedestal.cluster_means import (
 from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.pedestal.paired_tests import Pairs, pair_tests
-from rockfrag.pedestal.permutation import WITHOUT_COLUMNS, leave_one_event_out, sign_flip_test
+from rockfrag.pedestal.permutation import WITHOUT_COLUMNS, leave_one_earthquake_out, sign_flip_test
 from rockfrag.pedestal.power import detectable_ratio
 from rockfrag.short_repr import short_repr
 
 SCOPES: Mapping[str, tuple[str, ...]] = {
     "whole": (),
     "floor": ("floor",),
-    "event": ("event",),
+    "earthquake": ("earthquake",),
     "object": ("object",),
     "cell": ("floor", "object"),
 }
 """What is averaged together; each is a family for Holm's adjustment."""
 
 MOST_RANKED = 100
-"""Levels of a factor, such as events, that are ranked; of more, which one is largest says little."""
+"""Levels of a factor, such as earthquakes, that are ranked; of more, which one is largest says little."""
 
 EFFECT_COLUMNS = [
     *("scope", "level", "pairs", "unit", "units", "ratio", "lower", "upper"),
@@ -45,7 +45,7 @@ EFFECT_COLUMNS = [
 WHOLE_COLUMNS = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
 EQUIVALENCE_LEVEL = 0.05
 """Equivalence is shown below this p value [-]."""
-_UNITS = {"event": "earthquake"}
+_UNITS = {"earthquake": "earthquake"}
 STEPS_DECIDE = "; the limits are the width of the steps, not of the scatter"
 """Said of a method whose own interval is narrower than what the steps of the amplitudes leave open."""
 RANK_COLUMNS = ["factor", "level", "ratio", "p_largest", "p_smallest"]
@@ -63,8 +63,8 @@ class PedestalStudy:
         See `effects_table`.
     whole
         Tests of the whole: method, estimate, lower, upper (as ratios), p, smallest_p, units, remark.
-    without_event
-        See `rockfrag.pedestal.permutation.leave_one_event_out`.
+    without_earthquake
+        See `rockfrag.pedestal.permutation.leave_one_earthquake_out`.
     ranks
         factor, level, mean ratio, p_largest, p_smallest.
     notes
@@ -74,7 +74,7 @@ class PedestalStudy:
     pairs: Pairs
     effects: pd.DataFrame
     whole: pd.DataFrame
-    without_event: pd.DataFrame
+    without_earthquake: pd.DataFrame
     ranks: pd.DataFrame
     notes: tuple[str, ...]
 
@@ -83,16 +83,16 @@ class PedestalStudy:
 
 def population(table: pd.DataFrame) -> str:
     """Say in words to what the inference applies."""
-    events = int(table["event"].nunique())
-    if events == 1:
+    earthquakes = int(table["earthquake"].nunique())
+    if earthquakes == 1:
         return (
             "the inference is about further motions of this one earthquake on the tested floors, "
             "not about other earthquakes"
         )
-    smallest = 2.0 ** (1 - events)
+    smallest = 2.0 ** (1 - earthquakes)
     return (
-        f"the inference is about earthquakes of which these {events} are a sample, for the objects and "
-        f"floors tested; sign flips over {events} earthquakes cannot give a p value below {smallest:.3g}"
+        f"the inference is about earthquakes of which these {earthquakes} are a sample, for the objects and "
+        f"floors tested; sign flips over {earthquakes} earthquakes cannot give a p value below {smallest:.3g}"
     )
 
 
@@ -128,7 +128,7 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
         about = pd.DataFrame(
             {
                 "pairs": groups.size().to_numpy(),
-                "events": groups["event"].nunique().to_numpy(),
+                "earthquakes": groups["earthquake"].nunique().to_numpy(),
                 "tied": tied.groupby(number).sum(),
                 "at_bound": at_bound.groupby(number).sum(),
             }
@@ -145,7 +145,7 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
                     "scope": scope,
                     "level": "/".join(str(name) for name in names) if columns else "all",
                     "pairs": of["pairs"],
-                    "unit": "event" if of["events"] > 1 else "motion",
+                    "unit": "earthquake" if of["earthquakes"] > 1 else "motion",
                     "units": effect.units,
                     "ratio": effect.ratio,
                     "lower": effect.ratio_lower,
@@ -169,7 +169,7 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
 
 def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -> pd.DataFrame:
     effect, unit = mean_effect(table), sampled_unit(table)
-    flips = sign_flip_test(unit_means(table, "event"), seed)
+    flips = sign_flip_test(unit_means(table, "earthquake"), seed)
     rows: list[tuple[str, float, float, float, float, float, int, str]] = [
         (
             f"t on the means of {_UNITS.get(unit, unit)}s",
@@ -221,16 +221,16 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
 
 
 def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
-    """Rank probabilities of d: objects over motions, floors over events, events over their motions.
+    """Rank probabilities of d: objects over motions, floors over earthquakes, earthquakes over their motions.
 
     Of many levels none is ranked.
-    Floors share the event and objects the motion, so they are drawn together.
+    Floors share the earthquake and objects the motion, so they are drawn together.
     """
     parts = []
     for factor, cluster, within in (
         ("object", "motion", False),
-        ("floor", "event", False),
-        ("event", "motion", True),
+        ("floor", "earthquake", False),
+        ("earthquake", "motion", True),
     ):
         if table[factor].nunique() > MOST_RANKED:
             continue
@@ -278,7 +278,7 @@ def _no_ratio(pairs: Pairs) -> PedestalStudy:
         pairs=pairs,
         effects=pd.DataFrame(columns=EFFECT_COLUMNS),
         whole=pd.DataFrame(columns=WHOLE_COLUMNS),
-        without_event=pd.DataFrame(columns=WITHOUT_COLUMNS),
+        without_earthquake=pd.DataFrame(columns=WITHOUT_COLUMNS),
         ranks=pd.DataFrame(columns=RANK_COLUMNS),
         notes=(*pairs.notes(), note),
     )
@@ -321,7 +321,7 @@ def study_pedestal(
         pairs=pairs,
         effects=effects_table(table, list(tests["floor"].astype(str).unique())),
         whole=_whole_tests(table, censored, seed),
-        without_event=leave_one_event_out(table),
+        without_earthquake=leave_one_earthquake_out(table),
         ranks=_ranks(table, seed),
         notes=tuple(notes),
     )

@@ -25,7 +25,7 @@ SOURCES = ("folder", "url", *WHEELS, "fdsn")
 
 COLUMNS = (
     "name",
-    "event",
+    "earthquake",
     "date",
     "station",
     "component",
@@ -44,7 +44,7 @@ COLUMNS = (
 )
 """Columns of a catalogue; those of :data:`NEEDED` need a value in each row, others may be missing."""
 
-NEEDED = ("name", "event", "file")
+NEEDED = ("name", "earthquake", "file")
 _DEFAULTS = {"source": "folder"}
 _NUMBERS = {
     "magnitude": (0.0, 10.0),
@@ -53,7 +53,7 @@ _NUMBERS = {
     "dt": (SHORTEST_STEP, LONGEST_STEP),
 }
 _FACTS = (
-    "event",
+    "earthquake",
     "date",
     "station",
     "component",

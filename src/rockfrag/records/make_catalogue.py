@@ -13,10 +13,10 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.plain_text import printable
 from rockfrag.records.catalogue import COLUMNS, is_catalogue
-from rockfrag.records.doubts import doubts
 from rockfrag.records.parsing.orientation import azimuth_of, is_vertical
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.peer_search import FILE_NAME, PeerRecord, read_search_results
+from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import Record, motion_of, read_record
 from rockfrag.records.sources.archive import is_archive, unpacked
 from rockfrag.records.sources.folder import files_of
@@ -58,7 +58,7 @@ class Component:
     dt_given: float | None
     container: str = ""
     digest: str = ""
-    doubts: tuple[str, ...] = ()
+    quality_flags: tuple[str, ...] = ()
 
     @property
     def azimuth(self) -> float | None:
@@ -204,24 +204,24 @@ def _without_copies(
 
     def worth(number: int) -> tuple[int, bool, int]:
         group = groups[number]
-        return -len(_horizontal(group)), any(one.container for one in group), number
+        return -len(_horizontal(group)), any(item.container for item in group), number
 
     kept = []
     for number in sorted(range(len(groups)), key=worth):
         told = _horizontal(groups[number]) or groups[number]
-        if all(one.digest in seen for one in told):
-            for one in groups[number]:
-                other = seen.get(one.digest, "")
-                draft.note(one.file, f"the same record as {other or told[0].file}; left out")
+        if all(item.digest in seen for item in told):
+            for first in groups[number]:
+                other = seen.get(first.digest, "")
+                draft.note(first.file, f"the same record as {other or told[0].file}; left out")
             continue
         kept.append(number)
-        for one in groups[number]:
-            seen.setdefault(one.digest, one.file)
+        for first in groups[number]:
+            seen.setdefault(first.digest, first.file)
     return [groups[number] for number in sorted(kept)]
 
 
 def _horizontal(group: Sequence[Component]) -> list[Component]:
-    return [one for one in group if not one.is_vertical]
+    return [item for item in group if not item.is_vertical]
 
 
 def _note_names_of_one_day(rows: Sequence[dict[str, Any]], draft: CatalogueDraft) -> None:
@@ -229,14 +229,16 @@ def _note_names_of_one_day(rows: Sequence[dict[str, Any]], draft: CatalogueDraft
     by_day: dict[str, dict[str, str]] = {}
     for row in rows:
         if len(str(row["date"])) == len("1976-05-06"):
-            by_day.setdefault(str(row["date"]), {}).setdefault(str(row["event"]), str(row["file"]))
-    for day, events in by_day.items():
-        if len(events) > 1:
-            one, other = list(events)[:2]
+            by_day.setdefault(str(row["date"]), {}).setdefault(
+                str(row["earthquake"]), str(row["file"])
+            )
+    for day, earthquakes in by_day.items():
+        if len(earthquakes) > 1:
+            first, other = list(earthquakes)[:2]
             draft.note(
-                events[other],
-                f"its earthquake is {other!r}, that of {events[one]} on the same day ({day}) {one!r}; if they "
-                "are one, give it one name in the column event",
+                earthquakes[other],
+                f"its earthquake is {other!r}, that of {earthquakes[first]} on the same day ({day}) {first!r}; if they "
+                "are one, give it one name in the column earthquake",
             )
 
 
@@ -307,7 +309,11 @@ def _components(
             continue
         digest = sha256(motion.acceleration.tobytes() + repr(motion.dt).encode()).hexdigest()
         facts = dict(motion.metadata)
-        found.append(replace(component, facts=facts, digest=digest, doubts=tuple(doubts(motion))))
+        found.append(
+            replace(
+                component, facts=facts, digest=digest, quality_flags=tuple(quality_flags(motion))
+            )
+        )
     return found
 
 
@@ -349,62 +355,68 @@ def _peer_rows(
 
     horizontal = [component(listed.first), component(listed.second)]
     vertical = component(listed.vertical)
-    for name, one in zip((listed.first, listed.second), horizontal, strict=True):
-        if name and one is None:
+    for name, item in zip((listed.first, listed.second), horizontal, strict=True):
+        if name and item is None:
             draft.note(f"RSN{listed.number}", f"{name} is listed but not among the files")
     facts = {
-        "event": f"{listed.event} {listed.year}".strip(),
+        "earthquake": f"{listed.earthquake} {listed.year}".strip(),
         "date": listed.year if re.fullmatch(r"\d{4}", listed.year) else "",
         "station": listed.station,
         "magnitude": listed.magnitude,
         "distance_km": listed.distance_km,
         "scale_factor": listed.scale_factor if listed.scale_factor != 1 else None,
     }
-    there = [one for one in horizontal if one is not None]
-    used.update(one.file for one in (*there, *([vertical] if vertical else [])))
+    there = [item for item in horizontal if item is not None]
+    used.update(item.file for item in (*there, *([vertical] if vertical else [])))
     return [
-        _row(one, next((o for o in there if o is not one), None), vertical, draft)
+        _row(item, next((o for o in there if o is not item), None), vertical, draft)
         | {key: value for key, value in facts.items() if value not in ("", None)}
-        for one in there
+        for item in there
     ]
 
 
 def _records_of(components: Sequence[Component]) -> list[list[Component]]:
     """Group components of one record: in one file, of one station and time, of like names."""
 
-    def in_file(one: Component) -> tuple[object, ...] | None:
-        return (one.container, one.path, one.sha256) if one.several else None
+    def in_file(component: Component) -> tuple[object, ...] | None:
+        return (
+            (component.container, component.path, component.sha256) if component.several else None
+        )
 
-    def in_time(one: Component) -> tuple[object, ...] | None:
-        station, start = one.facts.get("station"), one.facts.get("start_time")
-        return (one.facts.get("network"), station, start) if station and start else None
+    def in_time(component: Component) -> tuple[object, ...] | None:
+        station, start = component.facts.get("station"), component.facts.get("start_time")
+        return (component.facts.get("network"), station, start) if station and start else None
 
-    def in_name(one: Component) -> tuple[object, ...] | None:
-        folder = str(Path(one.path).parent)
-        return (one.container, folder, one.stem) if one.stem != one.name else None
+    def in_name(component: Component) -> tuple[object, ...] | None:
+        folder = str(Path(component.path).parent)
+        return (
+            (component.container, folder, component.stem)
+            if component.stem != component.name
+            else None
+        )
 
     groups: list[list[Component]] = []
     left = list(components)
     for key in (in_file, in_name, in_time):
         by_key: dict[object, list[Component]] = {}
-        for one in left:
-            named = key(one)
+        for item in left:
+            named = key(item)
             if named is not None:
-                by_key.setdefault(named, []).append(one)
+                by_key.setdefault(named, []).append(item)
         for several in by_key.values():
-            group = list({one.digest: one for one in reversed(several)}.values())[::-1]
+            group = list({item.digest: item for item in reversed(several)}.values())[::-1]
             if _is_record(group):
                 groups.append(group)
-                left = [one for one in left if one not in group]
-    groups += [[one] for one in left]
-    order = {one.file: number for number, one in enumerate(components)}
+                left = [item for item in left if item not in group]
+    groups += [[item] for item in left]
+    order = {component.file: number for number, component in enumerate(components)}
     return sorted(groups, key=lambda group: order[group[0].file])
 
 
 def _is_record(group: Sequence[Component]) -> bool:
     """Tell whether components are two horizontals at a right angle and at most one vertical."""
-    flat = [one for one in group if not one.is_vertical]
-    if len(flat) == 3 and sorted(one.suffix for one in flat) == ["1", "2", "3"]:
+    flat = [item for item in group if not item.is_vertical]
+    if len(flat) == 3 and sorted(item.suffix for item in flat) == ["1", "2", "3"]:
         return False
     if len(flat) != 2 or len(group) > 3 or abs(flat[0].dt - flat[1].dt) > 1e-9:
         return False
@@ -416,51 +428,61 @@ def _is_record(group: Sequence[Component]) -> bool:
 
 
 def _rows_of(group: Sequence[Component], draft: CatalogueDraft) -> list[dict[str, Any]]:
-    flat = [one for one in group if not one.is_vertical]
-    upright = next((one for one in group if one.is_vertical), None)
+    flat = [item for item in group if not item.is_vertical]
+    upright = next((item for item in group if item.is_vertical), None)
     if not flat and upright is not None:
         draft.note(upright.file, "a vertical component of no record here; left out")
     if len(flat) == 1:
         draft.note(flat[0].file, "its other horizontal component was not found")
     return [
-        _row(one, next((o for o in flat if o is not one), None), upright, draft) for one in flat
+        _row(item, next((o for o in flat if o is not item), None), upright, draft) for item in flat
     ]
 
 
 def _row(
-    one: Component, other: Component | None, vertical: Component | None, draft: CatalogueDraft
+    component: Component, other: Component | None, vertical: Component | None, draft: CatalogueDraft
 ) -> dict[str, Any]:
-    for doubt in one.doubts:
-        draft.note(one.file, doubt)
-    if other is not None and one.file < other.file and abs(one.npts - other.npts) > 0.1 * one.npts:
+    for quality_flag in component.quality_flags:
+        draft.note(component.file, quality_flag)
+    if (
+        other is not None
+        and component.file < other.file
+        and abs(component.npts - other.npts) > 0.1 * component.npts
+    ):
         draft.note(
-            one.file, f"{one.npts} samples, but {other.npts} in {other.file} of the same record"
+            component.file,
+            f"{component.npts} samples, but {other.npts} in {other.file} of the same record",
         )
-    event = str(one.facts.get("event") or "")
-    if not event:
-        event = one.stem
-        draft.note(one.file, f"its earthquake is not stated; the column event has {event!r}")
+    earthquake = str(component.facts.get("earthquake") or "")
+    if not earthquake:
+        earthquake = component.stem
+        draft.note(
+            component.file,
+            f"its earthquake is not stated; the column earthquake has {earthquake!r}",
+        )
     return {
-        "name": f"{one.name} {one.facts.get('channel', '')}".strip() if one.several else one.name,
-        "event": event,
-        "date": _date(one.facts),
-        "station": one.facts.get("station", ""),
-        "component": one.orientation,
-        "magnitude": one.facts.get("magnitude"),
-        "distance_km": one.facts.get("distance_km"),
+        "name": f"{component.name} {component.facts.get('channel', '')}".strip()
+        if component.several
+        else component.name,
+        "earthquake": earthquake,
+        "date": _date(component.facts),
+        "station": component.facts.get("station", ""),
+        "component": component.orientation,
+        "magnitude": component.facts.get("magnitude"),
+        "distance_km": component.facts.get("distance_km"),
         "source": "folder",
-        "file": one.file,
+        "file": component.file,
         "second": other.file if other else "",
         "vertical": vertical.file if vertical else "",
-        "sha256": one.sha256,
-        "unit": one.unit,
-        "dt": one.dt_given,
+        "sha256": component.sha256,
+        "unit": component.unit,
+        "dt": component.dt_given,
     }
 
 
 def _date(facts: dict[str, Any]) -> str:
-    """Return the day of the start of the record, else of the event, else nothing."""
-    for words in (str(facts.get("start_time") or ""), str(facts.get("event") or "")):
+    """Return the day of the start of the record, else of the earthquake, else nothing."""
+    for words in (str(facts.get("start_time") or ""), str(facts.get("earthquake") or "")):
         iso = _ISO_DATE.search(words)
         if iso:
             return "-".join(iso.groups())

@@ -35,7 +35,7 @@ class Motion:
     name
         Short name, unique within a study.
     metadata
-        What is known about it: ``event``, ``station``, ``component``, ``start_time``, ``floor``, …
+        What is known about it: ``earthquake``, ``station``, ``component``, ``start_time``, ``floor``, …
     provenance
         One entry per step it went through: ``{"step": name, **parameters}``.
 
@@ -176,7 +176,7 @@ def read_motion_set(
 def read_motion_metadata(path: str | os.PathLike[str]) -> list[dict[str, Any]]:
     """Read what is known of each motion of a set, without its samples."""
     found = pq.read_table(path, columns=["metadata"])["metadata"].to_pylist()
-    return [json.loads(one) for one in found]
+    return [json.loads(item) for item in found]
 
 
 def _motions(table: pd.DataFrame) -> list[Motion]:

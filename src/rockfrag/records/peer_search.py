@@ -19,7 +19,7 @@ _SECTION = re.compile(r"Summary of Metadata of Selected Records", re.IGNORECASE)
 _TITLES = {
     "record sequence number": "number",
     "scale factor": "scale_factor",
-    "earthquake name": "event",
+    "earthquake name": "earthquake",
     "year": "year",
     "station name": "station",
     "magnitude": "magnitude",
@@ -29,7 +29,7 @@ _TITLES = {
     "horizontal-2 acc. filename": "second",
     "vertical acc. filename": "vertical",
 }
-_NEEDED = ("number", "event", "first")
+_NEEDED = ("number", "earthquake", "first")
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class PeerRecord:
     ----------
     number
         Record sequence number, such as ``753``.
-    event, year, station
+    earthquake, year, station
         As the database names them.
     magnitude
         Moment magnitude.
@@ -53,7 +53,7 @@ class PeerRecord:
     """
 
     number: str
-    event: str
+    earthquake: str
     year: str
     station: str
     magnitude: float | None
@@ -120,7 +120,7 @@ def _record(cells: dict[str, str], where: str) -> PeerRecord:
         raise InputError(f"{where}: no record sequence number, or no file of the first component.")
     return PeerRecord(
         number=cells["number"],
-        event=cells.get("event", "").strip('"'),
+        earthquake=cells.get("earthquake", "").strip('"'),
         year=cells.get("year", ""),
         station=cells.get("station", "").strip('"'),
         magnitude=_number(cells.get("magnitude", "")),

@@ -12,7 +12,6 @@ from rockfrag.errors import InputError
 from rockfrag.keywords import named_keywords
 from rockfrag.plain_text import printable
 from rockfrag.records.digest import sha256_of
-from rockfrag.records.doubts import STRONGEST_G
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.identify import identify
 from rockfrag.records.motion import Motion
@@ -20,16 +19,17 @@ from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.orientation import azimuth_of, plain_name
 from rockfrag.records.parsing.quantities import ASKED_UNITS, TO_SI, asked_unit
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
+from rockfrag.records.quality_flags import STRONGEST_G
 from rockfrag.records.sources.archive import is_archive, unpacked
 from rockfrag.records.sources.folder import is_no_record
 from rockfrag.short_repr import short_repr
 from rockfrag.units import GRAVITY
 
-_GRAVITY_SHARE = 0.05
-"""A mean within this share of g is the weight of the sensor's mass, not motion."""
+_GRAVITY_FRACTION = 0.05
+"""A mean within this fraction of g is the weight of the sensor's mass, not motion."""
 
 _SAME_STEP = 1e-9
-"""Share of an interval by which the user's may differ from the stated one."""
+"""Fraction of an interval by which the user's may differ from the stated one."""
 
 
 @dataclass(frozen=True)
@@ -190,7 +190,7 @@ def read_motion(
     -------
     Motion
         Acceleration in m/s² (1 g = 9.81 m/s²). The metadata has ``station``, ``start_time`` (ISO
-        8601, UTC, or None), ``event``, ``component``, ``format`` and ``unit`` (as stored); the
+        8601, UTC, or None), ``earthquake``, ``component``, ``format`` and ``unit`` (as stored); the
         provenance has the file, its SHA-256 and every change made to its numbers.
 
     Raises
@@ -326,7 +326,7 @@ def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
         "location": channel.location,
         "channel": channel.code or channel.component,
         "component": channel.component or channel.code,
-        "event": channel.details.get("event", ""),
+        "earthquake": channel.details.get("earthquake", ""),
         "start_time": None if start is None else str(start),
         "format": record.format,
         "unit": unit,
@@ -367,7 +367,7 @@ def _zero_level(channel: Channel, acceleration: NDArray[np.float64]) -> float:
     mean = float(acceleration.mean())
     if channel.raw:
         return mean
-    weight = abs(abs(mean) - GRAVITY) < _GRAVITY_SHARE * GRAVITY
+    weight = abs(abs(mean) - GRAVITY) < _GRAVITY_FRACTION * GRAVITY
     return mean if weight else 0.0
 
 

@@ -144,7 +144,7 @@ def _trace(motion: Motion, unit: str) -> Trace:
     facts = motion.metadata
     described = {
         "unit": unit,
-        "event": str(facts.get("event") or motion.name),
+        "earthquake": str(facts.get("earthquake") or motion.name),
         "component": str(facts.get("component") or ""),
         "source": str(facts.get("source") or "rockfrag"),
     }

@@ -12,8 +12,8 @@ from rockfrag.report.findings import (
     objects_compared,
     pedestal_effect,
     recorded_found,
+    resurrections_found,
     strength_found,
-    windows_found,
 )
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results
 from rockfrag.report.sides import sides_of
@@ -49,7 +49,7 @@ def questions(results: Results) -> list[tuple[str, str]]:
     """Questions that a study's page answers."""
     study = results.study
     answered = {"pedestal": study.has_pairs, "live": study.simulated_in_page}
-    asked = [one for one in QUESTIONS if answered.get(one[1], True)]
+    asked = [question for question in QUESTIONS if answered.get(question[1], True)]
     if study.counterparts:
         return [
             ("Compared?" if section == "pedestal" else words, section) for words, section in asked
@@ -88,8 +88,12 @@ def sentences(results: Results) -> list[Finding]:
             pedestal_effect(results.table("pedestal/effects"), sides_of(results.study))[0],
         ]
     slenderness = {name: results.study.specimens[name].slenderness for name in results.objects}
-    windows = windows_found(results.table("survival_windows"), results.table("tests"))
-    return [*found, *objects_compared(results.table("mean_amplitudes"), slenderness), windows][:3]
+    resurrections = resurrections_found(results.table("resurrections"), results.table("tests"))
+    return [
+        *found,
+        *objects_compared(results.table("mean_amplitudes"), slenderness),
+        resurrections,
+    ][:3]
 
 
 def _strength(results: Results) -> Finding:
@@ -99,7 +103,7 @@ def _strength(results: Results) -> Finding:
 
 
 def advice(results: Results) -> list[str]:
-    """What to do: the weakest first, and what would make the result surer."""
+    """What to do: the weakest first, and what would make the result more robust."""
     words = []
     if not has_one_record(results):
         curves = headline_curves(results.table("fragility")).rows
@@ -114,10 +118,10 @@ def advice(results: Results) -> list[str]:
             words.append(
                 "Measure the friction of the contact surfaces: the objects may slide instead of rock."
             )
-    events = results.study.catalogue["event"].nunique()
-    if events < FEW and not words[1:]:
+    earthquakes = results.study.catalogue["earthquake"].nunique()
+    if earthquakes < FEW and not words[1:]:
         words.append(
-            f"Add records of other earthquakes; {'one is' if events == 1 else f'{events} are'} too few."
+            f"Add records of other earthquakes; {'one is' if earthquakes == 1 else f'{earthquakes} are'} too few."
         )
     return words
 
@@ -128,7 +132,7 @@ def _figure(results: Results) -> FigureSpec:
     curves = curves[(curves["unit"] == "g") & curves["theta"].notna()]
     if has_one_record(results):
         curves = curves.iloc[:0]
-    names = [one.name for one in results.study.configurations]
+    names = [configuration.name for configuration in results.study.configurations]
     finding = sentences(results)[0]
     caption = "Peak acceleration that overturns, one mark per test; arrows are bounds."
     if len(curves):
@@ -145,7 +149,7 @@ def _figure(results: Results) -> FigureSpec:
 def rests_on(results: Results) -> list[str]:
     """What the numbers rest on: model, motions, building, steps."""
     study = results.study
-    motions, events = len(study.catalogue), study.catalogue["event"].nunique()
+    motions, earthquakes = len(study.catalogue), study.catalogue["earthquake"].nunique()
     moves = (
         "Rigid blocks that rock, slide and fly in the plane of the motion; impacts follow Coulomb's law."
         if study.slides
@@ -156,7 +160,7 @@ def rests_on(results: Results) -> list[str]:
         moves += " The vertical components of the records act too."
     words = [
         moves,
-        f"{counted(motions, 'record')} of {counted(events, 'earthquake')}, each scaled to "
+        f"{counted(motions, 'record')} of {counted(earthquakes, 'earthquake')}, each scaled to "
         f"{counted(len(study.amplitudes.values_g), 'amplitude')} from {study.amplitudes.lowest_g:g} to "
         f"{study.amplitudes.highest_g:g} g.",
     ]
@@ -172,29 +176,29 @@ def could_change(results: Results) -> list[str]:
     words = [_friction_words(results)]
     if results.study.vertical and not results.study.slides:
         words.append(_flight_words(results))
-    events = results.study.catalogue["event"].nunique()
-    if events < FEW:
+    earthquakes = results.study.catalogue["earthquake"].nunique()
+    if earthquakes < FEW:
         words.append(
-            f"Other earthquakes: these {events} are few, and the intervals describe only what they have in common."
-            if events > 1
+            f"Other earthquakes: these {earthquakes} are few, and the intervals describe only what they have in common."
+            if earthquakes > 1
             else "Other earthquakes: a single one does not show how much earthquakes differ."
         )
-    windows = results.table("survival_windows")
-    fallen = windows[windows["first_upper"].notna()]
-    with_windows = int((fallen["windows"] > 0).sum())
-    if with_windows:
+    resurrections = results.table("resurrections")
+    fallen = resurrections[resurrections["first_upper"].notna()]
+    with_resurrections = int((fallen["resurrections"] > 0).sum())
+    if with_resurrections:
         words.append(
             f"Non-monotone response: a stronger motion was survived in "
-            f"{of_all(with_windows, len(fallen), 'analysis', 'analyses')}."
+            f"{of_all(with_resurrections, len(fallen), 'analysis', 'analyses')}."
         )
     curves = results.table("fragility")
     rejected = curves[curves["p_fit"] < 0.05]["configuration"].nunique()
     if rejected:
         words.append(
             f"The lognormal shape: it is rejected for "
-            f"{of_all(rejected, curves['configuration'].nunique(), 'configuration')} in at least one reading."
+            f"{of_all(rejected, curves['configuration'].nunique(), 'configuration')} in at least one definition."
         )
-    return [sentence(one) for one in words if one]
+    return [sentence(word) for word in words if word]
 
 
 def _friction_words(results: Results) -> str:
@@ -219,11 +223,11 @@ def _flight_words(results: Results) -> str:
     """In how many analyses the ground falls away so fast that bodies may leave it."""
     from rockfrag.rocking.ensemble import LIGHT
 
-    light = int((results.lightest < LIGHT).sum())
+    light = int((results.least_gravity_ratio < LIGHT).sum())
     if not light:
         return ""
-    share = of_all(light, np.size(results.lightest), "analysis", "analyses")
+    fraction = of_all(light, np.size(results.least_gravity_ratio), "analysis", "analyses")
     return (
-        f"Flight: in {share} the ground takes away more than half of all weight, so that bodies may leave it; "
+        f"Flight: in {fraction} the ground takes away more than half of all weight, so that bodies may leave it; "
         "the key friction lets them fly."
     )

@@ -96,7 +96,7 @@ def _who(name: str) -> str:
     for start in ("threshold on ", "probit on "):
         if name.startswith(start):
             measures = name.removeprefix(start).split(" and ")
-            return start + " and ".join(name_and_unit(one)[0] for one in measures)
+            return start + " and ".join(name_and_unit(measure)[0] for measure in measures)
     return name
 
 
@@ -106,11 +106,11 @@ def _answer(
     """What stands first: how often the simulation is right, beside whom, and in which fragility."""
     found, tests = _findings(tables), tables["tests"]
     near = int(tests["near_critical"].sum())
-    specs = [one for section in sections for one in section.parts if isinstance(one, FigureSpec)]
+    specs = [part for section in sections for part in section.parts if isinstance(part, FigureSpec)]
     return Answer(
         asked="How often does the simulation predict what happened on the shaking table?",
         sentences=found[:3],
-        figure=next((one for one in specs if one.name == "tests"), specs[0]),
+        figure=next((spec for spec in specs if spec.name == "tests"), specs[0]),
         rests_on=[
             f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, each "
             "simulated with the motion measured on the table; intervals resample input motions.",
@@ -119,7 +119,7 @@ def _answer(
         could_change=[
             f"{sentence(of_all(near, len(tests), 'test'))} {agree(near, len(tests), 'is', 'are')} near-critical: "
             "plausible ways to set up the object disagree about the outcome in more than one of ten.",
-            *(one.headline + "." for one in found[3:]),
+            *(item.headline + "." for item in found[3:]),
         ],
     )
 
@@ -357,7 +357,9 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
 
 def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     tests, regions = tables["tests"], tables["regions"]
-    names = [one.removesuffix("_from") for one in map(str, regions) if one.endswith("_from")]
+    names = [
+        region.removesuffix("_from") for region in map(str, regions) if region.endswith("_from")
+    ]
     labels = {name: "{} [{}]".format(*name_and_unit(name)) for name in names}
     shown = regions[regions["tests"] > 0].copy()
     for name in names:

@@ -22,7 +22,7 @@ from rockfrag.report.wording import (
     of_all,
     sentence,
 )
-from rockfrag.shaketable.readings import READING
+from rockfrag.shaketable.definitions import DEFINITION
 
 FRICTION = 0.6
 """Coefficient of friction of dry stone on stone, with which demands are compared [-]."""
@@ -40,7 +40,7 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     Parameters
     ----------
     curves
-        Rows of :func:`rockfrag.fragility.fragility_table`, of any measures and readings.
+        Rows of :func:`rockfrag.fragility.fragility_table`, of any measures and definitions.
     level
         Level of the intervals in words, such as ``90 %``.
     """
@@ -101,10 +101,10 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
     Parameters
     ----------
     recorded
-        As :func:`rockfrag.stages.sweep.as_recorded` returns it, of every configuration.
+        As :func:`rockfrag.stages.ida.as_recorded` returns it, of every configuration.
     """
     analyses, fallen = len(recorded), int(recorded["overturned"].sum())
-    near = int(recorded["share_near"].between(0, 1, inclusive="neither").sum())
+    near = int(recorded["fraction_near"].between(0, 1, inclusive="neither").sum())
     by_name = recorded.groupby("configuration", sort=False)["overturned"].agg(["sum", "size"])
     motions = int(by_name["size"].max())
     subject = "the only motion" if motions == 1 else f"all {motions} motions"
@@ -120,7 +120,7 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
         numbers = ""
     elif motions == 1:
         fell = by_name["sum"] > 0
-        here, not_here = (listed([str(one) for one in by_name.index[it]]) for it in (fell, ~fell))
+        here, not_here = (listed([str(item) for item in by_name.index[it]]) for it in (fell, ~fell))
         headline = f"At recorded strength {subject} overturns {here}, and not {not_here}"
     else:
         counts = {str(name): int(n) for name, n in by_name["sum"].items()}
@@ -246,21 +246,21 @@ def mean_sentence(means: pd.DataFrame) -> str:
     )
 
 
-def windows_found(windows: pd.DataFrame, tests: pd.DataFrame) -> Finding:
+def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Finding:
     """Say how often an object survives a stronger motion than one that overturned it."""
-    fallen = windows[windows["first_upper"].notna()]
-    with_windows = int((fallen["windows"] > 0).sum())
+    fallen = resurrections[resurrections["first_upper"].notna()]
+    with_resurrections = int((fallen["resurrections"] > 0).sum())
     if fallen.empty:
         return Finding("Nothing overturns, so no stronger motion can be survived")
-    if with_windows == 0:
+    if with_resurrections == 0:
         return Finding("Every motion stronger than the first that overturned also overturns")
-    share = of_all(with_windows, len(fallen), "analysis", "analyses")
+    fraction = of_all(with_resurrections, len(fallen), "analysis", "analyses")
     headline = (
-        f"Non-monotone response: in {share} the object survives a stronger motion than one that "
+        f"Non-monotone response: in {fraction} the object survives a stronger motion than one that "
         "overturned it"
     )
     text = "The overturning amplitude therefore depends on how the motion is raised."
-    wide = tests.pivot_table(index="test", columns="reading", values="amplitude_g")
+    wide = tests.pivot_table(index="test", columns="definition", values="amplitude_g")
     if not {"first_overturning", "always_overturning"} <= set(wide.columns):
         return Finding(headline, text)
     both = wide[["first_overturning", "always_overturning"]].dropna()
@@ -282,7 +282,7 @@ def ratio_text(row: Mapping[Any, Any]) -> str:
 
 def ratio_of(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> Callable[[str, str], str]:
     """Return a function of scope and level that words the ratio of amplitudes there."""
-    rows = effects[effects["reading"] == READING] if len(effects) else effects
+    rows = effects[effects["definition"] == DEFINITION] if len(effects) else effects
 
     def text(scope: str, level: str) -> str:
         found = rows[(rows["scope"] == scope) & (rows["level"] == level)] if len(rows) else rows
@@ -297,7 +297,7 @@ def ratio_of(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> Callable[[s
 def pedestal_effect(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> list[Finding]:
     """Say by what factor what is compared changes the amplitude, over all pairs and on each floor."""
     whole = effects[effects["scope"] == "whole"]
-    here = whole[whole["reading"] == READING]
+    here = whole[whole["definition"] == DEFINITION]
     if here.empty:
         return [
             Finding(
@@ -307,15 +307,15 @@ def pedestal_effect(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> list
         ]
     row = here.to_dict("records")[0]
     numbers = [_ratio_sentence(row, about), _steps(row)]
-    others = whole[whole["reading"] != READING].to_dict("records")
+    others = whole[whole["definition"] != DEFINITION].to_dict("records")
     if others:
         listing = "; ".join(
-            f"{str(one['reading']).replace('_', ' ')} {ratio_text(one)} "
-            f"({counted(int(one['pairs']), 'pair')})"
-            for one in others
+            f"{str(other['definition']).replace('_', ' ')} {ratio_text(other)} "
+            f"({counted(int(other['pairs']), 'pair')})"
+            for other in others
         )
         numbers.append(f"Other ways to read the amplitude: {listing}.")
-    floors = effects[(effects["scope"] == "floor") & (effects["reading"] == READING)]
+    floors = effects[(effects["scope"] == "floor") & (effects["definition"] == DEFINITION)]
     found = Finding(
         _headline(row, about), _meaning(row), " ".join(word for word in numbers if word)
     )
@@ -466,7 +466,7 @@ def _demands(validity: pd.DataFrame) -> list[str]:
     return words or ["none known"]
 
 
-UNIT = {"event": "earthquake", "motion": "motion", "floor": "floor"}
+UNIT = {"earthquake": "earthquake", "motion": "motion", "floor": "floor"}
 """Words for what an interval is taken over."""
 
 
@@ -487,7 +487,7 @@ def sliding_found(sliding: pd.DataFrame) -> Finding:
             f"The friction needed never exceeds the friction available in "
             f"{counted(cases, 'analysis', 'analyses')}.",
         )
-    where = max(sliding.to_dict("records"), key=lambda one: float(one["largest_slip_m"]))
+    where = max(sliding.to_dict("records"), key=lambda item: float(item["largest_slip_m"]))
     words = [
         f"The largest slip is {number(100 * where['largest_slip_m'], 1)} cm ({where['configuration']}); "
         + ("nothing flies." if flew == 0 else f"bodies fly in {_analyses(flew, cases)}.")

@@ -1,4 +1,4 @@
-"""The report of a measured table: its curves, the choice of the measure, and how well they fit."""
+"""The report of a measured table: its curves, the intensity-measure selection, and how well they fit."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -33,12 +33,12 @@ def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
     goodness = [
         {
             "measure": measure,
-            "deviance": one.deviance,
-            "p_value": one.p_value,
-            "brier": one.brier,
-            "finding": one.words,
+            "deviance": item.deviance,
+            "p_value": item.p_value,
+            "brier": item.brier,
+            "finding": item.words,
         }
-        for measure, one in found.goodness.items()
+        for measure, item in found.goodness.items()
     ]
     columns = ["measure", "deviance", "p_value", "brier", "finding"]
     return {
@@ -141,7 +141,9 @@ def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, Figu
             )
         )
     doubtful = [
-        found.fits[measure].fit.im for measure, one in found.goodness.items() if one.p_value < 0.05
+        found.fits[measure].fit.im
+        for measure, item in found.goodness.items()
+        if item.p_value < 0.05
     ]
     if found.goodness:
         sentences.append(
@@ -175,7 +177,7 @@ def _choice(
         Column("beta", "β", 3),
         Column("aic", "AIC", 1),
         Column("auc", "AUC", 3),
-        Column("chosen_share", "Fraction of bootstrap samples in which it is best", 2),
+        Column("chosen_fraction", "Fraction of bootstrap samples in which it is best", 2),
     ]
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
     columns += [Column(name, f"p, {name.removeprefix('p_')}", numeric=True) for name in given]

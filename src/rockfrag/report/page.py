@@ -212,21 +212,22 @@ def _chapter(
     section: Section, pictures: Mapping[str, Picture], shown: FigureSpec | None
 ) -> _Chapter:
     """Part a section's figures, but for the one that the answer shows already, from its tables."""
-    specs = [one for one in section.parts if isinstance(one, FigureSpec) and one is not shown]
-    drawn = [pictures[one.name] for one in specs]
+    specs = [part for part in section.parts if isinstance(part, FigureSpec) and part is not shown]
+    drawn = [pictures[spec.name] for spec in specs]
     return _Chapter(
-        section, drawn, [one for one in section.parts if isinstance(one, Markup) and one]
+        section, drawn, [part for part in section.parts if isinstance(part, Markup) and part]
     )
 
 
 def _texts(answer: Answer, sections: Sequence[Section]) -> str:
     """All that a page says in words, its tables included."""
-    words = [one.said for one in answer.sentences]
+    words = [sentence.said for sentence in answer.sentences]
     words += [*answer.advice, *answer.rests_on, *answer.could_change]
     for section in sections:
         words += [section.title, section.message, *section.paragraphs]
         words += [
-            one.caption if isinstance(one, FigureSpec) else one.striptags() for one in section.parts
+            part.caption if isinstance(part, FigureSpec) else part.striptags()
+            for part in section.parts
         ]
     return " ".join(words)
 

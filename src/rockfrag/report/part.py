@@ -18,12 +18,12 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
-from rockfrag.shaketable.readings import READING
+from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.shaketable.swept import read_swept
 from rockfrag.study.study import Study
 
 MOST_MOTIONS = 50
-"""Motions of which a report shows every verdict; of a larger study it shows the first."""
+"""Motions of which a report shows every outcome; of a larger study it shows the first."""
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ class Results:
     def tests(self) -> pd.DataFrame:
         """Tests as the laboratory's protocol reads them."""
         tests = self.table("tests")
-        return tests[tests["reading"] == READING]
+        return tests[tests["definition"] == DEFINITION]
 
     @cached_property
     def records(self) -> Sequence[Mapping[str, Any]]:
@@ -178,13 +178,15 @@ class Results:
         return read_motion_set(self.folder / "motions" / "floors.parquet", most=MOST_MOTIONS)
 
     @cached_property
-    def verdicts(self) -> pd.DataFrame:
-        """Verdicts of every configuration at every amplitude, under no more motions than a page shows."""
+    def outcomes(self) -> pd.DataFrame:
+        """Outcomes of every configuration at every amplitude, under no more motions than a page shows."""
         parts = []
-        for one in self.study.configurations:
-            jobs = range(self.study.sweep_jobs)
+        for configuration in self.study.configurations:
+            jobs = range(self.study.ida_jobs)
             shown = 0
-            for part in read_swept(self.folder / self.study.sweep_file(one, job) for job in jobs):
+            for part in read_swept(
+                self.folder / self.study.ida_file(configuration, job) for job in jobs
+            ):
                 rows = part.about.index.repeat(part.amplitude_g.size)
                 table = part.about.loc[rows, ["configuration", "object", "motion"]]
                 parts.append(
@@ -199,9 +201,9 @@ class Results:
         return pd.concat(parts, ignore_index=True)
 
     @cached_property
-    def lightest(self) -> NDArray[np.float64]:
+    def least_gravity_ratio(self) -> NDArray[np.float64]:
         """Least weight over that on a ground at rest, of every history of a study with vertical motion."""
-        paths = [self.folder / path for path in self.study.sweep_files]
+        paths = [self.folder / path for path in self.study.ida_files]
         parts = [
             pq.read_table(path, columns=["minimum_gravity_ratio"])[
                 "minimum_gravity_ratio"
@@ -213,7 +215,9 @@ class Results:
     @property
     def objects(self) -> list[str]:
         """Names of the objects tested, in the study's order."""
-        return list(dict.fromkeys(one.names[-1] for one in self.study.configurations))
+        return list(
+            dict.fromkeys(configuration.names[-1] for configuration in self.study.configurations)
+        )
 
 
 def _always(_: Study) -> bool:

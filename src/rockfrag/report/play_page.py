@@ -52,16 +52,16 @@ def write_play_page(body: SystemLike, motion: Motion, path: str | os.PathLike[st
         )
     if motion.pga <= 0:
         raise InputError(f"{motion.name}: the record is zero throughout, so nothing would rock.")
-    sizes = [f"{100 * one.width:.3g} × {100 * one.height:.3g} cm" for one in system.bodies]
+    sizes = [f"{100 * body.width:.3g} × {100 * body.height:.3g} cm" for body in system.bodies]
     name = " on ".join(reversed(sizes))
-    verdicts = swept({name: system}, [motion])
+    outcomes = swept({name: system}, [motion])
     page = render(
         title=f"{name} under {motion.name}",
         lead=f"{counted(samples, 'sample')} of {motion.dt:.4g} s, as recorded with a peak of "
         f"{number(motion.pga / GRAVITY, 3)} g.",
         answer=Answer(
             asked="How strong must this motion be to overturn it?",
-            sentences=[_strength(verdicts["overturned"].tolist()), _recorded(system, motion)],
+            sentences=[_strength(outcomes["overturned"].tolist()), _recorded(system, motion)],
         ),
         sections=[],
         pictures={},
@@ -77,20 +77,20 @@ def write_play_page(body: SystemLike, motion: Motion, path: str | os.PathLike[st
 
 def _strength(fell: Sequence[bool]) -> Finding:
     """Say which of the amplitudes tried overturn."""
-    verdicts = list(fell)
+    outcomes = list(fell)
     tried = f"amplitudes from {AMPLITUDES_G[0]:g} to {AMPLITUDES_G[-1]:g} g, {_STEP:.1f} % apart"
-    if not any(verdicts):
+    if not any(outcomes):
         return Finding("It does not overturn", f"It survives all {tried}.")
-    first = verdicts.index(True)
-    later = len(verdicts) - first - sum(verdicts[first:])
-    windows = (
+    first = outcomes.index(True)
+    later = len(outcomes) - first - sum(outcomes[first:])
+    resurrections = (
         f" {later} stronger {'one is' if later == 1 else 'ones are'} survived again: the response is not monotone."
         if later
         else " All stronger ones overturn it too."
     )
     return Finding(
         f"It first overturns at a peak of {number(AMPLITUDES_G[first], 3)} g",
-        f"{sentence(tried)} were tried.{windows}",
+        f"{sentence(tried)} were tried.{resurrections}",
     )
 
 

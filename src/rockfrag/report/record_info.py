@@ -31,10 +31,10 @@ from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
 from rockfrag.motions.spectra import fourier_amplitude, oscillator_matrix, response_spectrum
 from rockfrag.plain_text import printable
 from rockfrag.records.catalogue import is_catalogue
-from rockfrag.records.doubts import doubts
 from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.text_file import NotAcceleration
+from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import Record, motion_of, read_record
 from rockfrag.records.sources.folder import files_of
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
@@ -53,7 +53,7 @@ COLUMNS = (
     "pgd_cm",
     "duration_s",
     "dominant_period_s",
-    "doubts",
+    "quality_flags",
     "error",
     "status",
 )
@@ -91,7 +91,7 @@ def describe_files(
     DataFrame
         Columns :data:`COLUMNS`. PGV and PGD are of the exact integral of the acceleration as
         recorded, from rest, without baseline correction; the dominant period is that of the
-        largest 5 % damped pseudo-acceleration; ``doubts`` says what looks wrong. A file that cannot be
+        largest 5 % damped pseudo-acceleration; ``quality_flags`` says what looks wrong. A file that cannot be
         read, or whose unit is not known, has the reason in ``error`` and does not stop the others.
     """
     rows: list[dict[str, Any]] = []
@@ -99,7 +99,7 @@ def describe_files(
         rows.extend(_describe(path, unit, dt, force))
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     table["npts"] = table["npts"].astype("Int64")
-    for column in ("doubts", "error"):
+    for column in ("quality_flags", "error"):
         table[column] = table[column].fillna("")
     return table
 
@@ -159,7 +159,7 @@ def _row(record: Record, number: int, unit: str | None, force: bool) -> dict[str
         "pgv_cm_s": pgv(motion) * CENTIMETRES_PER_METRE,
         "pgd_cm": pgd(motion) * CENTIMETRES_PER_METRE,
         "dominant_period_s": dominant_period(motion),
-        "doubts": "; ".join(doubts(motion)),
+        "quality_flags": "; ".join(quality_flags(motion)),
     }
 
 
@@ -320,7 +320,7 @@ def _logarithmic(panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], co
 
 def _title(motion: Motion) -> str:
     facts = motion.metadata
-    words = [str(facts.get(key) or "") for key in ("station", "component", "event")]
+    words = [str(facts.get(key) or "") for key in ("station", "component", "earthquake")]
     if facts.get("station_name"):
         words[0] = f"{words[0]} {facts['station_name']}".strip()
     found = ", ".join(word for word in words if word)

@@ -37,7 +37,7 @@ def measured_table(job: Job[MeasuredTable]) -> Results:
         study.measures,
         overturned=study.overturned,
         motion=study.motion,
-        event=study.event,
+        earthquake=study.earthquake,
         given=study.given,
         level=study.confidence,
         replicates=study.replicates,

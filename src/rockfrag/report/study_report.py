@@ -44,7 +44,7 @@ def write_report(
     answer
         Says what stands first.
     folder
-        Folder of its results, with the tables that its parts name, the sweeps, and the motions.
+        Folder of its results, with the tables that its parts name, the IDA curves, and the motions.
     processes
         How many may draw at once.
     """
@@ -52,7 +52,7 @@ def write_report(
     asked = [part for part in parts if part.asked(study)]
     sections = [section for part in asked if (section := part.section(results)) is not None]
     first = answer(results)
-    specs = [one for section in sections for one in section.parts if isinstance(one, FigureSpec)]
+    specs = [part for section in sections for part in section.parts if isinstance(part, FigureSpec)]
     specs += [first.figure] if first.figure else []
     pictures = draw_all(specs, folder / FIGURES, processes)
     write_captions(first, sections, folder / FIGURES)
@@ -72,12 +72,12 @@ def write_captions(answer: Answer, sections: Sequence[Section], folder: Path) ->
     """
     found = [(answer.figure, "The answer")] if answer.figure else []
     found += [
-        (one, section.title)
+        (part, section.title)
         for section in sections
-        for one in section.parts
-        if isinstance(one, FigureSpec) and one is not answer.figure
+        for part in section.parts
+        if isinstance(part, FigureSpec) and part is not answer.figure
     ]
-    captions = {one.name: {"chapter": chapter, "caption": one.caption} for one, chapter in found}
+    captions = {item.name: {"chapter": chapter, "caption": item.caption} for item, chapter in found}
     write_text(json.dumps(captions, ensure_ascii=False, indent=1) + "\n", folder / "captions.json")
 
 
@@ -124,16 +124,16 @@ def _live(results: Results) -> Markup:
     study = results.study
     if not study.simulated_in_page:
         return Markup()
-    systems = {one.name: one for one in study.configurations}
-    return live_kernel(systems, results.floors, results.verdicts)
+    systems = {configuration.name: configuration for configuration in study.configurations}
+    return live_kernel(systems, results.floors, results.outcomes)
 
 
 def _lead(results: Results) -> str:
     study, motions = results.study, len(results.records)
-    events = len({one.get("event") for one in results.records})
+    earthquakes = len({record.get("earthquake") for record in results.records})
     return (
         f"Rocking and overturning of {counted(len(study.configurations), 'configuration')} under "
-        f"{counted(motions, 'record')} of {counted(events, 'earthquake')}"
+        f"{counted(motions, 'record')} of {counted(earthquakes, 'earthquake')}"
         + (", on the floors of a building" if study.building else "")
         + "."
     )

@@ -82,16 +82,16 @@ def probability(p: float) -> str:
     return "< 0.001" if p < 0.001 else f"{p:.3f}"
 
 
-def counted(n: int, one: str, many: str | None = None) -> str:
+def counted(n: int, word: str, many: str | None = None) -> str:
     """``1 record``, ``2 records``, ``no record``."""
     if n == 0:
-        return f"no {one}"
-    return f"{n} {one}" if n == 1 else f"{n} {many or one + 's'}"
+        return f"no {word}"
+    return f"{n} {word}" if n == 1 else f"{n} {many or word + 's'}"
 
 
-def of_all(n: int, total: int, one: str, many: str | None = None) -> str:
+def of_all(n: int, total: int, word: str, many: str | None = None) -> str:
     """``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the only test``, ``no test``."""
-    noun = one if total == 1 else many or one + "s"
+    noun = word if total == 1 else many or word + "s"
     if n == 0:
         return f"none of {total} {noun}" if total > 1 else f"no {noun}"
     if n == total:
@@ -99,9 +99,9 @@ def of_all(n: int, total: int, one: str, many: str | None = None) -> str:
     return f"{n} of {total} {noun}"
 
 
-def agree(n: int, total: int, one: str, many: str) -> str:
+def agree(n: int, total: int, word: str, many: str) -> str:
     """The verb that goes with :func:`of_all`: ``needs`` of one, of none and of the only one, else ``need``."""
-    return one if n in (0, 1) or total == 1 else many
+    return word if n in (0, 1) or total == 1 else many
 
 
 def listed(names: Sequence[str]) -> str:

@@ -26,10 +26,10 @@ from .spectra import (
     uniform_block as uniform_block,
 )
 from .step_sensitivity import (
-    FragileVerdicts as FragileVerdicts,
-    fragile_verdicts as fragile_verdicts,
+    StepSizeSensitive as StepSizeSensitive,
+    find_step_size_sensitive as find_step_size_sensitive,
 )
-from .sureness import verdict_sureness as verdict_sureness
+from .robustness import outcome_robustness as outcome_robustness
 from .thresholds import (
     Thresholds as Thresholds,
     find_thresholds as find_thresholds,

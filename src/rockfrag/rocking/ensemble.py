@@ -147,9 +147,9 @@ def overturns(
     >>> from rockfrag import Block, Motion, Stack, overturns
     >>> time = np.arange(0, 2, 0.01)
     >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
-    >>> statue = Block(width=0.3, height=1.2, mass=180.0)
-    >>> stack = Stack(Block(width=0.6, height=0.4, mass=300.0), statue)
-    >>> overturns([statue, stack], motion, scales=[2.0, 3.0, 5.0]).overturned.shape
+    >>> upper = Block(width=0.3, height=1.2, mass=180.0)
+    >>> stack = Stack(Block(width=0.6, height=0.4, mass=300.0), upper)
+    >>> overturns([upper, stack], motion, scales=[2.0, 3.0, 5.0]).overturned.shape
     (2, 1, 3)
     """
     options = Options(
@@ -271,6 +271,6 @@ def lifting_acceleration(system: System, g: float) -> float:
         for pivot in (+1, -1):
             x, y = geometry.arm(shape, pivot)
             if x:
-                needed = geometry.pole_inertia(shape, pivot) / (shape.mass * abs(x)) - abs(x)
+                needed = geometry.pivot_inertia(shape, pivot) / (shape.mass * abs(x)) - abs(x)
                 found = min(found, g * needed / y)
     return float(found)

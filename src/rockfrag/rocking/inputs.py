@@ -336,7 +336,7 @@ def check_case_count(count: int) -> None:
         )
 
 
-class UnitDoubt(UserWarning):
+class UnitWarning(UserWarning):
     """A number looks as if it were given in another unit."""
 
 
@@ -357,18 +357,20 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
         return
     g = cases.request.g
     largest = np.abs(cases.scales).max(axis=1, initial=0.0)
-    peaks = [one.x.pga * float(scale) for one, scale in zip(cases.motions, largest, strict=True)]
+    peaks = [
+        motion.x.pga * float(scale) for motion, scale in zip(cases.motions, largest, strict=True)
+    ]
     peak = max(peaks)
     own = (Motion, GroundMotion)
     plain = any(not isinstance(motion, own) for motion in _listed_motions(given))
     # a stronger motion is hardly one in g, and needs no look at the bodies
     doubtful = plain and 0 < peak <= LARGEST_IN_G
-    least = g * min(min(uplift_ratios(one)) for one in cases.systems) if doubtful else None
+    least = g * min(min(uplift_ratios(system)) for system in cases.systems) if doubtful else None
     longest = max(motion.dt for motion in cases.motions)
     if longest > LONGEST_STEP:
         # what is far too long is refused before it is doubted
         for system in cases.systems:
             step_count(system, longest, g, STEP)
-    for doubt in (peak_warning(peak, least), gravity_warning(g), interval_warning(longest)):
-        if doubt:
-            warnings.warn(doubt, UnitDoubt, stacklevel=stacklevel)
+    for quality_flag in (peak_warning(peak, least), gravity_warning(g), interval_warning(longest)):
+        if quality_flag:
+            warnings.warn(quality_flag, UnitWarning, stacklevel=stacklevel)

@@ -60,17 +60,17 @@ Restitution = float | Sequence[Measured] | dict[str, Any] | MeasuredRestitution 
 """A measured restitution; numbers alone follow the law ``"position"``, and None conserves momentum."""
 
 
-def largest_restitution(block: Block, pole: int | None = None) -> float:
+def largest_restitution(block: Block, pivot: int | None = None) -> float:
     """Largest ratio of angular velocities with which no impact of the lone block gains energy [-].
 
     Parameters
     ----------
-    pole
+    pivot
         The corner that comes down, +1 or -1; of both the lesser if it is None, which is 1 for a symmetric block.
     """
-    if pole is None:
+    if pivot is None:
         return min(largest_restitution(block, +1), largest_restitution(block, -1))
-    return geometry.largest_restitution(block.shape, pole)
+    return geometry.largest_restitution(block.shape, pivot)
 
 
 def impact_laws(
@@ -121,7 +121,7 @@ def _law_of(name: str, law: str, value: object, shape: geometry.Shape, lone: boo
     both = _checked(name, value, shape)
     if both is None:
         return BY_MOMENTUM
-    right, left = (_told(name, law, shape, *one) for one in zip(both, (+1, -1), strict=True))
+    right, left = (_told(name, law, shape, *item) for item in zip(both, (+1, -1), strict=True))
     if lone:
         # what was measured is the ratio of the lone body, unless its law makes another one of it
         both = _of_lone(right, both[0]), _of_lone(left, both[1])

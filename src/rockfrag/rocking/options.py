@@ -55,10 +55,12 @@ def system_of(
     contacts = list(system.contacts)
     if friction is not None:
         given = frictions_of(system.count, friction, "friction" + name)
-        contacts = [replace(one, friction=mu) for one, mu in zip(contacts, given, strict=True)]
+        contacts = [
+            replace(contact, friction=mu) for contact, mu in zip(contacts, given, strict=True)
+        ]
     if restitution is not None:
         laws = impact_laws(system, restitution, "restitution" + name)
-        contacts = [replace(one, law=law) for one, law in zip(contacts, laws, strict=True)]
+        contacts = [replace(contact, law=law) for contact, law in zip(contacts, laws, strict=True)]
     start = system.start
     if theta0 is not None or omega0 is not None:
         start = Start(

@@ -1,4 +1,4 @@
-"""Ensembles larger than memory: verdicts, peaks or whole histories straight into a Parquet file."""
+"""Ensembles larger than memory: outcomes, peaks or whole histories straight into a Parquet file."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def stream_overturns(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    known = {one.name: one for one in columns_of(table) if table in WITHIN}
+    known = {column.name: column for column in columns_of(table) if table in WITHIN}
     if columns is None:
         columns = USUAL if table == "cases" else tuple(known)
     for name in columns:
@@ -111,7 +111,7 @@ def stream_overturns(
     cases = prepared(bodies, motions, dt, scales, options)
     chosen = [known[name] for name in known if name in columns]
     schema = pa.schema(
-        PLACE | WITHIN[table] | {one.title: pa.from_numpy_dtype(one.dtype) for one in chosen}
+        PLACE | WITHIN[table] | {item.title: pa.from_numpy_dtype(item.dtype) for item in chosen}
     )
     total = len(cases.systems) * cases.scales.size
     done = 0
@@ -127,7 +127,7 @@ def stream_overturns(
             found = shaken(part).table(table, columns)
             found["system"] += some.start
             found["motion"] += rows.start
-            arrays = [pa.array(found[one.name], type=one.type) for one in schema]
+            arrays = [pa.array(found[item.name], type=item.type) for item in schema]
             writer.write_table(pa.Table.from_arrays(arrays, schema=schema))
             done += math.prod(part.shape)
             if progress is not None:
@@ -286,7 +286,7 @@ def _history_table(place: Place, case: Case) -> pa.Table:
     """Make the rows of one history."""
     engine = engine_for(case.system, case.motion, case.request)
     if engine is SINGLE:
-        # without its tables of events and energy, which take most of its time
+        # without its tables of contact events and energy, which take most of its time
         time, theta, omega, state = samples_of(case)
     else:
         response = engine.history(case)

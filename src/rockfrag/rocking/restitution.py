@@ -55,7 +55,7 @@ class RestitutionFit:
 
 
 def peak_after(
-    block: Block, speed: float, pole: int = 1, *, linear: bool = False, g: float = GRAVITY
+    block: Block, speed: float, pivot: int = 1, *, linear: bool = False, g: float = GRAVITY
 ) -> float:
     """Peak rotation of a block that leaves its base with an angular velocity.
 
@@ -63,7 +63,7 @@ def peak_after(
     ----------
     speed
         Magnitude of the angular velocity just after the impact [rad/s].
-    pole
+    pivot
         Corner it rocks on.
     linear
         Use the slender linearised equation (Housner, 1963).
@@ -72,7 +72,7 @@ def peak_after(
     -------
     Magnitude of the rotation [rad]; NaN if it would go over.
     """
-    alpha, x = block.critical_angle(pole), speed**2 / block.frequency(pole, g) ** 2
+    alpha, x = block.critical_angle(pivot), speed**2 / block.frequency(pivot, g) ** 2
     # written so that small speeds keep their digits
     if linear:
         y = x / alpha**2
@@ -85,10 +85,10 @@ def peak_after(
 
 
 def speed_before(
-    block: Block, peak: float, pole: int = 1, *, linear: bool = False, g: float = GRAVITY
+    block: Block, peak: float, pivot: int = 1, *, linear: bool = False, g: float = GRAVITY
 ) -> float:
     """Angular velocity [rad/s] with which a block comes down from rest at a rotation [rad]."""
-    alpha, p = block.critical_angle(pole), block.frequency(pole, g)
+    alpha, p = block.critical_angle(pivot), block.frequency(pivot, g)
     if linear:
         return p * math.sqrt(peak * (2 * alpha - peak))
     # cos(α - θ) - cos α as a product, which keeps its digits for small rotations
@@ -96,14 +96,14 @@ def speed_before(
 
 
 def quarter_period(
-    block: Block, peak: float, pole: int = 1, *, linear: bool = False, g: float = GRAVITY
+    block: Block, peak: float, pivot: int = 1, *, linear: bool = False, g: float = GRAVITY
 ) -> float:
     """Time from rest at a rotation ``peak`` [rad] to the impact [s] (Housner, 1963, if linear).
 
     The nonlinear one is the integral of dθ/θ' with the energy of eq. 2.4, by Gauss-Legendre after
     θ = θ0 (1 - u²), which takes the singularity away.
     """
-    alpha, p = block.critical_angle(pole), block.frequency(pole, g)
+    alpha, p = block.critical_angle(pivot), block.frequency(pivot, g)
     if linear:
         phi = peak / alpha
         return math.atanh(math.sqrt(phi * (2 - phi))) / p
@@ -147,24 +147,24 @@ def restitution_from_peaks(
         If there are fewer than two peaks, one is not between zero and the critical angle, or the
         signs neither alternate nor agree.
     """
-    values, poles = _checked_peaks(block, peaks)
+    values, pivots = _checked_peaks(block, peaks)
 
     def model(parameters: Floats) -> Floats:
         first, e = parameters
-        speed = speed_before(block, first, poles[0], linear=linear, g=g)
+        speed = speed_before(block, first, pivots[0], linear=linear, g=g)
         found = [first]
-        for pole in poles[1:]:
+        for pivot in pivots[1:]:
             speed *= e
-            found.append(peak_after(block, speed, pole, linear=linear, g=g))
+            found.append(peak_after(block, speed, pivot, linear=linear, g=g))
         return np.array(found)
 
     # the ratio of the first and the last speed is already an estimate
     speeds = [
-        speed_before(block, peak, pole, linear=linear, g=g)
-        for peak, pole in zip(values, poles, strict=True)
+        speed_before(block, peak, pivot, linear=linear, g=g)
+        for peak, pivot in zip(values, pivots, strict=True)
     ]
     start = (speeds[-1] / speeds[0]) ** (1 / (len(values) - 1))
-    ceiling = min(block.critical_angle(pole) for pole in poles)
+    ceiling = min(block.critical_angle(pivot) for pivot in pivots)
     fit = _least_squares(
         lambda q: model(q) - values,
         [values[0], start],
@@ -177,7 +177,7 @@ def restitution_from_impacts(
     block: Block,
     times: ArrayLike,
     *,
-    first_pole: int = 1,
+    first_pivot: int = 1,
     linear: bool = False,
     confidence: float = 0.95,
     g: float = GRAVITY,
@@ -190,7 +190,7 @@ def restitution_from_impacts(
         The block.
     times
         Times of successive impacts [s], shape (n,), n ≥ 3, rising; none may be left out.
-    first_pole
+    first_pivot
         Corner the block rocks on between the first two.
     linear, confidence, g
         As for :func:`restitution_from_peaks`.
@@ -211,29 +211,29 @@ def restitution_from_impacts(
         raise InputError(
             f"impact times: entry {bad} is not later than the one before it; sort them."
         )
-    poles = [first_pole * (-1) ** k for k in range(len(intervals))]
+    pivots = [first_pivot * (-1) ** k for k in range(len(intervals))]
 
-    def flight(speed: float, pole: int) -> float:
-        peak = peak_after(block, speed, pole, linear=linear, g=g)
+    def flight(speed: float, pivot: int) -> float:
+        peak = peak_after(block, speed, pivot, linear=linear, g=g)
         if math.isnan(peak):
             return math.nan
-        return 2 * quarter_period(block, peak, pole, linear=linear, g=g)
+        return 2 * quarter_period(block, peak, pivot, linear=linear, g=g)
 
     def model(parameters: Floats) -> Floats:
         begin, speed, e = parameters
         found = [begin]
-        for pole in poles:
-            found.append(found[-1] + flight(speed, pole))
+        for pivot in pivots:
+            found.append(found[-1] + flight(speed, pivot))
             speed *= e
         return np.array(found)
 
     largest = min(
-        speed_before(block, block.critical_angle(pole), pole, linear=linear, g=g)
-        for pole in (+1, -1)
+        speed_before(block, block.critical_angle(pivot), pivot, linear=linear, g=g)
+        for pivot in (+1, -1)
     ) * (1 - 1e-12)
     speeds = [
-        _speed_of_flight(lambda s, pole=pole: flight(s, pole), float(T), largest)  # type: ignore[misc]
-        for T, pole in zip(intervals, poles, strict=True)
+        _speed_of_flight(lambda s, pivot=pivot: flight(s, pivot), float(T), largest)  # type: ignore[misc]
+        for T, pivot in zip(intervals, pivots, strict=True)
     ]
     start = min(max((speeds[-1] / speeds[0]) ** (1 / (len(speeds) - 1)), 0.01), 0.9999)
     fit = _least_squares(
@@ -329,20 +329,20 @@ def _numbers(name: str, data: ArrayLike, least: int) -> Floats:
 def _checked_peaks(block: Block, peaks: ArrayLike) -> tuple[Floats, list[int]]:
     values = _numbers("peaks", peaks, 2)
     first = 1 if values[0] > 0 else -1
-    poles = [first * (-1) ** k for k in range(values.size)]
-    alternate = np.sign(values) == poles
+    pivots = [first * (-1) ** k for k in range(values.size)]
+    alternate = np.sign(values) == pivots
     if not (alternate.all() or (values > 0).all()):
         raise InputError(
             "peaks: they must alternate in sign or all be positive; one is missing or doubled."
         )
     values = np.abs(values)
-    for k, (value, pole) in enumerate(zip(values, poles, strict=True)):
-        if not 0 < value < block.critical_angle(pole):
+    for k, (value, pivot) in enumerate(zip(values, pivots, strict=True)):
+        if not 0 < value < block.critical_angle(pivot):
             raise InputError(
                 f"peaks: entry {k} of {value:.4g} rad is not below the critical angle of "
-                f"{block.critical_angle(pole):.4g} rad; give radians."
+                f"{block.critical_angle(pivot):.4g} rad; give radians."
             )
-    return values, poles
+    return values, pivots
 
 
 def _peaks_of(theta: Floats) -> list[float]:

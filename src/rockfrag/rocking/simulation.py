@@ -72,7 +72,7 @@ def simulate(
     Returns
     -------
     Response
-        Histories, events, energies and forces.
+        Histories, contact events, energies and forces.
 
     Raises
     ------

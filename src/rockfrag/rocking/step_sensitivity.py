@@ -1,4 +1,4 @@
-"""How many verdicts hang on the step of the integration."""
+"""How many outcomes hang on the step of the integration."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from rockfrag.units import GRAVITY
 
 
 @dataclass(frozen=True)
-class FragileVerdicts:
-    """Verdicts that change when every step is halved: numerically fragile ones.
+class StepSizeSensitive:
+    """Outcomes that change when every step is halved: numerically fragile ones.
 
     Attributes
     ----------
     sampled
         Number of cases looked at.
     changed
-        Number of them whose verdict changed.
+        Number of them whose outcome changed.
     cases
         Body, motion and scale (positions) of the changed ones, shape (changed, 3).
     """
@@ -45,13 +45,13 @@ class FragileVerdicts:
     __repr__ = short_repr
 
     @property
-    def share(self) -> float:
-        """Share of the sampled verdicts that changed [-]."""
+    def fraction(self) -> float:
+        """Fraction of the sampled outcomes that changed [-]."""
         return self.changed / self.sampled
 
 
 @named_keywords
-def fragile_verdicts(
+def find_step_size_sensitive(
     bodies: SystemLike | Sequence[SystemLike],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
@@ -68,10 +68,10 @@ def fragile_verdicts(
     g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
-) -> FragileVerdicts:
-    """Count the verdicts of an ensemble that change when the step is halved, on a sample of its cases.
+) -> StepSizeSensitive:
+    """Count the outcomes of an ensemble that change when the step is halved, on a sample of its cases.
 
-    Near-critical cases always exist: their verdict hangs on the last digits of any integration.
+    Near-critical cases always exist: their outcome hangs on the last digits of any integration.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def fragile_verdicts(
 
     Returns
     -------
-    The :class:`FragileVerdicts`: how many cases were looked at, and which of them changed.
+    The :class:`StepSizeSensitive`: how many cases were looked at, and which of them changed.
 
     Raises
     ------
@@ -96,10 +96,10 @@ def fragile_verdicts(
     Examples
     --------
     >>> import numpy as np
-    >>> from rockfrag import Block, Motion, fragile_verdicts
+    >>> from rockfrag import Block, Motion, find_step_size_sensitive
     >>> time = np.arange(0, 2, 0.01)
     >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
-    >>> found = fragile_verdicts(Block(0.3, 1.2, 180.0), motion, None, np.arange(2.5, 8.0, 0.1))
+    >>> found = find_step_size_sensitive(Block(0.3, 1.2, 180.0), motion, None, np.arange(2.5, 8.0, 0.1))
     >>> found.sampled, found.changed
     (55, 0)
     """
@@ -124,12 +124,12 @@ def fragile_verdicts(
     )
     halved = overturned_cases(finer, *drawn)
     changed = cases[given != halved]
-    return FragileVerdicts(sampled=len(cases), changed=len(changed), cases=changed)
+    return StepSizeSensitive(sampled=len(cases), changed=len(changed), cases=changed)
 
 
 def _doubled(motion: GroundMotion) -> GroundMotion:
     """Sample a ground motion, which is zero one sample after its last, twice as densely."""
-    y, z = (None if one is None else _dense(one) for one in (motion.y, motion.z))
+    y, z = (None if item is None else _dense(item) for item in (motion.y, motion.z))
     return GroundMotion(_dense(motion.x), y, z)
 
 

@@ -41,24 +41,24 @@ class Thresholds:
     table
         One row per body and motion: ``body``, ``motion`` (positions in the lists given),
         ``first_overturning`` (least scale found that overturns), ``always_overturning`` (from here to
-        the highest scale every verdict found is overturning), both also as peak accelerations
-        ``first_overturning_pga_g`` and ``always_overturning_pga_g``, and ``windows``, the number of
-        survival windows above the first overturning.  NaN if the body survives all scales, or for
+        the highest scale every outcome found is overturning), both also as peak accelerations
+        ``first_overturning_pga_g`` and ``always_overturning_pga_g``, and ``resurrections``, the number of
+        structural resurrections above the first overturning.  NaN if the body survives all scales, or for
         ``always_overturning`` if it survives the highest.
-    windows
-        One row per survival window: ``body``, ``motion``, ``lower``, ``upper``: the outermost scales
+    resurrections
+        One row per structural resurrection: ``body``, ``motion``, ``lower``, ``upper``: the outermost scales
         found to survive; ``upper`` is the highest scale for a window that is still open there.
-    smallest_window
-        Spacing of the grid.  A window of survival or of overturning at least this wide contains a point
+    narrowest_resurrection
+        Spacing of the grid.  A structural resurrection or of overturning at least this wide contains a point
         of the grid and has been found; a narrower one can be missed.
     tolerance
-        The verdict changes within this much below ``first_overturning`` and ``always_overturning``, and
+        The outcome changes within this much below ``first_overturning`` and ``always_overturning``, and
         within this much outside each window.
     """
 
     table: pd.DataFrame
-    windows: pd.DataFrame
-    smallest_window: float
+    resurrections: pd.DataFrame
+    narrowest_resurrection: float
     tolerance: float
 
     __repr__ = short_repr
@@ -72,7 +72,7 @@ def find_thresholds(
     highest: float,
     *,
     tolerance: float,
-    smallest_window: float,
+    narrowest_resurrection: float,
     restitution: Sequence[Restitution] | None = None,
     friction: FrictionInput | None = None,
     vertical: MotionLike | Sequence[MotionLike] | None = None,
@@ -83,7 +83,7 @@ def find_thresholds(
     step: float = STEP,
     threads: int | None = None,
 ) -> Thresholds:
-    """Find first overturning, survival windows and always-overturning amplitude of body × motion.
+    """Find first overturning, structural resurrections and always-overturning amplitude of body × motion.
 
     Parameters
     ----------
@@ -92,8 +92,8 @@ def find_thresholds(
     highest
         Largest scale on the accelerations to look at; motions with a peak of 1 g make scales PGAs in g.
     tolerance
-        Width to which every change of verdict is bracketed, in scale.
-    smallest_window
+        Width to which every change of outcome is bracketed, in scale.
+    narrowest_resurrection
         Width of the narrowest window that must not be missed, in scale: the spacing of the grid that is
         looked at first.
     restitution, friction, vertical, theta0, omega0, linear, g, step, threads
@@ -101,7 +101,7 @@ def find_thresholds(
 
     Returns
     -------
-    The :class:`Thresholds`: a table with a row per body and motion, and one of the windows of survival.
+    The :class:`Thresholds`: a table with a row per body and motion, and one of the structural resurrections.
 
     Raises
     ------
@@ -116,26 +116,26 @@ def find_thresholds(
     >>> from rockfrag import Block, Motion, find_thresholds
     >>> time = np.arange(0, 2, 0.01)
     >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
-    >>> statue = Block(width=0.3, height=1.2, mass=180.0)
-    >>> found = find_thresholds(statue, motion, None, highest=8.0, tolerance=0.01, smallest_window=0.1)
+    >>> upper = Block(width=0.3, height=1.2, mass=180.0)
+    >>> found = find_thresholds(upper, motion, None, highest=8.0, tolerance=0.01, narrowest_resurrection=0.1)
     >>> found.table["first_overturning"].round(2).tolist()
     [2.96]
     """
     positive_number("highest", highest)
     positive_number("tolerance", tolerance)
-    positive_number("smallest_window", smallest_window)
-    if smallest_window > highest:
+    positive_number("narrowest_resurrection", narrowest_resurrection)
+    if narrowest_resurrection > highest:
         raise InputError(
-            f"smallest_window: {smallest_window} is more than the highest scale, {highest}."
+            f"narrowest_resurrection: {narrowest_resurrection} is more than the highest scale, {highest}."
         )
     options = Options(
         restitution, friction, vertical, theta0, omega0, linear, False, g, step, threads
     )
-    intervals = math.ceil(highest / smallest_window - 1e-9)
+    intervals = math.ceil(highest / narrowest_resurrection - 1e-9)
     cases = prepared(bodies, motions, dt, (highest,), options)
     if len(cases.systems) * len(cases.motions) * intervals > MOST_GRID_CASES:
         raise InputError(
-            f"smallest_window: {smallest_window} needs a grid of more than {MOST_GRID_CASES} cases; "
+            f"narrowest_resurrection: {narrowest_resurrection} needs a grid of more than {MOST_GRID_CASES} cases; "
             "give a wider one, a lower highest scale, or fewer bodies at a time."
         )
     grid = np.linspace(0.0, highest, intervals + 1)
@@ -148,26 +148,26 @@ def find_thresholds(
         middle = 0.5 * (low + high)
         above = overturned_cases(cases, body, motion, middle) == falls
         low, high = np.where(above, low, middle), np.where(above, middle, high)
-    table, windows = [], []
+    table, resurrections = [], []
     for i in range(len(cases.systems)):
         for j, shaking in enumerate(cases.motions):
             mine = (body == i) & (motion == j)
             row, survived = _read(low[mine], high[mine], falls[mine], highest)
             peak = shaking.x.pga / g
             table.append((i, j, *row, *(peak * scale for scale in row), len(survived)))
-            windows += [(i, j, lower, upper) for lower, upper in survived]
+            resurrections += [(i, j, lower, upper) for lower, upper in survived]
     return Thresholds(
         table=pd.DataFrame(
             table,
             columns=[
                 "body", "motion", "first_overturning", "always_overturning",
-                "first_overturning_pga_g", "always_overturning_pga_g", "windows",
+                "first_overturning_pga_g", "always_overturning_pga_g", "resurrections",
             ],
         ),
-        windows=pd.DataFrame(windows, columns=["body", "motion", "lower", "upper"]).astype(
+        resurrections=pd.DataFrame(resurrections, columns=["body", "motion", "lower", "upper"]).astype(
             {"body": np.int64, "motion": np.int64, "lower": np.float64, "upper": np.float64}
         ),
-        smallest_window=highest / intervals,
+        narrowest_resurrection=highest / intervals,
         tolerance=tolerance,
     )  # fmt: skip
 
@@ -175,7 +175,7 @@ def find_thresholds(
 def _read(
     low: Array, high: Array, falls: NDArray[np.bool_], highest: float
 ) -> tuple[tuple[float, float], list[tuple[float, float]]]:
-    """Read first and always-overturning scale and the survival windows off bracketed changes.
+    """Read first and always-overturning scale and the structural resurrections off bracketed changes.
 
     The changes alternate and the first, from rest at zero scale, is a fall.
     """
@@ -185,5 +185,5 @@ def _read(
     always = float(high[-1]) if falls[-1] else math.nan
     if not falls[-1]:
         ends = np.append(ends, highest)
-    windows = list(zip(starts.tolist(), ends.tolist(), strict=True))
-    return (float(high[0]), always), windows
+    resurrections = list(zip(starts.tolist(), ends.tolist(), strict=True))
+    return (float(high[0]), always), resurrections

@@ -53,7 +53,7 @@ def worst_direction(
     *,
     directions_deg: Sequence[float] = DIRECTIONS_DEG,
     tolerance: float = 0.005,
-    smallest_window: float = 0.05,
+    narrowest_resurrection: float = 0.05,
     restitution: Restitution | None = None,
 ) -> WorstDirection:
     """Find the direction in which two components overturn a body that rocks in one plane.
@@ -72,7 +72,7 @@ def worst_direction(
         Largest scale that is tried [-].
     directions_deg
         Angles from the first component towards the second [degrees].
-    tolerance, smallest_window, restitution
+    tolerance, narrowest_resurrection, restitution
         As of :func:`rockfrag.rocking.thresholds.find_thresholds`.
 
     Returns
@@ -86,15 +86,15 @@ def worst_direction(
     """
     if not len(directions_deg):
         raise InputError("worst_direction: directions_deg is empty; give at least one angle.")
-    one, other = common_time([first, second])
-    motions = [rotate(one, other, angle) for angle in directions_deg]
+    item, other = common_time([first, second])
+    motions = [rotate(item, other, angle) for angle in directions_deg]
     found = find_thresholds(
         body,
         [motion.acceleration for motion in motions],
-        one.dt,
+        item.dt,
         highest,
         tolerance=tolerance,
-        smallest_window=smallest_window,
+        narrowest_resurrection=narrowest_resurrection,
         restitution=None if restitution is None else [restitution],
     ).table
     table = pd.DataFrame(

@@ -10,11 +10,11 @@ from .protocols import (
     Protocol as Protocol,
     climb as climb,
 )
-from .readings import (
+from .definitions import (
     always_overturning as always_overturning,
     first_overturning as first_overturning,
     step_protocol as step_protocol,
-    tests_from_sweep as tests_from_sweep,
+    tests_from_ida as tests_from_ida,
 )
 from .settings import (
     make_shaker as make_shaker,

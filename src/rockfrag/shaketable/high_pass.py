@@ -11,7 +11,7 @@ from rockfrag.motions.filtering import highpass
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.shaketable.readings import always_overturning, first_overturning
+from rockfrag.shaketable.definitions import always_overturning, first_overturning
 from rockfrag.shaketable.shaker import FILTER_ORDER
 from rockfrag.system.blocks import Body
 
@@ -36,15 +36,15 @@ def filter_effect(
     corners_hz
         Corners of the filter [Hz]; 0 is no filter.
     amplitudes_g
-        Amplitudes of the sweep [g], rising.
+        Amplitudes of the IDA curve [g], rising.
     threads
         Threads to use; the result does not depend on it.
 
     Returns
     -------
-    One row per configuration, motion and corner: ``configuration``, ``motion``, ``event``, ``floor``,
+    One row per configuration, motion and corner: ``configuration``, ``motion``, ``earthquake``, ``floor``,
     ``corner_hz``, ``first_g`` and ``always_g`` (amplitude of the first overturning, and from which on
-    it always overturns; NaN if beyond the sweep).
+    it always overturns; NaN if beyond the IDA curve).
     """
     shaken = [
         (motion, corner, _filtered(motion, corner)) for motion in motions for corner in corners_hz
@@ -59,16 +59,16 @@ def filter_effect(
     rows = []
     for i, configuration in enumerate(bodies):
         for j, (motion, corner, _) in enumerate(shaken):
-            verdicts = result.overturned[i, j]
+            outcomes = result.overturned[i, j]
             rows.append(
                 {
                     "configuration": configuration,
                     "motion": motion.name,
-                    "event": motion.metadata.get("event", ""),
+                    "earthquake": motion.metadata.get("earthquake", ""),
                     "floor": motion.metadata.get("floor", ""),
                     "corner_hz": corner,
-                    "first_g": first_overturning(amplitudes_g, verdicts).upper_g,
-                    "always_g": always_overturning(amplitudes_g, verdicts).upper_g,
+                    "first_g": first_overturning(amplitudes_g, outcomes).upper_g,
+                    "always_g": always_overturning(amplitudes_g, outcomes).upper_g,
                 }
             )
     return pd.DataFrame(rows)

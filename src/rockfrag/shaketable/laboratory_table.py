@@ -2,12 +2,12 @@
 
 A CSV file with a header, one row a test; lines that start with ``#`` are comments. Columns:
 
-``test, object, pedestal, event, floor, lower_g, upper_g, censored, overturned_body, repetition, remark``
+``test, object, pedestal, earthquake, floor, lower_g, upper_g, censored, overturned_body, repetition, remark``
 
 ``lower_m_s2, upper_m_s2`` may stand for ``lower_g, upper_g``. ``lower`` is the largest amplitude
 survived, ``upper`` the one that overturned; a test that did not overturn has ``censored`` ``right`` and no
 ``upper``. A column ``amplitude_g`` or ``amplitude_m_s2`` may hold the figure the laboratory reports
-where it is not ``lower``, and ``motion`` the input motion where it is not ``<event>_<floor>``.
+where it is not ``lower``, and ``motion`` the input motion where it is not ``<earthquake>_<floor>``.
 """
 
 import math
@@ -25,7 +25,7 @@ _TEXT = (
     "test",
     "object",
     "pedestal",
-    "event",
+    "earthquake",
     "floor",
     "censored",
     "overturned_body",
@@ -34,8 +34,8 @@ _TEXT = (
 _BOUNDS = {"g": ("lower_g", "upper_g"), "m_s2": ("lower_m_s2", "upper_m_s2")}
 _OPTIONAL = ("remark", "motion", "amplitude_g", "amplitude_m_s2")
 
-READING = "measured"
-"""What the column ``reading`` of the table of tests says of measured tests."""
+DEFINITION = "measured"
+"""What the column ``definition`` of the table of tests says of measured tests."""
 
 
 def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:
@@ -147,7 +147,7 @@ def _test(row: _Row, unit: str) -> dict[str, object]:
         raise row.complaint(
             "overturned_body", "names what overturned, and is empty only where nothing did"
         )
-    event, floor = row.text("event"), row.text("floor")
+    earthquake, floor = row.text("earthquake"), row.text("floor")
     repetition = row.number("repetition", lambda n: n >= 1 and n == int(n), "a whole number from 1")
     if math.isnan(repetition):
         raise row.complaint("repetition", "is empty; number the repetitions from 1")
@@ -158,9 +158,9 @@ def _test(row: _Row, unit: str) -> dict[str, object]:
         "test": row.text("test"),
         "object": row.text("object"),
         "pedestal": pedestal,
-        "event": event,
+        "earthquake": earthquake,
         "floor": floor,
-        "motion": row.fields.get("motion") or f"{event}_{floor}",
+        "motion": row.fields.get("motion") or f"{earthquake}_{floor}",
         "lower_g": lower,
         "upper_g": upper,
         "amplitude_g": _reported(row, lower, censored),
@@ -168,7 +168,7 @@ def _test(row: _Row, unit: str) -> dict[str, object]:
         "overturned_body": body,
         "repetition": int(repetition),
         "remark": row.fields.get("remark", ""),
-        "reading": READING,
+        "definition": DEFINITION,
     }
 
 

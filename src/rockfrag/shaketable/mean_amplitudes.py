@@ -19,7 +19,7 @@ def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     tests
-        Tests of one reading: ``configuration``, ``object``, ``pedestal``, ``event``, ``floor``,
+        Tests of one definition: ``configuration``, ``object``, ``pedestal``, ``earthquake``, ``floor``,
         ``motion``, ``amplitude_g`` [g], missing where the test has none.
 
     Returns
@@ -42,8 +42,8 @@ def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     )
     rows = _means("configuration", known, ["configuration"], ["record", "floor"])
     rows += _means("floor", known, ["pedestal", "floor"], ["record", "object"])
-    for _, one in known.groupby("object", sort=False):
-        rows += _means("object_floor", one, ["pedestal", "floor"], ["record"])
+    for _, group in known.groupby("object", sort=False):
+        rows += _means("object_floor", group, ["pedestal", "floor"], ["record"])
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 

@@ -48,14 +48,14 @@ class Protocol:
     Attributes
     ----------
     steps
-        Ladder of amplitudes.
+        Series of levels of amplitudes.
     limit_g
         Amplitude at which the tests stop unless the shaker's limit comes first [g].
     repetitions
-        Number of times the ladder is climbed. Repetition r starts r/repetitions of a step later, as
+        Number of times the series of levels is climbed. Repetition r starts r/repetitions of a step later, as
         the gain of a force-guided shaker is not set to the digit, so repetitions sample what the
         coarseness of the steps does to the figure.
-    reading
+    definition
         Amplitude reported: the largest ``before`` overturning, or the one ``at`` overturning.
     measurement
         How the amplitude becomes a figure.
@@ -63,13 +63,13 @@ class Protocol:
     Raises
     ------
     InputError
-        If the limit or the number of repetitions is not positive, or the reading is unknown.
+        If the limit or the number of repetitions is not positive, or the definition is unknown.
     """
 
     steps: Steps
     limit_g: float = 2.0
     repetitions: int = 1
-    reading: Literal["before", "at"] = "before"
+    definition: Literal["before", "at"] = "before"
     measurement: Measurement = field(default_factory=Exact)
 
     def __post_init__(self) -> None:
@@ -81,8 +81,10 @@ class Protocol:
             raise InputError(
                 f"protocol: repetitions must be a whole number from 1, got {self.repetitions}."
             )
-        if self.reading not in ("before", "at"):
-            raise InputError(f"protocol: reading must be 'before' or 'at', got {self.reading!r}.")
+        if self.definition not in ("before", "at"):
+            raise InputError(
+                f"protocol: reading must be 'before' or 'at', got {self.definition!r}."
+            )
 
     def amplitudes(self, limit_g: float | None = None, repetition: int = 1) -> Floats:
         """Amplitudes to be tested [g], rising.
@@ -101,7 +103,7 @@ class Protocol:
         """Return the figure reported [g]; NaN if censored or nothing was survived."""
         if outcome.censored:
             return math.nan
-        if self.reading == "at":
+        if self.definition == "at":
             return outcome.upper_g
         return outcome.lower_g if outcome.lower_g > 0 else math.nan
 

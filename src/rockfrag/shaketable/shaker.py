@@ -147,7 +147,7 @@ class Demand:
     force: float
 
     def uses(self) -> dict[str, float]:
-        """Share of each limit that is used [-]."""
+        """Fraction of each limit that is used [-]."""
         shaker = self.shaker
         reach = 2 * self.excursion if shaker.start == "centred" else self.travel
         uses = {"stroke": reach / shaker.stroke, "force": self.force / shaker.force}
@@ -271,22 +271,22 @@ def shaker_table(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0
 
     Returns
     -------
-    One row a motion: ``motion``, ``event``, ``floor``, ``travel_cm_per_g``, ``excursion_cm_per_g``,
+    One row a motion: ``motion``, ``earthquake``, ``floor``, ``travel_cm_per_g``, ``excursion_cm_per_g``,
     ``velocity_cm_s_per_g``, ``force_n_per_g``, ``limit_g``, ``limited_by``.
     """
     rows = []
     for motion in motions:
-        one = shaker.demand(motion, 1.0, payload)
+        item = shaker.demand(motion, 1.0, payload)
         limit_g, governing = shaker.limit(motion, payload)
         rows.append(
             {
                 "motion": motion.name,
-                "event": motion.metadata.get("event", ""),
+                "earthquake": motion.metadata.get("earthquake", ""),
                 "floor": motion.metadata.get("floor", ""),
-                "travel_cm_per_g": one.travel * CENTIMETRES_PER_METRE,
-                "excursion_cm_per_g": one.excursion * CENTIMETRES_PER_METRE,
-                "velocity_cm_s_per_g": one.velocity * CENTIMETRES_PER_METRE,
-                "force_n_per_g": one.force,
+                "travel_cm_per_g": item.travel * CENTIMETRES_PER_METRE,
+                "excursion_cm_per_g": item.excursion * CENTIMETRES_PER_METRE,
+                "velocity_cm_s_per_g": item.velocity * CENTIMETRES_PER_METRE,
+                "force_n_per_g": item.force,
                 "limit_g": limit_g,
                 "limited_by": governing,
             }

@@ -1,4 +1,4 @@
-"""Ladders of amplitudes: how a laboratory raises the motion from test to test."""
+"""Series of levels of amplitudes: how a laboratory raises the motion from test to test."""
 
 import math
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from rockfrag.units import GRAVITY
 Floats = NDArray[np.float64]
 
 MOST_STEPS = 100_000
-"""A ladder with more steps than this is a slip: nobody shakes a block that often."""
+"""A series of levels with more steps than this is a slip: nobody shakes a block that often."""
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,8 @@ class GeometricSteps:
     def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
         """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
         ratio = limit_g / self.start_g
-        rungs = math.log(ratio) / math.log1p(self.growth) if ratio > 0 else -1.0
-        count = _count(rungs - phase)
+        levels = math.log(ratio) / math.log1p(self.growth) if ratio > 0 else -1.0
+        count = _count(levels - phase)
         return np.asarray(self.start_g * (1 + self.growth) ** (phase + np.arange(count)))
 
 
@@ -94,16 +94,16 @@ class ForceSteps:
     def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
         """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
         weight = self.moved_mass_kg * GRAVITY
-        ladder = LinearSteps(self.start_n / weight, self.step_n / weight)
-        return ladder.amplitudes(limit_g, phase)
+        intensity_levels = LinearSteps(self.start_n / weight, self.step_n / weight)
+        return intensity_levels.amplitudes(limit_g, phase)
 
 
 Steps = LinearSteps | GeometricSteps | ForceSteps
 
 
-def _count(rungs: float) -> int:
-    # the last rung counts when it meets the limit within rounding
-    count = math.floor(rungs + 1e-9) + 1
+def _count(levels: float) -> int:
+    # the last level counts when it meets the limit within rounding
+    count = math.floor(levels + 1e-9) + 1
     if count > MOST_STEPS:
         raise InputError(
             f"protocol: steps so small that {count} of them fit below the limit; enlarge them."

@@ -1,6 +1,6 @@
-"""Verdicts of amplitude sweeps as matrices, motion by amplitude, read from files of any size in little memory.
+"""Outcomes of incremental dynamic analyses as matrices, motion by amplitude, read from files of any size in little memory.
 
-A file of a sweep has a row per motion and amplitude, motion after motion, each raised through the same
+A file of an IDA curve has a row per motion and amplitude, motion after motion, each raised through the same
 amplitudes. What statistics need of it is a byte a history.
 """
 
@@ -18,13 +18,13 @@ from rockfrag.errors import InputError
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named
 from rockfrag.system.system import System
 
-ABOUT = ("configuration", "object", "pedestal", "event", "floor", "motion")
+ABOUT = ("configuration", "object", "pedestal", "earthquake", "floor", "motion")
 """Columns that are the same for all amplitudes of a motion."""
 
 
 @dataclass(frozen=True)
 class Swept:
-    """Verdicts of some motions, each at the same amplitudes.
+    """Outcomes of some motions, each at the same amplitudes.
 
     Attributes
     ----------
@@ -59,14 +59,14 @@ def fallen_names(system: System) -> tuple[str, ...]:
 
 
 def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swept]:
-    """Yield the verdicts of sweeps in parts of some motions, so that memory holds one part.
+    """Yield the outcomes of IDA curves in parts of some motions, so that memory holds one part.
 
     Parameters
     ----------
     paths
-        Files of sweeps, each of one configuration or of some motions of it.
+        Files of IDA curves, each of one configuration or of some motions of it.
     state
-        Name of the limit state that is asked for, which the sweeps count.
+        Name of the limit state that is asked for, which the IDA curves count.
 
     Raises
     ------
@@ -101,24 +101,24 @@ def _swept(part: pa.Table, reached: str, path: Path) -> Swept:
     return Swept(about, grid[0].copy(), found, fallen, body.dictionary.to_pylist())
 
 
-def swept_of(sweep: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:
-    """Yield each sweep of a table by itself, in the order in which they first appear.
+def swept_of(ida: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:
+    """Yield each IDA curve of a table by itself, in the order in which they first appear.
 
     Parameters
     ----------
-    sweep
+    ida
         Rows in any order, with ``amplitude_g`` and ``overturned_body``.
     keys
-        Columns that tell sweeps apart.
+        Columns that tell IDA curves apart.
     about
         Columns to keep.
     """
-    number, bodies = pd.factorize(sweep["overturned_body"])
-    overturned = sweep["overturned"].to_numpy(dtype=bool)
-    amplitude = sweep["amplitude_g"].to_numpy(dtype=np.float64)
-    for rows in sweep.groupby(keys, sort=False).indices.values():
+    number, bodies = pd.factorize(ida["overturned_body"])
+    overturned = ida["overturned"].to_numpy(dtype=bool)
+    amplitude = ida["amplitude_g"].to_numpy(dtype=np.float64)
+    for rows in ida.groupby(keys, sort=False).indices.values():
         ordered = rows[np.argsort(amplitude[rows], kind="stable")]
-        head = sweep[about].iloc[rows[:1]].reset_index(drop=True)
+        head = ida[about].iloc[rows[:1]].reset_index(drop=True)
         yield Swept(
             head, amplitude[ordered], overturned[None, ordered], number[None, ordered], list(bodies)
         )

@@ -7,7 +7,7 @@ limit is reached.
 test             name of the test
 configuration    what was tested: the object, and the pedestal that it stood on, if any
 object, pedestal  what is tested; ``P`` on its pedestal, ``NP`` without
-event, floor     earthquake; floor of the building, ``ground`` without one
+earthquake, floor     earthquake; floor of the building, ``ground`` without one
 motion           name of the input motion
 lower_g          largest amplitude known to be survived [g], 0 if none
 upper_g          amplitude at which it overturned [g]; NaN if it never did
@@ -27,7 +27,7 @@ COLUMNS = (
     "configuration",
     "object",
     "pedestal",
-    "event",
+    "earthquake",
     "floor",
     "motion",
     "lower_g",
@@ -37,7 +37,7 @@ COLUMNS = (
     "overturned_body",
     "repetition",
     "remark",
-    "reading",
+    "definition",
 )
 
 PEDESTALS = ("P", "NP")

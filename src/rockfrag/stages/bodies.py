@@ -21,13 +21,13 @@ def bodies_table(configurations: Sequence[System]) -> pd.DataFrame:
         acceleration of the floor at which anything starts to rock [m/s²].
     """
     rows = []
-    for one in configurations:
-        body, shape = one.bodies[-1], one.shapes[-1]
+    for configuration in configurations:
+        body, shape = configuration.bodies[-1], configuration.shapes[-1]
         rows.append(
             {
-                "configuration": one.name,
-                "object": one.names[-1],
-                "stands_on": "|".join(one.names[-2::-1]),
+                "configuration": configuration.name,
+                "object": configuration.names[-1],
+                "stands_on": "|".join(configuration.names[-2::-1]),
                 "width_m": body.width,
                 "height_m": body.height,
                 "mass_kg": body.mass,
@@ -35,7 +35,7 @@ def bodies_table(configurations: Sequence[System]) -> pd.DataFrame:
                 "critical_angle_rad": min(geometry.critical_angle(shape, k) for k in (+1, -1)),
                 "radius_m": geometry.radius(shape, 1),
                 "frequency_1_s": geometry.frequency(shape, 1, GRAVITY),
-                "uplift_m_s2": GRAVITY * min(uplift_ratios(one)),
+                "uplift_m_s2": GRAVITY * min(uplift_ratios(configuration)),
             }
         )
     return pd.DataFrame(rows)

@@ -13,6 +13,7 @@ from rockfrag.campaign.comparison import (
     judged_tests,
     paired_row,
 )
+from rockfrag.campaign.outcomes import simulate_tests
 from rockfrag.campaign.peaks import check_peaks, measured_peaks
 from rockfrag.campaign.repeats import REPEATS, majority_of_repeats
 from rockfrag.campaign.table_motions import missing_motions, table_motions
@@ -20,7 +21,6 @@ from rockfrag.campaign.tests import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.thresholds import cross_validated_threshold
 from rockfrag.campaign.trials import Trials, sample_trials
 from rockfrag.campaign.validation import Validated, cross_validate, plausible_trials
-from rockfrag.campaign.verdicts import simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.motions.processing import process
 from rockfrag.motions.pulses import commanded_cosine
@@ -34,14 +34,14 @@ from rockfrag.system.mesh import Shape, read_shape
 from rockfrag.units import GRAVITY
 
 OURS, VOTES = "rockfrag", "rockfrag by votes"
-"""Who gave the simulated verdicts, and the votes behind them, in the tables."""
+"""Who gave the simulated outcomes, and the votes behind them, in the tables."""
 
 TABLES = (
     *("tests", "trials", "agreement", "rocking", "fragility"),
     *("regions", "conditioning", "contact", "footprint"),
 )
 
-VARIED_SHARE = 4
+VARIED_FRACTION = 4
 """Other conditionings are tried with this fraction of the trials: they only show what the choice does."""
 REPLICATES = 400
 FEWEST_GROUPS = 2
@@ -53,25 +53,25 @@ def run(job: Job[CampaignStudy]) -> Results:
     campaign, motions = campaign_with_motions(study, job.log)
     thing = object_of(study)
     trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
-    verdicts, rocked = simulate_tests(trials, motions, job.threads)
+    outcomes, rocked = simulate_tests(trials, motions, job.threads)
     tests = campaign.tests
     measured = tests[MEASURED].to_numpy()
     groups = pd.factorize(tests["group"])[0]
-    validated = _validated(study, verdicts, measured, groups)
+    validated = _validated(study, outcomes, measured, groups)
     job.log.info(
         "%d tests under %d motions: %.1f %% of the outcomes right",
-        len(tests), groups.max() + 1, 100 * (validated.verdicts == measured).mean(),
+        len(tests), groups.max() + 1, 100 * (validated.outcomes == measured).mean(),
     )  # fmt: skip
     yield "tests", judged_tests(tests, validated, measured)
-    yield "trials", _judged_trials(trials, verdicts, measured, groups)
+    yield "trials", _judged_trials(trials, outcomes, measured, groups)
     yield "agreement", _agreement(study, campaign, validated, groups)
-    yield "rocking", _rocking(study, campaign, verdicts, rocked, groups)
+    yield "rocking", _rocking(study, campaign, outcomes, rocked, groups)
     yield "fragility", _fragility(study, campaign, validated, groups)
     first, second = (*campaign.measures, campaign.measures[0])[:2]
-    yield "regions", by_region(tests, first, second, validated.verdict, measured)
+    yield "regions", by_region(tests, first, second, validated.outcome, measured)
     yield "conditioning", _conditioning(job, campaign, thing, validated, groups)
-    yield "contact", _contact(study, thing, trials, verdicts, measured)
-    yield "footprint", _footprint(study, thing, trials, verdicts == measured, groups)
+    yield "contact", _contact(study, thing, trials, outcomes, measured)
+    yield "footprint", _footprint(study, thing, trials, outcomes == measured, groups)
 
 
 def campaign_with_motions(
@@ -157,16 +157,16 @@ def object_of(study: CampaignStudy) -> Shape | Block:
     )
 
 
-def _validated(study: CampaignStudy, verdicts: Any, measured: Any, groups: Any) -> Validated:
+def _validated(study: CampaignStudy, outcomes: Any, measured: Any, groups: Any) -> Validated:
     return cross_validate(
-        verdicts, measured, groups, folds=study.folds, repeats=study.repeats, seed=study.seed
+        outcomes, measured, groups, folds=study.folds, repeats=study.repeats, seed=study.seed
     )
 
 
-def _judged_trials(trials: Trials, verdicts: Any, measured: Any, groups: Any) -> pd.DataFrame:
+def _judged_trials(trials: Trials, outcomes: Any, measured: Any, groups: Any) -> pd.DataFrame:
     """Trials with their agreement over all tests: in sample, so it only shows where the plausible ones lie."""
-    right = (verdicts == measured).mean(axis=1)
-    plausible = plausible_trials(verdicts == measured, groups)
+    right = (outcomes == measured).mean(axis=1)
+    plausible = plausible_trials(outcomes == measured, groups)
     return trials.table.assign(right_in_sample=right, plausible=plausible).sort_values(
         "right_in_sample", ascending=False, kind="stable", ignore_index=True
     )
@@ -190,14 +190,14 @@ def _agreement(
             tests[both].to_numpy(), measured, groups, **chosen
         )
     codes = {f"code {name}": campaign.codes[name].to_numpy() for name in campaign.codes}
-    rows = [agreement_row(OURS, validated.verdicts, measured, groups, level)]
+    rows = [agreement_row(OURS, validated.outcomes, measured, groups, level)]
     if (majority := majority_of_repeats(tests["motion"].to_numpy(), measured)) is not None:
         rivals[REPEATS] = majority
-    ours = np.atleast_2d(validated.verdicts)
-    for name, verdicts in {**rivals, **codes}.items():
+    ours = np.atleast_2d(validated.outcomes)
+    for name, outcomes in {**rivals, **codes}.items():
         # other programs may have done a part of the tests only: all are compared on that part
-        given = ~np.isnan(np.atleast_2d(verdicts).astype(float)).any(axis=0)
-        theirs = np.atleast_2d(verdicts)[:, given].astype(bool)
+        given = ~np.isnan(np.atleast_2d(outcomes).astype(float)).any(axis=0)
+        theirs = np.atleast_2d(outcomes)[:, given].astype(bool)
         own_groups = pd.factorize(groups[given])[0]
         if own_groups.max(initial=0) < 1:
             raise InputError(
@@ -213,14 +213,14 @@ def _agreement(
 
 
 def _rocking(
-    study: CampaignStudy, campaign: Campaign, verdicts: Any, rocked: Any, groups: Any
+    study: CampaignStudy, campaign: Campaign, outcomes: Any, rocked: Any, groups: Any
 ) -> pd.DataFrame:
     """Whether the object rocked, where the laboratory noted it: trials chosen by overturning vote on it."""
     columns = ["who", "right", "lower", "upper", "false_alarms", "missed", "tests"]
     if "rocked" not in campaign.tests:
         return pd.DataFrame(columns=columns)
     found = cross_validate(
-        verdicts,
+        outcomes,
         campaign.tests[MEASURED].to_numpy(),
         groups,
         folds=study.folds,
@@ -229,7 +229,7 @@ def _rocking(
         asked=rocked,
     )
     noted = campaign.tests["rocked"].to_numpy()
-    return pd.DataFrame([agreement_row(OURS, found.verdicts, noted, groups, study.confidence)])
+    return pd.DataFrame([agreement_row(OURS, found.outcomes, noted, groups, study.confidence)])
 
 
 def _fragility(
@@ -240,7 +240,7 @@ def _fragility(
         fragility_beside(
             campaign.tests[name].to_numpy(),
             measured,
-            {OURS: validated.verdict, VOTES: validated.mean_votes},
+            {OURS: validated.outcome, VOTES: validated.mean_votes},
             groups,
             level=study.confidence,
             replicates=REPLICATES,
@@ -260,22 +260,22 @@ def _conditioning(
     rows = [
         {
             **agreement_row(
-                "as configured", validated.verdicts, measured, groups, study.confidence
+                "as configured", validated.outcomes, measured, groups, study.confidence
             ),
             "trials": study.trials,
         }
     ]
-    fewer = max(16, study.trials // VARIED_SHARE)
+    fewer = max(16, study.trials // VARIED_FRACTION)
     trials = sample_trials(thing, study.unknowns, fewer, study.seed)
     for name, steps in {
         "as configured, fewer trials": study.conditioning,
         **study.varied_conditioning,
     }.items():
-        verdicts, _ = simulate_tests(trials, _motions(study, campaign, steps), job.threads)
-        found = _validated(study, verdicts, measured, groups)
+        outcomes, _ = simulate_tests(trials, _motions(study, campaign, steps), job.threads)
+        found = _validated(study, outcomes, measured, groups)
         rows.append(
             {
-                **agreement_row(name, found.verdicts, measured, groups, study.confidence),
+                **agreement_row(name, found.outcomes, measured, groups, study.confidence),
                 "trials": fewer,
             }
         )
@@ -287,9 +287,9 @@ SCANS = 50
 
 
 def _contact(
-    study: CampaignStudy, thing: Shape | Block, trials: Trials, verdicts: Any, measured: Any
+    study: CampaignStudy, thing: Shape | Block, trials: Trials, outcomes: Any, measured: Any
 ) -> pd.DataFrame:
-    """How base and verdicts depend on the contact tolerance; the critical angle with scans repeated."""
+    """How base and outcomes depend on the contact tolerance; the critical angle with scans repeated."""
     columns = [
         "contact_tolerance_mm",
         "worst_direction_deg",
@@ -327,8 +327,8 @@ def _contact(
             [
                 near.sum(),
                 width[near].mean(),
-                verdicts[near].mean(),
-                (verdicts[near] == measured).mean(),
+                outcomes[near].mean(),
+                (outcomes[near] == measured).mean(),
             ]
             if near.any()
             else [0, float("nan"), float("nan"), float("nan")]
@@ -346,8 +346,8 @@ def _footprint(
         return pd.DataFrame(columns=columns)
     likely = trials.table.loc[plausible_trials(right, groups), "contact_tolerance_mm"]
     parts = [("outline", float("nan"), thing.outline)]
-    for name, share in (("contact, low", 0.05), ("contact", 0.5), ("contact, high", 0.95)):
-        tolerance = float(likely.quantile(share))
+    for name, fraction in (("contact, low", 0.05), ("contact", 0.5), ("contact, high", 0.95)):
+        tolerance = float(likely.quantile(fraction))
         parts.append((name, tolerance, thing.contact_polygon(tolerance / 1e3)))
     return pd.concat(
         [

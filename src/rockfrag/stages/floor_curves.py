@@ -16,9 +16,9 @@ from rockfrag.system.system import System, uplift_ratios
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
-    from rockfrag.fragility.sweep_data import SweepData
+    from rockfrag.fragility.ida_data import IdaData
 
-    StateSweeps = dict[str, dict[tuple[str, str], SweepData]]
+    StateIdaCurves = dict[str, dict[tuple[str, str], IdaData]]
 
 
 def floor_measures(level: int) -> tuple[str, ...]:
@@ -27,11 +27,11 @@ def floor_measures(level: int) -> tuple[str, ...]:
     They are those that other programs read: of the ground OpenQuake's, of a floor demands.
     """
     known = intensity_measures()
-    return tuple(one.column for one in known if (one.demand if level else one.openquake))
+    return tuple(item.column for item in known if (item.demand if level else item.openquake))
 
 
 def floor_curves(
-    sweeps: "StateSweeps",
+    ida_curves: "StateIdaCurves",
     measures: pd.DataFrame,
     floors: Mapping[str, int],
     systems: Mapping[str, System],
@@ -43,9 +43,9 @@ def floor_curves(
 
     Parameters
     ----------
-    sweeps
-        For each limit state, whether it was reached: sweeps of each configuration on each floor, which know the
-        measures of that floor.
+    ida_curves
+        For each limit state, whether it was reached: IDA curves of each configuration on each floor, which know
+        the measures of that floor.
     measures
         Intensity measures of the motions as recorded.
     floors
@@ -65,31 +65,31 @@ def floor_curves(
     curves
         One row per configuration, floor, measure and limit state: ``configuration``, ``floor``,
         ``floor_level``, ``measure`` (column of ``measures``), ``state`` (name of a limit state) and the columns of
-        :func:`rockfrag.fragility.sweeps.fragility_table`. A state that sweeps count has the mean probability over
-        all analyses.
+        :func:`rockfrag.fragility.ida_curves.fragility_table`. A state that IDA curves count has the mean
+        probability over all analyses.
         Rocking starts at an exact peak acceleration, whose value in another measure varies from motion to
         motion.
-    shares
-        Points of the curves without a form, of those that are rejected: see
-        :func:`rockfrag.fragility.drawn_curves.share_points`.
+    fractions
+        Points of the non-parametric fragility function, of those that are rejected: see
+        :func:`rockfrag.fragility.drawn_curves.fraction_points`.
     """
     from rockfrag.fragility import fragility_of, fragility_row, with_measures
-    from rockfrag.fragility.drawn_curves import share_points
+    from rockfrag.fragility.drawn_curves import fraction_points
     from rockfrag.fragility.states import fit_uplift
 
-    floor_labels = {one.label: one.floor_label for one in intensity_measures()}
-    shares = []
+    floor_labels = {measure.label: measure.floor_label for measure in intensity_measures()}
+    fractions = []
     rows = []
-    for (name, floor), sweep in sweeps[OVERTURNS].items():
+    for (name, floor), ida in ida_curves[OVERTURNS].items():
         height = floors[floor]
         columns = floor_measures(height)
-        motions = sweep.motions()
+        motions = ida.motions()
         threshold = min(uplift_ratios(systems[name]))
         at_uplift = with_measures(motions.assign(amplitude_g=threshold), measures, [*columns])
         for column, state in product(columns, limit_states()):
             about = {"configuration": name, "floor": floor, "floor_level": height}
             about |= {"measure": column, "state": state.name}
-            own = sweeps.get(state.name, {}).get((name, floor))
+            own = ida_curves.get(state.name, {}).get((name, floor))
             if own is not None:
                 found = fragility_of(own.outcomes(column), level=level)
             elif state.exact and rocks_at_once:
@@ -98,23 +98,23 @@ def floor_curves(
                 continue
             estimator = "exact_threshold" if state.exact else "mean_probability"
             row = fragility_row(found, about, estimator, record_set)
-            points = share_points({**about, "estimator": estimator}, found)
+            points = fraction_points({**about, "estimator": estimator}, found)
             if height > 0:
                 row["im"] = floor_labels[str(row["im"])]
                 points["im"] = row["im"]
             rows.append(row)
-            shares.append(points)
-    return pd.DataFrame(rows), pd.concat(shares, ignore_index=True)
+            fractions.append(points)
+    return pd.DataFrame(rows), pd.concat(fractions, ignore_index=True)
 
 
 def export_curves(
-    curves: pd.DataFrame, folder: Path, shares: pd.DataFrame | None = None
+    curves: pd.DataFrame, folder: Path, fractions: pd.DataFrame | None = None
 ) -> list[str]:
     """Write the curves for OpenQuake and SimCenter; return the names of the files.
 
     One file per measure and floor, as both formats take one curve per object. OpenQuake knows motions of
     the ground only. Configurations without a curve are left out, and a measure without any has no file. Of
-    rejected curves the points without a form are written, as far as ``shares`` has them.
+    rejected curves the points without a form are written, as far as ``fractions`` has them.
     """
     from rockfrag.fragility import write_nrml, write_simcenter
 
@@ -126,19 +126,21 @@ def export_curves(
         if usable.empty:
             continue
         points = None
-        if shares is not None:
-            points = shares[(shares["floor"] == floor) & (shares["measure"] == column)]
+        if fractions is not None:
+            points = fractions[(fractions["floor"] == floor) & (fractions["measure"] == column)]
         stem = f"fragility_{_stem(str(usable['im'].iloc[0]))}"
         if height != 0:
             stem += f"_{file_name(str(floor))}"
         if height == 0:
             # the formats know the ground by an empty floor, whatever its user calls it
             write_nrml(
-                usable.assign(floor=""), folder / f"{stem}.xml", identifier=stem, shares=points
+                usable.assign(floor=""), folder / f"{stem}.xml", identifier=stem, fractions=points
             )
             written.append(f"{stem}.xml")
         if column in floor_measures(1):
-            write_simcenter(usable, folder / f"{stem}.csv", folder / f"{stem}.json", shares=points)
+            write_simcenter(
+                usable, folder / f"{stem}.csv", folder / f"{stem}.json", fractions=points
+            )
             written += [f"{stem}.csv", f"{stem}.json"]
     return written
 

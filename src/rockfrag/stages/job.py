@@ -21,7 +21,7 @@ Results = Iterator[tuple[str, "pd.DataFrame | list[Motion]"]]
 _LIBRARIES_MB = 1500
 """Memory of a process that has loaded and compiled all that a stage uses [MiB]."""
 
-_BYTES_A_SWEEP = 20_000
+_BYTES_A_IDA = 20_000
 """Memory for what statistics know of a configuration under a motion, whatever the number of amplitudes."""
 
 
@@ -101,5 +101,5 @@ class Job(Generic[S]):
 
 
 def memory_mb(study: Any) -> int:
-    """Memory that a cluster should lend to a job [MiB]: libraries, and what is known of every sweep."""
-    return _LIBRARIES_MB + int(getattr(study, "sweeps", 0) * _BYTES_A_SWEEP / 2**20)
+    """Memory that a cluster should lend to a job [MiB]: libraries, and what is known of every IDA curve."""
+    return _LIBRARIES_MB + int(getattr(study, "ida_curves", 0) * _BYTES_A_IDA / 2**20)

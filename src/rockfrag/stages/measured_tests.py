@@ -9,14 +9,14 @@ from rockfrag.stages.job import Job, Results
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag.study.study import Study
 
-_KEY = ("object", "pedestal", "event", "floor")
+_KEY = ("object", "pedestal", "earthquake", "floor")
 _CURVES = ("configuration", "im", "unit", "theta", "theta_lower", "theta_upper", "beta")
 
 
 def run(job: Job[Study]) -> Results:
     """Yield the laboratory's tests, and what their statistics say."""
+    from rockfrag.shaketable.definitions import DEFINITION
     from rockfrag.shaketable.laboratory_table import read_measured
-    from rockfrag.shaketable.readings import READING
 
     study = job.study
     if study.more.measured_tests is None:
@@ -24,7 +24,7 @@ def run(job: Job[Study]) -> Results:
     simulated = job.table("tests")
     found = measured_tables(
         read_measured(study.more.measured_tests),
-        simulated[simulated["reading"] == READING],
+        simulated[simulated["definition"] == DEFINITION],
         {name: block.slenderness for name, block in study.specimens.items()},
         study.seed,
         study.fragility.confidence,
@@ -47,7 +47,7 @@ def measured_tables(
     measured
         Table of tests as :func:`rockfrag.shaketable.read_measured` returns it.
     simulated
-        Tests of one reading of the simulation.
+        Tests of one definition of the simulation.
     slenderness
         Height over width of each object [-].
     seed
@@ -61,7 +61,7 @@ def measured_tables(
     in ``measured/notes``.
     """
     notes: list[str] = []
-    effects = pd.DataFrame(columns=["reading", "scope"])
+    effects = pd.DataFrame(columns=["definition", "scope"])
     if measured.empty:
         notes.append("The table of measured tests has no rows yet.")
     try:

@@ -16,9 +16,9 @@ from datetime import UTC, datetime
 import pandas as pd
 
 from rockfrag.campaign.blind import BlindAnswer, blind_answer, model_error
+from rockfrag.campaign.outcomes import simulate_tests
 from rockfrag.campaign.standing import kind_of, unknowns_of, ways_to_stand
 from rockfrag.campaign.tests import MEASURED, Campaign
-from rockfrag.campaign.verdicts import simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LightBodies

@@ -25,13 +25,13 @@ def run(job: Job[Study]) -> Results:
 
     study = job.study
     rows, felt, left_out = _felt(job)
-    records = [one.record for one in felt]
+    records = [item.record for item in felt]
     yield "motions/records", records
-    yield "motions/ground", [one.ground for one in felt]
-    floors = [floor for one in felt for floor in one.floors]
+    yield "motions/ground", [item.ground for item in felt]
+    floors = [floor for item in felt for floor in item.floors]
     yield "motions/floors", floors
     if study.vertical:
-        yield "motions/vertical", [floor for one in felt for floor in one.vertical]
+        yield "motions/vertical", [floor for item in felt for floor in item.vertical]
     if study.keep_going:
         yield LEFT_OUT, pd.DataFrame(left_out, columns=["motion", "reason"], dtype=str)
     if study.write_motions is not None:
@@ -43,7 +43,9 @@ def run(job: Job[Study]) -> Results:
     if len(pairs):
         # what no direction decides is known of the ground alone
         grounds = {
-            one.metadata["ground_motion"]: one.name for one in floors if one.metadata["level"] == 0
+            floor.metadata["ground_motion"]: floor.name
+            for floor in floors
+            if floor.metadata["level"] == 0
         }
         pairs = pairs.assign(name=pairs["name"].map(grounds)).dropna(subset="name")
         table = table.merge(pairs, on="name", how="left")

@@ -1,4 +1,4 @@
-"""The pedestal's effect, for each reading of the tests, as tidy tables."""
+"""The pedestal's effect, for each definition of the tests, as tidy tables."""
 
 from collections.abc import Mapping
 
@@ -8,7 +8,7 @@ from rockfrag.errors import InputError
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 
-PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_event", "ranks", "notes")
+PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_earthquake", "ranks", "notes")
 """Tables of :func:`pedestal_tables`, each written under ``pedestal/``."""
 
 
@@ -18,13 +18,13 @@ def run(job: Job[Study]) -> Results:
 
     slenderness = {name: block.slenderness for name, block in job.study.specimens.items()}
     tests, origin = with_counterparts(job.table("tests"), job.study.counterparts)
-    slenderness |= {name: slenderness[one] for name, one in origin.items()}
+    slenderness |= {name: slenderness[item] for name, item in origin.items()}
     found = pedestal_tables(tests, job.study.seed, slenderness)
     for name, table in found.items():
         yield f"pedestal/{name}", table
     pairs = found["pairs"]
-    # every reading of the amplitudes has the same pairs
-    several = pairs.groupby("reading").size()
+    # every definition of the amplitudes has the same pairs
+    several = pairs.groupby("definition").size()
     job.log.info(
         "pairs of an arrangement and its counterpart: %d", several.max() if len(several) else 0
     )
@@ -38,7 +38,7 @@ def pedestal_tables(
     Parameters
     ----------
     tests
-        Table of tests with the column ``reading``.
+        Table of tests with the column ``definition``.
     seed
         Seed of the bootstrap.
     slenderness
@@ -47,7 +47,7 @@ def pedestal_tables(
     Returns
     -------
     The tables named in ``PEDESTAL_TABLES``, see :class:`rockfrag.pedestal.PedestalStudy`, each with
-    the column ``reading`` first.
+    the column ``definition`` first.
     """
     from rockfrag.pedestal import study_pedestal
 
@@ -56,7 +56,7 @@ def pedestal_tables(
     parts: dict[str, list[pd.DataFrame]] = {name: [] for name in PEDESTAL_TABLES}
     # a table that cannot follow the weakest motion has tested nothing
     untested = (tests["censored"] == "right") & (tests["lower_g"] == 0)
-    for reading, rows in tests[~untested].groupby("reading", sort=False):
+    for definition, rows in tests[~untested].groupby("definition", sort=False):
         if rows["pedestal"].nunique() < 2:
             continue
         found = study_pedestal(rows, seed=seed, slenderness=slenderness)
@@ -64,12 +64,12 @@ def pedestal_tables(
             "pairs": found.pairs.table,
             "effects": found.effects,
             "whole": found.whole,
-            "without_event": found.without_event,
+            "without_earthquake": found.without_earthquake,
             "ranks": found.ranks,
             "notes": pd.DataFrame({"note": list(found.notes)}),
         }.items():
             labelled = table.copy()
-            labelled.insert(0, "reading", reading)
+            labelled.insert(0, "definition", definition)
             parts[name].append(labelled)
     if not parts["pairs"]:
         raise InputError("tests: no reading has tests with and without a pedestal.")

@@ -48,5 +48,7 @@ def same_numbers(environment: Mapping[str, str]) -> dict[str, str]:
 
 
 def _with_c_library(tunables: str) -> str:
-    kept = [one for one in tunables.split(":") if one and not one.startswith("glibc.cpu.hwcaps=")]
+    kept = [
+        item for item in tunables.split(":") if item and not item.startswith("glibc.cpu.hwcaps=")
+    ]
     return ":".join([*kept, _C_LIBRARY])

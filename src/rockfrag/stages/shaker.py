@@ -19,19 +19,19 @@ def limits_table(study: Study, motions: Sequence[Motion]) -> pd.DataFrame:
 
     if study.more.shaker is None:
         raise ValueError("the study has no shaker")
-    payload = max(one.mass for one in study.configurations)
+    payload = max(configuration.mass for configuration in study.configurations)
     return shaker_table(study.more.shaker, motions, payload)
 
 
 def limited_tests(
-    sweeps: Iterable[Swept], protocol: Protocol, limits: pd.DataFrame
+    ida_curves: Iterable[Swept], protocol: Protocol, limits: pd.DataFrame
 ) -> pd.DataFrame:
     """Read the step protocol with the shaker's limits.
 
     Parameters
     ----------
-    sweeps
-        Sweeps of all configurations.
+    ida_curves
+        IDA curves of all configurations.
     protocol
         Protocol of the laboratory.
     limits
@@ -41,11 +41,11 @@ def limited_tests(
     -------
     Table of tests whose reading is ``LIMITED``; the remark of a test that the shaker ended says so.
     """
-    from rockfrag.shaketable.readings import READING, tests_from_swept
+    from rockfrag.shaketable.definitions import DEFINITION, tests_from_swept
 
     known = limits.set_index("motion").to_dict("index")
     largest = dict(zip(limits["motion"], limits["limit_g"].astype(float), strict=True))
-    tests = tests_from_swept(sweeps, protocol, readings=[READING], limits_g=largest)
+    tests = tests_from_swept(ida_curves, protocol, definitions=[DEFINITION], limits_g=largest)
     remarks = []
     for test in tests.to_dict("records"):
         limit = known[test["motion"]]
@@ -55,4 +55,4 @@ def limited_tests(
             if ended
             else test["remark"]
         )
-    return tests.assign(remark=remarks, reading=LIMITED)
+    return tests.assign(remark=remarks, definition=LIMITED)

@@ -26,7 +26,7 @@ def validity_table(
     Parameters
     ----------
     tests
-        Tests of one reading, one repetition.
+        Tests of one definition, one repetition.
     configurations
         What was tested.
     motions
@@ -39,7 +39,7 @@ def validity_table(
     Returns
     -------
     One row per test with an amplitude, ``MOST_TESTED`` of a configuration at most: ``test``, ``object``,
-    ``pedestal``, ``event``, ``floor``, ``motion``, ``amplitude_g``, ``friction_demand`` (largest |T|/N at any
+    ``pedestal``, ``earthquake``, ``floor``, ``motion``, ``amplitude_g``, ``friction_demand`` (largest |T|/N at any
     interface [-]), ``least_normal_force_n`` (least N at any interface [N]; ≤ 0 where a block would have jumped)
     and ``unstable_distance`` (how near the response came to an unstable equilibrium).  With friction also
     ``peak_slip_m``, the largest displacement along any interface, and ``flights``.
@@ -47,16 +47,16 @@ def validity_table(
     known = tests[tests["amplitude_g"].notna()]
     known = known[_looked_at(known["configuration"])].reset_index(drop=True)
     columns = ["friction_demand", "least_normal_force_n", "unstable_distance"]
-    if any(one.loose for one in configurations):
+    if any(configuration.loose for configuration in configurations):
         columns += ["peak_slip_m", "flights"]
     parts = [pd.DataFrame(columns=columns)]
-    for one in configurations:
-        rows = known[known["configuration"] == one.name]
+    for configuration in configurations:
+        rows = known[known["configuration"] == configuration.name]
         if len(rows):
-            forces = _forces(one, *_shaken(rows, motions, vertical), threads)
+            forces = _forces(configuration, *_shaken(rows, motions, vertical), threads)
             parts.append(forces.set_index(rows.index))
     found = pd.concat(parts[1:] or parts)[columns].sort_index()
-    keys = ["test", "object", "pedestal", "event", "floor", "motion", "amplitude_g"]
+    keys = ["test", "object", "pedestal", "earthquake", "floor", "motion", "amplitude_g"]
     return pd.concat([known[keys], found], axis=1)
 
 
@@ -89,18 +89,18 @@ def _shaken(
 
 
 def _forces(
-    one: System,
+    system: System,
     motions: list[Motion],
     vertical: list[NDArray[np.float64]] | None,
     threads: int,
 ) -> pd.DataFrame:
     """Forces of a configuration under motions as they are, a row each."""
-    if one.loose or one.count > 2:
-        return _forces_in_contact(one, motions, vertical)
+    if system.loose or system.count > 2:
+        return _forces_in_contact(system, motions, vertical)
     from rockfrag.rocking import overturns
 
     found = overturns(
-        one,
+        system,
         motions,
         vertical=vertical,
         forces=True,
@@ -116,14 +116,14 @@ def _forces(
 
 
 def _forces_in_contact(
-    one: System, motions: list[Motion], vertical: list[NDArray[np.float64]] | None
+    system: System, motions: list[Motion], vertical: list[NDArray[np.float64]] | None
 ) -> pd.DataFrame:
     from rockfrag.rocking import simulate
 
     rows = []
     for place, motion in enumerate(motions):
         response = simulate(
-            one,
+            system,
             motion,
             vertical=None if vertical is None else vertical[place],
         )
@@ -133,19 +133,19 @@ def _forces_in_contact(
                 "least_normal_force_n": float(np.min(response.least_normal_force)),
                 "unstable_distance": response.unstable_distance,
                 "peak_slip_m": float(np.abs(response.slip).max()),
-                "flights": int((response.events["kind"] == "flight").sum()),
+                "flights": int((response.contact_events["kind"] == "flight").sum()),
             }
         )
     return pd.DataFrame(rows)
 
 
 def sliding_table(files: Iterable[Path]) -> pd.DataFrame:
-    """Count what friction did in the sweeps of a study.
+    """Count what friction did in the IDA curves of a study.
 
     Parameters
     ----------
     files
-        Files of the sweeps of all configurations, with slip; one is in memory at a time.
+        Files of the IDA curves of all configurations, with slip; one is in memory at a time.
 
     Returns
     -------
@@ -167,15 +167,15 @@ _SLIDING = (
 )
 
 
-def _sliding(sweeps: pd.DataFrame) -> pd.DataFrame:
-    fell, fell_rough = sweeps["overturned"], sweeps["overturned_without_sliding"]
-    peak = sweeps["peak_slip_m"]
+def _sliding(ida_curves: pd.DataFrame) -> pd.DataFrame:
+    fell, fell_rough = ida_curves["overturned"], ida_curves["overturned_without_sliding"]
+    peak = ida_curves["peak_slip_m"]
     each = pd.DataFrame(
         {
-            "configuration": sweeps["configuration"],
+            "configuration": ida_curves["configuration"],
             "cases": 1,
             "slid": peak > 0,
-            "flew": sweeps["flights"] > 0,
+            "flew": ida_curves["flights"] > 0,
             "largest_slip_m": peak,
             "saved": fell_rough & ~fell,
             "felled": fell & ~fell_rough,

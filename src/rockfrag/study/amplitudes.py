@@ -1,4 +1,4 @@
-"""Amplitudes of a sweep: peaks of the input motion in equal ratios."""
+"""Amplitudes of an IDA curve: peaks of the input motion in equal ratios."""
 
 import math
 from dataclasses import dataclass

@@ -40,7 +40,7 @@ class CampaignStudy:
     fetch
         Public files that are fetched if they are not there.
     tests, columns, other_codes
-        Table of tests, its columns, and a table of other programs' verdicts or None.
+        Table of tests, its columns, and a table of other programs' outcomes or None.
     motions, unit, dt_s, channel
         Where the table's motions are, and what their files do not state.
     pulse_cycles
@@ -96,7 +96,7 @@ class CampaignStudy:
         named = (self.tests, self.other_codes, self.mesh)
         paths = [path for path in named if path is not None]
         paths += [Path(self.motions)] if self.motions.endswith(".npz") else []
-        fetched = {one.path for one in self.fetch}
+        fetched = {item.path for item in self.fetch}
         return [str(path) for path in paths if path not in fetched]
 
 
@@ -117,10 +117,10 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     content = checked(content, "campaign", str(source))
     campaign, thing = content[CAMPAIGN_KEY], content["object"]
     fetch = tuple(
-        PublicFile(one["url"], one["sha256"], _kept(source, i, one["file"]))
-        for i, one in enumerate(content.get("fetch", ()))
+        PublicFile(item["url"], item["sha256"], _kept(source, i, item["file"]))
+        for i, item in enumerate(content.get("fetch", ()))
     )
-    fetched = {one.path for one in fetch}
+    fetched = {item.path for item in fetch}
     _check_object(source, thing, content["unknowns"])
     _check_columns(source, campaign["columns"], isinstance(campaign["motions"], Mapping))
     conditioning = checked_steps(source, "conditioning", content.get("conditioning", ()))
@@ -264,6 +264,6 @@ def _check_columns(source: Path, columns: Mapping[str, str], pulses: bool) -> No
         )
     if ("overturned" in columns) == all(brackets):
         raise InputError(
-            f"{source}: key campaign.columns: give either overturned, a verdict per test, or lower_g and upper_g, "
+            f"{source}: key campaign.columns: give either overturned, an outcome per test, or lower_g and upper_g, "
             "between which the object overturned."
         )

@@ -136,14 +136,14 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         write_motions=content.get("write_motions"),
         more=supplementary_from(content, source),
         counterparts={
-            one.name: counterparts[one.name]
-            for one in configurations
-            if counterparts.get(one.name) in {other.name for other in configurations}
+            configuration.name: counterparts[configuration.name]
+            for configuration in configurations
+            if counterparts.get(configuration.name) in {other.name for other in configurations}
         },
     )
     asked = plugins_asked(content)
     study = replace(
-        study, added={name: one.settings(content, study) for name, one in asked.items()}
+        study, added={name: item.settings(content, study) for name, item in asked.items()}
     )
     _check_names(study)
     _check_records_exist(study)
@@ -176,7 +176,7 @@ def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.
 def _chosen(
     source: Path, known: Sequence[System], names: Sequence[str] | None
 ) -> tuple[System, ...]:
-    by_name = {one.name: one for one in known}
+    by_name = {item.name: item for item in known}
     for i, name in enumerate(names or ()):
         if name not in by_name:
             raise InputError(
@@ -205,7 +205,7 @@ def _measured(
         measured[name] = tuple(value) if isinstance(value, list) else value
     law = content.get("law", law_names()[0])
     try:
-        return tuple(with_restitution(one, measured, law) for one in chosen)
+        return tuple(with_restitution(item, measured, law) for item in chosen)
     except InputError as error:
         raise InputError(f"{key}: {error}") from error
 
@@ -217,7 +217,7 @@ def _on_surfaces(
     if content is None:
         return configurations
     try:
-        return tuple(with_friction(one, content) for one in configurations)
+        return tuple(with_friction(configuration, content) for configuration in configurations)
     except InputError as error:
         raise InputError(f"{source}: key friction: {error}") from error
 

@@ -29,8 +29,8 @@ class MeasuredTable:
         CSV with one row per test.
     measures
         For each intensity measure the columns and numbers whose product it is.
-    overturned, motion, event, given
-        Columns: verdict, input motion, earthquake, and those against which sufficiency is tested.
+    overturned, motion, earthquake, given
+        Columns: outcome, input motion, earthquake, and those against which sufficiency is tested.
     confidence
         Level of the intervals.
     replicates
@@ -45,7 +45,7 @@ class MeasuredTable:
     measures: Mapping[str, tuple[str | float, ...]]
     overturned: str
     motion: str | None
-    event: str | None
+    earthquake: str | None
     given: tuple[str, ...]
     confidence: float
     replicates: int
@@ -88,7 +88,7 @@ def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]
         measures={name: tuple(factors) for name, factors in content["measures"].items()},
         overturned=columns["overturned"],
         motion=columns.get("motion"),
-        event=columns.get("event"),
+        earthquake=columns.get("earthquake"),
         given=tuple(columns.get("given", ())),
         confidence=content["confidence"],
         replicates=content.get("replicates", 200),
@@ -102,7 +102,7 @@ def _check_columns(source: Path, table: Path, content: Mapping[str, Any]) -> Non
     columns = content["columns"]
     wanted = {
         f"columns.{key}": columns[key]
-        for key in ("overturned", "motion", "event")
+        for key in ("overturned", "motion", "earthquake")
         if key in columns
     }
     wanted |= {f"columns.given[{i}]": name for i, name in enumerate(columns.get("given", ()))}

@@ -69,6 +69,6 @@ def _read_all(study: Study) -> list[str]:
                 raise InputError(f"{where}: {error}") from None
             warnings.append(f"{where} will be left out: {error}")
             continue
-        if doubt := peak_warning(motion.pga):
-            warnings.append(f"{where}: {doubt}.")
+        if quality_flag := peak_warning(motion.pga):
+            warnings.append(f"{where}: {quality_flag}.")
     return warnings

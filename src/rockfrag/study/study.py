@@ -21,13 +21,13 @@ GROUND = "ground"
 """Label of the only floor of a study without a building."""
 
 MOST_ROWS = 100_000
-"""Most verdicts of a configuration that are kept as rows of a table; more are counted."""
+"""Most outcomes of a configuration that are kept as rows of a table; more are counted."""
 
 HISTORIES_A_JOB = 1_000_000
 """Response histories of a job: minutes of one core."""
 
 MOST_JOBS = 200
-"""Most jobs of the sweeps: what Snakemake plans in a second or two. A larger study has larger jobs."""
+"""Most jobs of the IDA curves: what Snakemake plans in a second or two. A larger study has larger jobs."""
 
 RECORDS_FOLDER = "resources/records"
 """Where fetched records are kept, from the folder in which the workflow runs."""
@@ -119,20 +119,20 @@ class Study:
 
     @property
     def histories(self) -> int:
-        """Number of response histories of its sweeps."""
-        return self.sweeps * len(self.amplitudes.values_g)
+        """Number of response histories of its IDA curves."""
+        return self.ida_curves * len(self.amplitudes.values_g)
 
     @property
-    def sweeps(self) -> int:
-        """Number of its sweeps: configurations under motions."""
+    def ida_curves(self) -> int:
+        """Number of its IDA curves: configurations under motions."""
         return len(self.catalogue) * len(self.floors) * len(self.configurations)
 
-    def doubts(self) -> list[str]:
+    def quality_flags(self) -> list[str]:
         """Warnings about sizes that look as if they were in another unit."""
         return [
-            f"{self.specimens_file}, {name}: {doubt}."
+            f"{self.specimens_file}, {name}: {quality_flag}."
             for name, block in self.specimens.items()
-            if (doubt := size_warning(block.width, block.height))
+            if (quality_flag := size_warning(block.width, block.height))
         ]
 
     @property
@@ -143,14 +143,22 @@ class Study:
     @property
     def with_and_alone(self) -> bool:
         """Whether an object is compared with itself alone on the floor."""
-        lone = {one.names[-1] for one in self.configurations if one.count == 1}
-        rest = (one for one in self.configurations if one.name not in self.counterparts)
-        return any(one.names[-1] in lone for one in rest if one.count > 1)
+        lone = {
+            configuration.names[-1]
+            for configuration in self.configurations
+            if configuration.count == 1
+        }
+        rest = (
+            configuration
+            for configuration in self.configurations
+            if configuration.name not in self.counterparts
+        )
+        return any(item.names[-1] in lone for item in rest if item.count > 1)
 
     @property
     def simulated_in_page(self) -> bool:
         """Whether the simulation in a page has its outcomes: horizontal rocking alone, of one or two bodies."""
-        few = any(one.count < 3 for one in self.configurations)
+        few = any(configuration.count < 3 for configuration in self.configurations)
         return few and not (self.slides or self.vertical)
 
     @property
@@ -165,34 +173,41 @@ class Study:
 
     @property
     def is_large(self) -> bool:
-        """Whether the verdicts of a configuration are counted, as they are too many for a table in memory."""
+        """Whether the outcomes of a configuration are counted, as they are too many for a table in memory."""
         return self.histories > MOST_ROWS * len(self.configurations)
 
     @property
-    def sweep_jobs(self) -> int:
-        """Number of jobs that share the motions of the sweeps."""
+    def ida_jobs(self) -> int:
+        """Number of jobs that share the motions of the IDA curves."""
         motions = len(self.catalogue) * len(self.floors)
         return max(1, min(math.ceil(self.histories / HISTORIES_A_JOB), MOST_JOBS, motions))
 
-    def sweep_file(self, configuration: System, job: int) -> str:
-        """Path of a configuration's sweep under the motions of a job."""
-        folder = "sweep" if self.sweep_jobs == 1 else f"sweep/{job:03d}"
+    def ida_file(self, configuration: System, job: int) -> str:
+        """Path of a configuration's IDA curve under the motions of a job."""
+        folder = "ida" if self.ida_jobs == 1 else f"IDA curve/{job:03d}"
         return f"{folder}/{file_name(configuration.name)}.parquet"
 
     @property
-    def sweep_files(self) -> list[str]:
-        """Paths of all sweeps."""
+    def ida_files(self) -> list[str]:
+        """Paths of all IDA curves."""
         return [
-            self.sweep_file(one, job)
-            for job in range(self.sweep_jobs)
-            for one in self.configurations
+            self.ida_file(configuration, job)
+            for job in range(self.ida_jobs)
+            for configuration in self.configurations
         ]
 
     @property
     def tested_blocks(self) -> dict[str, Block]:
         """Blocks of the objects tested and, as ``P``, the first pedestal: the ledger's names."""
-        blocks = {one.names[-1]: self.specimens[one.names[-1]] for one in self.configurations}
-        pedestals = [one.names[-2] for one in self.configurations if one.count > 1]
+        blocks = {
+            configuration.names[-1]: self.specimens[configuration.names[-1]]
+            for configuration in self.configurations
+        }
+        pedestals = [
+            configuration.names[-2]
+            for configuration in self.configurations
+            if configuration.count > 1
+        ]
         if pedestals:
             blocks["P"] = self.specimens[pedestals[0]]
         return blocks
@@ -201,9 +216,11 @@ class Study:
     def stacks(self) -> dict[str, Stack]:
         """Stacks tested, by the name of their configuration."""
         return {
-            one.name: Stack(self.specimens[one.names[0]], self.specimens[one.names[1]])
-            for one in self.configurations
-            if one.count == 2
+            configuration.name: Stack(
+                self.specimens[configuration.names[0]], self.specimens[configuration.names[1]]
+            )
+            for configuration in self.configurations
+            if configuration.count == 2
         }
 
     @property

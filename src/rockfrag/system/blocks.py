@@ -1,6 +1,6 @@
 """Rigid blocks and stacks of two: what every integrator, fast or plain, starts from.
 
-Conventions (``docs/derivation.md``): a rotation θ > 0 is clockwise and its pole is the
+Conventions (``docs/derivation.md``): a rotation θ > 0 is clockwise and its pivot is the
 right corner, s = +1; an acceleration a > 0 of the ground pushes blocks towards θ < 0.  Lengths are read
 in the standing block's frame, x to the right and y up, and
 R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwise.
@@ -95,8 +95,8 @@ class Block:
     Examples
     --------
     >>> from rockfrag import Block
-    >>> statue = Block(width=0.35, height=1.2, mass=180.0)
-    >>> round(statue.alpha, 3), round(statue.frequency(), 2)
+    >>> upper = Block(width=0.35, height=1.2, mass=180.0)
+    >>> round(upper.alpha, 3), round(upper.frequency(), 2)
     (0.284, 3.43)
     """
 
@@ -123,11 +123,11 @@ class Block:
             raise InputError(
                 f"Block: cg_height {self.cg_height} m is above the top, which is at height {self.height} m."
             )
-        doubts = light_giant_warning(self.width, self.height, self.mass) or inertia_warning(
+        quality_flags = light_giant_warning(self.width, self.height, self.mass) or inertia_warning(
             self.width, self.height, self.mass, self.centroidal_inertia
         )
-        if doubts:
-            warnings.warn(f"Block: {doubts}", UnlikelyBlock, stacklevel=4)
+        if quality_flags:
+            warnings.warn(f"Block: {quality_flags}", UnlikelyBlock, stacklevel=4)
         if not geometry.can_stand(self.shape):
             raise InputError(
                 f"Block: with cg_offset {self.cg_offset} m and lean {self.lean} rad its centre of "
@@ -304,38 +304,38 @@ class Block:
         """Centre of gravity of the standing block, from the middle of its base [m]."""
         return Vector(self.shape.x, self.shape.y)
 
-    def arm(self, pole: int) -> Vector:
-        """Vector from the pole (+1 right, -1 left) to the centre of gravity as it stands [m]."""
-        return Vector(*geometry.arm(self.shape, pole))
+    def arm(self, pivot: int) -> Vector:
+        """Vector from the pivot (+1 right, -1 left) to the centre of gravity as it stands [m]."""
+        return Vector(*geometry.arm(self.shape, pivot))
 
-    def critical_angle(self, pole: int) -> float:
-        """Rotation about ``pole`` at which the block balances on it, a positive angle [rad]."""
-        return geometry.critical_angle(self.shape, pole)
+    def critical_angle(self, pivot: int) -> float:
+        """Rotation about ``pivot`` at which the block balances on it, a positive angle [rad]."""
+        return geometry.critical_angle(self.shape, pivot)
 
     @property
     def alpha(self) -> float:
         """The smaller of the two critical angles, θc = atan(b/h) of a symmetric block [rad]."""
         return min(self.critical_angle(+1), self.critical_angle(-1))
 
-    def radius(self, pole: int = 1) -> float:
-        """Distance R from the pole to the centre of gravity [m]."""
-        return geometry.radius(self.shape, pole)
+    def radius(self, pivot: int = 1) -> float:
+        """Distance R from the pivot to the centre of gravity [m]."""
+        return geometry.radius(self.shape, pivot)
 
-    def pole_inertia(self, pole: int = 1) -> float:
-        """Moment of inertia about the pole, I_O = I_C + m R² [kg m²]."""
-        return geometry.pole_inertia(self.shape, pole)
+    def pivot_inertia(self, pivot: int = 1) -> float:
+        """Moment of inertia about the pivot, I_O = I_C + m R² [kg m²]."""
+        return geometry.pivot_inertia(self.shape, pivot)
 
-    def frequency(self, pole: int = 1, g: float = GRAVITY) -> float:
+    def frequency(self, pivot: int = 1, g: float = GRAVITY) -> float:
         """Frequency parameter p = √(m g R / I_O) [1/s] (Housner, 1963)."""
-        return geometry.frequency(self.shape, pole, g)
+        return geometry.frequency(self.shape, pivot, g)
 
-    def momentum_restitution(self, pole_before: int = 1) -> float:
+    def momentum_restitution(self, pivot_before: int = 1) -> float:
         """Ratio of angular velocities after and before an impact that conserves momentum [-].
 
-        The block turns about ``pole_before`` and comes down on the other pole (Housner, 1963:
+        The block turns about ``pivot_before`` and comes down on the other pivot (Housner, 1963:
         1 - 1.5 sin²α for a uniform block).
         """
-        return geometry.momentum_restitution(self.shape, -pole_before)
+        return geometry.momentum_restitution(self.shape, -pivot_before)
 
 
 @named_fields
@@ -345,12 +345,12 @@ class Stack:
 
     The two touch where the statue's base and the pedestal's top overlap.  A statue that reaches beyond its
     pedestal rocks on the pedestal's upper edge, a point of both bodies as long as neither slides; so the ends
-    of the overlap are the poles, and all equations are those of a statue whose base is as wide as the overlap
-    (``contact_statue``).
+    of the overlap are the pivots, and all equations are those of a statue whose base is as wide as the overlap
+    (``contact_upper``).
 
     Parameters
     ----------
-    pedestal, statue
+    lower, upper
         The lower and the upper block (blocks 1 and 2).
     offset
         Distance of the middle of the statue's base to the right of the pedestal's middle [m].
@@ -364,47 +364,47 @@ class Stack:
     Examples
     --------
     >>> from rockfrag import Block, Stack
-    >>> Stack(pedestal=Block(0.6, 0.4, 300.0), statue=Block(0.35, 1.2, 180.0)).mass
+    >>> Stack(lower=Block(0.6, 0.4, 300.0), upper=Block(0.35, 1.2, 180.0)).mass
     480.0
     """
 
-    pedestal: Block
-    statue: Block
+    lower: Block
+    upper: Block
     offset: float = 0.0
 
     def __post_init__(self) -> None:
-        for name, block in (("pedestal", self.pedestal), ("statue", self.statue)):
+        for name, block in (("lower", self.lower), ("upper", self.upper)):
             if not isinstance(block, Block):
                 raise InputError(f"Stack: {name} must be a Block, got {shown(block)}.")
         real_number("Stack: offset", self.offset, "metres")
-        fault = geometry.fault_of(self.pile)
-        if fault == geometry.BESIDE:
+        failed = geometry.failed_stability_check(self.pile)
+        if failed == geometry.BESIDE:
             raise InputError(
-                f"Stack: the statue's base (width {self.statue.width} m, offset {self.offset} m) "
-                f"does not lie on the pedestal (width {self.pedestal.width} m)."
+                f"Stack: the statue's base (width {self.upper.width} m, offset {self.offset} m) "
+                f"does not lie on the pedestal (width {self.lower.width} m)."
             )
-        if fault == geometry.OFF_CONTACT:
+        if failed == geometry.OFF_CONTACT:
             raise InputError(
                 "Stack: the statue's centre of gravity is not above the part of its base that lies "
                 "on the pedestal, so the stack cannot stand."
             )
-        if fault == geometry.TILTED_OFF:
+        if failed == geometry.TILTED_OFF:
             raise InputError(
                 "Stack: a centre of gravity is not above its base once the pedestal's lean "
                 "is counted, so the stack cannot stand."
             )
-        if fault == geometry.REACHES_GROUND:
-            overhang, pole = max((geometry.overhang(self.pile, pole), pole) for pole in (1, -1))
+        if failed == geometry.REACHES_GROUND:
+            overhang, pivot = max((geometry.overhang(self.pile, pivot), pivot) for pivot in (1, -1))
             raise InputError(
                 f"Stack: the statue reaches {overhang:.4g} m beyond its pedestal, whose upper edge can come as "
-                f"low as {geometry.lowest_edge(self.pile, pole):.4g} m, so it could touch the ground; such "
+                f"low as {geometry.lowest_edge(self.pile, pivot):.4g} m, so it could touch the ground; such "
                 "contacts are not modelled."
             )
 
     @property
     def blocks(self) -> tuple[Block, ...]:
         """The blocks from below."""
-        return self.pedestal, self.statue
+        return self.lower, self.upper
 
     def system(self) -> System:
         """Return the stack as a system: it rocks, never slides, and conserves momentum in impacts."""
@@ -417,68 +417,66 @@ class Stack:
     @cached_property
     def pile(self) -> geometry.Pile:
         """The stack as the kernels know it."""
-        pedestal, statue = self.pedestal, self.statue
-        return geometry.pile_of(
-            pedestal.shape, statue.shape, pedestal.height, pedestal.lean, self.offset
-        )
+        lower, upper = self.lower, self.upper
+        return geometry.pile_of(lower.shape, upper.shape, lower.height, lower.lean, self.offset)
 
     @property
     def contact_offset(self) -> float:
         """Distance of the middle of the contact to the right of the pedestal's middle [m]."""
         pile = self.pile
-        return self.offset if pile.statue is pile.above else (pile.low + pile.high) / 2
+        return self.offset if pile.upper is pile.above else (pile.low + pile.high) / 2
 
     @cached_property
-    def contact_statue(self) -> Block:
+    def contact_upper(self) -> Block:
         """The statue as it stands on the contact: itself, or one whose base is no wider than the overlap."""
         pile = self.pile
-        if pile.statue is pile.above:
-            return self.statue
+        if pile.upper is pile.above:
+            return self.upper
         aside = Vector(self.contact_offset - self.offset, 0.0)
-        centre = self.statue.centre.minus(aside).turned(-self.statue.lean)
+        centre = self.upper.centre.minus(aside).turned(-self.upper.lean)
         made = Block(
             width=pile.high - pile.low,
-            height=self.statue.height,
-            mass=self.statue.mass,
-            inertia=self.statue.centroidal_inertia,
+            height=self.upper.height,
+            mass=self.upper.mass,
+            inertia=self.upper.centroidal_inertia,
             cg_height=centre.y,
             cg_offset=centre.x,
-            lean=self.statue.lean,
+            lean=self.upper.lean,
         )
         # to the last bit what the kernels know, without the turn there and back
-        vars(made)["shape"] = pile.statue
+        vars(made)["shape"] = pile.upper
         return made
 
-    def interface_pole(self, pole: int) -> Vector:
-        """Statue's pole as it stands, from the middle of the pedestal's base [m]."""
-        return Vector(*(self.pile.right if pole > 0 else self.pile.left))
+    def interface_pivot(self, pivot: int) -> Vector:
+        """Statue's pivot as it stands, from the middle of the pedestal's base [m]."""
+        return Vector(*(self.pile.right if pivot > 0 else self.pile.left))
 
-    def reach(self, ground_pole: int, statue_pole: int) -> Vector:
-        """Vector d from the pedestal's pole to the statue's pole as they stand [m].
+    def reach(self, ground_pivot: int, upper_pivot: int) -> Vector:
+        """Vector d from the pedestal's pivot to the statue's pivot as they stand [m].
 
-        Its length is l (poles on the same side) or l' (opposite sides) (``docs/derivation.md``).
+        Its length is l (pivots on the same side) or l' (opposite sides) (``docs/derivation.md``).
         """
-        return Vector(*geometry.reach(self.pile, ground_pole, statue_pole))
+        return Vector(*geometry.reach(self.pile, ground_pivot, upper_pivot))
 
-    def statue_arm(self, statue_pole: int) -> Vector:
-        """Vector r2 from the statue's pole to its centre of gravity as it stands [m]."""
-        return Vector(*geometry.statue_arm(self.pile, statue_pole))
+    def upper_arm(self, upper_pivot: int) -> Vector:
+        """Vector r2 from the statue's pivot to its centre of gravity as it stands [m]."""
+        return Vector(*geometry.upper_arm(self.pile, upper_pivot))
 
-    def common_arm(self, ground_pole: int) -> Vector:
-        """Vector from the pedestal's pole to the common centre of gravity [m]."""
-        return Vector(*geometry.common_arm(self.pile, ground_pole))
+    def common_arm(self, ground_pivot: int) -> Vector:
+        """Vector from the pedestal's pivot to the common centre of gravity [m]."""
+        return Vector(*geometry.common_arm(self.pile, ground_pivot))
 
     @property
     def mass(self) -> float:
         """Total mass [kg]."""
-        return self.pedestal.mass + self.statue.mass
+        return self.lower.mass + self.upper.mass
 
     def rigidly_joined(self) -> Block:
         """Return the two as one rigid body, which is what rocks in pattern 3."""
         whole = geometry.joined(self.pile)
         return Block(
-            width=self.pedestal.width,
-            height=self.pedestal.height + self.statue.height,
+            width=self.lower.width,
+            height=self.lower.height + self.upper.height,
             mass=whole.mass,
             inertia=whole.inertia,
             cg_height=whole.y,

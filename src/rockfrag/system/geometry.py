@@ -1,7 +1,7 @@
 """Blocks and stacks as numbers: where their parts are as they stand, and what the kernels are told of them.
 
 Ordinary Python that kernels may call too (see ``jit``), so that a body has the same bits wherever it is
-described.  Lengths [m] are from the middle of a base, x to the right and y up; poles are +1 (right) and -1.
+described.  Lengths [m] are from the middle of a base, x to the right and y up; pivots are +1 (right) and -1.
 """
 
 import math
@@ -41,9 +41,9 @@ class Pile(NamedTuple):
     left, right : these ends, from the middle of the pedestal's base [m]
     """
 
-    pedestal: Shape
+    lower: Shape
     above: Shape
-    statue: Shape
+    upper: Shape
     lean: float
     offset: float
     low: float
@@ -77,32 +77,32 @@ def shape_of(
     return Shape(width / 2, mass, own, x, y)
 
 
-def arm(shape: Shape, pole: int) -> tuple[float, float]:
-    """Vector from the pole to the centre of gravity [m]."""
-    return shape.x - pole * shape.b, shape.y
+def arm(shape: Shape, pivot: int) -> tuple[float, float]:
+    """Vector from the pivot to the centre of gravity [m]."""
+    return shape.x - pivot * shape.b, shape.y
 
 
-def critical_angle(shape: Shape, pole: int) -> float:
-    """Rotation about the pole at which the block balances on it [rad]."""
-    x, y = arm(shape, pole)
-    return atan2(-pole * x, y)
+def critical_angle(shape: Shape, pivot: int) -> float:
+    """Rotation about the pivot at which the block balances on it [rad]."""
+    x, y = arm(shape, pivot)
+    return atan2(-pivot * x, y)
 
 
-def radius(shape: Shape, pole: int) -> float:
-    """Distance from the pole to the centre of gravity [m]."""
-    x, y = arm(shape, pole)
+def radius(shape: Shape, pivot: int) -> float:
+    """Distance from the pivot to the centre of gravity [m]."""
+    x, y = arm(shape, pivot)
     return hypot(x, y)
 
 
-def pole_inertia(shape: Shape, pole: int) -> float:
-    """Moment of inertia about the pole [kg m²]."""
-    x, y = arm(shape, pole)
+def pivot_inertia(shape: Shape, pivot: int) -> float:
+    """Moment of inertia about the pivot [kg m²]."""
+    x, y = arm(shape, pivot)
     return shape.inertia + shape.mass * (x * x + y * y)
 
 
-def frequency(shape: Shape, pole: int, g: float) -> float:
+def frequency(shape: Shape, pivot: int, g: float) -> float:
     """Frequency parameter p [1/s]."""
-    return math.sqrt(shape.mass * g * radius(shape, pole) / pole_inertia(shape, pole))
+    return math.sqrt(shape.mass * g * radius(shape, pivot) / pivot_inertia(shape, pivot))
 
 
 def can_stand(shape: Shape) -> bool:
@@ -113,112 +113,112 @@ def can_stand(shape: Shape) -> bool:
 # --------------------------------------------------------------------------- impacts of a lone block
 
 
-def _product(shape: Shape, pole: int) -> float:
-    """Moment of inertia in the angular momentum about the other pole of what turns about this one."""
-    x, y = arm(shape, pole)
+def _product(shape: Shape, pivot: int) -> float:
+    """Moment of inertia in the angular momentum about the other pivot of what turns about this one."""
+    x, y = arm(shape, pivot)
     return shape.inertia + shape.mass * (shape.x * x + shape.y * y)
 
 
-def momentum_restitution(shape: Shape, pole: int) -> float:
-    """Ratio of the rates after and before an impact on this pole that conserves momentum [-]."""
-    (x1, y1), (x2, y2) = arm(shape, -pole), arm(shape, pole)
-    return (shape.inertia + shape.mass * (x1 * x2 + y1 * y2)) / pole_inertia(shape, pole)
+def momentum_restitution(shape: Shape, pivot: int) -> float:
+    """Ratio of the rates after and before an impact on this pivot that conserves momentum [-]."""
+    (x1, y1), (x2, y2) = arm(shape, -pivot), arm(shape, pivot)
+    return (shape.inertia + shape.mass * (x1 * x2 + y1 * y2)) / pivot_inertia(shape, pivot)
 
 
-def largest_restitution(shape: Shape, pole: int) -> float:
-    """Largest ratio with which no impact on this pole gains energy [-]."""
-    return math.sqrt(pole_inertia(shape, -pole) / pole_inertia(shape, pole))
+def largest_restitution(shape: Shape, pivot: int) -> float:
+    """Largest ratio with which no impact on this pivot gains energy [-]."""
+    return math.sqrt(pivot_inertia(shape, -pivot) / pivot_inertia(shape, pivot))
 
 
-def impulse_position(shape: Shape, restitution: float, pole: int) -> float:
-    """Where the impulse acts if the block comes off with this ratio, from the middle (0) to the new pole (1)."""
-    old, new = arm(shape, -pole)[0], arm(shape, pole)[0]
-    excess = _product(shape, -pole) - restitution * _product(shape, pole)
-    return excess / (shape.mass * pole * shape.b * (old - restitution * new))
+def impulse_position(shape: Shape, restitution: float, pivot: int) -> float:
+    """Where the impulse acts if the block comes off with this ratio, from the middle (0) to the new pivot (1)."""
+    old, new = arm(shape, -pivot)[0], arm(shape, pivot)[0]
+    excess = _product(shape, -pivot) - restitution * _product(shape, pivot)
+    return excess / (shape.mass * pivot * shape.b * (old - restitution * new))
 
 
 # --------------------------------------------------------------------------- a statue on a pedestal
 
 
-def pile_of(pedestal: Shape, statue: Shape, height: float, lean: float, offset: float) -> Pile:
+def pile_of(lower: Shape, upper: Shape, height: float, lean: float, offset: float) -> Pile:
     """Return a statue as it stands on a pedestal of this height [m], lean [rad] and offset [m]."""
-    low = max(-pedestal.b, offset - statue.b)
-    high = min(pedestal.b, offset + statue.b)
-    middle, on_contact = offset, statue
-    if abs(offset) + statue.b > pedestal.b * (1 + 1e-12):
+    low = max(-lower.b, offset - upper.b)
+    high = min(lower.b, offset + upper.b)
+    middle, on_contact = offset, upper
+    if abs(offset) + upper.b > lower.b * (1 + 1e-12):
         middle = (low + high) / 2
         on_contact = Shape(
-            (high - low) / 2, statue.mass, statue.inertia, statue.x - (middle - offset), statue.y
+            (high - low) / 2, upper.mass, upper.inertia, upper.x - (middle - offset), upper.y
         )
     left = turned(middle - on_contact.b, height, lean)
     right = turned(middle + on_contact.b, height, lean)
-    return Pile(pedestal, statue, on_contact, lean, offset, low, high, left, right)
+    return Pile(lower, upper, on_contact, lean, offset, low, high, left, right)
 
 
-def reach(pile: Pile, ground_pole: int, statue_pole: int) -> tuple[float, float]:
-    """Vector from the pedestal's pole to the statue's pole [m]."""
-    x, y = pile.right if statue_pole > 0 else pile.left
-    return x - ground_pole * pile.pedestal.b, y
+def reach(pile: Pile, ground_pivot: int, upper_pivot: int) -> tuple[float, float]:
+    """Vector from the pedestal's pivot to the statue's pivot [m]."""
+    x, y = pile.right if upper_pivot > 0 else pile.left
+    return x - ground_pivot * pile.lower.b, y
 
 
-def statue_arm(pile: Pile, pole: int) -> tuple[float, float]:
-    """Vector from the statue's pole to its centre of gravity, as it stands on the pedestal [m]."""
-    x, y = arm(pile.statue, pole)
+def upper_arm(pile: Pile, pivot: int) -> tuple[float, float]:
+    """Vector from the statue's pivot to its centre of gravity, as it stands on the pedestal [m]."""
+    x, y = arm(pile.upper, pivot)
     return turned(x, y, pile.lean)
 
 
-def common_arm(pile: Pile, pole: int) -> tuple[float, float]:
-    """Vector from the pedestal's pole to the common centre of gravity [m]."""
-    m1, m2 = pile.pedestal.mass, pile.statue.mass
-    x1, y1 = arm(pile.pedestal, pole)
-    dx, dy = reach(pile, pole, 1)
-    x2, y2 = statue_arm(pile, 1)
+def common_arm(pile: Pile, pivot: int) -> tuple[float, float]:
+    """Vector from the pedestal's pivot to the common centre of gravity [m]."""
+    m1, m2 = pile.lower.mass, pile.upper.mass
+    x1, y1 = arm(pile.lower, pivot)
+    dx, dy = reach(pile, pivot, 1)
+    x2, y2 = upper_arm(pile, 1)
     return (m1 * x1 + m2 * (dx + x2)) / (m1 + m2), (m1 * y1 + m2 * (dy + y2)) / (m1 + m2)
 
 
 def joined(pile: Pile) -> Shape:
     """Return the two as one rigid block, which is what rocks in pattern 3."""
-    one, two = pile.pedestal, pile.statue
-    m1, m2 = one.mass, two.mass
+    first, two = pile.lower, pile.upper
+    m1, m2 = first.mass, two.mass
     dx, dy = reach(pile, 1, 1)
-    ax, ay = statue_arm(pile, 1)
-    x2, y2 = one.b + dx + ax, dy + ay
-    x = (m1 * one.x + m2 * x2) / (m1 + m2)
-    y = (m1 * one.y + m2 * y2) / (m1 + m2)
-    apart_x, apart_y = one.x - x2, one.y - y2
+    ax, ay = upper_arm(pile, 1)
+    x2, y2 = first.b + dx + ax, dy + ay
+    x = (m1 * first.x + m2 * x2) / (m1 + m2)
+    y = (m1 * first.y + m2 * y2) / (m1 + m2)
+    apart_x, apart_y = first.x - x2, first.y - y2
     spread = m1 * m2 / (m1 + m2) * (apart_x * apart_x + apart_y * apart_y)
-    return Shape(one.b, m1 + m2, one.inertia + two.inertia + spread, x, y)
+    return Shape(first.b, m1 + m2, first.inertia + two.inertia + spread, x, y)
 
 
-def overhang(pile: Pile, pole: int) -> float:
+def overhang(pile: Pile, pivot: int) -> float:
     """What the statue's base reaches beyond the pedestal [m]."""
-    end = pile.high if pole > 0 else pile.low
-    return pole * (pile.offset - end) + pile.above.b
+    end = pile.high if pivot > 0 else pile.low
+    return pivot * (pile.offset - end) + pile.above.b
 
 
-def lowest_edge(pile: Pile, pole: int) -> float:
+def lowest_edge(pile: Pile, pivot: int) -> float:
     """How low the pedestal's upper edge can come before anything has fallen [m].
 
-    It is lowest where the pedestal, or both as one, balance on their pole.
+    It is lowest where the pedestal, or both as one, balance on their pivot.
     """
-    x, y = reach(pile, pole, pole)
-    wx, wy = common_arm(pile, pole)
-    furthest = max(critical_angle(pile.pedestal, pole), atan2(-pole * wx, wy))
-    return min(y, turned(x, y, pole * furthest)[1])
+    x, y = reach(pile, pivot, pivot)
+    wx, wy = common_arm(pile, pivot)
+    furthest = max(critical_angle(pile.lower, pivot), atan2(-pivot * wx, wy))
+    return min(y, turned(x, y, pivot * furthest)[1])
 
 
-def fault_of(pile: Pile) -> int:
+def failed_stability_check(pile: Pile) -> int:
     """Whether a statue stands on its pedestal, or why not; each is known to stand by itself."""
     if pile.low >= pile.high:
         return BESIDE
     if not pile.low < pile.offset + pile.above.x < pile.high:
         return OFF_CONTACT
-    for pole in (1, -1):
-        if pole * statue_arm(pile, pole)[0] >= 0.0 or pole * common_arm(pile, pole)[0] >= 0.0:
+    for pivot in (1, -1):
+        if pivot * upper_arm(pile, pivot)[0] >= 0.0 or pivot * common_arm(pile, pivot)[0] >= 0.0:
             return TILTED_OFF
-        beyond = overhang(pile, pole)
+        beyond = overhang(pile, pivot)
         # the statue may have turned by a right angle on that edge by then
-        if beyond > 1e-12 * pile.pedestal.b and beyond >= lowest_edge(pile, pole):
+        if beyond > 1e-12 * pile.lower.b and beyond >= lowest_edge(pile, pivot):
             return REACHES_GROUND
     return STANDS
 
@@ -238,8 +238,14 @@ def fill_block(body: Any, block: Shape) -> None:
 
 def fill_pile(body: Any, pile: Pile) -> None:
     """Fill the geometry of a stack into its record."""
-    one, two = pile.pedestal, pile.statue
-    body.m1, body.i1, body.b1, body.c1x, body.c1y = one.mass, one.inertia, one.b, one.x, one.y
+    first, two = pile.lower, pile.upper
+    body.m1, body.i1, body.b1, body.c1x, body.c1y = (
+        first.mass,
+        first.inertia,
+        first.b,
+        first.x,
+        first.y,
+    )
     (rx, ry), (lx, ly) = pile.right, pile.left
     width = 2 * two.b
     body.tx, body.ty = (rx + lx) / 2, (ry + ly) / 2

@@ -163,7 +163,7 @@ class System:
         if self.count == 1:
             return self.shapes
         if self.count == 2:
-            return self.shapes[0], self.pile.statue
+            return self.shapes[0], self.pile.upper
         bodies = self.in_plane().bodies
         found = [self.shapes[0]]
         for k in range(1, self.count):
@@ -197,7 +197,7 @@ def uplift_ratios(system: System) -> tuple[float, ...]:
     elif system.count == 2:
         arms = [
             tuple(arm(system.pile, pivot) for pivot in (+1, -1))
-            for arm in (geometry.common_arm, geometry.statue_arm)
+            for arm in (geometry.common_arm, geometry.upper_arm)
         ]
     else:
         arms = [arms_above(system, k) for k in range(system.count)]

@@ -26,8 +26,8 @@ def solved(rows: tuple[tuple[Array, ...], tuple[Array, ...]], s: System) -> Arra
     """Solve P ω1⁺ + Q ω2⁺ = U ω1⁻ + V ω2⁻ for two rows (P, Q, U, V)."""
     (p, q, u, v), (p2, q2, u2, v2) = rows
     det = p * q2 - q * p2
-    one, two = u * s.w1 + v * s.w2, u2 * s.w1 + v2 * s.w2
-    return np.array([(one * q2 - q * two) / det, (p * two - p2 * one) / det])
+    first, two = u * s.w1 + v * s.w2, u2 * s.w1 + v2 * s.w2
+    return np.array([(first * q2 - q * two) / det, (p * two - p2 * first) / det])
 
 
 def case_276(s: System, printed: bool) -> Array:
@@ -49,14 +49,14 @@ def case_276(s: System, printed: bool) -> Array:
 
 
 def case_278(s: System, printed: bool) -> Array:
-    f, one, two = (cos, s.big - s.beta, s.tc2 + s.big) if printed else (
+    f, first, two = (cos, s.big - s.beta, s.tc2 + s.big) if printed else (
         sin, s.big + s.beta, s.big - s.tc2
     )  # fmt: skip
     five, seven = (s.big - s.beta_, s.tc2 - s.big) if printed else (
         s.big + s.beta_, s.big + s.tc2
     )  # fmt: skip
     e1 = s.io2
-    e2 = s.io1 + s.m2 * s.length * s.rr * f(one)
+    e2 = s.io1 + s.m2 * s.length * s.rr * f(first)
     e3 = s.ic2 + s.m2 * s.r2 * s.rr * f(two)
     e4 = s.m2 * s.r2 * s.length * cos(s.tc2 + s.beta)
     e5 = s.io1 + s.m2 * s.length_ * s.rr * f(five)
@@ -76,12 +76,12 @@ def together(s: System, a1: Array, a2: Array) -> Array:
 
 
 def case_279(s: System, printed: bool) -> Array:
-    one, two = (
+    first, two = (
         (cos(s.big - s.beta), cos(s.tc2 - s.big))
         if printed
         else (sin(s.big + s.beta), sin(s.big + s.tc2))
     )
-    return together(s, s.io1 + s.m2 * s.length * s.rr * one, s.ic2 + s.m2 * s.r2 * s.rr * two)
+    return together(s, s.io1 + s.m2 * s.length * s.rr * first, s.ic2 + s.m2 * s.r2 * s.rr * two)
 
 
 def case_280(s: System, printed: bool) -> Array:
@@ -137,12 +137,12 @@ def mended_281(s: System) -> Array:
 
 
 def case_282(s: System, printed: bool) -> Array:
-    one, two = (
+    first, two = (
         (sin(s.big - s.beta_ + s.th1), sin(s.tc2 + s.big + s.th2))
         if printed
         else (sin(s.big + s.beta_), sin(s.big - s.tc2))
     )
-    return together(s, s.io1 + s.m2 * s.length_ * s.rr * one, s.ic2 + s.m2 * s.r2 * s.rr * two)
+    return together(s, s.io1 + s.m2 * s.length_ * s.rr * first, s.ic2 + s.m2 * s.r2 * s.rr * two)
 
 
 def case_283(s: System, printed: bool) -> Array:
@@ -202,12 +202,12 @@ def closing_sign(s: System) -> Array:
     """Whether the gap between the blocks of pattern 1a shrinks: rate of the left corner's height."""
     s = s.with_(vg=0.0)
     left = s.get("velocity2", 1, 1)[1]  # of the centre; the corner is -2 b2 along the base from O2
-    arm = s.get("pole2", 1, 1) - s.get("centre2", 1, 1)
+    arm = s.get("pivot2", 1, 1) - s.get("centre2", 1, 1)
     corner = np.array([-2 * s.b2 * cos(s.th2), 2 * s.b2 * sin(s.th2)]) + arm
     corner_speed = left - s.w2 * corner[0]
-    # the same material point if it belonged to block 1 (its pole moves with block 1)
-    pole_speed = -s.w1 * (s.get("pole2", 1, 1) - s.get("pole1", 1, 1))[0]
-    under = pole_speed - s.w1 * (-2 * s.b2 * cos(s.th2))
+    # the same material point if it belonged to block 1 (its pivot moves with block 1)
+    pivot_speed = -s.w1 * (s.get("pivot2", 1, 1) - s.get("pivot1", 1, 1))[0]
+    under = pivot_speed - s.w1 * (-2 * s.b2 * cos(s.th2))
     return np.sign(corner_speed - under)
 
 

@@ -1,6 +1,6 @@
 """Two blocks from the positions of their centres alone: sympy derives all that the tests compare with.
 
-Nothing here knows the formulas of the code or of the thesis.  Poles s1, s2 = ±1 stay symbols, so one
+Nothing here knows the formulas of the code or of the thesis.  Pivots s1, s2 = ±1 stay symbols, so one
 derivation serves all patterns; what is derived is turned into numpy functions of arrays.
 """
 
@@ -37,10 +37,10 @@ def rate(expression: sp.Expr) -> sp.Expr:
 
 @dataclass(frozen=True)
 class Derived:
-    """Functions of (body, poles, state), all with arrays in and out."""
+    """Functions of (body, pivots, state), all with arrays in and out."""
 
-    pole1: Callable[..., Array]
-    pole2: Callable[..., Array]
+    pivot1: Callable[..., Array]
+    pivot2: Callable[..., Array]
     centre1: Callable[..., Array]
     centre2: Callable[..., Array]
     velocity1: Callable[..., Array]
@@ -56,10 +56,10 @@ class Derived:
 @cache
 def derived() -> Derived:
     """Derive once."""
-    pole1 = sp.Matrix([XG + S1 * B1, 0])
-    centre1 = pole1 + turned(TH1, -S1 * B1, H1)
-    pole2 = pole1 + turned(TH1, -S1 * B1 + S2 * B2, 2 * H1)
-    centre2 = pole2 + turned(TH2, -S2 * B2, H2)
+    pivot1 = sp.Matrix([XG + S1 * B1, 0])
+    centre1 = pivot1 + turned(TH1, -S1 * B1, H1)
+    pivot2 = pivot1 + turned(TH1, -S1 * B1 + S2 * B2, 2 * H1)
+    centre2 = pivot2 + turned(TH2, -S2 * B2, H2)
     velocity1, velocity2 = centre1.applyfunc(rate), centre2.applyfunc(rate)
     kinetic = (
         M1 * velocity1.dot(velocity1) + I1 * W1**2 + M2 * velocity2.dot(velocity2) + I2 * W2**2
@@ -92,8 +92,8 @@ def derived() -> Derived:
         return evaluate
 
     return Derived(
-        pole1=function(pole1),
-        pole2=function(pole2),
+        pivot1=function(pivot1),
+        pivot2=function(pivot2),
         centre1=function(centre1),
         centre2=function(centre2),
         velocity1=function(velocity1),

@@ -4,7 +4,7 @@ import numpy as np
 from numpy import cos, sign, sin
 
 from .equation import Equation
-from .single_block import standing_pole
+from .single_block import standing_pivot
 from .systems import System, random_systems
 
 Array = np.ndarray
@@ -14,8 +14,8 @@ def rest(s: System) -> System:
     return s.with_(th1=0.0, th2=0.0, w1=0.0, w2=0.0, q1=0.0, q2=0.0)
 
 
-def pattern(opposite: int):
-    """Both equations of pattern 1 (``opposite`` = 1) or 2 (-1) with the pole of block 1 by S_θ1."""
+def rocking_mode(opposite: int):
+    """Both equations of pattern 1 (``opposite`` = 1) or 2 (-1) with the pivot of block 1 by S_θ1."""
 
     def truth(s: System) -> Array:
         return np.where(s.th1 > 0, s.moments(1, opposite), s.moments(-1, -opposite))
@@ -53,7 +53,7 @@ def first(s: System, side: Array | int, length: Array, beta: Array, swirl: Array
     )
 
 
-def pattern_1(s: System, side: Array | int) -> Array:  # 2.43; 2.37 and 2.40 for side = ±1
+def rocking_mode_1(s: System, side: Array | int) -> Array:  # 2.43; 2.37 and 2.40 for side = ±1
     gamma, mr = gamma_1(s, side), s.m2 * s.r2 * s.length
     swirl = mr * cos(gamma) * s.q2 + side * mr * sin(gamma) * s.w2**2
     second = (
@@ -66,7 +66,7 @@ def pattern_1(s: System, side: Array | int) -> Array:  # 2.43; 2.37 and 2.40 for
     return np.array([first(s, side, s.length, s.beta, swirl), second])
 
 
-def pattern_2(
+def rocking_mode_2(
     s: System, side: Array | int, weight: int = -1, label: Array | None = None
 ) -> Array:  # 2.51; 2.46 and 2.49 for side = ±1
     gamma, mr = gamma_2(s, side), s.m2 * s.r2 * s.length_
@@ -182,19 +182,19 @@ def linear_4_truth(s: System) -> Array:
 
 
 def lagrange_by_newton(s: System) -> Array:
-    """Moments of inertial and gravity forces about the poles: Newton and Euler, no Lagrange."""
+    """Moments of inertial and gravity forces about the pivots: Newton and Euler, no Lagrange."""
     force = [
         mass * (s.get(f"acceleration{i}", 1, -1) + np.array([0 * s.g, s.g]))
         for i, mass in ((1, s.m1), (2, s.m2))
     ]
-    pole1, pole2 = s.get("pole1", 1, -1), s.get("pole2", 1, -1)
+    pivot1, pivot2 = s.get("pivot1", 1, -1), s.get("pivot2", 1, -1)
 
-    def about(pole: Array, i: int) -> Array:
-        arm = s.get(f"centre{i}", 1, -1) - pole
+    def about(pivot: Array, i: int) -> Array:
+        arm = s.get(f"centre{i}", 1, -1) - pivot
         return arm[1] * force[i - 1][0] - arm[0] * force[i - 1][1]
 
-    block2 = about(pole2, 2) + s.ic2 * s.q2
-    all_about_1 = about(pole1, 1) + s.ic1 * s.q1 + about(pole1, 2) + s.ic2 * s.q2
+    block2 = about(pivot2, 2) + s.ic2 * s.q2
+    all_about_1 = about(pivot1, 1) + s.ic1 * s.q1 + about(pivot1, 2) + s.ic2 * s.q2
     return np.array([all_about_1 - block2, block2])
 
 
@@ -308,7 +308,7 @@ EQUATIONS = [
     ),
     # γ is what turns M12 = m2 R2 l cos γ: read off ∂²T/∂ω1∂ω2
     Equation("2.36", lambda s: cos(gamma_1(s, 1)), lambda s: _cosine(s, 1, 1)),
-    Equation("2.37", lambda s: pattern_1(s, 1), lambda s: s.moments(1, 1)),
+    Equation("2.37", lambda s: rocking_mode_1(s, 1), lambda s: s.moments(1, 1)),
     Equation(
         "2.38",
         lambda s: np.array(
@@ -322,10 +322,10 @@ EQUATIONS = [
         positions(2, -1, -1),
         mended=lambda s: _position_2_39(s, 1),
     ),
-    Equation("2.40", lambda s: pattern_1(s, -1), lambda s: s.moments(-1, -1)),
+    Equation("2.40", lambda s: rocking_mode_1(s, -1), lambda s: s.moments(-1, -1)),
     Equation("2.41", lambda s: cos(gamma_1(s, -1)), lambda s: _cosine(s, -1, -1)),
-    Equation("2.42", lambda s: sign(s.th1), lambda s: standing_pole(s.th1, s.b1)),
-    Equation("2.43", lambda s: pattern_1(s, sign(s.th1)), pattern(1)),
+    Equation("2.42", lambda s: sign(s.th1), lambda s: standing_pivot(s.th1, s.b1)),
+    Equation("2.43", lambda s: rocking_mode_1(s, sign(s.th1)), rocking_mode(1)),
     Equation(
         "2.44",
         lambda s: cos(gamma_1(s, sign(s.th1))),
@@ -347,9 +347,9 @@ EQUATIONS = [
     ),
     Equation(
         "2.46",
-        lambda s: pattern_2(s, 1, weight=1),
+        lambda s: rocking_mode_2(s, 1, weight=1),
         lambda s: s.moments(1, -1),
-        mended=lambda s: pattern_2(s, 1),
+        mended=lambda s: rocking_mode_2(s, 1),
     ),
     # printed as γ2b, which 2.50 defines and 2.49 uses; it is γ2a
     Equation(
@@ -372,14 +372,14 @@ EQUATIONS = [
         ),
         positions(2, -1, 1),
     ),
-    Equation("2.49", lambda s: pattern_2(s, -1), lambda s: s.moments(-1, 1)),
+    Equation("2.49", lambda s: rocking_mode_2(s, -1), lambda s: s.moments(-1, 1)),
     Equation("2.50", lambda s: cos(gamma_2(s, -1)), lambda s: _cosine(s, -1, 1)),
     # the first row names γ2a where it means γ2
     Equation(
         "2.51",
-        lambda s: pattern_2(s, sign(s.th1), label=gamma_2(s, 1)),
-        pattern(-1),
-        mended=lambda s: pattern_2(s, sign(s.th1)),
+        lambda s: rocking_mode_2(s, sign(s.th1), label=gamma_2(s, 1)),
+        rocking_mode(-1),
+        mended=lambda s: rocking_mode_2(s, sign(s.th1)),
     ),
     Equation(
         "2.52",
@@ -400,7 +400,7 @@ EQUATIONS = [
         lambda s: lone(s, sign(s.th2)),
         lambda s: np.where(s.th2 > 0, standing_truth(1)(s), standing_truth(-1)(s)),
     ),
-    Equation("2.59", lambda s: sign(s.th2), lambda s: standing_pole(s.th2, s.b2)),
+    Equation("2.59", lambda s: sign(s.th2), lambda s: standing_pivot(s.th2, s.b2)),
     Equation(
         "2.60",
         lambda s: linear_1(s, s.length, 1.0),
@@ -443,9 +443,9 @@ def _cosine(s: System, s1: int, s2: int) -> Array:
 
 
 def _between(s: System, s1: int, s2: int) -> Array:
-    """Horizontal distance of the poles of the standing blocks."""
+    """Horizontal distance of the pivots of the standing blocks."""
     still = s.with_(th1=0.0, th2=0.0)
-    return np.abs(still.get("pole2", s1, s2) - still.get("pole1", s1, s2))[0]
+    return np.abs(still.get("pivot2", s1, s2) - still.get("pivot1", s1, s2))[0]
 
 
 def _position_2_39(s: System, printed_sign: int) -> Array:

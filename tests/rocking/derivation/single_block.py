@@ -12,7 +12,7 @@ Array = np.ndarray
 
 
 def one_sided(side: int) -> System:
-    """Random states on one pole."""
+    """Random states on one pivot."""
     s = random_systems().standing()
     return s.with_(th2=side * mag(s.th2))
 
@@ -39,7 +39,7 @@ def slender() -> System:
 
 
 def lone(s: System) -> Array:
-    """Motion of the lone block on the pole that its rotation asks for."""
+    """Motion of the lone block on the pivot that its rotation asks for."""
     s = s.standing()
     return np.where(s.th2 > 0, s.moments(1, 1)[1], s.moments(1, -1)[1])
 
@@ -101,8 +101,8 @@ def general_solution(s: System) -> tuple[Array, Array]:
     return value, second
 
 
-def standing_pole(theta: Array, half_width: Array) -> Array:
-    """Pole about which the block can be rotated so without its other corner sinking in."""
+def standing_pivot(theta: Array, half_width: Array) -> Array:
+    """Pivot about which the block can be rotated so without its other corner sinking in."""
     other_corner = {side: 2 * half_width * side * sin(theta) for side in (1, -1)}
     return np.where(other_corner[1] > 0, 1.0, -1.0)
 
@@ -159,7 +159,7 @@ EQUATIONS = [
         ),
         lone,
     ),
-    Equation("2.5", lambda s: sign(s.th2), lambda s: standing_pole(s.th2, s.b2)),
+    Equation("2.5", lambda s: sign(s.th2), lambda s: standing_pivot(s.th2, s.b2)),
     Equation(
         "2.6",
         lambda s: (

@@ -121,7 +121,7 @@ class System:
         return self.with_(th1=0.0, w1=0.0, q1=0.0)
 
     def get(self, name: str, s1: float, s2: float) -> Array:
-        """Evaluate one of the derived quantities for these poles."""
+        """Evaluate one of the derived quantities for these pivots."""
         return getattr(derived(), name)(*self.body, float(s1), float(s2), *self.state)
 
     def moments(self, s1: float, s2: float) -> Array:
@@ -176,16 +176,16 @@ def angular_momentum(s: System, s1: float, s2: float, about: Array, whole: bool)
 
 
 def impact_map(s: System, old: tuple[int, int], new: tuple[int, int]) -> tuple[Array, Array]:
-    """Velocities after an impact by conservation of angular momentum about the new poles.
+    """Velocities after an impact by conservation of angular momentum about the new pivots.
 
-    The whole system keeps it about block 1's new pole and block 2 about its own; of what is stuck
+    The whole system keeps it about block 1's new pivot and block 2 about its own; of what is stuck
     after the impact only the part that does not pass impulses to unknown points is used.  ``old`` and
     ``new`` are contact states; the ground does not move during the impact.
     """
     s = s.with_(vg=0.0, xg=0.0)
     o1, o2 = old[0] or 1, old[1] or 1
     n1, n2 = new[0] or 1, new[1] or 1
-    about1, about2 = s.get("pole1", n1, n2), s.get("pole2", n1, n2)
+    about1, about2 = s.get("pivot1", n1, n2), s.get("pivot2", n1, n2)
 
     def momenta(state: System, s1: int, s2: int) -> Array:
         return np.array(
@@ -196,7 +196,7 @@ def impact_map(s: System, old: tuple[int, int], new: tuple[int, int]) -> tuple[A
         )
 
     before = momenta(s, o1, o2)
-    one = momenta(s.with_(w1=1.0, w2=0.0), n1, n2)
+    first = momenta(s.with_(w1=1.0, w2=0.0), n1, n2)
     two = momenta(s.with_(w1=0.0, w2=1.0), n1, n2)
     nothing = np.zeros_like(s.b1)
     if new == (0, 0):
@@ -204,10 +204,10 @@ def impact_map(s: System, old: tuple[int, int], new: tuple[int, int]) -> tuple[A
     if new[0] == 0:
         return nothing, before[1] / two[1]
     if new[1] == 0:
-        both = before[0] / (one[0] + two[0])
+        both = before[0] / (first[0] + two[0])
         return both, both
-    det = one[0] * two[1] - one[1] * two[0]
+    det = first[0] * two[1] - first[1] * two[0]
     return (
         (before[0] * two[1] - before[1] * two[0]) / det,
-        (one[0] * before[1] - one[1] * before[0]) / det,
+        (first[0] * before[1] - first[1] * before[0]) / det,
     )

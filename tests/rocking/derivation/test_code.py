@@ -17,7 +17,7 @@ from ...oracle.rocking_model import LinearModel, Model
 from .motion import lagrange_by_newton
 from .systems import System, error, impact_map, random_systems
 
-POLES = list(itertools.product((1, -1), (1, -1)))
+PIVOTS = list(itertools.product((1, -1), (1, -1)))
 STATES = [s for s in itertools.product((1, 0, -1), (1, 0, -1)) if s != (0, 0)]
 S = random_systems()
 N = len(S.b1)
@@ -42,9 +42,9 @@ def record(c, theta, omega, pull: tuple[float, float]) -> np.void:
 
 
 def stack(s: System, k: int) -> Stack:
-    one = Block(2 * s.b1[k], 2 * s.h1[k], s.m1[k], inertia=s.ic1[k])
+    block = Block(2 * s.b1[k], 2 * s.h1[k], s.m1[k], inertia=s.ic1[k])
     two = Block(2 * s.b2[k], 2 * s.h2[k], s.m2[k], inertia=s.ic2[k])
-    return Stack(one, two)
+    return Stack(block, two)
 
 
 STACKS = [stack(S, k) for k in range(N)]
@@ -69,67 +69,67 @@ def pull(k: int) -> tuple[float, float]:
     return float(S.a[k]), float(S.g[k])
 
 
-@pytest.mark.parametrize("poles", POLES)
-def test_equations_of_motion(poles: tuple[int, int]) -> None:
-    true = S.moments(*poles)
+@pytest.mark.parametrize("pivots", PIVOTS)
+def test_equations_of_motion(pivots: tuple[int, int]) -> None:
+    true = S.moments(*pivots)
 
     def reference(k: int) -> tuple[float, float]:
         theta, omega = state(S, k)
-        terms = Model(STACKS[k], S.g[k]).terms(poles, theta, omega, pull(k))
+        terms = Model(STACKS[k], S.g[k]).terms(pivots, theta, omega, pull(k))
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     def kernel(k: int) -> tuple[float, float]:
         p = body_record(STACKS[k].system(), g=S.g[k])
-        terms = kernel_equations(p, *poles, record(poles, *state(S, k), pull(k)))
+        terms = kernel_equations(p, *pivots, record(pivots, *state(S, k), pull(k)))
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     assert error(each(reference), true).max() < 1e-12
     assert error(each(kernel), true).max() < 1e-12
 
 
-@pytest.mark.parametrize("poles", POLES)
-def test_linearised_equations_of_motion(poles: tuple[int, int]) -> None:
-    true = S.get("linear_motion", *poles)
+@pytest.mark.parametrize("pivots", PIVOTS)
+def test_linearised_equations_of_motion(pivots: tuple[int, int]) -> None:
+    true = S.get("linear_motion", *pivots)
 
     def reference(k: int) -> tuple[float, float]:
         theta, omega = state(S, k)
-        terms = LinearModel(STACKS[k], S.g[k]).terms(poles, theta, omega, pull(k))
+        terms = LinearModel(STACKS[k], S.g[k]).terms(pivots, theta, omega, pull(k))
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     def kernel(k: int) -> tuple[float, float]:
         p = body_record(STACKS[k].system(), linear=True, g=S.g[k])
-        terms = kernel_equations(p, *poles, record(poles, *state(S, k), pull(k)))
+        terms = kernel_equations(p, *pivots, record(pivots, *state(S, k), pull(k)))
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     assert error(each(reference), true).max() < 1e-12
     assert error(each(kernel), true).max() < 1e-12
 
 
-def corner_force(s: System, contact: int, pole: int, poles: tuple[int, int]) -> np.ndarray:
-    """Normal force at the corner opposite to ``pole``, from Newton's and Euler's laws.
+def corner_force(s: System, contact: int, pivot: int, pivots: tuple[int, int]) -> np.ndarray:
+    """Normal force at the corner opposite to ``pivot``, from Newton's and Euler's laws.
 
     The resultant of a full contact is split on its two corners; the accelerations are those of the
     centres, the forces are taken in the frame of the lower surface.
     """
     up = np.array([0 * s.g, s.g])
-    force2 = s.m2 * (s.get("acceleration2", *poles) + up)
-    where, inertia = ("pole2", s.ic2 * s.q2) if contact == 2 else ("pole1", 0)
-    at = s.get(where, *poles)
-    arm2 = s.get("centre2", *poles) - at
+    force2 = s.m2 * (s.get("acceleration2", *pivots) + up)
+    where, inertia = ("pivot2", s.ic2 * s.q2) if contact == 2 else ("pivot1", 0)
+    at = s.get(where, *pivots)
+    arm2 = s.get("centre2", *pivots) - at
     moment = arm2[1] * force2[0] - arm2[0] * force2[1] + s.ic2 * s.q2
     half_width = s.b2
     if contact == 1:
-        force1 = s.m1 * (s.get("acceleration1", *poles) + up)
-        arm1 = s.get("centre1", *poles) - at
+        force1 = s.m1 * (s.get("acceleration1", *pivots) + up)
+        arm1 = s.get("centre1", *pivots) - at
         moment = moment + arm1[1] * force1[0] - arm1[0] * force1[1] + s.ic1 * s.q1 + inertia
         half_width = s.b1
-    # a unit normal force at the other corner, 2 b away towards -pole, turns by pole · 2 b clockwise
-    return moment / (pole * 2 * half_width)
+    # a unit normal force at the other corner, 2 b away towards -pivot, turns by pivot · 2 b clockwise
+    return moment / (pivot * 2 * half_width)
 
 
 @pytest.mark.parametrize("side", [1, -1])
-@pytest.mark.parametrize("pole", [1, -1])
-def test_a_full_contact_persists_while_both_its_corners_are_pressed(side: int, pole: int) -> None:
+@pytest.mark.parametrize("pivot", [1, -1])
+def test_a_full_contact_persists_while_both_its_corners_are_pressed(side: int, pivot: int) -> None:
     glued, standing = S.rigidly_joined(), S.standing()
     # pattern 3: the interface; the true angular acceleration is that of the stuck state
     models = [Model(STACKS[k], S.g[k]) for k in range(N)]
@@ -137,8 +137,8 @@ def test_a_full_contact_persists_while_both_its_corners_are_pressed(side: int, p
         [models[k].accelerations((side, 0), *state(glued, k), pull(k))[0] for k in range(N)]
     )
     glued = glued.with_(q1=q, q2=q)
-    force = corner_force(glued, 2, pole, (side, pole))
-    found = [models[k].margins((side, 0), *state(glued, k), pull(k))[2, pole] for k in range(N)]
+    force = corner_force(glued, 2, pivot, (side, pivot))
+    found = [models[k].margins((side, 0), *state(glued, k), pull(k))[2, pivot] for k in range(N)]
     scale = S.m2 * S.g / 2
     assert error(np.array(found) * scale, force).max() < 1e-11
     # pattern 4: the ground, with all that stands on it
@@ -146,8 +146,8 @@ def test_a_full_contact_persists_while_both_its_corners_are_pressed(side: int, p
         [models[k].accelerations((0, side), *state(standing, k), pull(k))[1] for k in range(N)]
     )
     standing = standing.with_(q2=q)
-    whole = corner_force(standing, 1, pole, (pole, side))
-    found = [models[k].margins((0, side), *state(standing, k), pull(k))[1, pole] for k in range(N)]
+    whole = corner_force(standing, 1, pivot, (pivot, side))
+    found = [models[k].margins((0, side), *state(standing, k), pull(k))[1, pivot] for k in range(N)]
     scale = (S.m1 + S.m2) * S.g / 2
     assert error(np.array(found) * scale, whole).max() < 1e-11
 
@@ -168,17 +168,17 @@ def test_impact_maps(old: tuple[int, int], new: tuple[int, int]) -> None:
     if old[1] == 0:
         s = s.with_(w2=s.w1)
     true = np.array(impact_map(s, old, new))
-    poles = (float(new[0] or 1), float(new[1] or 1))
+    pivots = (float(new[0] or 1), float(new[1] or 1))
 
     def reference(k: int) -> tuple[float, float]:
         theta, omega = state(s, k)
-        return Model(STACKS[k], S.g[k]).projected(poles, new, old, theta, omega)
+        return Model(STACKS[k], S.g[k]).projected(pivots, new, old, theta, omega)
 
     np.testing.assert_allclose(each(reference), true, rtol=1e-11, atol=1e-12)
 
 
 def impacts() -> list[tuple[tuple[int, int], tuple[int, int], System]]:
-    """Every kind of impact: the old state, the old poles of what closes, states that close so."""
+    """Every kind of impact: the old state, the old pivots of what closes, states that close so."""
     cases = []
     for old in STATES:
         for which in ((1, 0), (0, 1), (1, 1)):
@@ -221,8 +221,8 @@ def test_an_impact_has_one_outcome_and_takes_energy(
         assert not gave_way
     # only where both contacts of pattern 2 close at the same instant may none be left; then what met
     # stays together
-    both_of_pattern_2 = closing[0] * closing[1] == -1
-    assert without == 0 or both_of_pattern_2
+    both_of_rocking_mode_2 = closing[0] * closing[1] == -1
+    assert without == 0 or both_of_rocking_mode_2
 
 
 @IMPACTS
@@ -242,7 +242,7 @@ def test_the_fast_kernel_finds_the_same_outcome(
 
 def has_something_to_multiply(stack: Stack) -> bool:
     """Whether momentum leaves both blocks something to rock on with, which the law "couple" asks for."""
-    return all(b.momentum_restitution() > 0 for b in (stack.pedestal, stack.contact_statue))
+    return all(b.momentum_restitution() > 0 for b in (stack.lower, stack.contact_upper))
 
 
 @pytest.mark.parametrize("law", law_names())

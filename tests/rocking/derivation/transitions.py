@@ -1,7 +1,7 @@
 """Thesis eq. 2.66 to 2.75: when full contact opens.
 
 A criterion "left > right" is given as right - left, in the units of a moment: it must equal the contact
-moment s τ(s) about the pole s it opens on, which vanishes there.
+moment s τ(s) about the pivot s it opens on, which vanishes there.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ def ground(s1: int, s2: int):
 
 
 def from_3(s: System, side: int, gravity: Array, swirl: Array, inertia: Array) -> Array:
-    """m2 R2 × (right - left) of 2.66 to 2.71; ``side`` is the pole block 2 opens on."""
+    """m2 R2 × (right - left) of 2.66 to 2.71; ``side`` is the pivot block 2 opens on."""
     left = -side * cos(s.tc2 - side * s.th1) * s.a
     return s.m2 * s.r2 * (s.g * gravity + swirl + inertia * s.q1 - left)
 
@@ -133,6 +133,6 @@ EQUATIONS = [
 
 
 def _to_centre_2(s: System) -> Array:
-    """Vector from block 1's right pole to the centre of block 2 on it, as they stand."""
+    """Vector from block 1's right pivot to the centre of block 2 on it, as they stand."""
     still = s.with_(th1=0.0, th2=0.0)
-    return still.get("centre2", 1, 1) - still.get("pole1", 1, 1)
+    return still.get("centre2", 1, 1) - still.get("pivot1", 1, 1)

@@ -18,9 +18,9 @@ from rockfrag.building.settings import make_building
 from rockfrag.errors import InputError
 from rockfrag.motions.scaling import scale
 from rockfrag.records.motion import Motion
+from rockfrag.shaketable.definitions import tests_from_ida
 from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.readings import tests_from_sweep
-from rockfrag.stages.sweep import sweep_table
+from rockfrag.stages.ida import ida_table
 from rockfrag.system.system import System
 
 Floats = NDArray[np.float64]
@@ -126,11 +126,11 @@ def building_sensitivity(
     variants
         Buildings, each with the floors that are to be shaken.
     motions
-        Ground motions, with ``event`` in their metadata.
+        Ground motions, with ``earthquake`` in their metadata.
     specimens
         What stands on the table: each object with and without its pedestal, named as tables call it.
     amplitudes_g
-        Amplitudes of the sweeps [g], rising.
+        Amplitudes of the IDA curves [g], rising.
     protocol
         Protocol of the laboratory.
     threads
@@ -140,14 +140,14 @@ def building_sensitivity(
 
     Returns
     -------
-    Table of tests of all variants and readings, with the variant's ``axis``, ``value`` and ``label``,
+    Table of tests of all variants and definitions, with the variant's ``axis``, ``value`` and ``label``,
     and ``credible``, whether the building's model is to be believed under all motions.
     """
     tables: list[pd.DataFrame] = []
     ground = _Ground(specimens, amplitudes_g, threads)
     for done, variant in enumerate(variants, start=1):
-        sweep, credible = _sweep(variant, motions, ground)
-        tests = tests_from_sweep(sweep, protocol)
+        ida, credible = _ida(variant, motions, ground)
+        tests = tests_from_ida(ida, protocol)
         tables.append(
             tests.assign(
                 axis=variant.axis, value=variant.value, label=variant.label, credible=credible
@@ -158,7 +158,7 @@ def building_sensitivity(
 
 
 class _Ground:
-    """Sweeps of motions, which remembers those of the ground: they are the same for every variant."""
+    """IDA curves of motions, which remembers those of the ground: they are the same for every variant."""
 
     def __init__(self, specimens: Sequence[System], amplitudes_g: Floats, threads: int) -> None:
         self.specimens = specimens
@@ -166,8 +166,8 @@ class _Ground:
         self.threads = threads
         self.known: dict[str, pd.DataFrame] = {}
 
-    def sweep(self, motion: Motion) -> pd.DataFrame:
-        """Sweep of a motion, from memory if it is one of the ground."""
+    def ida(self, motion: Motion) -> pd.DataFrame:
+        """IDA curve of a motion, from memory if it is one of the ground."""
         if motion.metadata["level"] != 0:
             return self._shake(motion)
         if motion.name not in self.known:
@@ -176,18 +176,16 @@ class _Ground:
 
     def _shake(self, motion: Motion) -> pd.DataFrame:
         tables: list[pd.DataFrame] = [
-            sweep_table(one, [motion], self.amplitudes_g, self.threads).to_pandas()
-            for one in self.specimens
+            ida_table(specimen, [motion], self.amplitudes_g, self.threads).to_pandas()
+            for specimen in self.specimens
         ]
-        event = motion.metadata.get("event") or motion.metadata["ground_motion"]
+        earthquake = motion.metadata.get("earthquake") or motion.metadata["ground_motion"]
         found = pd.concat(tables, ignore_index=True)
-        return found.assign(event=event)
+        return found.assign(earthquake=earthquake)
 
 
-def _sweep(
-    variant: Variant, motions: Sequence[Motion], ground: _Ground
-) -> tuple[pd.DataFrame, bool]:
-    """Sweep all floors of a variant, and say whether its model is to be believed."""
+def _ida(variant: Variant, motions: Sequence[Motion], ground: _Ground) -> tuple[pd.DataFrame, bool]:
+    """IDA curve all floors of a variant, and say whether its model is to be believed."""
     credible = True
     tables = []
     for motion in motions:
@@ -197,5 +195,5 @@ def _sweep(
         for floor in response_motions(
             variant.building, felt, response, list(variant.building.floors)
         ):
-            tables.append(ground.sweep(floor))
+            tables.append(ground.ida(floor))
     return pd.concat(tables, ignore_index=True), credible

@@ -12,11 +12,11 @@ import pandas as pd
 
 from rockfrag.report.part import Finding
 from rockfrag.report.wording import agree, counted, estimate, listed, of_all, sentence
-from rockfrag.shaketable.readings import READING
-from rockfrag_thesis.pattern import departures_by_floor
-from rockfrag_thesis.sections.inversion import mechanism_name
-from rockfrag_thesis.statements.floors import FIFTH, FLOORS, GROUND, THIRD
-from rockfrag_thesis.statements.statement import Finding as Evidence
+from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag_thesis.hypotheses.floors import FIFTH, FLOORS, GROUND, THIRD
+from rockfrag_thesis.hypotheses.hypothesis import Finding as Evidence
+from rockfrag_thesis.pattern import perturbations_by_floor
+from rockfrag_thesis.sections.inverse_problem import mechanism_name
 
 REPORTED = (
     "The thesis reports that its towers overturn later with the pedestal than without it on the ground floor, "
@@ -47,9 +47,9 @@ _ON_FLOOR = {
 
 def first_page(
     effects: pd.DataFrame,
-    claims: pd.DataFrame,
-    explanation: pd.DataFrame | None = None,
-    inversion: pd.DataFrame | None = None,
+    hypotheses: pd.DataFrame,
+    sensitivity_analysis: pd.DataFrame | None = None,
+    inverse_problem: pd.DataFrame | None = None,
     wanted_percent: Mapping[str, float] | None = None,
 ) -> list[Finding]:
     """Say what the thesis reports, what the simulations of a study give, and what would give an effect.
@@ -59,32 +59,33 @@ def first_page(
     effects
         Effects of the pedestal in the study's simulations, as
         :func:`rockfrag.stages.pedestal.pedestal_tables` returns them.
-    claims
-        The ledger of the study, columns of `rockfrag_thesis.statements.COLUMNS`.
-    explanation
-        Effects of departures from the ideal model, see `rockfrag_thesis.explanation.explain.explain`.
-    inversion
-        Departures that come closest to an effect that was asked for, see
-        `rockfrag_thesis.explanation.inversion.invert`.
+    hypotheses
+        The table of hypotheses of the study, columns of `rockfrag_thesis.hypotheses.COLUMNS`.
+    sensitivity_analysis
+        Effects of perturbed parameters of the ideal model, see
+        `rockfrag_thesis.sensitivity_analysis.explain.explain`.
+    inverse_problem
+        Perturbed parameters that come closest to an effect that was asked for, see
+        `rockfrag_thesis.sensitivity_analysis.inverse_problem.invert`.
     wanted_percent
         That effect, change of P/NP on the ``ground`` and ``above`` it [%].
     """
-    here = effects[effects["reading"] == READING]
-    found = [_reported(here, claims.set_index("number"))]
-    if explanation is not None and len(explanation):
-        found.append(_what_would(explanation))
-        if inversion is not None and len(inversion) and wanted_percent:
+    here = effects[effects["definition"] == DEFINITION]
+    found = [_reported(here, hypotheses.set_index("number"))]
+    if sensitivity_analysis is not None and len(sensitivity_analysis):
+        found.append(_what_would(sensitivity_analysis))
+        if inverse_problem is not None and len(inverse_problem) and wanted_percent:
             last = found[-1]
             found[-1] = replace(
-                last, numbers=f"{last.numbers} {_inverted(inversion, wanted_percent)}"
+                last, numbers=f"{last.numbers} {_inverted(inverse_problem, wanted_percent)}"
             )
     return found
 
 
-def _reported(effects: pd.DataFrame, claims: pd.DataFrame) -> Finding:
-    """Say what the thesis reports beside what the model gives, and the ledger's words for it."""
+def _reported(effects: pd.DataFrame, hypotheses: pd.DataFrame) -> Finding:
+    """Say what the thesis reports beside what the model gives, and the table of hypotheses's words for it."""
     on_floors = {row["level"]: row for row in _rows(effects, "floor")}
-    found = {number: Evidence(value) for number, value in claims["finding"].items()}
+    found = {number: Evidence(value) for number, value in hypotheses["finding"].items()}
     if not set(FLOORS) <= set(on_floors):
         return Finding(
             "The thesis reports an effect of the pedestal that depends on the floor",
@@ -104,13 +105,13 @@ def _reported(effects: pd.DataFrame, claims: pd.DataFrame) -> Finding:
         "",
         f"{REPORTED} For rigid blocks that only rock, the amplitude with pedestal divided by that without is "
         f"{ratios}, and {_whole(effects)} over all {pairs} (95 % intervals over earthquakes). {outcomes}. A "
-        f"difference between thesis and model implies an effect that the model omits.{_why(claims)}",
+        f"difference between thesis and model implies an effect that the model omits.{_why(hypotheses)}",
     )
 
 
-def _why(claims: pd.DataFrame) -> str:
+def _why(hypotheses: pd.DataFrame) -> str:
     """Why the pedestal matters so little in the model, where the simulations show it (C12)."""
-    if claims["estimate"].to_dict().get(12) != 1:
+    if hypotheses["estimate"].to_dict().get(12) != 1:
         return ""
     return (
         " In the model a landing of the statue lifts the pedestal so briefly that it stands still before "
@@ -118,9 +119,9 @@ def _why(claims: pd.DataFrame) -> str:
     )
 
 
-def _what_would(explanation: pd.DataFrame) -> Finding:
+def _what_would(sensitivity_analysis: pd.DataFrame) -> Finding:
     """Say which perturbations change the ratio, and which have the thesis's pattern."""
-    table = departures_by_floor(explanation)
+    table = perturbations_by_floor(sensitivity_analysis)
     simulated, computed = table[~table["arithmetic"]], table[table["arithmetic"]]
     patterned = list(table.loc[table["beyond_chance"], "name"])
     who = of_all(len(patterned), len(table), "perturbation")
@@ -162,7 +163,7 @@ def _simulated_words(simulated: pd.DataFrame) -> str:
     return f"{words}; the largest {'is' if len(strong) == 1 else 'are'} {listed(strong)}."
 
 
-def _inverted(inversion: pd.DataFrame, wanted_percent: Mapping[str, float]) -> str:
+def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]) -> str:
     """Say which perturbation, or which two, come closest to the effect asked for, and how close."""
     places = {"ground": "on the ground", "above": "above it"}
     goal = listed(
@@ -171,9 +172,9 @@ def _inverted(inversion: pd.DataFrame, wanted_percent: Mapping[str, float]) -> s
             for name, percent in wanted_percent.items()
         ]
     )
-    everywhere = inversion[inversion["acts_on"] == "all floors"]
+    everywhere = inverse_problem[inverse_problem["acts_on"] == "all floors"]
     pairs = everywhere["factor_2"] != ""
-    local = inversion[inversion["acts_on"] != "all floors"]
+    local = inverse_problem[inverse_problem["acts_on"] != "all floors"]
     closest = [
         f"the closest {what} gives {_both(row, wanted_percent)} ({mechanism_name(row)}{_ACTING[row['acts_on']]})"
         for what, rows in (
@@ -183,9 +184,9 @@ def _inverted(inversion: pd.DataFrame, wanted_percent: Mapping[str, float]) -> s
         )
         for row in rows.head(1).to_dict("records")
     ]
-    reached = int(inversion["reaches"].sum())
-    who = sentence(of_all(reached, len(inversion), "mechanism"))
-    verb = agree(reached, len(inversion), "produces", "produce")
+    reached = int(inverse_problem["reaches"].sum())
+    who = sentence(of_all(reached, len(inverse_problem), "mechanism"))
+    verb = agree(reached, len(inverse_problem), "produces", "produce")
     return f"{who} (one perturbation, or two together) {verb} {goal}; {listed(closest)}."
 
 

@@ -1,9 +1,9 @@
-"""What a table of tests says about the floors: margins by which statements C34 to C44 hold.
+"""What a table of tests says about the floors: margins by which hypotheses C34 to C44 hold.
 
-A margin is the least of the differences of logarithms that a statement says are positive
-(`rockfrag_thesis.statements.orders`); the means are as stated where it is positive.  A margin of 0.02 is
+A margin is the least of the differences of logarithms that a hypothesis says are positive
+(`rockfrag_thesis.hypotheses.orders`); the means are as stated where it is positive.  A margin of 0.02 is
 2 %: smaller ones mean nothing, whatever their sign.  These are point values without inference, for
-following a statement along an axis of assumptions.
+following a hypothesis along an axis of assumptions.
 """
 
 import math
@@ -14,33 +14,33 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import TooFewUnitsError
 from rockfrag.system.blocks import Block
-from rockfrag_thesis.statements import STATEMENTS as ALL_STATEMENTS
-from rockfrag_thesis.statements import Evidence, Undecidable
-from rockfrag_thesis.statements.floors import floor_steps
-from rockfrag_thesis.statements.orders import ORDERS, Differences, margin
+from rockfrag_thesis.hypotheses import HYPOTHESES as ALL_HYPOTHESES
+from rockfrag_thesis.hypotheses import Evidence, Undecidable
+from rockfrag_thesis.hypotheses.floors import floor_steps
+from rockfrag_thesis.hypotheses.orders import ORDERS, Differences, margin
 
-STATEMENTS: Mapping[str, str] = {
-    f"C{number}": ALL_STATEMENTS[number].text for number in range(34, 45)
+HYPOTHESES: Mapping[str, str] = {
+    f"C{number}": ALL_HYPOTHESES[number].text for number in range(34, 45)
 }
-"""Statements about floors by number."""
+"""Hypotheses about floors by number."""
 
 
 def floor_margins(
     tests: pd.DataFrame, bodies: Mapping[str, Block] | None = None
 ) -> dict[str, float]:
-    """Margins of the statements about floors in one table of tests.
+    """Margins of the hypotheses about floors in one table of tests.
 
     Parameters
     ----------
     tests
-        Table of tests of one reading, with floors ``GF``, ``F3``, ``F5`` and each object ``P`` and
+        Table of tests of one definition, with floors ``GF``, ``F3``, ``F5`` and each object ``P`` and
         ``NP``.
     bodies
         Specimens by name; without them those of the thesis.
 
     Returns
     -------
-    Margin [-] by number of statement; NaN where the tests cannot speak about it, such as of a tower that
+    Margin [-] by number of hypothesis; NaN where the tests cannot speak about it, such as of a tower that
     is not among them. ``order`` is that of the thesis's order of the floors for lone towers, ground
     highest and 3rd lowest: the smaller of the steps from F3 to F5 and from F5 to GF.
 
@@ -54,9 +54,9 @@ def floor_margins(
         steps = floor_steps(evidence)
     except (Undecidable, TooFewUnitsError) as reason:
         raise InputError(
-            f"tests: {reason}; the statements about floors need all of them."
+            f"tests: {reason}; the hypotheses about floors need all of them."
         ) from None
-    margins = {name: _margin(ORDERS[int(name[1:])], evidence) for name in STATEMENTS}
+    margins = {name: _margin(ORDERS[int(name[1:])], evidence) for name in HYPOTHESES}
     return margins | {"order": margin(steps)}
 
 
@@ -68,11 +68,11 @@ def _margin(differences: Differences, evidence: Evidence) -> float:
 
 
 TIE = 1e-9
-"""Margins below this are ties up to rounding: the amplitudes of two tests are the same of the sweep."""
+"""Margins below this are ties up to rounding: the amplitudes of two tests are the same of the IDA curve."""
 
 
 def margins_table(tests: pd.DataFrame) -> pd.DataFrame:
-    """Margins of the statements about floors for every building of a sensitivity study.
+    """Margins of the hypotheses about floors for every building of a sensitivity study.
 
     Parameters
     ----------
@@ -81,16 +81,16 @@ def margins_table(tests: pd.DataFrame) -> pd.DataFrame:
 
     Returns
     -------
-    One row per building, reading and statement: ``axis``, ``value``, ``label``, ``reading``,
-    ``statement``, ``margin``, ``holds`` and ``credible``.
+    One row per building, reading and hypothesis: ``axis``, ``value``, ``label``, ``definition``,
+    ``hypothesis``, ``margin``, ``holds`` and ``credible``.
     """
-    keys = ["axis", "value", "label", "credible", "reading"]
+    keys = ["axis", "value", "label", "credible", "definition"]
     rows = []
-    for values, one in tests.groupby(keys, sort=False):
+    for values, group in tests.groupby(keys, sort=False):
         about = dict(zip(keys, values, strict=True))
         rows += [
-            {**about, "statement": name, "margin": margin, "holds": margin > TIE}
-            for name, margin in floor_margins(one).items()
+            {**about, "hypothesis": name, "margin": margin, "holds": margin > TIE}
+            for name, margin in floor_margins(group).items()
         ]
-    columns = ["axis", "value", "label", "reading", "statement", "margin", "holds", "credible"]
+    columns = ["axis", "value", "label", "definition", "hypothesis", "margin", "holds", "credible"]
     return pd.DataFrame(rows, columns=columns)

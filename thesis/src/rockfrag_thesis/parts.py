@@ -8,18 +8,18 @@ from rockfrag.report.sections.motions import MOTIONS
 from rockfrag.report.sections.validity import VALIDITY
 from rockfrag_thesis.sections.building import BUILDING
 from rockfrag_thesis.sections.counterparts import COUNTERPARTS
-from rockfrag_thesis.sections.explanation import EXPLANATION
 from rockfrag_thesis.sections.floor_order import FLOOR_ORDER
 from rockfrag_thesis.sections.friction import FRICTION
-from rockfrag_thesis.sections.inversion import INVERSION
-from rockfrag_thesis.sections.measured import MEASURED_STATEMENTS
+from rockfrag_thesis.sections.hypotheses import HYPOTHESES
+from rockfrag_thesis.sections.inverse_problem import INVERSE_PROBLEM
+from rockfrag_thesis.sections.measured import MEASURED_HYPOTHESES
 from rockfrag_thesis.sections.printed import PRINTED
+from rockfrag_thesis.sections.sensitivity_analysis import SENSITIVITY_ANALYSIS
 from rockfrag_thesis.sections.signs import SIGNS
-from rockfrag_thesis.sections.statements import STATEMENTS
 
-_BEHIND = {VALIDITY: (EXPLANATION, INVERSION, FRICTION)}
+_BEHIND = {VALIDITY: (SENSITIVITY_ANALYSIS, INVERSE_PROBLEM, FRICTION)}
 _BEFORE = {MOTIONS: (BUILDING,)}
-_COMPARED = (SIGNS, FLOOR_ORDER, PRINTED, STATEMENTS, MEASURED_STATEMENTS)
+_COMPARED = (SIGNS, FLOOR_ORDER, PRINTED, HYPOTHESES, MEASURED_HYPOTHESES)
 
 
 def with_thesis(parts: Sequence[Part], compares: bool) -> list[Part]:

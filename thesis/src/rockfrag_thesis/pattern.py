@@ -1,26 +1,26 @@
-"""Which departures from the ideal model have the signs that the thesis reports on its floors."""
+"""Which perturbed parameters of the ideal model have the signs that the thesis reports on its floors."""
 
 import pandas as pd
 
-from rockfrag_thesis.sections.explanation import departures
-from rockfrag_thesis.statements.floors import FLOORS, GROUND
+from rockfrag_thesis.hypotheses.floors import FLOORS, GROUND
+from rockfrag_thesis.sections.sensitivity_analysis import perturbations
 
 _UPPER = [floor for floor in FLOORS if floor != GROUND]
 
 
-def departures_by_floor(effects: pd.DataFrame) -> pd.DataFrame:
-    """Departures with the ratio P/NP on each floor, and whether it has the signs of the thesis.
+def perturbations_by_floor(effects: pd.DataFrame) -> pd.DataFrame:
+    """Perturbed parameters with the ratio P/NP on each floor, and whether it has the signs of the thesis.
 
     Parameters
     ----------
     effects
-        As `rockfrag_thesis.explanation.explain.explain` returns them.
+        As `rockfrag_thesis.sensitivity_analysis.explain.explain` returns them.
 
     Returns
     -------
     pandas.DataFrame
-        The columns of :func:`rockfrag_thesis.sections.explanation.departures`, a column per floor of the
-        thesis, ``signs`` (the mean is above one on the ground floor and below one on the others) and
+        The columns of :func:`rockfrag_thesis.sections.sensitivity_analysis.perturbations`, a column per floor of
+        the thesis, ``signs`` (the mean is above one on the ground floor and below one on the others) and
         ``beyond_chance`` (so are the 95 % intervals).
     """
     keys = ["factor", "level"]
@@ -35,4 +35,4 @@ def departures_by_floor(effects: pd.DataFrame) -> pd.DataFrame:
         signs=(ratio[GROUND] > 1) & (ratio[_UPPER] < 1).all(axis=1),
         beyond_chance=(lower[GROUND] > 1) & (upper[_UPPER] < 1).all(axis=1),
     )
-    return departures(effects).merge(found.reset_index(), on=keys, how="left")
+    return perturbations(effects).merge(found.reset_index(), on=keys, how="left")

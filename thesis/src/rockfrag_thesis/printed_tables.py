@@ -73,7 +73,10 @@ def uplift_accelerations(body: SystemLike) -> tuple[float, float]:
 
 def uplift_table(configurations: Sequence[System]) -> pd.DataFrame:
     """Accelerations of Table 4.1: ``name`` and the columns of ``TABLE_4_1``."""
-    rows = [(one.name, *uplift_accelerations(one)) for one in configurations]
+    rows = [
+        (configuration.name, *uplift_accelerations(configuration))
+        for configuration in configurations
+    ]
     return pd.DataFrame(rows, columns=["name", *(q.column for q in TABLE_4_1)])
 
 

@@ -2,7 +2,7 @@
 from rockfrag_thesis.settings import settings_of
 
 ASKED = settings_of(STUDY)
-EXPLAINED = ASKED.explanation
+ANALYSED = ASKED.sensitivity_analysis
 MEASURED = ["measured"] if STUDY.more.measured_tests else []
 BUILDINGS = ["building_sensitivity"] if ASKED.sensitivity else []
 
@@ -38,23 +38,23 @@ if ASKED.sensitivity:
     ADDED.append(rules.building_sensitivity.output)
 
 
-if EXPLAINED:
+if ANALYSED:
 
-    rule explanation:
-        """Simulate what could produce an effect of the pedestal, one departure from the ideal model at a time."""
+    rule sensitivity_analysis:
+        """Simulate what could produce an effect of the pedestal, one perturbed parameter of the ideal model at a time."""
         input:
             read("motions/floors"),
             bodies=STUDY.body_files,
         output:
-            table("explanation/ratios", "explanation/effects"),
+            table("sensitivity_analysis/ratios", "sensitivity_analysis/effects"),
             friction=(
-                table("explanation/friction_ratios", "explanation/friction")
-                if EXPLAINED.friction
+                table("sensitivity_analysis/friction_ratios", "sensitivity_analysis/friction")
+                if ANALYSED.friction
                 else []
             ),
-            inversion=table("explanation/inversion") if EXPLAINED.wanted_percent else [],
+            inverse_problem=table("sensitivity_analysis/inverse_problem") if ANALYSED.wanted_percent else [],
         log:
-            f"{RESULTS}/logs/explanation.log",
+            f"{RESULTS}/logs/sensitivity_analysis.log",
         priority: 3
         conda:
             ENVIRONMENT
@@ -64,27 +64,27 @@ if EXPLAINED:
             mem_mb=MEMORY_MB,
             runtime=120,
         params:
-            stage="rockfrag_thesis.stages.explanation:run",
+            stage="rockfrag_thesis.stages.sensitivity_analysis:run",
             study=STUDY_FILE,
-            settings=settings("explanation", "bodies", "amplitudes", "protocol", "seed"),
+            settings=settings("sensitivity_analysis", "bodies", "amplitudes", "protocol", "seed"),
         script:
             RUN_STAGE
 
-    ADDED.append(rules.explanation.output)
+    ADDED.append(rules.sensitivity_analysis.output)
 
 
 if ASKED.compares:
 
     rule thesis:
-        """Set the printed tables beside computed ones, and judge every statement."""
+        """Set the printed tables beside computed ones, and judge every hypothesis."""
         input:
             read("motions/ground", "motions/floors", "tests", "validity", "measures"),
             read(*[f"{folder}/tests" for folder in MEASURED + BUILDINGS]),
             bodies=STUDY.body_files,
         output:
-            table("table_3_1", "table_3_3", "table_4_1", "claims_theory", "standing"),
-            pairs=table("claims", "contradictions") if STUDY.has_pairs else [],
-            measured=table(*[f"{folder}/claims" for folder in MEASURED]),
+            table("table_3_1", "table_3_3", "table_4_1", "hypotheses_theory", "standing"),
+            pairs=table("hypotheses", "contradictions") if STUDY.has_pairs else [],
+            measured=table(*[f"{folder}/hypotheses" for folder in MEASURED]),
             buildings=table(*[f"{folder}/margins" for folder in BUILDINGS]),
         log:
             f"{RESULTS}/logs/thesis.log",
@@ -95,7 +95,7 @@ if ASKED.compares:
             mem_mb=MEMORY_MB,
             runtime=120,
         params:
-            stage="rockfrag_thesis.stages.statements:run",
+            stage="rockfrag_thesis.stages.hypotheses:run",
             study=STUDY_FILE,
             settings=settings(
                 *("bodies", "seed", "amplitudes", "protocol"),

@@ -1,4 +1,4 @@
-"""What the thesis's study asks for beyond any other: a comparison, other buildings, an explanation."""
+"""What the thesis's study asks for beyond any other: a comparison, other buildings, a sensitivity analysis."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ NAME = "thesis"
 
 
 @dataclass(frozen=True)
-class Explanation:
+class SensitivityAnalysis:
     """Levels of the factors that could produce a pedestal effect.
 
     Attributes
@@ -63,16 +63,16 @@ class Settings:
     Attributes
     ----------
     compares
-        Whether the study is compared with the thesis: printed tables, statements, their order of floors.
+        Whether the study is compared with the thesis: printed tables, hypotheses, their order of floors.
     sensitivity
         Values of the building's assumptions by name, see :data:`rockfrag_thesis.building_sensitivity.AXES`.
-    explanation
+    sensitivity_analysis
         Factors that could produce a pedestal effect.
     """
 
     compares: bool = False
     sensitivity: Mapping[str, Sequence[Any]] | None = None
-    explanation: Explanation | None = None
+    sensitivity_analysis: SensitivityAnalysis | None = None
 
 
 def settings_of(study: Study) -> Settings:
@@ -89,15 +89,15 @@ def read_settings(content: Mapping[str, Any], study: Study) -> Settings:
     InputError
         If the study cannot give what they ask for.
     """
-    explanation = content.get("explanation")
-    if explanation is not None:
-        lists = {k: tuple(v) for k, v in explanation.items() if isinstance(v, list)}
-        explanation = Explanation(**{**explanation, **lists})
+    sensitivity_analysis = content.get("sensitivity_analysis")
+    if sensitivity_analysis is not None:
+        lists = {k: tuple(v) for k, v in sensitivity_analysis.items() if isinstance(v, list)}
+        sensitivity_analysis = SensitivityAnalysis(**{**sensitivity_analysis, **lists})
     compares = content.get("compare_with") is not None
-    settings = Settings(compares, content.get("building_sensitivity"), explanation)
-    if explanation is not None and not study.has_pairs:
+    settings = Settings(compares, content.get("building_sensitivity"), sensitivity_analysis)
+    if sensitivity_analysis is not None and not study.has_pairs:
         raise InputError(
-            f"{study.source}: key explanation: expected an object tested with and without a pedestal "
+            f"{study.source}: key sensitivity_analysis: expected an object tested with and without a pedestal "
             "among the configurations."
         )
     if settings.sensitivity is not None:
@@ -109,10 +109,10 @@ def read_settings(content: Mapping[str, Any], study: Study) -> Settings:
 def _check_mechanics(study: Study, settings: Settings) -> None:
     """Refuse what is not simulated with friction or with vertical motion."""
     where = f"{study.source}: key {'friction' if study.slides else 'vertical'}"
-    if (study.slides or study.vertical) and settings.explanation is not None:
+    if (study.slides or study.vertical) and settings.sensitivity_analysis is not None:
         raise InputError(
-            f"{where}: the departures of the key explanation rock without sliding under horizontal motion; "
-            "leave one of the two out (explanation.friction tries coefficients)."
+            f"{where}: the perturbed parameters of the key sensitivity_analysis rock without sliding under horizontal motion; "
+            "leave one of the two out (sensitivity_analysis.friction tries coefficients)."
         )
     if (study.slides or study.vertical) and settings.compares:
         raise InputError(

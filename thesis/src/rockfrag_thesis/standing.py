@@ -1,4 +1,4 @@
-"""Which readings of a test stand when motion and body differ a little, and which are a matter of luck."""
+"""Which definitions of a test stand when motion and body differ a little, and which are a matter of luck."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -12,8 +12,8 @@ from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.case_list import overturned_cases
 from rockfrag.rocking.ensemble import Options, prepared
+from rockfrag.shaketable.definitions import always_overturning, first_overturning, step_protocol
 from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.readings import always_overturning, first_overturning, step_protocol
 from rockfrag.system.perturbation import perturbed
 from rockfrag.system.system import System
 
@@ -33,7 +33,7 @@ CLIMBING = ("step_protocol", "first_overturning")
 """Readings that see nothing above the amplitude at which they end."""
 
 
-def standing_readings(
+def standing_definitions(
     configurations: Sequence[System],
     motions: Sequence[Motion],
     amplitudes_g: Floats,
@@ -41,14 +41,14 @@ def standing_readings(
     seed: int,
     threads: int = 1,
 ) -> pd.DataFrame:
-    """Read every sweep again with perturbed copies of motion and body.
+    """Read every IDA curve again with perturbed copies of motion and body.
 
     Parameters
     ----------
     configurations, motions
         What was tested, and with what.
     amplitudes_g
-        Peaks of the sweep [g], rising.
+        Peaks of the IDA curve [g], rising.
     protocol
         Protocol of the laboratory.
     seed
@@ -58,23 +58,23 @@ def standing_readings(
 
     Returns
     -------
-    One row per test and reading: ``test``, ``configuration``, ``motion``, ``reading``, ``lower_g``,
+    One row per test and reading: ``test``, ``configuration``, ``motion``, ``definition``, ``lower_g``,
     ``upper_g`` (bounds of the amplitude [g]; NaN above if it never overturned), and for each of `SIZES`
     ``stands_1e-09`` and so on: whether every copy has the same bounds.
     """
     scales = np.array([factors_to_pga(motion, amplitudes_g) for motion in motions])
     rng = np.random.default_rng(seed)
     rows = []
-    for one in configurations:
-        copies = [[_copy(one, size, rng) for _ in range(COPIES)] for size in SIZES]
+    for configuration in configurations:
+        copies = [[_copy(configuration, size, rng) for _ in range(COPIES)] for size in SIZES]
         fell = overturns(
-            one,
+            configuration,
             [motion.acceleration for motion in motions],
             [motion.dt for motion in motions],
             scales,
             threads=threads,
         ).overturned[0]
-        found = [_readings(amplitudes_g, verdicts, protocol) for verdicts in fell]
+        found = [_definitions(amplitudes_g, flags, protocol) for flags in fell]
         stands = {
             (k, i, name): True
             for k in range(len(SIZES))
@@ -84,19 +84,19 @@ def standing_readings(
         for number in range(COPIES):
             tried = [each[number] for each in copies]
             wanted = _asked(amplitudes_g, found, stands)
-            ends = _verdicts(tried, motions, scales, wanted, threads)
+            ends = _outcomes(tried, motions, scales, wanted, threads)
             for k, i in np.ndindex(wanted.shape[:2]):
-                # where a copy was not shaken its verdict changes no reading that is still in question
-                verdicts = np.where(wanted[k, i], ends[k, i], fell[i])
-                for name, bounds in _readings(amplitudes_g, verdicts, protocol).items():
+                # where a copy was not shaken its outcome changes no reading that is still in question
+                flags = np.where(wanted[k, i], ends[k, i], fell[i])
+                for name, bounds in _definitions(amplitudes_g, flags, protocol).items():
                     stands[k, i, name] &= _same(bounds, found[i][name])
         for i, motion in enumerate(motions):
             rows += [
                 {
-                    "test": f"{one.name} {motion.name}",
-                    "configuration": one.name,
+                    "test": f"{configuration.name} {motion.name}",
+                    "configuration": configuration.name,
                     "motion": motion.name,
-                    "reading": name,
+                    "definition": name,
                     "lower_g": bounds[0],
                     "upper_g": bounds[1],
                     **{f"stands_{size:.0e}": stands[k, i, name] for k, size in enumerate(SIZES)},
@@ -111,14 +111,14 @@ def _copy(system: System, size: float, rng: np.random.Generator) -> Copy:
     return near, 1 + size * float(rng.uniform(-1, 1))
 
 
-def _readings(amplitudes_g: Floats, verdicts: Flags, protocol: Protocol) -> dict[str, Bounds]:
-    """Bounds by reading."""
+def _definitions(amplitudes_g: Floats, flags: Flags, protocol: Protocol) -> dict[str, Bounds]:
+    """Bounds by definition."""
     outcomes = {
-        "step_protocol": step_protocol(amplitudes_g, verdicts, protocol),
-        "first_overturning": first_overturning(amplitudes_g, verdicts),
-        "always_overturning": always_overturning(amplitudes_g, verdicts),
+        "step_protocol": step_protocol(amplitudes_g, flags, protocol),
+        "first_overturning": first_overturning(amplitudes_g, flags),
+        "always_overturning": always_overturning(amplitudes_g, flags),
     }
-    return {name: (one.lower_g, one.upper_g) for name, one in outcomes.items()}
+    return {name: (outcome.lower_g, outcome.upper_g) for name, outcome in outcomes.items()}
 
 
 def _asked(
@@ -126,7 +126,7 @@ def _asked(
     found: Sequence[Mapping[str, Bounds]],
     stands: Mapping[tuple[int, int, str], bool],
 ) -> Flags:
-    """Amplitudes that can tell whether a reading stands that does so far, shape (sizes, motions, amplitudes).
+    """Amplitudes that can tell whether a definition stands that does so far, shape (sizes, motions, amplitudes).
 
     What climbs until the first overturning does not see the amplitudes above it; the amplitude from which
     everything overturns does not see those below the last survived one.
@@ -143,7 +143,7 @@ def _asked(
     return asked
 
 
-def _verdicts(
+def _outcomes(
     copies: Sequence[Copy],
     motions: Sequence[Motion],
     scales: Floats,
@@ -160,5 +160,5 @@ def _verdicts(
     return ends
 
 
-def _same(one: Bounds, other: Bounds) -> bool:
-    return np.array_equal(one, other, equal_nan=True)
+def _same(bounds: Bounds, other: Bounds) -> bool:
+    return np.array_equal(bounds, other, equal_nan=True)

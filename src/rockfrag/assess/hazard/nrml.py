@@ -80,15 +80,15 @@ def _found(
     if years is None:
         raise InputError(f"{path}: the investigation time of the probabilities is not stated.")
     measure = read_measure(imt, path)
-    values, shares = (read_numbers(words or "", path) for words in (levels, poes[0].text))
+    values, fractions = (read_numbers(words or "", path) for words in (levels, poes[0].text))
     times = read_numbers(years, path)
     if len(times) != 1:
         raise InputError(f"{path}: the investigation time is {len(times)} numbers; give one.")
     (time,) = times
-    rates = rates_of(shares, time, path)
+    rates = rates_of(fractions, time, path)
     return Found(make_curve(measure, values, list(rates), path), read_statistic(kind, path))
 
 
 def _named(root: ET.Element, name: str) -> Iterator[ET.Element]:
     """Elements of a name in any namespace."""
-    return (one for one in root.iter() if one.tag.rpartition("}")[2] == name)
+    return (item for item in root.iter() if item.tag.rpartition("}")[2] == name)

@@ -39,10 +39,10 @@ def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
         If a file cannot be read, holds no hazard curve or those of several sites, or two files give the
         same curve.
     """
-    found = [one for path in paths for one in _read_file(Path(path))]
+    found = [item for path in paths for item in _read_file(Path(path))]
     curves = []
-    for measure in dict.fromkeys(one.curve.measure for one in found):
-        mine = [one for one in found if one.curve.measure == measure]
+    for measure in dict.fromkeys(item.curve.measure for item in found):
+        mine = [item for item in found if item.curve.measure == measure]
         curves.append(_assembled(measure.name, mine))
     return curves
 
@@ -50,16 +50,16 @@ def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
 def _assembled(name: str, found: Sequence[Found]) -> HazardCurve:
     """Put the quantiles of one measure to its mean; the median stands in for a mean that is not there."""
     named: dict[str, Found] = {}
-    for one in found:
-        if one.statistic in named:
+    for item in found:
+        if item.statistic in named:
             raise InputError(
-                f"{one.curve.source}: {name} ({one.statistic}) is given twice, in "
-                f"{named[one.statistic].curve.source} too; leave one out."
+                f"{item.curve.source}: {name} ({item.statistic}) is given twice, in "
+                f"{named[item.statistic].curve.source} too; leave one out."
             )
-        named[one.statistic] = one
+        named[item.statistic] = item
     quantiles = {
-        float(statistic.removeprefix("quantile-")): one.curve
-        for statistic, one in named.items()
+        float(statistic.removeprefix("quantile-")): item.curve
+        for statistic, item in named.items()
         if statistic.startswith("quantile-")
     }
     main = named["mean"].curve if "mean" in named else quantiles.get(0.5)

@@ -30,9 +30,9 @@ def read(text: str, path: str) -> list[Found]:
     try:
         response = answer["response"]
         curves = (
-            [_old(one) for one in response]
+            [_old(item) for item in response]
             if isinstance(response, list)
-            else [_new(one) for one in response["hazardCurves"]]
+            else [_new(hazardcurve) for hazardcurve in response["hazardCurves"]]
         )
         if not curves:
             raise InputError(f"{path}: the answer holds no hazard curve.")
@@ -47,21 +47,21 @@ def read(text: str, path: str) -> list[Found]:
         ) from None
 
 
-def _new(one: Any) -> tuple[str, Any, Any]:
-    values = _total(one["data"])["values"]
-    return str(one["imt"]["value"]), values["xs"], values["ys"]
+def _new(item: Any) -> tuple[str, Any, Any]:
+    values = _total(item["data"])["values"]
+    return str(item["imt"]["value"]), values["xs"], values["ys"]
 
 
-def _old(one: Any) -> tuple[str, Any, Any]:
-    about = one["metadata"]
-    return str(about["imt"]["value"]), about["xvalues"], _total(one["data"])["yvalues"]
+def _old(item: Any) -> tuple[str, Any, Any]:
+    about = item["metadata"]
+    return str(about["imt"]["value"]), about["xvalues"], _total(item["data"])["yvalues"]
 
 
 def _total(data: Any) -> Any:
     """Return the component of all sources together."""
-    for one in data:
-        if one["component"] == TOTAL:
-            return one
+    for item in data:
+        if item["component"] == TOTAL:
+            return item
     raise KeyError(TOTAL)
 
 

@@ -1,10 +1,10 @@
-"""The kernels: compiled functions that march bodies through motions.
+"""The kernels: compiled functions that integrate bodies through motions.
 
 **The life of a case.**  A case is a body × motion × scale.  It is at rest until the ground lifts it
 (``case.next_uplift`` skips to that instant), rocks in a contact state (``contact_states`` has their table),
 and goes from one to the next by
-events: a contact opens (``contact_states.release``) or closes (``impact``), until the body rests again, has
-fallen, or its motion is over and what is left of its energy cannot overturn it.  Impacts that accumulate are
+contact events: a contact opens (``contact_states.release``) or closes (``impact``), until the body rests again,
+has fallen, or its motion is over and what is left of its energy cannot overturn it.  Impacts that accumulate are
 ended at once where that is proved to change nothing (``chatter``).
 
 **Who calls whom.**
@@ -12,12 +12,16 @@ ended at once where that is proved to change nothing (``chatter``).
 ====================================  =========================================================================
 called from Python                    calls
 ====================================  =========================================================================
-``single.march``: one history         ``taylor.fill_series`` from event to event; ``roots`` find the next one;
-                                      ``single.land`` and ``contact_states`` say what follows; ``record`` keeps it
-``lanes.scheduler.march_stacks``      ``stack_one.advance`` and ``stack_two.advance``: one step of sixteen cases;
-                                      ``stack_case``: events, rest, the next case; ``stack_constants`` once a body
-``lanes.block.march_blocks``          ``block.advance``: one step of 64 lone blocks, and all the rest in one file
-``record.fill_energies``              ``equations``
+``single.integrate``: one history         ``taylor.fill_series`` from contact event to contact event; ``roots``
+find the next one;
+                                      ``single.resolve_impact`` and ``contact_states`` say what follows;
+                                      ``record`` keeps it
+``lanes.scheduler.integrate_stacks``      ``stack_one.advance`` and ``stack_two.advance``: one step of sixteen
+cases;
+                                      ``stack_case``: contact events, rest, the next case; ``stack_constants``
+                                      once a body
+``lanes.block.integrate_blocks``          ``block.advance``: one step of 64 lone blocks, and all the rest in one
+file ``record.fill_energies``              ``equations``
 ``record.fill_sines``                 ``elementary``
 ====================================  =========================================================================
 
@@ -27,7 +31,7 @@ stand), the last two in plain Python that bodies use too; ``jit`` says how they 
 
 **Data** are records with named fields: BODY, STATE (``equations``), SERIES (``taylor``), CASE
 (``stack_case``), LANE (of every kind of lane, a row of numbers for each field), OUTCOME (``case``), SAMPLE,
-EVENT, SUMMARY (``record``); what belongs
+CONTACT_EVENT, SUMMARY (``record``); what belongs
 together is handed on as a named tuple: Ensemble and Motions (``case``) and Worker (the memory of a thread), these
 by reference (``by_reference``); Shaking, Step, Ahead.
 

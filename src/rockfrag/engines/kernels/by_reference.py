@@ -33,7 +33,9 @@ def by_reference(named_tuple: Any) -> Any:
     @typeof_impl.register(named_tuple)  # type: ignore[untyped-decorator]
     def of_value(values: Any, context: Any) -> Reference:
         return Reference(
-            types.BaseTuple.from_types([typeof_impl(one, context) for one in values], named_tuple)
+            types.BaseTuple.from_types(
+                [typeof_impl(value, context) for value in values], named_tuple
+            )
         )
 
     return named_tuple

@@ -1,7 +1,7 @@
 """Series of impacts that accumulate, ended at once, and why that is allowed.
 
-A contact that comes down can bounce from pole to pole infinitely often in finite time (Zeno).  Let D and D' be
-the least accelerations that bring it back on its two poles while the series lasts, and e, e' the shares of the
+A contact that comes down can bounce from pivot to pivot infinitely often in finite time (Zeno).  Let D and D' be
+the least accelerations that bring it back on its two pivots while the series lasts, and e, e' the fractions of the
 speed that are left by an impact that ends rocking on the one and on the other.  A flight that begins at speed
 w ends before 2 w / D, its impact leaves e w, the next flight ends before 2 e w / D', and so on: a geometric
 series with the sum
@@ -29,12 +29,12 @@ from numpy.typing import NDArray
 
 from rockfrag.elementary import hypot
 from rockfrag.engines.kernels.contact_states import at_rest
-from rockfrag.engines.kernels.equations import accelerations, statue_balance
+from rockfrag.engines.kernels.equations import accelerations, upper_balance
 from rockfrag.engines.kernels.impact import mass_matrix
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
 
-class Thoroughness(NamedTuple):
+class ChatterTolerance(NamedTuple):
     """How long chatter is followed before it is closed.
 
     Attributes
@@ -47,10 +47,10 @@ class Thoroughness(NamedTuple):
     drop: float
 
 
-HISTORY = Thoroughness(closing_speed=1e-6, drop=1e-9)
+HISTORY = ChatterTolerance(closing_speed=1e-6, drop=1e-9)
 """Where the history is kept."""
-VERDICT = Thoroughness(closing_speed=1e-4, drop=1e-2)
-"""Where only the verdict matters."""
+OUTCOME = ChatterTolerance(closing_speed=1e-4, drop=1e-2)
+"""Where only the outcome matters."""
 
 CHATTER_ERROR = 1e-7
 """Largest w² T [rad²/s] of a chatter that is closed at once on a body that rocks on."""
@@ -58,8 +58,8 @@ FASTEST_CHATTER = 0.1
 """Speed [rad/s] above which it is not."""
 CHATTER_TIME = 0.08
 """Time [s] over which the ground is looked at, at most, before it is."""
-LONGEST_SHARE = 0.999
-"""Share of the speed left by impacts above which no end is foreseen."""
+LONGEST_FRACTION = 0.999
+"""Fraction of the speed left by impacts above which no end is foreseen."""
 MOST_AHEAD = 32
 """Samples of the ground that are looked at, at most."""
 
@@ -107,7 +107,7 @@ def fill_restoring(body, restoring, scratch):
             still = _restoring(body, c1, c2, 0.0, scratch)
             restoring.still[i] = still
             restoring.per_ground[i] = _restoring(body, c1, c2, 1.0, scratch) - still
-    _, vx, vy, inertia = statue_balance(body, 1)
+    _, vx, vy, inertia = upper_balance(body, 1)
     # p² of a ground that does not move vertically
     frequency2 = body.gravity * hypot(vx, vy) / inertia
     restoring.frequency2 = frequency2
@@ -144,7 +144,7 @@ def weight_at(ahead, k):
 
 
 @kernel
-def dies_out(speed, share, safety, restoring, drop, ahead):
+def dies_out(speed, fraction, safety, restoring, drop, ahead):
     """Whether the impacts that follow one at θ1 = θ2 = 0 end at rest before anything else can happen.
 
     Parameters
@@ -154,7 +154,7 @@ def dies_out(speed, share, safety, restoring, drop, ahead):
     safety : what T is taken longer by
     drop : flights of more than this are followed [rad]
     """
-    if share > LONGEST_SHARE:
+    if fraction > LONGEST_FRACTION:
         return False
     least = math.inf
     for n in range(MOST_AHEAD + 1):
@@ -165,7 +165,7 @@ def dies_out(speed, share, safety, restoring, drop, ahead):
             return False
         if speed * speed > 2.0 * drop * least:
             return False
-        time = safety * 2.0 * speed / (least * (1.0 - share))
+        time = safety * 2.0 * speed / (least * (1.0 - fraction))
         if n > 0 and time <= (n - ahead.tau) * ahead.dt:
             return True
         if time > MOST_AHEAD * ahead.dt:
@@ -182,8 +182,8 @@ def block_dies_out(w, side, here, there, ahead):
 
     Parameters
     ----------
-    side : pole on which it is launched
-    here, there : constants of that pole and of the other (``block.POLE``)
+    side : pivot on which it is launched
+    here, there : constants of that pivot and of the other (``block.PIVOT``)
     ahead : the ground over g
     """
     # gravity only ever grows D; the least of it is enough

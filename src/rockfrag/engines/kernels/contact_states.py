@@ -26,7 +26,7 @@ from rockfrag.engines.kernels.equations import (
     equations,
     ground_hold,
     interface_hold,
-    pole,
+    pivot,
 )
 from rockfrag.engines.kernels.jit import kernel
 
@@ -39,7 +39,7 @@ GROUND, INTERFACE = 1, 2
 
 @kernel
 def side_of(value):
-    """Return +1, -1 or 0: the pole on which a contact with this opening rocks."""
+    """Return +1, -1 or 0: the pivot on which a contact with this opening rocks."""
     return (1 if value > 0.0 else 0) - (1 if value < 0.0 else 0)
 
 
@@ -90,7 +90,7 @@ def _rest_moment(body, contact, c, ground, scratch):
     """Contact moment s τ(s) of a contact at rest at its corner ``c``."""
     at_rest(scratch, ground, body.gravity)
     c1, c2 = (c, 1) if contact == GROUND else (1, c)
-    _, _, _, f1, f2 = equations(body, pole(c1), pole(c2), scratch)
+    _, _, _, f1, f2 = equations(body, pivot(c1), pivot(c2), scratch)
     return c * (f1 + f2) if contact == GROUND else c * f2
 
 
@@ -142,7 +142,7 @@ def settle(body, state):
 def release(body, state, fails, stuck):
     """Contact state after a closed contact, GROUND or INTERFACE, can no longer hold.
 
-    ``stuck``: no time has passed since the last event, so a state that stays as it is would never end.
+    ``stuck``: no time has passed since the last contact event, so a state that stays as it is would never end.
     """
     c1, c2 = settle(body, state)
     if stuck and c1 == state.c1 and c2 == state.c2:

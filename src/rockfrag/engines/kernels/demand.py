@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from rockfrag.elementary import sin_cos
-from rockfrag.engines.kernels.equations import arm1, arm2, pole, reach
+from rockfrag.engines.kernels.equations import arm1, arm2, pivot, reach
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
 DEMAND = np.dtype(
@@ -55,7 +55,7 @@ def _swung(arm, omega, alpha):
 
 
 @inlined_kernel
-def _share(normal, shear):
+def _fraction(normal, shear):
     return abs(shear) / normal if normal > 0.0 else math.inf
 
 
@@ -71,21 +71,21 @@ def _components(body, turn1, force):
 def forces(body, state, alpha1, alpha2):
     """Normal and shear of the ground, and of the interface, in a state with its angular accelerations [N]."""
     turn1, turn2 = sin_cos(state.theta1), sin_cos(state.theta2)
-    s1, s2 = pole(state.c1), pole(state.c2)
-    one = _swung(_turned(arm1(body, s1), turn1), state.omega1, alpha1)
+    s1, s2 = pivot(state.c1), pivot(state.c2)
+    first = _swung(_turned(arm1(body, s1), turn1), state.omega1, alpha1)
     foot = _swung(_turned(reach(body, s1, s2), turn1), state.omega1, alpha1)
     two = _swung(_turned(arm2(body, s2), turn2), state.omega2, alpha2)
     x2 = body.m2 * (state.ground + foot[0] + two[0])
     y2 = body.m2 * (state.gravity + foot[1] + two[1])
-    x1 = x2 + body.m1 * (state.ground + one[0])
-    y1 = y2 + body.m1 * (state.gravity + one[1])
+    x1 = x2 + body.m1 * (state.ground + first[0])
+    y1 = y2 + body.m1 * (state.gravity + first[1])
     return _components(body, turn1, ((x2, y2), (x1, y1)))
 
 
 @inlined_kernel
 def _velocities(body, state, turn1, turn2):
     """Velocities of both centres of gravity [m/s]."""
-    s1, s2 = pole(state.c1), pole(state.c2)
+    s1, s2 = pivot(state.c1), pivot(state.c2)
     x1, y1 = _turned(arm1(body, s1), turn1)
     xd, yd = _turned(reach(body, s1, s2), turn1)
     x2, y2 = _turned(arm2(body, s2), turn2)
@@ -97,11 +97,11 @@ def _velocities(body, state, turn1, turn2):
 def ask_forces(body, state, alpha1, alpha2, demand):
     """Add what the forces of a state ask; the least normal force over both interfaces [N]."""
     n1, t1, n2, t2 = forces(body, state, alpha1, alpha2)
-    demand.friction2 = max(demand.friction2, _share(n2, t2))
+    demand.friction2 = max(demand.friction2, _fraction(n2, t2))
     demand.normal2 = min(demand.normal2, n2)
     if body.fixed:
         return n2
-    demand.friction1 = max(demand.friction1, _share(n1, t1))
+    demand.friction1 = max(demand.friction1, _fraction(n1, t1))
     demand.normal1 = min(demand.normal1, n1)
     return min(n1, n2)
 
@@ -118,6 +118,6 @@ def ask_impulses(body, before, after, demand):
     # what rounding leaves of the velocities asks nothing
     speed = abs(u1x) + abs(u1y) + abs(u2x) + abs(u2y)
     if abs(n2) + abs(t2) > 1e-9 * body.m2 * speed:
-        demand.friction2 = max(demand.friction2, _share(n2, t2))
+        demand.friction2 = max(demand.friction2, _fraction(n2, t2))
     if not body.fixed and abs(n1) + abs(t1) > 1e-9 * (body.m1 + body.m2) * speed:
-        demand.friction1 = max(demand.friction1, _share(n1, t1))
+        demand.friction1 = max(demand.friction1, _fraction(n1, t1))

@@ -1,11 +1,11 @@
 """The two-block model in one formulation for all nine contact states (``docs/derivation.md``).
 
 Block 1 is the pedestal, block 2 the statue.  c1 (ground) and c2 (interface) are the contact states: +1 or -1
-for rocking on the right or left pole, 0 for full contact.
+for rocking on the right or left pivot, 0 for full contact.
 
-Positions along an interface are given as σ in [-1, 1]: the poles are σ = ±1.  With r1 = R(θ1) arm1, d = R(θ1)
+Positions along an interface are given as σ in [-1, 1]: the pivots are σ = ±1.  With r1 = R(θ1) arm1, d = R(θ1)
 reach, r2 = R(θ2) arm2 the equations are M θ'' + f = τ with τ the moments of the contact forces, zero at a
-rocking pole (Spanos, Roussis and Politis, 2001; ``docs/derivation.md``).
+rocking pivot (Spanos, Roussis and Politis, 2001; ``docs/derivation.md``).
 
 A lone block is block 2 on a block 1 that cannot move (``fixed``).
 """
@@ -17,9 +17,9 @@ import numpy as np
 from rockfrag.elementary import atan2, hypot, sin, sin_cos
 from rockfrag.engines.kernels.jit import kernel
 
-AFTER = np.dtype([("law", np.int64), ("value", np.float64)])
+IMPACT_LAW = np.dtype([("law", np.int64), ("value", np.float64)])
 """How a contact comes off an impact: by momentum (0) or by a law with its number, which is a factor on the rate
-that momentum gives (COUPLE), the place of the impulse from the middle (0) to the new pole (1) of the base
+that momentum gives (COUPLE), the place of the impulse from the middle (0) to the new pivot (1) of the base
 (POSITION), or the ratio of the rates after and before (RATIO)."""
 
 BODY = np.dtype(
@@ -30,8 +30,8 @@ BODY = np.dtype(
         ("tx", np.float64), ("ty", np.float64), ("ex", np.float64), ("ey", np.float64),
         # statue: likewise, centre from the middle of its footing
         ("m2", np.float64), ("i2", np.float64), ("b2", np.float64), ("c2x", np.float64), ("c2y", np.float64),
-        # how ground and interface come off impacts that end rocking on the right and on the left pole
-        ("after1r", AFTER), ("after1l", AFTER), ("after2r", AFTER), ("after2l", AFTER),
+        # how ground and interface come off impacts that end rocking on the right and on the left pivot
+        ("after1r", IMPACT_LAW), ("after1l", IMPACT_LAW), ("after2r", IMPACT_LAW), ("after2l", IMPACT_LAW),
         ("gravity", np.float64),  # of a ground that does not move vertically
         ("linear", np.int64),  # 0 exact; 1 eq. 2.60-2.65; 2 eq. 2.9 (lone block)
         ("fixed", np.bool_),  # block 1 cannot move
@@ -58,8 +58,8 @@ STATE = np.dtype(
 
 
 @kernel
-def pole(c):
-    """Position σ of the pole of contact state c; full contact (0) counts as rocking on +1, at rest."""
+def pivot(c):
+    """Position σ of the pivot of contact state c; full contact (0) counts as rocking on +1, at rest."""
     return -1.0 if c < 0 else 1.0
 
 
@@ -134,7 +134,7 @@ def first_moment2(body, sigma2):
 
 @kernel
 def weight_moment(body, vx, vy, theta, state):
-    """-g V_x + a V_y with V = R(θ)(vx, vy): gravity's and the ground's share of f1 or f2."""
+    """-g V_x + a V_y with V = R(θ)(vx, vy): gravity's and the ground's fraction of f1 or f2."""
     g, ground = state.gravity, state.ground
     if body.linear > 0:
         return ground * vy - g * (vx + vy * theta)
@@ -167,7 +167,7 @@ def accelerations(body, c1, c2, state):
     """θ1'' and θ2'' [rad/s²] if the contacts were (c1, c2)."""
     if c1 == 0 and c2 == 0:
         return 0.0, 0.0
-    m11, m12, m22, f1, f2 = equations(body, pole(c1), pole(c2), state)
+    m11, m12, m22, f1, f2 = equations(body, pivot(c1), pivot(c2), state)
     if c1 == 0:
         return 0.0, -f2 / m22
     if c2 == 0:
@@ -188,7 +188,7 @@ def ground_hold(body, c2, state, alpha2):
     least = math.inf
     corner = 1
     for c1 in (1, -1):
-        _, m12, m22, f1, f2 = equations(body, pole(c1), pole(c2), state)
+        _, m12, m22, f1, f2 = equations(body, pivot(c1), pivot(c2), state)
         tau = m12 * alpha2 + f1
         if c2 == 0:
             tau += m22 * alpha2 + f2
@@ -204,7 +204,7 @@ def interface_hold(body, c1, state, alpha1):
     least = math.inf
     corner = 1
     for c2 in (1, -1):
-        _, m12, m22, _, f2 = equations(body, pole(c1), pole(c2), state)
+        _, m12, m22, _, f2 = equations(body, pivot(c1), pivot(c2), state)
         tau = (m12 + m22) * alpha1 + f2
         if c2 * tau < least:
             least = c2 * tau
@@ -225,7 +225,7 @@ def turn_between(body, state):
 
 
 @kernel
-def metric(body, one, other, turn):
+def metric(body, lanes_of_one, other, turn):
     """Kinetic-metric products K11, K12, K21, K22 of the velocity fields about two pairs of points.
 
     Parameters
@@ -234,11 +234,11 @@ def metric(body, one, other, turn):
     turn : cosine and sine of θ2 - θ1
     """
     c, s = turn
-    ax, ay = arm1(body, one[0])
+    ax, ay = arm1(body, lanes_of_one[0])
     bx, by = arm1(body, other[0])
-    dax, day = reach(body, one[0], one[1])
+    dax, day = reach(body, lanes_of_one[0], lanes_of_one[1])
     dbx, dby = reach(body, other[0], other[1])
-    rax, ray = arm2(body, one[1])
+    rax, ray = arm2(body, lanes_of_one[1])
     rbx, rby = arm2(body, other[1])
     m1 = body.m1
     m2 = body.m2
@@ -247,11 +247,11 @@ def metric(body, one, other, turn):
     k12 = m2 * (dax * (rbx * c + rby * s) + day * (rby * c - rbx * s))
     k21 = m2 * (dbx * (rax * c + ray * s) + dby * (ray * c - rax * s))
     if body.linear == 2:
-        k22 = inertia2(body, one[1])
-        if one[1] != other[1]:
+        k22 = inertia2(body, lanes_of_one[1])
+        if lanes_of_one[1] != other[1]:
             x, y = body.c2x, body.c2y
             b = body.b2
-            k22 = body.i2 + m2 * ((x - one[1] * b) * (x - other[1] * b) + y * y)
+            k22 = body.i2 + m2 * ((x - lanes_of_one[1] * b) * (x - other[1] * b) + y * y)
     else:
         k22 = body.i2 + m2 * (rax * rbx + ray * rby)
     return k11, k12, k21, k22
@@ -260,8 +260,8 @@ def metric(body, one, other, turn):
 @kernel
 def kinetic_energy(body, state):
     """Kinetic energy relative to the ground [J]."""
-    poles = pole(state.c1), pole(state.c2)
-    k11, k12, _, k22 = metric(body, poles, poles, turn_between(body, state))
+    pivots = pivot(state.c1), pivot(state.c2)
+    k11, k12, _, k22 = metric(body, pivots, pivots, turn_between(body, state))
     omega1, omega2 = state.omega1, state.omega2
     return 0.5 * (k11 * omega1 * omega1 + 2.0 * k12 * omega1 * omega2 + k22 * omega2 * omega2)
 
@@ -269,7 +269,7 @@ def kinetic_energy(body, state):
 @kernel
 def potential_energy(body, state):
     """Potential energy above rest [J]: g Σ m y, quadratic in θ in the linearised equations."""
-    s1, s2 = pole(state.c1), pole(state.c2)
+    s1, s2 = pivot(state.c1), pivot(state.c2)
     theta1, theta2 = state.theta1, state.theta2
     v1x, v1y = first_moment1(body, s1, s2)
     v2x, v2y = first_moment2(body, s2)
@@ -284,8 +284,8 @@ def potential_energy(body, state):
 
 @kernel
 def balance(body, c1, c2):
-    """Critical angle, first moment and inertia of the pedestal with what stands on it, on pole c1."""
-    s1, s2 = pole(c1), pole(c2)
+    """Critical angle, first moment and inertia of the pedestal with what stands on it, on pivot c1."""
+    s1, s2 = pivot(c1), pivot(c2)
     if c2 == 0:
         v1x, v1y = first_moment1(body, s1, s2)
         v2x, v2y = first_moment2(body, s2)
@@ -299,10 +299,10 @@ def balance(body, c1, c2):
 
 
 @kernel
-def statue_balance(body, c2):
-    """Critical angle, first moment and inertia of the statue (or lone block) on its pole c2."""
-    vx, vy = first_moment2(body, pole(c2))
-    return atan2(-c2 * vx, vy), vx, vy, inertia2(body, pole(c2))
+def upper_balance(body, c2):
+    """Critical angle, first moment and inertia of the statue (or lone block) on its pivot c2."""
+    vx, vy = first_moment2(body, pivot(c2))
+    return atan2(-c2 * vx, vy), vx, vy, inertia2(body, pivot(c2))
 
 
 @kernel

@@ -1,6 +1,6 @@
 """Impacts: what the velocities are after contacts have closed.
 
-Momentum decides first: point impact, no bounce, no impulse at a pole that leaves.  The momentum before is
+Momentum decides first: point impact, no bounce, no impulse at a pivot that leaves.  The momentum before is
 projected on the velocity fields after, M(new) ω⁺ = B(new, old) ω⁻ (``docs/derivation.md``; Housner, 1963;
 Spanos, Roussis and Politis, 2001).
 
@@ -21,7 +21,7 @@ Every outcome of every impact is worked out here, so a contact law has its place
 from rockfrag.engines.kernels.equations import (
     kinetic_energy,
     metric,
-    pole,
+    pivot,
     turn_between,
 )
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
@@ -48,20 +48,20 @@ def impact(body, state, closes1, closes2):
 @kernel
 def stuck(body, state, n1, n2):
     """Velocities after an impact that is made to end with the contacts (n1, n2)."""
-    return _projected(body, state, n1, n2, (pole(n1), pole(n2)))
+    return _projected(body, state, n1, n2, (pivot(n1), pivot(n2)))
 
 
 @kernel
 def _projected(body, state, n1, n2, test):
     """Velocities after an impact that ends with the contacts (n1, n2), 0 being stuck.
 
-    ``test`` are the points where the impulses act: the poles, unless the law of position moves them.
+    ``test`` are the points where the impulses act: the pivots, unless the law of position moves them.
     """
     if n1 == 0 and n2 == 0:
         return 0.0, 0.0
     turn = turn_between(body, state)
-    k11, k12, k21, k22 = metric(body, test, (pole(n1), pole(n2)), turn)
-    b11, b12, b21, b22 = metric(body, test, (pole(state.c1), pole(state.c2)), turn)
+    k11, k12, k21, k22 = metric(body, test, (pivot(n1), pivot(n2)), turn)
+    b11, b12, b21, b22 = metric(body, test, (pivot(state.c1), pivot(state.c2)), turn)
     l1 = b11 * state.omega1 + b12 * state.omega2
     l2 = b21 * state.omega1 + b22 * state.omega2
     if n1 == 0:
@@ -81,23 +81,23 @@ def _impulse_moments(body, state, new, after, test):
     """Impulse moments on the fields that turn block 1 and block 2 about the points ``test``."""
     turn = turn_between(body, state)
     k11, k12, k21, k22 = metric(body, test, new, turn)
-    b11, b12, b21, b22 = metric(body, test, (pole(state.c1), pole(state.c2)), turn)
+    b11, b12, b21, b22 = metric(body, test, (pivot(state.c1), pivot(state.c2)), turn)
     w1, w2 = after
-    one = k11 * w1 + k12 * w2 - b11 * state.omega1 - b12 * state.omega2
+    first = k11 * w1 + k12 * w2 - b11 * state.omega1 - b12 * state.omega2
     two = k21 * w1 + k22 * w2 - b21 * state.omega1 - b22 * state.omega2
-    return one, two
+    return first, two
 
 
 @kernel
 def _pushed(body, state, contacts, after, test):
     """Whether the contacts that an impact leaves closed get impulses that push, at both their corners."""
     n1, n2 = contacts
-    new = pole(n1), pole(n2)
+    new = pivot(n1), pivot(n2)
     speed = abs(state.omega1) + abs(state.omega2)
     if n1 == 0 and not body.fixed:
         for corner in (1.0, -1.0):
-            one, two = _impulse_moments(body, state, new, after, (corner, test[1]))
-            moment = one + two if n2 == 0 else one
+            first, two = _impulse_moments(body, state, new, after, (corner, test[1]))
+            moment = first + two if n2 == 0 else first
             if corner * moment < -1e-12 * body.i1 * speed:
                 return False
     if n2 == 0:
@@ -112,7 +112,7 @@ def _pushed(body, state, contacts, after, test):
 def _choice(number, c, closes):
     """The ``number``-th state that a contact may have after an impact, open before stuck; 2 if there is none.
 
-    One that closes does not rebound on its old pole; one that is open and does not close stays as it is.
+    One that closes does not rebound on its old pivot; one that is open and does not close stays as it is.
     """
     if number == 0:
         return -c if closes else (1 if c == 0 else c)
@@ -125,8 +125,8 @@ def _choice(number, c, closes):
 def _admissible(body, state, closes1, closes2, moved):
     """Try the states an impact may lead to, open before stuck; the first admissible one, and whether there is one.
 
-    Open contacts separate, and closed ones are pushed together at both corners.  Impulses act at the poles, or, if
-    ``moved``, where the law of position has them.
+    Open contacts separate, and closed ones are pushed together at both corners.  Impulses act at the pivots, or,
+    if ``moved``, where the law of position has them.
     """
     at1, at2 = 1.0, 1.0
     if moved:
@@ -147,7 +147,7 @@ def _admissible(body, state, closes1, closes2, moved):
             n2 = _choice(number2, c2, closes2)
             if n2 == 2:
                 continue
-            test = pole(n1) * (at1 if n1 != 0 else 1.0), pole(n2) * (at2 if n2 != 0 else 1.0)
+            test = pivot(n1) * (at1 if n1 != 0 else 1.0), pivot(n2) * (at2 if n2 != 0 else 1.0)
             w1, w2 = _projected(body, state, n1, n2, test)
             if free1 and n1 != 0 and n1 * w1 <= tiny:
                 continue
@@ -167,7 +167,7 @@ def _admissible(body, state, closes1, closes2, moved):
 
 @kernel
 def _law(body, state, contact, closes):
-    """Law by which contact 1 or 2 comes off its impact, as an AFTER, and whether there is one."""
+    """Law by which contact 1 or 2 comes off its impact, as an IMPACT_LAW, and whether there is one."""
     if contact == 1:
         after = body.after1l if state.c1 > 0 else body.after1r
     else:
@@ -195,7 +195,7 @@ def _measured(body, state, closes, momentum):
     want2 = rate(law2, value2, rate2, before2, moved2)
     open1 = -state.c1 if has1 else n1
     open2 = -state.c2 if has2 else n2
-    # a contact that closes does not rebound on its old pole
+    # a contact that closes does not rebound on its old pivot
     want1 = open1 * max(0.0, open1 * want1) if has1 else want1
     want2 = open2 * max(0.0, open2 * want2) if has2 else want2
     others = n1, n2
@@ -206,25 +206,25 @@ def _measured(body, state, closes, momentum):
     # as far from what momentum says as energy allows
     low, high = 0.0, 1.0
     for _ in range(60):
-        share = 0.5 * (low + high)
-        one = has1, rate1 + share * (want1 - rate1)
-        two = has2, rate2 + share * (want2 - rate2)
-        n1, n2, w1, w2 = _with_rates(body, state, closes, others, one, two)
+        fraction = 0.5 * (low + high)
+        first = has1, rate1 + fraction * (want1 - rate1)
+        two = has2, rate2 + fraction * (want2 - rate2)
+        n1, n2, w1, w2 = _with_rates(body, state, closes, others, first, two)
         if _energy_with(body, state, n1, n2, w1, w2) <= limit:
-            low = share
+            low = fraction
         else:
-            high = share
-    one = has1, rate1 + low * (want1 - rate1)
+            high = fraction
+    first = has1, rate1 + low * (want1 - rate1)
     two = has2, rate2 + low * (want2 - rate2)
-    n1, n2, w1, w2 = _with_rates(body, state, closes, others, one, two)
+    n1, n2, w1, w2 = _with_rates(body, state, closes, others, first, two)
     return n1, n2, w1, w2, 1
 
 
 @kernel
 def _energy_with(body, state, n1, n2, w1, w2):
     """Kinetic energy in a state, with other contacts and velocities [J]."""
-    poles = pole(n1), pole(n2)
-    k11, k12, _, k22 = metric(body, poles, poles, turn_between(body, state))
+    pivots = pivot(n1), pivot(n2)
+    k11, k12, _, k22 = metric(body, pivots, pivots, turn_between(body, state))
     return 0.5 * (k11 * w1 * w1 + 2.0 * k12 * w1 * w2 + k22 * w2 * w2)
 
 
@@ -232,8 +232,8 @@ def _energy_with(body, state, n1, n2, w1, w2):
 def _with_rates(body, state, closes, others, ground, interface):
     """State and velocities after an impact in which closing contacts come off at given rates.
 
-    A couple in the closing contact does it, which leaves one momentum as it is: that of the whole about the pole
-    of the ground if the interface closes, that of the statue about its pole if the ground does.  The other
+    A couple in the closing contact does it, which leaves one momentum as it is: that of the whole about the pivot
+    of the ground if the interface closes, that of the statue about its pivot if the ground does.  The other
     contact separates if that momentum asks for it, and is pressed otherwise.
 
     Parameters
@@ -248,7 +248,7 @@ def _with_rates(body, state, closes, others, ground, interface):
     if given1 and given2:
         return m1, m2, rate1, rate1 + rate2
     turn = turn_between(body, state)
-    old = pole(state.c1), pole(state.c2)
+    old = pivot(state.c1), pivot(state.c2)
     tiny = 1e-13 * (abs(state.omega1) + abs(state.omega2))
     c, shuts, n = (state.c2, closes[1], others[1]) if given1 else (state.c1, closes[0], others[0])
     stays = c != 0 and not shuts
@@ -262,9 +262,9 @@ def _with_rates(body, state, closes, others, ground, interface):
             if c != 0:
                 break
             n = -n
-        poles = (pole(m1), pole(n)) if given1 else (pole(n), pole(m2))
-        k11, k12, k21, k22 = metric(body, poles, poles, turn)
-        b11, b12, b21, b22 = metric(body, poles, old, turn)
+        pivots = (pivot(m1), pivot(n)) if given1 else (pivot(n), pivot(m2))
+        k11, k12, k21, k22 = metric(body, pivots, pivots, turn)
+        b11, b12, b21, b22 = metric(body, pivots, old, turn)
         l1 = b11 * state.omega1 + b12 * state.omega2
         l2 = b21 * state.omega1 + b22 * state.omega2
         if given1:
@@ -282,7 +282,7 @@ def _with_rates(body, state, closes, others, ground, interface):
 
 @kernel
 def _side(rate):
-    """Pole on which a contact rocks that comes off at a rate; 0 if it does not."""
+    """Pivot on which a contact rocks that comes off at a rate; 0 if it does not."""
     return (1 if rate > 0.0 else 0) - (1 if rate < 0.0 else 0)
 
 
@@ -297,7 +297,7 @@ def mass_matrix(two, cosine, sine):
 
 @inlined_kernel
 def ground_impact(before, after, product, turn, omega1, omega2):
-    """Velocities after the ground closes (Psycharis, 1990): both momenta about the new poles.
+    """Velocities after the ground closes (Psycharis, 1990): both momenta about the new pivots.
 
     Parameters
     ----------
@@ -309,8 +309,8 @@ def ground_impact(before, after, product, turn, omega1, omega2):
     m11, m12, _, _ = mass_matrix(after, turn[0], turn[1])
     l1 = product * omega1 + m12 * omega2
     l2 = old12 * omega1 + m22 * omega2
-    share = 1.0 / (m11 * m22 - m12 * m12)
-    return (m22 * l1 - m12 * l2) * share, (m11 * l2 - m12 * l1) * share
+    fraction = 1.0 / (m11 * m22 - m12 * m12)
+    return (m22 * l1 - m12 * l2) * fraction, (m11 * l2 - m12 * l1) * fraction
 
 
 @inlined_kernel
@@ -319,14 +319,14 @@ def interface_impact(after, products, omega1, omega2):
     m11, m12, m22 = after.m11, after.e, after.m22
     l1 = products.both11 * omega1 + products.both12 * omega2
     l2 = products.both21 * omega1 + products.both22 * omega2
-    share = 1.0 / (m11 * m22 - m12 * m12)
-    return (m22 * l1 - m12 * l2) * share, (m11 * l2 - m12 * l1) * share
+    fraction = 1.0 / (m11 * m22 - m12 * m12)
+    return (m22 * l1 - m12 * l2) * fraction, (m11 * l2 - m12 * l1) * fraction
 
 
 # --------------------------------------------------------------------------- the lone block
 
 
 @inlined_kernel
-def block_impact(from_pole, rate):
-    """ψ' on the new pole after an impact at rate ψ' > 0 that ends rocking on a pole (``block.POLE``)."""
-    return -rate * from_pole.restitution
+def block_impact(from_pivot, rate):
+    """ψ' on the new pivot after an impact at rate ψ' > 0 that ends rocking on a pivot (``block.PIVOT``)."""
+    return -rate * from_pivot.restitution

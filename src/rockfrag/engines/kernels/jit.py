@@ -67,7 +67,7 @@ def kernel(function: Callable[..., Any]) -> Any:
 def inlined_kernel(function: Callable[..., Any]) -> Any:
     """Mark ``function``, which only kernels call, as one that is always inlined.
 
-    For what is called at every event, since an array is handed on as seven numbers, and for straight-line
+    For what is called at every contact event, since an array is handed on as seven numbers, and for straight-line
     arithmetic that the compiler is to do for several cases at once.
     """
     return _part(function, forceinline=True)
@@ -131,7 +131,7 @@ def compiling_alone(entry: Any) -> Iterator[None]:
             yield
         finally:
             if collects:
-                # what there is counts as old, so it is looked through with the old, not before the first verdict
+                # what there is counts as old, so it is looked through with the old, not before the first outcome
                 gc.freeze()
                 gc.unfreeze()
                 gc.enable()
@@ -157,8 +157,8 @@ def take_next(typing_context, counter):  # type: ignore[no-untyped-def]
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         array = context.make_array(signature.args[0])(context, builder, arguments[0])
-        one = context.get_constant(types.int64, 1)
-        return builder.atomic_rmw("add", array.data, one, "monotonic")
+        item = context.get_constant(types.int64, 1)
+        return builder.atomic_rmw("add", array.data, item, "monotonic")
 
     return types.int64(counter), generate
 

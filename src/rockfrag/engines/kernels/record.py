@@ -1,4 +1,4 @@
-"""What is kept of one history: its summary, its samples and its events."""
+"""What is kept of one history: its summary, its samples and its contact events."""
 
 import math
 
@@ -13,9 +13,9 @@ from rockfrag.engines.kernels.equations import (
     first_moment1,
     first_moment2,
     kinetic_energy,
-    pole,
+    pivot,
     potential_energy,
-    statue_balance,
+    upper_balance,
 )
 from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, kernel
 from rockfrag.engines.kernels.roots import NEVER, bend, slope, value
@@ -30,9 +30,9 @@ SUMMARY = np.dtype(
         ("ratio2", np.float64),
         ("impacts", np.int64),
         ("grazings", np.int64),  # contacts that closed without speed
-        ("closest", np.float64),  # least distance to an unstable equilibrium, in units of (θc, p θc)
+        ("unstable_distance", np.float64),  # least distance to an unstable equilibrium, in units of (θc, p θc)
         ("work", np.float64),  # of the ground acceleration on the moving body [J]
-        ("events", np.int64),
+        ("contact_events", np.int64),
         ("given_way", np.int64),  # impacts in which the law of a measured restitution had to give way
         ("lost_contact", np.float64),  # when a normal force first was none [s], NaN if it never was
         ("demand", DEMAND),  # until the fall is certain
@@ -53,7 +53,7 @@ SAMPLE = np.dtype(
 )  # fmt: skip
 """State at a sample."""
 
-EVENT = np.dtype(
+CONTACT_EVENT = np.dtype(
     [
         ("time", np.float64), ("kind", np.int64),
         ("before", STATE), ("after", STATE),
@@ -64,7 +64,7 @@ EVENT = np.dtype(
 """A change of the contact state."""
 
 OPENING, CLOSING, CHATTER, LIFTING = 0, 1, 2, 3
-"""Kinds of events; a contact that lifts would have to pull as a whole, and the march goes on as if it did."""
+"""Kinds of contact events; a contact that lifts would have to pull as a whole, and the integration goes on as if it did."""
 
 BALANCE = np.dtype([("critical", np.float64), ("frequency2", np.float64)])
 """A way to balance: critical angle [rad] and squared frequency parameter [1/s²]."""
@@ -87,8 +87,8 @@ def copy_state(source, target):
 def begin(state, summary):
     """Set the summary to that of a history that has not moved yet."""
     summary.fallen, summary.fall_time = 0, math.nan
-    summary.impacts, summary.grazings, summary.events, summary.given_way = 0, 0, 0, 0
-    summary.closest, summary.work = math.inf, 0.0
+    summary.impacts, summary.grazings, summary.contact_events, summary.given_way = 0, 0, 0, 0
+    summary.unstable_distance, summary.work = math.inf, 0.0
     summary.lost_contact = math.nan
     no_demand(summary.demand)
     no_demand(summary.beyond)
@@ -103,10 +103,10 @@ def fill_balances(body, balances):
     for c1 in (1, -1):
         for c2 in (-1, 0, 1):
             critical, vx, vy, inertia = balance(body, c1, c2)
-            _keep_balance(body, balances[_way_of_pedestal(c1, c2)], critical, (vx, vy), inertia)
+            _keep_balance(body, balances[_way_of_lower(c1, c2)], critical, (vx, vy), inertia)
     for c2 in (1, -1):
-        critical, vx, vy, inertia = statue_balance(body, c2)
-        _keep_balance(body, balances[_way_of_statue(c2)], critical, (vx, vy), inertia)
+        critical, vx, vy, inertia = upper_balance(body, c2)
+        _keep_balance(body, balances[_way_of_upper(c2)], critical, (vx, vy), inertia)
 
 
 @kernel
@@ -116,12 +116,12 @@ def _keep_balance(body, way, critical, moment, inertia):
 
 
 @kernel
-def _way_of_pedestal(c1, c2):
+def _way_of_lower(c1, c2):
     return 1 + c2 + (0 if c1 > 0 else 3)
 
 
 @kernel
-def _way_of_statue(c2):
+def _way_of_upper(c2):
     return 6 if c2 > 0 else 7
 
 
@@ -131,8 +131,8 @@ def _approach(way, side, theta, omega, summary):
     away = 1.0 - side * theta / way.critical
     speed = omega / way.critical
     square = away * away + speed * speed / way.frequency2
-    if square < summary.closest * summary.closest:
-        summary.closest = math.sqrt(square)
+    if square < summary.unstable_distance * summary.unstable_distance:
+        summary.unstable_distance = math.sqrt(square)
     return side * theta / way.critical
 
 
@@ -164,10 +164,10 @@ def track(balances, state, series, end, h, summary):
     summary.speed2 = max(summary.speed2, abs(omega2))
     c1, c2 = state.c1, state.c2
     if c2 != 0:
-        ratio2 = _approach(balances[_way_of_statue(c2)], c2, theta2, omega2, summary)
+        ratio2 = _approach(balances[_way_of_upper(c2)], c2, theta2, omega2, summary)
         summary.ratio2 = max(summary.ratio2, ratio2)
     if c1 != 0:
-        ratio1 = _approach(balances[_way_of_pedestal(c1, c2)], c1, theta1, omega1, summary)
+        ratio1 = _approach(balances[_way_of_lower(c1, c2)], c1, theta1, omega1, summary)
         summary.ratio1 = max(summary.ratio1, ratio1)
     return ratio1 >= 1.0 or ratio2 >= 1.0
 
@@ -193,27 +193,27 @@ def note_demand(body, step, series, end, work, summary):
         no_demand(summary.beyond)
     lifts = NEVER
     least = math.inf
-    one, two = series.one.angle, series.two.angle
+    first, two = series.one.angle, series.two.angle
     per = 1.0 / (step.length * step.length)
     trial.c1, trial.c2 = state.c1, state.c2
     for part in range(3):
         tau = 0.5 * part * end
-        trial.theta1, trial.omega1 = value(one, tau), slope(one, tau) / step.length
+        trial.theta1, trial.omega1 = value(first, tau), slope(first, tau) / step.length
         trial.theta2, trial.omega2 = value(two, tau), slope(two, tau) / step.length
         trial.ground, trial.gravity = step.ground + step.rise * tau, step.gravity + step.lift * tau
         before = least
-        least = ask_forces(body, trial, bend(one, tau) * per, bend(two, tau) * per, demand)
+        least = ask_forces(body, trial, bend(first, tau) * per, bend(two, tau) * per, demand)
         if least <= 0.0 and lifts == NEVER and inside:
             # a straight line between the two
-            share = before / (before - least) if part > 0 else 0.0
-            lifts = tau if part == 0 else tau - 0.5 * end * (1.0 - share)
+            fraction = before / (before - least) if part > 0 else 0.0
+            lifts = tau if part == 0 else tau - 0.5 * end * (1.0 - fraction)
     return lifts
 
 
 @kernel
 def work_of(body, c1, c2, series, end, step):
     """Work of the ground's acceleration over (0, end] of a step [J]: -∫ Σ m (a x' + a_v y') dt."""
-    s1, s2 = pole(c1), pole(c2)
+    s1, s2 = pivot(c1), pivot(c2)
     v1x, v1y = first_moment1(body, s1, s2)
     v2x, v2y = first_moment2(body, s2)
     # Gauss-Legendre, six points: exact to order 11
@@ -252,16 +252,16 @@ def keep_sample(body, state, sample, work):
 
 
 @kernel
-def keep_event(body, time, kind, before, after, events, summary):
-    """Write an event, if there is room, and count it."""
-    if summary.events < len(events):
-        event = events[summary.events]
-        event.time, event.kind = time, kind
-        copy_state(before, event.before)
-        copy_state(after, event.after)
-        event.energy_before = kinetic_energy(body, before)
-        event.energy_after = kinetic_energy(body, after)
-    summary.events += 1
+def keep_contact_event(body, time, kind, before, after, contact_events, summary):
+    """Write a contact event, if there is room, and count it."""
+    if summary.contact_events < len(contact_events):
+        contact_event = contact_events[summary.contact_events]
+        contact_event.time, contact_event.kind = time, kind
+        copy_state(before, contact_event.before)
+        copy_state(after, contact_event.after)
+        contact_event.energy_before = kinetic_energy(body, before)
+        contact_event.energy_after = kinetic_energy(body, after)
+    summary.contact_events += 1
 
 
 @entry_kernel

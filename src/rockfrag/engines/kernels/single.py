@@ -1,7 +1,7 @@
-"""One history: march one body through an acceleration, event by event.
+"""One history: integrate one body through an acceleration, contact event by contact event.
 
-Between events the rotations follow their series; an event is located on the series and handled before the
-march goes on.  Every step size, root and decision depends on this one case alone.
+Between contact events the rotations follow their series; a contact event is located on the series and handled
+before the integrate goes on.  Every step size, root and decision depends on this one case alone.
 
 Nothing here needs what a web page does not have: no thread, no file, no Python object, and no mathematics but
 that of ``elementary``.
@@ -41,7 +41,7 @@ from rockfrag.engines.kernels.record import (
     begin,
     copy_state,
     fill_balances,
-    keep_event,
+    keep_contact_event,
     keep_sample,
     note_demand,
     track,
@@ -60,8 +60,8 @@ from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series
 
 GRAZING_SPEED = 1e-3
 """Relative speed [rad/s] below which a contact grazes."""
-MAX_EVENTS_PER_STEP = 400
-"""Events of a sample after which its contacts are made to stay closed."""
+MAX_CONTACT_EVENTS_PER_STEP = 400
+"""Contact events of a sample after which its contacts are made to stay closed."""
 
 
 class Shaking(NamedTuple):
@@ -74,7 +74,7 @@ class Shaking(NamedTuple):
     scale : factor on them
     dt : sampling interval [s]
     substeps : steps per sample
-    free_samples : samples that the march goes on after the last one, at most
+    free_samples : samples that the integration goes on after the last one, at most
     """
 
     samples: NDArray[np.float64]
@@ -86,7 +86,7 @@ class Shaking(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Memory that a march works in: ``scratch()``."""
+    """Memory that an integration works in: ``scratch()``."""
 
     state: Any
     before: Any
@@ -98,7 +98,7 @@ class Scratch(NamedTuple):
 
 
 def scratch() -> Scratch:
-    """Memory for one march."""
+    """Memory for one integration."""
     return Scratch(
         *np.zeros(3, STATE),
         np.zeros(1, SERIES)[0],
@@ -109,16 +109,16 @@ def scratch() -> Scratch:
 
 
 @entry_kernel
-def march(body, shaking, initial, history, events, summary, work):
-    """March one body through its shaking and, after it, free rocking.
+def integrate(body, shaking, initial, history, contact_events, summary, work):
+    """Integrate one body through its shaking and, after it, free rocking.
 
     Parameters
     ----------
     body : BODY
     shaking : Shaking
     initial : STATE, of which the angles and their rates count
-    history : SAMPLEs, filled until the march ends; as many as fit are kept
-    events : EVENTs, as many as fit are kept
+    history : SAMPLEs, filled until the integration ends; as many as fit are kept
+    contact events : EVENTs, as many as fit are kept
     summary : SUMMARY
     work : Scratch
 
@@ -143,7 +143,7 @@ def march(body, shaking, initial, history, events, summary, work):
     done = 1
     for k in range(n - 1 + shaking.free_samples):
         right = samples[k + 1] * scale if k + 1 < n else 0.0
-        _through_sample(body, shaking, k, events, summary, work)
+        _through_sample(body, shaking, k, contact_events, summary, work)
         done = k + 2
         state.ground, state.gravity = right, _gravity(body, shaking, k + 1)
         if len(history) > k + 1:
@@ -171,8 +171,8 @@ def _gravity(body, shaking, k):
 
 
 @kernel
-def _through_sample(body, shaking, k, events, summary, work):
-    """Take a body from sample k to the next, through all events in between."""
+def _through_sample(body, shaking, k, contact_events, summary, work):
+    """Take a body from sample k to the next, through all contact events in between."""
     samples, scale, substeps = shaking.samples, shaking.scale, shaking.substeps
     n = samples.size
     left = samples[k] * scale if k < n else 0.0
@@ -187,20 +187,24 @@ def _through_sample(body, shaking, k, events, summary, work):
         g0 = heavy + (heavier - heavy) * (sub / substeps)
         rise = (right - left) / substeps
         tau = 0.0
-        while tau < 1.0 and count <= MAX_EVENTS_PER_STEP + 20:
+        while tau < 1.0 and count <= MAX_CONTACT_EVENTS_PER_STEP + 20:
             remaining = 1.0 - tau
             step = Step(
                 h * remaining, a0 + rise * tau, rise * remaining, g0 + lift * tau, lift * remaining
             )
             fill_series(body, state, step, series)
-            when, fails, closes1, closes2 = _next_event(body, state, step, series, work.trial)
+            when, fails, closes1, closes2 = _next_contact_event(
+                body, state, step, series, work.trial
+            )
             at = min(1.0, when)
             moves = state.c1 != 0 or state.c2 != 0
             _move(state, series, at, step.length)
             lifts = note_demand(body, step, series, at, work, summary)
             if lifts != NEVER and math.isnan(summary.lost_contact):
                 summary.lost_contact = (k + (sub + tau + lifts * remaining) / substeps) * shaking.dt
-                keep_event(body, summary.lost_contact, LIFTING, state, state, events, summary)
+                keep_contact_event(
+                    body, summary.lost_contact, LIFTING, state, state, contact_events, summary
+                )
             if moves:
                 work.beyond[0] = track(work.balances, state, series, at, step.length, summary)
                 summary.work += work_of(body, state.c1, state.c2, series, at, step)
@@ -222,16 +226,18 @@ def _through_sample(body, shaking, k, events, summary, work):
                 _count_impact(state, closes1, summary)
                 part = (sub + tau) / substeps
                 ahead = Ahead(samples, shaking.vertical, scale, n - 1, k, part, shaking.dt)
-                forced = count > MAX_EVENTS_PER_STEP
+                forced = count > MAX_CONTACT_EVENTS_PER_STEP
                 closes = closes1, closes2
-                kind, gave_way = land(body, state, closes, work.restoring, ahead, HISTORY, forced)
+                kind, gave_way = resolve_impact(
+                    body, state, closes, work.restoring, ahead, HISTORY, forced
+                )
                 summary.given_way += gave_way
                 demand = summary.beyond if work.beyond[0] else summary.demand
                 # of a series of impacts that is ended at once, its first one asks as all do
                 after = state if kind == CLOSING else _struck(body, before, closes, work.trial)
                 ask_impulses(body, before, after, demand)
             clock = (k + (sub + tau) / substeps) * shaking.dt
-            keep_event(body, clock, kind, before, state, events, summary)
+            keep_contact_event(body, clock, kind, before, state, contact_events, summary)
 
 
 @kernel
@@ -246,10 +252,10 @@ def _struck(body, before, closes, after):
 @kernel
 def _move(state, series, tau, h):
     """Move a state to an instant of its series."""
-    one, two = series.one.angle, series.two.angle
+    first, two = series.one.angle, series.two.angle
     open1, open2 = state.c1 != 0, state.c2 != 0
-    state.theta1 = value(one, tau) if open1 else 0.0
-    state.omega1 = slope(one, tau) / h if open1 else 0.0
+    state.theta1 = value(first, tau) if open1 else 0.0
+    state.omega1 = slope(first, tau) / h if open1 else 0.0
     state.theta2 = value(two, tau) if open2 else state.theta1
     state.omega2 = slope(two, tau) / h if open2 else state.omega1
 
@@ -263,8 +269,8 @@ def _count_impact(state, closes1, summary):
 
 
 @kernel
-def land(body, state, closes, restoring, ahead, thoroughness, forced):
-    """Take a state through an impact to what follows from it; the kind of event, and 1 if a law had to give way.
+def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, forced):
+    """Take a state through an impact to what follows from it; the kind of contact event, and 1 if a law had to give way.
 
     A contact that comes off slower than the closing speed stays closed, one that has met too often within a sample
     (``forced``) too, and impacts that are sure to end at rest are not followed.
@@ -274,7 +280,7 @@ def land(body, state, closes, restoring, ahead, thoroughness, forced):
     free1 = closes1 or state.c1 == 0
     free2 = closes2 or state.c2 == 0
     n1, n2, w1, w2, gave_way = impact(body, state, closes1, closes2)
-    limit = math.inf if forced else thoroughness.closing_speed
+    limit = math.inf if forced else chatter_tolerance.closing_speed
     slow1 = free1 and n1 != 0 and abs(w1) < limit
     slow2 = free2 and n2 != 0 and abs(w2 - w1) < limit
     if slow1 or slow2:
@@ -287,10 +293,10 @@ def land(body, state, closes, restoring, ahead, thoroughness, forced):
     level = state.theta1 == 0.0 and state.theta2 == 0.0
     speed = max(abs(w1), abs(w2))
     if kind == CLOSING and level and (n1 != 0 or n2 != 0) and speed < restoring.fastest:
-        share = math.sqrt(kinetic_energy(body, state) / before)
+        fraction = math.sqrt(kinetic_energy(body, state) / before)
         # a pedestal that is thrown about lengthens the flights of the statue
         safety = 1.03 if body.fixed else 1.5
-        if dies_out(speed, share, safety, restoring, thoroughness.drop, ahead):
+        if dies_out(speed, fraction, safety, restoring, chatter_tolerance.drop, ahead):
             state.c1, state.c2, state.omega1, state.omega2 = 0, 0, 0.0, 0.0
             kind = CHATTER
     if not forced:
@@ -298,16 +304,16 @@ def land(body, state, closes, restoring, ahead, thoroughness, forced):
     return kind, gave_way
 
 
-# --------------------------------------------------------------------------- finding the next event
+# --------------------------------------------------------------------------- finding the next contact event
 
 
 @kernel
 def _hold_at(body, contact, step, series, tau, trial):
     """Least contact moment of a closed contact at τ; ``trial`` holds the contacts of the step."""
-    one, two = series.one.angle, series.two.angle
-    trial.theta1 = value(one, tau)
+    first, two = series.one.angle, series.two.angle
+    trial.theta1 = value(first, tau)
     trial.theta2 = value(two, tau)
-    trial.omega1 = slope(one, tau) / step.length
+    trial.omega1 = slope(first, tau) / step.length
     trial.omega2 = slope(two, tau) / step.length
     trial.ground = step.ground + step.rise * tau
     trial.gravity = step.gravity + step.lift * tau
@@ -352,10 +358,10 @@ def _failing_time(body, contact, step, series, end, trial):
 @kernel
 def fill_gap(series, contact, side):
     """Fill the series of a contact's opening angle; return its value at the end of the step."""
-    one, two, gap = series.one.angle, series.two.angle, series.gap
+    first, two, gap = series.one.angle, series.two.angle, series.gap
     end = 0.0
     for i in range(ORDER + 1):
-        gap[i] = side * one[i] if contact == GROUND else side * (two[i] - one[i])
+        gap[i] = side * first[i] if contact == GROUND else side * (two[i] - first[i])
         end += gap[i]
     return end
 
@@ -383,8 +389,8 @@ def first_closing(c1, c2, series):
 
 
 @kernel
-def _next_event(body, state, step, series, trial):
-    """Find the earliest event within a step.
+def _next_contact_event(body, state, step, series, trial):
+    """Find the earliest contact event within a step.
 
     Returns
     -------

@@ -24,7 +24,7 @@ from rockfrag.engines.kernels.equations import (
     first_moment2,
     inertia1,
     inertia2,
-    pole,
+    pivot,
 )
 from rockfrag.engines.kernels.jit import fma, inlined_kernel, kernel
 
@@ -139,27 +139,27 @@ def _weight(body, moment, step, rotation, k):
 def _fill_two(body, c1, c2, step, series):
     """Series of both rotations of patterns 1 and 2; the first two coefficients of both angles are there."""
     hh = step.length * step.length
-    s1, s2 = pole(c1), pole(c2)
+    s1, s2 = pivot(c1), pivot(c2)
     m11 = inertia1(body, s1, s2)
     m22 = inertia2(body, s2)
     e, f = coupling(body, s1, s2)
     moment1, moment2 = first_moment1(body, s1, s2), first_moment2(body, s2)
     linear = body.linear > 0
-    one, two, between = series.one, series.two, series.between
+    first, two, between = series.one, series.two, series.between
     for k in range(ORDER - 1):
-        between.angle[k] = two.angle[k] - one.angle[k]
-        _extend(one, k, linear)
+        between.angle[k] = two.angle[k] - first.angle[k]
+        _extend(first, k, linear)
         _extend(two, k, linear)
         if linear:
             between.sine[k] = 0.0
             between.cosine[k] = 1.0 if k == 0 else 0.0
         elif k == 0:
             # sine and cosine of the difference from those already there
-            between.sine[0] = two.sine[0] * one.cosine[0] - two.cosine[0] * one.sine[0]
-            between.cosine[0] = two.cosine[0] * one.cosine[0] + two.sine[0] * one.sine[0]
+            between.sine[0] = two.sine[0] * first.cosine[0] - two.cosine[0] * first.sine[0]
+            between.cosine[0] = two.cosine[0] * first.cosine[0] + two.sine[0] * first.sine[0]
         else:
             _extend_circular(between, k)
-        right1 = -hh * _weight(body, moment1, step, one, k)
+        right1 = -hh * _weight(body, moment1, step, first, k)
         right2 = -hh * _weight(body, moment2, step, two, k)
         if not linear:
             for j in range(k + 1):
@@ -169,7 +169,7 @@ def _fill_two(body, c1, c2, step, series):
                 square2 = 0.0
                 for i in range(k - j + 1):
                     weight = (i + 1) * (k - j - i + 1)
-                    square1 += weight * one.angle[i + 1] * one.angle[k - j - i + 1]
+                    square1 += weight * first.angle[i + 1] * first.angle[k - j - i + 1]
                     square2 += weight * two.angle[i + 1] * two.angle[k - j - i + 1]
                 right1 -= d * square2
                 right2 += d * square1
@@ -178,28 +178,28 @@ def _fill_two(body, c1, c2, step, series):
                 i = k - j
                 factor = (i + 1) * (i + 2)
                 right1 -= m12 * factor * two.angle[i + 2]
-                right2 -= m12 * factor * one.angle[i + 2]
+                right2 -= m12 * factor * first.angle[i + 2]
         m12 = e * between.cosine[0] + f * between.sine[0]
-        share = 1.0 / ((m11 * m22 - m12 * m12) * (k + 1) * (k + 2))
-        one.angle[k + 2] = (m22 * right1 - m12 * right2) * share
-        two.angle[k + 2] = (m11 * right2 - m12 * right1) * share
+        fraction = 1.0 / ((m11 * m22 - m12 * m12) * (k + 1) * (k + 2))
+        first.angle[k + 2] = (m22 * right1 - m12 * right2) * fraction
+        two.angle[k + 2] = (m11 * right2 - m12 * right1) * fraction
 
 
 @kernel
 def fill_series(body, state, step, series):
     """Fill the series of both angles over a step from a state."""
-    one, two = series.one, series.two
+    first, two = series.one, series.two
     for k in range(ORDER + 1):
-        one.angle[k] = 0.0
+        first.angle[k] = 0.0
         two.angle[k] = 0.0
     c1, c2 = state.c1, state.c2
-    one.angle[0] = state.theta1
+    first.angle[0] = state.theta1
     two.angle[0] = state.theta2
     if c1 == 0 and c2 == 0:
         return
-    one.angle[1] = state.omega1 * step.length
+    first.angle[1] = state.omega1 * step.length
     two.angle[1] = state.omega2 * step.length
-    s1, s2 = pole(c1), pole(c2)
+    s1, s2 = pivot(c1), pivot(c2)
     if c1 == 0:
         _fill_one(body, first_moment2(body, s2), inertia2(body, s2), step, two)
     elif c2 == 0:
@@ -207,9 +207,9 @@ def fill_series(body, state, step, series):
         v2x, v2y = first_moment2(body, s2)
         e, _ = coupling(body, s1, s2)
         whole = inertia1(body, s1, s2) + 2.0 * e + inertia2(body, s2)
-        _fill_one(body, (v1x + v2x, v1y + v2y), whole, step, one)
+        _fill_one(body, (v1x + v2x, v1y + v2y), whole, step, first)
         for k in range(ORDER + 1):
-            two.angle[k] = one.angle[k]
+            two.angle[k] = first.angle[k]
     else:
         _fill_two(body, c1, c2, step, series)
 
@@ -335,8 +335,8 @@ def rates_of_two(mass, weight1, weight2, rates, ground, gravity):
     p0, q0 = rates
     a, b = ground
     g = gravity[0]
-    share = 1.0 / fma(m11, m22, -m0 * m0)
-    i11, i12, i22 = m22 * share, m0 * share, m11 * share
+    fraction = 1.0 / fma(m11, m22, -m0 * m0)
+    i11, i12, i22 = m22 * fraction, m0 * fraction, m11 * fraction
     # order 0; u and v are the squared rates
     u0, v0 = p0 * p0, q0 * q0
     r1 = fma(-d0, v0, fma(-a, x10, g * y10))

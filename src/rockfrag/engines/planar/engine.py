@@ -67,7 +67,7 @@ class PlanarContact:
     def _pure(self, system: System, motion: GroundMotion, request: Request) -> Engine | None:
         """Engine of pure rocking of a system, if there is one."""
         others = (engine for engine in engines() if engine is not self)
-        return next((one for one in others if one.supports(system, motion, request)), None)
+        return next((other for other in others if other.supports(system, motion, request)), None)
 
     def _write(
         self, into: Outcomes, i: int, count: int, found: NDArray[np.void], everything: bool
@@ -124,8 +124,8 @@ def scaled(motion: GroundMotion, factor: float) -> GroundMotion:
     if factor == 1.0:
         return motion
     each = [
-        None if one is None else replace(one, acceleration=factor * one.acceleration)
-        for one in (motion.x, motion.y, motion.z)
+        None if item is None else replace(item, acceleration=factor * item.acceleration)
+        for item in (motion.x, motion.y, motion.z)
     ]
     assert each[0] is not None
     return GroundMotion(each[0], each[1], each[2])
@@ -135,17 +135,20 @@ def without_slip(response: Response) -> Response:
     """Give a response of pure rocking the columns of one with friction."""
     import pandas as pd
 
-    from rockfrag.engines.response import PATTERNS, mode_name
+    from rockfrag.engines.response import ROCKING_MODES, mode_name
 
     bodies = response.slip.shape[1]
-    states = {name: pair[2 - bodies :] for pair, name in PATTERNS.items()}
-    modes = [tuple(mode_name(state, 0) for state in states[name]) for name in response.events["to"]]
-    events = response.events.copy()
-    events["modes"] = pd.Series(modes, dtype=object)
-    events["slip"] = pd.Series([(0.0,) * bodies] * len(modes), dtype=object)
+    states = {name: pair[2 - bodies :] for pair, name in ROCKING_MODES.items()}
+    modes = [
+        tuple(mode_name(state, 0) for state in states[name])
+        for name in response.contact_events["to"]
+    ]
+    contact_events = response.contact_events.copy()
+    contact_events["modes"] = pd.Series(modes, dtype=object)
+    contact_events["slip"] = pd.Series([(0.0,) * bodies] * len(modes), dtype=object)
     energy = response.energy.copy()
     energy.insert(energy.shape[1] - 1, "lost_friction", 0.0)
-    return replace(response, events=events, energy=energy)
+    return replace(response, contact_events=contact_events, energy=energy)
 
 
 ENGINE = PlanarContact()

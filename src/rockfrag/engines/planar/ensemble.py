@@ -20,7 +20,7 @@ from rockfrag.engines.steps import free_samples, step_count
 from rockfrag.system.system import System
 
 COARSE_CLOSING = 1e-4
-"""Parting speed over √(g b) below which a contact stays closed after an impact, where only the verdict matters."""
+"""Parting speed over √(g b) below which a contact stays closed after an impact, where only the outcome matters."""
 
 CHUNK = 4
 """Cases that a thread takes at once."""

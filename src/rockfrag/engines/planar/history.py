@@ -17,12 +17,12 @@ from rockfrag.engines.planar.integrate import (
     PASSING,
     Book,
     Shaking,
-    event_columns,
+    contact_event_columns,
     history_columns,
     integrate,
 )
 from rockfrag.engines.planar.records import posed, system_record, working_memory
-from rockfrag.engines.response import FLIGHT, Response, mode_name, pattern_name, sampled_demand
+from rockfrag.engines.response import FLIGHT, Response, mode_name, rocking_mode_name, sampled_demand
 from rockfrag.engines.steps import STEP, free_samples, step_count
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.system.system import System
@@ -77,12 +77,14 @@ def contact_history(
     work = working_memory()
     capacity = 4096
     while True:
-        events = np.zeros((capacity, event_columns(blocks)))
-        done, count, fall = integrate(p, shaking, start, closing, Book(history, events), work)
+        contact_events = np.zeros((capacity, contact_event_columns(blocks)))
+        done, count, fall = integrate(
+            p, shaking, start, closing, Book(history, contact_events), work
+        )
         if count <= capacity:
             break
         capacity = count
-    history, events = history[:done], events[:count]
+    history, contact_events = history[:done], contact_events[:count]
     time = np.arange(done, dtype=np.float64) * interval
     centres, speeds = history[:, : 6 * blocks].reshape(done, 2, blocks, 3).transpose(1, 0, 2, 3)
     slips, normal, shear, alpha = (
@@ -90,7 +92,7 @@ def contact_history(
     )
     modes = [_modes(number, blocks) for number in history[:, -1]]
     fallen = int(work["fallen"])
-    table = _event_table(events, blocks)
+    table = _contact_event_table(contact_events, blocks)
     ground = np.zeros(done)
     ground[: min(done, values.size)] = values[:done]
     loose = work["slid"].max() > 0 or np.any(work["flights"]) or work["paradoxes"] > 0
@@ -105,11 +107,11 @@ def contact_history(
         state=np.array([[state for state, _ in mode] for mode in modes]),
         slides=np.array([[slides for _, slides in mode] for mode in modes]),
         slip=slips,
-        events=table,
+        contact_events=table,
         overturned=fallen > 0,
         overturned_body=("", *system.names)[fallen],
         overturning_time=float(fall),
-        energy=_energy_table(p, time, history, events),
+        energy=_energy_table(p, time, history, contact_events),
         normal_force=normal,
         friction_force=shear,
         impacts=int(work["impacts"]),
@@ -131,22 +133,22 @@ def _modes(number: float, blocks: int) -> Modes:
     return tuple((_STATES[digit & 3], (digit >> 2) - 1) for digit in digits)
 
 
-def _event_table(events: Array, blocks: int) -> pd.DataFrame:
+def _contact_event_table(contact_events: Array, blocks: int) -> pd.DataFrame:
     rows: list[dict[str, Any]] = []
-    for event in events:
-        before, after = _modes(event[2], blocks), _modes(event[3], blocks)
-        slips, theta, old, new = event[6:].reshape(4, blocks).tolist()
+    for contact_event in contact_events:
+        before, after = _modes(contact_event[2], blocks), _modes(contact_event[3], blocks)
+        slips, theta, old, new = contact_event[6:].reshape(4, blocks).tolist()
         rows.append(
             {
-                "time": event[0],
-                "kind": _KINDS.get(int(event[1])) or _kind_of_change(before, after),
-                "from": _pattern(before),
-                "to": _pattern(after),
+                "time": contact_event[0],
+                "kind": _KINDS.get(int(contact_event[1])) or _kind_of_change(before, after),
+                "from": _rocking_mode(before),
+                "to": _rocking_mode(after),
                 "omega_before": tuple(old),
                 "omega_after": tuple(new),
                 "theta": tuple(theta),
-                "energy_before": event[4],
-                "energy_after": event[5],
+                "energy_before": contact_event[4],
+                "energy_after": contact_event[5],
                 "modes": tuple(mode_name(*mode) for mode in after),
                 "slip": tuple(slips),
             }
@@ -159,7 +161,7 @@ def _event_table(events: Array, blocks: int) -> pd.DataFrame:
 
 
 def _kind_of_change(before: Modes, after: Modes) -> str:
-    """Name of an event without an impact: what opens first, then what slides."""
+    """Name of a contact event without an impact: what opens first, then what slides."""
     pairs = list(zip(before, after, strict=True))
     assert CHANGE not in _KINDS
     if any(new[0] == FLIGHT and old[0] != FLIGHT for old, new in pairs):
@@ -171,28 +173,30 @@ def _kind_of_change(before: Modes, after: Modes) -> str:
     return "slip" if any(new[1] not in (0, old[1]) for old, new in pairs) else "stick"
 
 
-def _pattern(modes: Modes) -> str:
+def _rocking_mode(modes: Modes) -> str:
     states = [state for state, _ in modes]
-    return pattern_name(states)
+    return rocking_mode_name(states)
 
 
-def _grazings(events: pd.DataFrame) -> int:
+def _grazings(contact_events: pd.DataFrame) -> int:
     """Impacts that met with less than the speed of grazing."""
-    speeds = [np.abs(np.diff([0.0, *omega])).max() for omega in events["omega_before"]]
-    return int(((events["kind"] == "impact") & (np.array(speeds) < GRAZING_SPEED)).sum())
+    speeds = [np.abs(np.diff([0.0, *omega])).max() for omega in contact_events["omega_before"]]
+    return int(((contact_events["kind"] == "impact") & (np.array(speeds) < GRAZING_SPEED)).sum())
 
 
-def _energy_table(p: np.void, time: Array, history: Array, events: Array) -> pd.DataFrame:
+def _energy_table(p: np.void, time: Array, history: Array, contact_events: Array) -> pd.DataFrame:
     """Ledger of energy by cause over time [J]."""
     blocks = int(p["count"])
     coordinates = slice(0, 3 * blocks)
     inertia = 1.0 / p["inverse"][coordinates]
     kinetic = (inertia * history[:, 3 * blocks : 6 * blocks] ** 2).sum(axis=1) / 2
     potential = float(p["g"]) * (p["mass"][:blocks] * history[:, 1 : 3 * blocks : 3]).sum(axis=1)
-    struck = np.isin(events[:, 1], (IMPACT, PARADOX))
-    loss = np.where(struck, events[:, 4] - events[:, 5], 0.0)
-    meets = np.array([_meeting(event, blocks) for event in events], dtype=np.int64)
-    at = np.searchsorted(time, events[:, 0] - 1e-12 * max(1.0, time[-1]))
+    struck = np.isin(contact_events[:, 1], (IMPACT, PARADOX))
+    loss = np.where(struck, contact_events[:, 4] - contact_events[:, 5], 0.0)
+    meets = np.array(
+        [_meeting(contact_event, blocks) for contact_event in contact_events], dtype=np.int64
+    )
+    at = np.searchsorted(time, contact_events[:, 0] - 1e-12 * max(1.0, time[-1]))
     so_far = np.zeros((blocks, time.size + 1))
     np.add.at(so_far, (meets, at), loss)
     lost = np.cumsum(so_far, axis=1)[:, : time.size]
@@ -211,9 +215,9 @@ def _energy_table(p: np.void, time: Array, history: Array, events: Array) -> pd.
     )
 
 
-def _meeting(event: Array, blocks: int) -> int:
+def _meeting(contact_event: Array, blocks: int) -> int:
     """Contact that an impact closes: the lowest whose mode changes as it comes down, or the uppermost."""
-    before, after = (_modes(number, blocks) for number in event[2:4])
+    before, after = (_modes(number, blocks) for number in contact_event[2:4])
     for k in range(blocks - 1):
         if before[k][0] not in (0, after[k][0]):
             return k

@@ -19,7 +19,7 @@ NO_GAIN = 1e-12
 HALVINGS = 40
 """Halvings of the interval in which a law that gives way keeps the energy."""
 CROWD = 100
-"""Events within a sample after which speeds below the closing speed count as none, whatever pulls."""
+"""Contact events within a sample after which speeds below the closing speed count as none, whatever pulls."""
 UNREACHED = 1e-7
 """Violation above which an impact has no outcome under a law."""
 
@@ -64,7 +64,7 @@ def strike(p, w, ah, av, closing, push):
 def lift_laws(p, w):
     """Let impulses be plastic."""
     for k in range(p.count):
-        w.share[k, 0] = w.share[k, 1] = 0.0
+        w.fraction[k, 0] = w.fraction[k, 1] = 0.0
         w.drive[k] = -1
 
 
@@ -125,7 +125,7 @@ def _outcome(p, w, ah, av, force, motion, part, before):
             continue
         if moves_impulse(p.law[k, end]):
             place = p.number[k, end]
-            w.share[k, end] = part * (1.0 - place) / (1.0 + place)
+            w.fraction[k, end] = part * (1.0 - place) / (1.0 + place)
         else:
             w.drive[k] = 1 - end
             w.depart[k] = w.goal[k, 0] + part * (w.goal[k, 1] - w.goal[k, 0])
@@ -139,8 +139,8 @@ def _outcome(p, w, ah, av, force, motion, part, before):
 def _shut_weak(p, w, ah, av, closing):
     """Close the ends that part so slowly after an impact that they would only chatter; whether there are any.
 
-    Where events accumulate all that part slowly are closed, and all that slide slowly stick: what pulls depends on
-    the sign of a slip that is as good as none.
+    Where contact events accumulate all that part slowly are closed, and all that slide slowly stick: what pulls
+    depends on the sign of a slip that is as good as none.
     """
     crowd = w.met > CROWD
     weak = False

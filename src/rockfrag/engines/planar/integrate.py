@@ -1,4 +1,4 @@
-"""Integrating one column through one motion, event by event, with friction and flight."""
+"""Integrating one column through one motion, contact event by contact event, with friction and flight."""
 
 import math
 from typing import Any, NamedTuple
@@ -30,11 +30,11 @@ from rockfrag.engines.planar.step import (
     take_step,
 )
 
-MOST_EVENTS = 300
-"""Events within a sample after which accumulating ones are ended ten times as coarsely, and again."""
+MOST_CONTACT_EVENTS = 300
+"""Contact events within a sample after which accumulating ones are ended ten times as coarsely, and again."""
 
 MOST_IDLE = 30
-"""Events on the spot after which a step is taken without looking for more."""
+"""Contact events on the spot after which a step is taken without looking for more."""
 
 
 def history_columns(count: int) -> int:
@@ -44,15 +44,15 @@ def history_columns(count: int) -> int:
     return 10 * count + 4
 
 
-def event_columns(count: int) -> int:
-    """Columns of the events: time, kind, mode before and after, kinetic energy before and after [J], and of each
+def contact_event_columns(count: int) -> int:
+    """Columns of the contact events: time, kind, mode before and after, kinetic energy before and after [J], and of each
     body or interface the slip [m], the rotation, the angular velocity before and after.
     """  # noqa: D205
     return 6 + 4 * count
 
 
 CHANGE, IMPACT, PARADOX, FALLEN, PASSING = 0, 1, 2, 3, 4
-"""Kinds of events: the last is a corner that passes an edge while nothing else changes."""
+"""Kinds of contact events: the last is a corner that passes an edge while nothing else changes."""
 
 
 Array = NDArray[np.float64]
@@ -84,11 +84,11 @@ class Book(NamedTuple):
     Attributes
     ----------
     history : (samples, history_columns), or of no rows
-    events : (capacity, event_columns), or of no rows
+    contact events : (capacity, contact_event_columns), or of no rows
     """
 
     history: Array
-    events: Array
+    contact_events: Array
 
 
 class Cases(NamedTuple):
@@ -187,16 +187,16 @@ def integrate(p, shaking, start, closing, book, w):
 
     Returns
     -------
-    Samples done, events met, and the time of the fall [s] (NaN if none; ``w.fallen`` says which).
+    Samples done, contact events met, and the time of the fall [s] (NaN if none; ``w.fallen`` says which).
     """
     _begin(p, w, start)
     dt, substeps = shaking.dt, shaking.substeps
     n = shaking.horizontal.size
-    ledger = book.history.shape[0] > 0
+    energy_balance = book.history.shape[0] > 0
     now = _now(shaking, 0)
-    count = _handle(p, w, now, closing, True, False, book.events, 0)
+    count = _handle(p, w, now, closing, True, False, book.contact_events, 0)
     fresh = True  # the acceleration in w.a is not that of this state and mode
-    if ledger:
+    if energy_balance:
         _keep(p, w, 0, now, book.history)
     known_rest = False
     done = 1
@@ -219,7 +219,14 @@ def integrate(p, shaking, start, closing, book, w):
                 fresh = True
                 ah, av = ground_at(sample, tau)
                 count = _handle(
-                    p, w, Instant((i + tau) * dt, ah, av), closing, True, True, book.events, count
+                    p,
+                    w,
+                    Instant((i + tau) * dt, ah, av),
+                    closing,
+                    True,
+                    True,
+                    book.contact_events,
+                    count,
                 )
                 w.met += 1
                 if w.resting == 1:
@@ -237,16 +244,16 @@ def integrate(p, shaking, start, closing, book, w):
             start_step(p, w)
             while True:
                 stretch = Stretch(step * dt, ah, av, step * sample.rise_h, step * sample.rise_v)
-                work, rubbed = take_step(p, w, stretch, ledger)
+                work, rubbed = take_step(p, w, stretch, energy_balance)
                 if step < SHORTEST or step_error(p, w, stretch.length) <= ERROR:
                     break
                 step *= 0.5
             at_end = least_margin(p, w, w.q1, w.v1)
             when = 2.0
             if idle <= MOST_IDLE:
-                when = _event_in_step(p, w, at_end, stretch)
+                when = _contact_event_in_step(p, w, at_end, stretch)
             else:
-                # events that do not let time go on: leave them behind
+                # contact events that do not let time go on: leave them behind
                 idle = 0
                 w.forced += 1
             if when > 1.0:
@@ -262,7 +269,7 @@ def integrate(p, shaking, start, closing, book, w):
             else:
                 margin_at(p, w, when, stretch)  # sets what fails
                 if when > 0.0:
-                    work, rubbed = take_step(p, w, beginning(stretch, when), ledger)
+                    work, rubbed = take_step(p, w, beginning(stretch, when), energy_balance)
                     for d in range(3 * p.count):
                         w.q[d] = w.q1[d]
                         w.v[d] = w.v1[d]
@@ -276,15 +283,22 @@ def integrate(p, shaking, start, closing, book, w):
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
                 w.met += 1
-                coarser = closing * 10.0 ** (w.met // MOST_EVENTS)
-                if w.met >= MOST_EVENTS:
+                coarser = closing * 10.0 ** (w.met // MOST_CONTACT_EVENTS)
+                if w.met >= MOST_CONTACT_EVENTS:
                     w.forced += 1
                 ah, av = ground_at(sample, tau)
                 count = _handle(
-                    p, w, Instant((i + tau) * dt, ah, av), coarser, False, False, book.events, count
+                    p,
+                    w,
+                    Instant((i + tau) * dt, ah, av),
+                    coarser,
+                    False,
+                    False,
+                    book.contact_events,
+                    count,
                 )
                 fresh = True
-                if w.met > 10 * MOST_EVENTS:
+                if w.met > 10 * MOST_CONTACT_EVENTS:
                     tau = 1.0
             w.work += work
             w.rubbed += rubbed
@@ -294,7 +308,7 @@ def integrate(p, shaking, start, closing, book, w):
                 break
         done = i + 2
         now = late
-        if ledger:
+        if energy_balance:
             _keep(p, w, i + 1, now, book.history)
         if w.fallen > 0:
             break
@@ -348,7 +362,7 @@ def _track(p, w):
 
 
 @kernel
-def _event_in_step(p, w, at_end, stretch):
+def _contact_event_in_step(p, w, at_end, stretch):
     """Fraction of the step at which something fails first; 2.0 if nothing does."""
     high = 2.0
     at_high = at_end
@@ -374,15 +388,15 @@ def _event_in_step(p, w, at_end, stretch):
 
 
 @kernel
-def _handle(p, w, now, closing, all_ends, exclude, events, count):
-    """Change the mode at an event, whose failing channels are in ``w.fails``.
+def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
+    """Change the mode at a contact event, whose failing channels are in ``w.fails``.
 
     ``all_ends``: the state is new (start, end of rest), and only ends that touch count.  ``exclude``: the old
     mode is known to fail.
 
     Returns
     -------
-    Number of events so far.
+    Number of contact events so far.
     """
     for d in range(3 * p.count):
         w.old_v[d] = w.v[d]
@@ -396,7 +410,7 @@ def _handle(p, w, now, closing, all_ends, exclude, events, count):
             if w.fails[k, FALL] == 1:
                 w.fallen = k + 1
                 w.parted = _parted(p, w, k)
-                return _note(p, w, now.time, FALLEN, events, count)
+                return _note(p, w, now.time, FALLEN, contact_events, count)
     look_at(p, w, w.q)
     for k in range(p.count):
         leaves0, leaves1 = 0, 0
@@ -461,7 +475,7 @@ def _handle(p, w, now, closing, all_ends, exclude, events, count):
             w.slips += 1
         if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
             w.flights[k] += 1
-    return _note(p, w, now.time, kind, events, count)
+    return _note(p, w, now.time, kind, contact_events, count)
 
 
 @kernel
@@ -524,25 +538,25 @@ def _rest_ends(p, w, tau, early, late):
 
 
 @kernel
-def _note(p, w, time, kind, events, count):
-    """Write an event, if there is room; return the number of events so far."""
+def _note(p, w, time, kind, contact_events, count):
+    """Write a contact event, if there is room; return the number of contact events so far."""
     before = mode_number(p, w.old_closed, w.old_slides)
     after = mode_number(p, w.closed, w.slides)
     if kind == CHANGE and before == after:
         return count
-    if count < events.shape[0]:
-        event = events[count]
-        event[0] = time
-        event[1] = kind
-        event[2] = before
-        event[3] = after
-        event[4] = kinetic_energy(p, w.old_v)
-        event[5] = kinetic_energy(p, w.v)
+    if count < contact_events.shape[0]:
+        contact_event = contact_events[count]
+        contact_event[0] = time
+        contact_event[1] = kind
+        contact_event[2] = before
+        contact_event[3] = after
+        contact_event[4] = kinetic_energy(p, w.old_v)
+        contact_event[5] = kinetic_energy(p, w.v)
         for k in range(p.count):
-            event[6 + k] = slip(p, w, k)
-            event[6 + p.count + k] = w.q[3 * k + 2]
-            event[6 + 2 * p.count + k] = w.old_v[3 * k + 2]
-            event[6 + 3 * p.count + k] = w.v[3 * k + 2]
+            contact_event[6 + k] = slip(p, w, k)
+            contact_event[6 + p.count + k] = w.q[3 * k + 2]
+            contact_event[6 + 2 * p.count + k] = w.old_v[3 * k + 2]
+            contact_event[6 + 3 * p.count + k] = w.v[3 * k + 2]
     return count + 1
 
 

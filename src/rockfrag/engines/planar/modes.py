@@ -1,4 +1,4 @@
-"""From an event to the mode in which the touching contacts go on (``docs/contact.md``, 5 to 9)."""
+"""From a contact event to the mode in which the touching contacts go on (``docs/contact.md``, 5 to 9)."""
 
 from rockfrag.elementary import sin_cos
 from rockfrag.engines.planar.compile import kernel
@@ -87,7 +87,7 @@ def _all_touch(p, w, closed):
 def settle(p, w, ah, av, exclude):
     """Find the mode in which the touching ends go on; False if none is consistent.
 
-    ``exclude``: the mode before the event is known to fail.
+    ``exclude``: the mode before the contact event is known to fail.
     """
     for k in range(p.count):
         w.limit[k] = p.static[k]

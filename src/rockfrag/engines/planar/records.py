@@ -112,7 +112,7 @@ WORK = np.dtype(
         ("wrong", F, (TRIES,)),  # ... and how far each is from consistent
         # laws of an impact: fraction of an end's impulse that the other end gets too, end that leaves at a given
         # speed (-1: none), and that speed
-        ("share", F, (MOST, 2)),
+        ("fraction", F, (MOST, 2)),
         ("drive", INT, (MOST,)),
         ("depart", F, (MOST,)),
         ("falls", INT, (MOST,)),  # end that comes down while the other is closed, -1: none
@@ -134,7 +134,7 @@ WORK = np.dtype(
         ("slid", INT, (MOST,)),  # whether an interface has ever reached its limit, in impacts too
         ("paradoxes", INT),
         ("forced", INT),
-        ("met", INT),  # events within the sample
+        ("met", INT),  # contact events within the sample
         ("several", INT),  # times that more than one mode was found consistent
         ("searches", INT),
         ("given_way", INT),  # impacts in which a law would have gained energy
@@ -221,7 +221,7 @@ def fill_record(p: np.void, parts: Sequence[Part], g: float) -> None:
                 below.lean,
                 part.offset,
             )
-            shape = pile.statue
+            shape = pile.upper
             aside = np.array(geometry.turned(below.face[0], 0.0, below.lean))
             top = np.array(geometry.turned(0.0, below.height, below.lean)) + aside
             foot = middle + _turned(np.array(pile.right) + aside, tilt)
@@ -233,10 +233,10 @@ def fill_record(p: np.void, parts: Sequence[Part], g: float) -> None:
             p["tilt_sin"][k], p["tilt_cos"][k] = sin_cos(tilt)
         p["mass"][k], p["inertia"][k] = shape.mass, shape.inertia
         p["inverse"][3 * k : 3 * k + 3] = 1 / shape.mass, 1 / shape.mass, 1 / shape.inertia
-        for end, pole in enumerate((-1, 1)):
-            x, y = geometry.turned(*geometry.arm(shape, pole), tilt)
+        for end, pivot in enumerate((-1, 1)):
+            x, y = geometry.turned(*geometry.arm(shape, pivot), tilt)
             p["corner"][k, end] = -x, -y
-            p["critical"][k, end] = atan2(-pole * x, y)
+            p["critical"][k, end] = atan2(-pivot * x, y)
         x, y = geometry.turned(*geometry.arm(shape, 1), tilt)
         p["standing"][3 * k : 3 * k + 2] = (
             (shape.x, shape.y) if k == 0 else (foot[0] + x, foot[1] + y)
@@ -281,15 +281,15 @@ def posed(p: np.void, theta: Sequence[float], omega: Sequence[float]) -> NDArray
         below = (theta[k - 1], omega[k - 1]) if k else (0.0, 0.0)
         end = 1 if ((theta[k] - below[0]) or (omega[k] - below[1])) >= 0 else 0
         corner = p["corner"][k, end]
-        pole = standing[3 * k : 3 * k + 2] + corner
+        pivot = standing[3 * k : 3 * k + 2] + corner
         speed = np.zeros(2)
         if k:
             at = slice(3 * k - 3, 3 * k - 1)
-            arm = turned(pole[0] - standing[at][0], pole[1] - standing[at][1], below[0])
-            pole = start[0, at] + arm
+            arm = turned(pivot[0] - standing[at][0], pivot[1] - standing[at][1], below[0])
+            pivot = start[0, at] + arm
             speed = start[1, at] + below[1] * np.array([arm[1], -arm[0]])
         arm = -turned(corner[0], corner[1], theta[k])
-        start[0, 3 * k : 3 * k + 2] = pole + arm
+        start[0, 3 * k : 3 * k + 2] = pivot + arm
         start[1, 3 * k : 3 * k + 2] = speed + omega[k] * np.array([arm[1], -arm[0]])
         start[0, 3 * k + 2], start[1, 3 * k + 2] = theta[k], omega[k]
     return start

@@ -1,4 +1,4 @@
-"""Finding the mode in which touching contacts go on, after an event and in an impact (``docs/contact.md``).
+"""Finding the mode in which touching contacts go on, after a contact event and in an impact (``docs/contact.md``).
 
 A search starts from a mode, mends what it violates most, and goes on so until nothing is violated.  It is begun
 from the mode that has just failed and from the one in which all is open; of two that are consistent the one with
@@ -12,7 +12,7 @@ from rockfrag.engines.planar.solve import bias, eliminate, end_of, fill_row
 
 CONSISTENT = 2e-13
 """Violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
-slack of events, so that a mode that has just failed is not."""
+slack of contact events, so that a mode that has just failed is not."""
 UNSOLVED = 1e-6
 """Relative motion of a closed end beyond which the equations of a mode were singular but for rounding."""
 ROUNDING = 1e-10
@@ -76,11 +76,11 @@ def _gives(p, w, row, unknown):
     else:
         found = w.give[row, near] + w.rub[unknown] * w.give[row, near + 1]
     owner, end = at // 4, (at // 2) % 2
-    if at % 2 == 0 and w.share[owner, end] > 0.0:
+    if at % 2 == 0 and w.fraction[owner, end] > 0.0:
         # the other end's normal and tangent: two places on, or back
         far = near + 2 - 4 * end
         more = w.give[row, far] + w.rub[unknown] * w.give[row, far + 1]
-        found += w.share[owner, end] * more
+        found += w.fraction[owner, end] * more
     return found
 
 
@@ -200,7 +200,7 @@ def try_mode(p, w, impact, force, motion):
                 w.flip[0] = -1
                 return -math.inf
             worst = _note_worst(w, worst, w.right[at] / force, k, end, 0)
-            pressed += w.right[at] * (1.0 + w.share[k, end])
+            pressed += w.right[at] * (1.0 + w.fraction[k, end])
             at += 1
             if closed < 0:
                 closed = end

@@ -6,7 +6,7 @@ from rockfrag.elementary import sin_cos
 from rockfrag.engines.planar.compile import kernel
 
 AT_EDGE = 1e-9
-"""A corner counts as over the face until it is this share of the half width beyond the edge: bases as wide as
+"""A corner counts as over the face until it is this fraction of the half width beyond the edge: bases as wide as
 their face stand on it and not on its edges."""
 
 
@@ -134,7 +134,7 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     if p.count == 2:
         flat = w.closed[1, 0] == 1 and w.closed[1, 1] == 1
         if standing > 0 and not (flat and w.slides[1] == 0):
-            return _solve_statue(p, w, q, v, ah, av)
+            return _solve_upper(p, w, q, v, ah, av)
         standing = 0
     if not solve_generally(p, w, q, v, ah, av, impact, rough, standing):
         return False
@@ -171,8 +171,8 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
             else:
                 for d in range(6):
                     w.column[m, d] = w.row[m, d]
-            if impact and w.share[k, end] > 0.0:
-                _add_share(p, w, q, k, end, friction, w.column[m])
+            if impact and w.fraction[k, end] > 0.0:
+                _add_fraction(p, w, q, k, end, friction, w.column[m])
             w.right[m] = right
             m += 1
             if first and w.slides[k] == 0:
@@ -196,13 +196,13 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
 
 
 @kernel
-def _add_share(p, w, q, k, end, friction, column):
+def _add_fraction(p, w, q, k, end, friction, column):
     """Add what an end's impulse brings about at the other end."""
-    share = w.share[k, end]
+    fraction = w.fraction[k, end]
     x, y, tx, ty, _, _, _ = end_of(p, w, q, k, 1 - end, w.kind[k, 1 - end])
     fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.light)
     for d in range(6):
-        column[d] += share * w.light[d]
+        column[d] += fraction * w.light[d]
 
 
 @kernel
@@ -277,10 +277,10 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
             if end == 2:
                 w.shear[k] += force
             else:
-                share = w.share[k, end] if impact else 0.0
+                fraction = w.fraction[k, end] if impact else 0.0
                 w.normal[k, end] += force
-                w.normal[k, 1 - end] += share * force
-                w.shear[k] -= w.slides[k] * p.kinetic[k] * (force + share * force)
+                w.normal[k, 1 - end] += fraction * force
+                w.shear[k] -= w.slides[k] * p.kinetic[k] * (force + fraction * force)
         for d in range(3 if k == standing else 0, 6):
             w.out[3 * k - 3 + d] += p.inverse[3 * k - 3 + d] * w.column[i, d] * force
     return True
@@ -370,7 +370,7 @@ def _solve_lone(p, w, q, v, ah, av):
 
 
 @kernel
-def _solve_statue(p, w, q, v, ah, av):
+def _solve_upper(p, w, q, v, ah, av):
     """Accelerations and forces where the pedestal stands and the statue does not: those of :func:`solve`."""
     fx, fy = -ah, -(p.g + av)
     light, slow = p.inverse[3], p.inverse[5]
@@ -382,12 +382,12 @@ def _solve_statue(p, w, q, v, ah, av):
         # it slides flat: what accelerates it apart vanishes, and it does not turn
         x, y, tx, ty, _, _, _ = end_of(p, w, q, 1, 0, w.kind[1, 0])
         rx, ry = x - q[3], y - q[4]
-        one, two = -ty * ry - tx * rx, tx * ry - ty * rx
+        first, two = -ty * ry - tx * rx, tx * ry - ty * rx
         x1, y1, _, _, _, _, _ = end_of(p, w, q, 1, 1, w.kind[1, 1])
         other = -ty * (y1 - q[4]) - tx * (x1 - q[3])
         push = (ty * fx - tx * fy) / light
         shear = -w.slides[1] * p.kinetic[1] * push
-        w.normal[1, 1] = (two * shear + one * push) / (one - other)
+        w.normal[1, 1] = (two * shear + first * push) / (first - other)
         w.normal[1, 0] = push - w.normal[1, 1]
         w.shear[1] = shear
         pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
@@ -398,9 +398,9 @@ def _solve_statue(p, w, q, v, ah, av):
         x, y, tx, ty, _, _, kind = end_of(p, w, q, 1, end, w.kind[1, end])
         rx, ry = x - q[3], y - q[4]
         # arms of normal (-ty, tx) and tangent (tx, ty)
-        one, two = -ty * ry - tx * rx, tx * ry - ty * rx
-        across = light + one * one * slow
-        both = one * two * slow
+        first, two = -ty * ry - tx * rx, tx * ry - ty * rx
+        across = light + first * first * slow
+        both = first * two * slow
         need = ty * fx - tx * fy - bias(q, v, 1, x, y, -ty, tx, kind)
         if w.slides[1] != 0:
             push = need / (across - w.slides[1] * p.kinetic[1] * both)
@@ -414,7 +414,7 @@ def _solve_statue(p, w, q, v, ah, av):
         w.normal[1, end] = push
         w.shear[1] = shear
         pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
-        twist = one * push + two * shear
+        twist = first * push + two * shear
         moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
     left, _, _, _, _, _, _ = end_of(p, w, q, 0, 0, 1)
     right, y, _, _, _, _, _ = end_of(p, w, q, 0, 1, 1)

@@ -1,4 +1,4 @@
-"""One step between events, and the first event in it."""
+"""One step between contact events, and the first contact event in it."""
 
 import math
 from typing import NamedTuple
@@ -7,7 +7,7 @@ from rockfrag.engines.planar.compile import kernel
 from rockfrag.engines.planar.solve import AT_EDGE, end_of, look_at, rate, solve
 
 SLACK, TOUCH = 1e-12, 1e-13
-"""Slack before an event is seen, so that what has just begun is not taken for its end: forces over the weight;
+"""Slack before a contact event is seen, so that what has just begun is not taken for its end: forces over the weight;
 speeds over √(g b) and lengths over b [-]."""
 
 ERROR = 1e-7
@@ -16,7 +16,7 @@ SHORTEST = 1e-7
 """Fraction of a sampling interval below which a step is not made shorter."""
 
 WIDTH = 1e-12
-"""Fraction of a step to which the time of an event is found."""
+"""Fraction of a step to which the time of a contact event is found."""
 
 GAP, EDGE = 0, 2
 """Channels of an interface: its two ends (gap, or pressure of a closed end), their edges, ..."""
@@ -64,10 +64,10 @@ def start_step(p, w):
 
 
 @kernel
-def take_step(p, w, stretch, ledger):
+def take_step(p, w, stretch, energy_balance):
     """Go on by a stretch of time from q0, v0, a0 to q1, v1, a1 by Dormand and Prince's pair of order 5.
 
-    With ``ledger`` the work of the ground and of friction is added up.
+    With ``energy_balance`` the work of the ground and of friction is added up.
     """
     h = stretch.length
     size = 3 * p.count
@@ -75,11 +75,11 @@ def take_step(p, w, stretch, ledger):
         w.kv[0, d] = w.v0[d]
         w.ka[0, d] = w.a0[d]
     work, rubbed = 0.0, 0.0
-    if ledger:
+    if energy_balance:
         look_at(p, w, w.q0)
         solve(p, w, w.q0, w.v0, stretch.ah, stretch.av, False)
-        one, two = _powers(p, w, w.q0, w.v0, stretch.ah, stretch.av)
-        work += 35.0 / 384.0 * one
+        first, two = _powers(p, w, w.q0, w.v0, stretch.ah, stretch.av)
+        work += 35.0 / 384.0 * first
         rubbed += 35.0 / 384.0 * two
     for stage in range(1, 7):
         if stage == 1:
@@ -141,8 +141,8 @@ def take_step(p, w, stretch, ledger):
         for d in range(size):
             w.kv[stage, d] = w.v1[d]
             w.ka[stage, d] = w.out[d]
-        if ledger and 2 <= stage <= 5:
-            one, two = _powers(p, w, w.q1, w.v1, ah, av)
+        if energy_balance and 2 <= stage <= 5:
+            first, two = _powers(p, w, w.q1, w.v1, ah, av)
             weight = 500.0 / 1113.0
             if stage == 3:
                 weight = 125.0 / 192.0
@@ -150,7 +150,7 @@ def take_step(p, w, stretch, ledger):
                 weight = -2187.0 / 6784.0
             elif stage == 5:
                 weight = 11.0 / 84.0
-            work += weight * one
+            work += weight * first
             rubbed += weight * two
     for d in range(size):
         w.a1[d] = w.out[d]
@@ -188,7 +188,7 @@ def _powers(p, w, q, v, ah, av):
 
 @kernel
 def least_margin(p, w, q, v):
-    """Least of all that must stay positive until the next event; ``w.fails`` says what is negative.
+    """Least of all that must stay positive until the next contact event; ``w.fails`` says what is negative.
 
     Contact forces are those in ``w``; ``look_at`` must have been called with ``q``.
     """

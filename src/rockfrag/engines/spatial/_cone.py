@@ -110,7 +110,7 @@ def spread(s, n, mask):
 
 
 @njit(cache=True)
-def share_between(s, first, second, edge):
+def fraction_between(s, first, second, edge):
     """Share the impulse along the edge between two sticking contacts so that both cones hold, if they can."""
     p, along = s.impulse, 0.0
     room_for = (0.0, 0.0)
@@ -306,7 +306,7 @@ def solve_set(s, n, mask, scale):
     if not stick_together(s, n, mask, SOFT * largest):
         return False
     if bits(mask) == 2:
-        share_in_set(s, n, mask)
+        fraction_in_set(s, n, mask)
     if cones_hold(s, n, mask, small / largest):
         return others_open(s, n, mask, small)
     pace = 1.0 / largest
@@ -323,7 +323,7 @@ def solve_set(s, n, mask, scale):
 
 
 @njit(cache=True)
-def share_in_set(s, n, mask):
+def fraction_in_set(s, n, mask):
     """Share along the edge between the two contacts of a set, if both may stick."""
     first, second = -1, -1
     for i in range(n):
@@ -334,7 +334,7 @@ def share_in_set(s, n, mask):
                 first = i
             else:
                 second = i
-    share_between(s, first, second, (s.edge[first, second, 0], s.edge[first, second, 1]))
+    fraction_between(s, first, second, (s.edge[first, second, 0], s.edge[first, second, 1]))
 
 
 @njit(cache=True)

@@ -198,7 +198,7 @@ def hinge_acceleration(body, rows, omega, weight, i, j):
 
 
 @njit(cache=True)
-def share_along(whole, far, edge, friction, s):
+def fraction_along(whole, far, edge, friction, s):
     """Share the force along an edge between its ends so that both hold if they can; world components."""
     near = minus(whole, far)
     along = dot(near, edge)
@@ -314,7 +314,7 @@ def rates(body, tau, y, dy, s):
             body, rows, omega, weight, s.closed[0], s.closed[1]
         )
         pushed = to_world(rows, whole)
-        share_along(pushed, to_world(rows, far), to_world(rows, e), body.static, s)
+        fraction_along(pushed, to_world(rows, far), to_world(rows, e), body.static, s)
         acceleration = plus(pull, pushed)
     else:
         alpha = free_spin(body, omega)

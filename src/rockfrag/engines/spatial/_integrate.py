@@ -1,4 +1,4 @@
-"""One analysis: a body, a motion of the ground, event by event."""
+"""One analysis: a body, a motion of the ground, contact event by contact event."""
 
 import math
 
@@ -66,7 +66,7 @@ SHORTEST = 1e-11
 """Shortest step [s]."""
 
 MANY = 40
-"""Events in one interval after which the velocity below which contacts stay closed is doubled [-]."""
+"""Contact events in one interval after which the velocity below which contacts stay closed is doubled [-]."""
 
 HURRY = 1000
 """Steps in one interval after which errors of COARSE are allowed: slip that hardly begins is stiff [-]."""
@@ -77,7 +77,7 @@ COARSE = 1e-6
 OUTCOME = 20
 (
     FELL, FALL_TIME, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, PEAK_WALK, WALK_X,
-    WALK_Y, TURN, STEPS, LOST, LEDGER, END_TIME, CERTAIN_TIME, FIRST_MOTION, LEAST_GRAVITY, EVENTS,
+    WALK_Y, TURN, STEPS, LOST, ENERGY_BALANCE, END_TIME, CERTAIN_TIME, FIRST_MOTION, LEAST_GRAVITY, CONTACT_EVENTS,
 ) = range(OUTCOME)  # fmt: skip
 
 COLUMNS = 17
@@ -471,7 +471,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         y[i] = s.new[i]
     normalise(y)
     if what != NOTHING:
-        out[EVENTS] += 1
+        out[CONTACT_EVENTS] += 1
         out[LOST] += happen(body, what, tau + h, y, cut, stuck, s)
         return tau + h, dt, h
     before = energy(body, y, g)
@@ -522,7 +522,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     out
         Outcome, shape (OUTCOME,).
     s
-        A CASE for the analysis to work in; afterwards its counters are the numbers of events by kind.
+        A CASE for the analysis to work in; afterwards its counters are the numbers of contact events by kind.
     """
     for i in range(OUTCOME):
         out[i] = 0.0
@@ -548,7 +548,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
         if k > last and cannot_fall(body, y, s, g):
             break
         tau = 0.0
-        many, seen = 0, out[EVENTS]
+        many, seen = 0, out[CONTACT_EVENTS]
         s.close = CLOSE
         while dt - tau > 1e-12 * dt:
             if kind_of(s) == REST:
@@ -565,8 +565,8 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
             tau, ahead, h = advance(body, tau, dt, ahead, y, allowed, cut, stuck, s, out)
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1
-            if out[EVENTS] - seen >= MANY:
-                seen = out[EVENTS]
+            if out[CONTACT_EVENTS] - seen >= MANY:
+                seen = out[CONTACT_EVENTS]
                 s.close = min(2.0 * s.close, 1e-3)
             if stuck > 100:
                 # nothing is consistent here: let the motion go on as it is for a moment
@@ -582,7 +582,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
         k += 1
     record(history, k, y, out, s)
     out[END_TIME] = k * dt
-    out[LEDGER] = energy(body, y, g) - started - y[WORK] + y[FRICTION] + out[LOST]
+    out[ENERGY_BALANCE] = energy(body, y, g) - started - y[WORK] + y[FRICTION] + out[LOST]
 
 
 @njit(cache=True)

@@ -37,7 +37,7 @@ class SpatialResponse:
 
 
 class SpatialEngine:
-    """One rigid body on a polygon or a circle, event by event (``docs/space.md``).
+    """One rigid body on a polygon or a circle, contact event by contact event (``docs/space.md``).
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class SpatialEngine:
             later = later_peaks(ground)
             for k, scale in enumerate(cases.scales[j]):
                 found, _ = run_case(bodies[i], ground, motion.dt, float(scale), g=g, peaks=later)
-                _write(result, (i, j, k), found, _lightest(ground, float(scale), g))
+                _write(result, (i, j, k), found, _least_gravity_ratio(ground, float(scale), g))
 
         with ThreadPoolExecutor(cases.threads) as pool:
             list(pool.map(run_pair, tasks))
@@ -90,13 +90,13 @@ class SpatialEngine:
 ENGINE = SpatialEngine()
 
 
-def _lightest(ground: NDArray[np.float64], scale: float, g: float) -> float:
+def _least_gravity_ratio(ground: NDArray[np.float64], scale: float, g: float) -> float:
     """Least effective gravity over gravity."""
     return 1.0 + scale * float(ground[:, 2].min()) / g
 
 
 def _write(
-    result: Outcomes, case: tuple[int, int, int], found: SpatialOutcome, lightest: float
+    result: Outcomes, case: tuple[int, int, int], found: SpatialOutcome, least_gravity_ratio: float
 ) -> None:
     """Write one outcome into those of all."""
     result.overturned[case] = found.overturned
@@ -107,7 +107,7 @@ def _write(
     result.several_modes[case] = found.ambiguous
     result.paradoxes[case] = found.paradoxes
     result.unstable_distance[case] = math.nan
-    result.minimum_gravity_ratio[case] = lightest
+    result.minimum_gravity_ratio[case] = least_gravity_ratio
     body = (*case, 0)
     result.peak_rotation[body] = found.peak_rotation
     result.peak_velocity[body] = found.peak_velocity

@@ -159,7 +159,7 @@ def _outcome(body: np.void, out: Array, counters: NDArray[np.int64], y: Array) -
         ambiguous=int(counters[modes.AMBIGUOUS]),
         paradoxes=int(counters[modes.UNSOLVED] + counters[modes.JAMS]),
         dissipated=(float(out[kernel.LOST]), float(y[14])),
-        residual=float(out[kernel.LEDGER]),
+        residual=float(out[kernel.ENERGY_BALANCE]),
     )
 
 

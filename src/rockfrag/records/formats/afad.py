@@ -54,7 +54,7 @@ def _parse(text: TextFile) -> list[Channel]:
             component=component.replace(" ", ""),
             details={
                 "station_name": facts.get("place", ""),
-                "event": facts.get("earthquake date", ""),
+                "earthquake": facts.get("earthquake date", ""),
                 "magnitude": float(magnitude[1]) if magnitude else None,
                 "latitude": float(place["north"]) if place else None,
                 "longitude": float(place["east"]) if place else None,

@@ -86,7 +86,7 @@ def _channel(words: list[str], values: Channel) -> Channel:
                 start += float(match[5])
             except (ValueError, OverflowError, TypeError):
                 start = None
-    event = next((line.strip() for line in words if "EARTHQUAKE" in line.upper()), "")
+    earthquake = next((line.strip() for line in words if "EARTHQUAKE" in line.upper()), "")
     return Channel(
         npts=values.npts,
         dt=values.dt,
@@ -95,7 +95,7 @@ def _channel(words: list[str], values: Channel) -> Channel:
         start_time=start,
         station=words[0].strip() if words else "",
         component=component,
-        details={"event": event},
+        details={"earthquake": earthquake},
     )
 
 

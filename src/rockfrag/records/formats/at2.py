@@ -1,6 +1,6 @@
 """PEER strong-motion records (``.AT2``), in the header dialects of the database's generations.
 
-PEER 1997 to NGA-West2: title, event and station, quantity and unit, then a line with the number of
+PEER 1997 to NGA-West2: title, earthquake and station, quantity and unit, then a line with the number of
 points and the interval (``NPTS=  4000, DT= .01000 SEC``, ``4000  .0100  NPTS, DT``, either order,
 any case), then values in rows. The header may be longer and freer in files made from PEER's.
 """
@@ -174,9 +174,9 @@ def _samples(text: TextFile, start: int, npts: int) -> NDArray[np.float64]:
 
 
 def _facts(header: list[str]) -> dict[str, str]:
-    """Take event, station and component from PEER's line ``event date, station, component``."""
+    """Take earthquake, station and component from PEER's line ``earthquake date, station, component``."""
     title = header[0].strip() if header else ""
-    facts = {"title": title, "event": "", "station": "", "component": "", "agency": ""}
+    facts = {"title": title, "earthquake": "", "station": "", "component": "", "agency": ""}
     rotated = next((found for line in header if (found := _AZIMUTH.search(line))), None)
     for line in header[1:]:
         found = _COMPONENT.search(line.strip())
@@ -184,12 +184,12 @@ def _facts(header: list[str]) -> dict[str, str]:
         parts = [part.strip() for part in before.split(",") if part.strip()]
         if found is None or len(parts) < 2:
             continue
-        # the event's date and hour may be parts of their own: "BORAH PEAK EQ, 10/28/83, 14:06, …"
+        # the earthquake's date and hour may be parts of their own: "BORAH PEAK EQ, 10/28/83, 14:06, …"
         first = 1
         while first < len(parts) - 1 and re.fullmatch(r"[\d/:.\s]+", parts[first]):
             first += 1
         return facts | {
-            "event": ", ".join(parts[:first]).removeprefix("H1 for rotation:").strip(),
+            "earthquake": ", ".join(parts[:first]).removeprefix("H1 for rotation:").strip(),
             "station": ", ".join(parts[first:]),
             "component": rotated["azimuth"] if rotated else found["component"],
             "agency": (found["agency"] or "").strip(),
@@ -217,7 +217,7 @@ def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
     unit = stated_unit(trace, filename)
     facts = trace.stats.rockfrag
     place = [
-        str(facts.get("event") or "UNKNOWN EVENT"),
+        str(facts.get("earthquake") or "UNKNOWN EARTHQUAKE"),
         str(trace.stats.station or "UNKNOWN STATION"),
         str(facts.get("component") or trace.stats.channel or "UNKNOWN"),
     ]

@@ -100,7 +100,7 @@ def _details(words: str, station: re.Match[str] | None, component: str) -> dict[
     origin = re.search(r"Origin\s+Time\s*:\s*(.*)", words, re.IGNORECASE)
     magnitude = re.search(r"\bM[wsblL]?\s*(\d\.\d)", words)
     details: dict[str, object] = {
-        "event": " ".join(origin[1].split()) if origin else "",
+        "earthquake": " ".join(origin[1].split()) if origin else "",
         "magnitude": float(magnitude[1]) if magnitude else None,
     }
     if station is None:

@@ -228,7 +228,7 @@ def _channel(section: Section, samples: NDArray[np.float64], unit: str, header: 
         component=component,
         details={
             "station_name": name,
-            "event": " ".join(header.words[1].split()) if len(header.words) > 1 else "",
+            "earthquake": " ".join(header.words[1].split()) if len(header.words) > 1 else "",
             "latitude": header.place[0],
             "longitude": header.place[1],
         },

@@ -63,7 +63,7 @@ class _Words:
     station: str
     station_name: str
     component: str
-    event: str
+    earthquake: str
     start_time: UTCDateTime | None
 
 
@@ -158,10 +158,10 @@ def _words(text: TextFile, first: int, stop: int) -> _Words:
         found = re.search(r"(?:start|trigger)\s+time\s*:(.*)$", line, re.IGNORECASE)
         if found and start is None:
             start = american_time(found[1])
-    return _Words(network, station, name, component, _event(lines), start)
+    return _Words(network, station, name, component, _earthquake(lines), start)
 
 
-def _event(lines: list[str]) -> str:
+def _earthquake(lines: list[str]) -> str:
     """Return the earthquake's name and the time of it or of the record, from lines 2 to 4."""
     words = [re.split(r"\s{3,}|\(origin", line.strip(), flags=re.I)[0] for line in lines[1:4]]
     words = [word for word in words if word and not word.upper().startswith("UNCORRECTED")]
@@ -178,7 +178,11 @@ def _channel(words: _Words, values: Channel) -> Channel:
         network=words.network,
         station=words.station,
         component=words.component,
-        details={"station_name": words.station_name, "event": words.event, **values.details},
+        details={
+            "station_name": words.station_name,
+            "earthquake": words.earthquake,
+            **values.details,
+        },
     )
 
 

@@ -66,7 +66,7 @@ def _parse(text: TextFile) -> list[Channel]:
             station=station["code"],
             component=component["name"] if component else "",
             details={
-                "event": " ".join(header[2].split()),
+                "earthquake": " ".join(header[2].split()),
                 "magnitude": float(magnitude[1]) if magnitude else None,
                 "latitude": float(station["north"]) if station["north"] else None,
                 "longitude": float(station["east"]) if station["east"] else None,

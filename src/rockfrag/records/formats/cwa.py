@@ -76,7 +76,7 @@ def _parse(text: TextFile) -> list[Channel]:
             component=direction,
             details={
                 "station_name": value("stationname"),
-                "event": f"{value('origin time')} M {value('magnitude')}".strip(" M"),
+                "earthquake": f"{value('origin time')} M {value('magnitude')}".strip(" M"),
                 "instrument": value("instrumentkind"),
             },
         )

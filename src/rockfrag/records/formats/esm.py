@@ -109,13 +109,13 @@ def _location(words: str) -> str:
 
 
 def _details(facts: dict[str, str]) -> dict[str, object]:
-    event = " ".join(
+    earthquake = " ".join(
         facts[key]
         for key in ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "EVENT_TIME_HHMMSS")
         if facts.get(key)
     )
     details: dict[str, object] = {
-        "event": event,
+        "earthquake": earthquake,
         "station_name": facts.get("STATION_NAME", ""),
         "processing": facts.get("PROCESSING", ""),
         "licence": facts.get("DATA_LICENSE", ""),

@@ -91,7 +91,7 @@ def _component(text: TextFile, first: int) -> tuple[Channel, int]:
             component=component,
             details={
                 "station_name": words[2].strip(),
-                "event": ", ".join(" ".join(line.split()) for line in words[6:8]),
+                "earthquake": ", ".join(" ".join(line.split()) for line in words[6:8]),
                 "magnitude": numbers[_MAGNITUDE] or None,
                 "latitude": -abs(numbers[_LATITUDE]),
                 "longitude": numbers[_LONGITUDE],

@@ -217,7 +217,7 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
         code=stats.channel,
         # MiniSEED of floating point has been computed: its mean is meant
         raw=not (format_name == "MSEED" and trace.data.dtype.kind == "f"),
-        details={**_event_facts(trace), "steps": tuple(steps)},
+        details={**_earthquake_facts(trace), "steps": tuple(steps)},
     )
     channel.check(str(path))
     return channel
@@ -249,11 +249,11 @@ def _shortness(trace: Trace, format_name: str, path: Path, cut_short: bool) -> l
     )
 
 
-def _event_facts(trace: Trace) -> dict[str, Any]:
+def _earthquake_facts(trace: Trace) -> dict[str, Any]:
     knet = trace.stats.get("knet", {})
     facts: dict[str, Any] = {}
     if "evot" in knet:
-        facts["event"] = f"{knet['evot']} M {knet.get('mag', '?')}"
+        facts["earthquake"] = f"{knet['evot']} M {knet.get('mag', '?')}"
         facts["magnitude"] = knet.get("mag")
     return facts
 

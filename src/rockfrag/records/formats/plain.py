@@ -48,7 +48,7 @@ _OF_OBSPY = re.compile(
 
 _MIN_ROWS = 3
 _RISING = 0.9
-"""Share of the rows in which a column without title must rise to be one of times."""
+"""Fraction of the rows in which a column without title must rise to be one of times."""
 
 _FEW_ROWS = 20
 
@@ -314,7 +314,7 @@ def _series(text: TextFile, layout: _Layout, dt: float | None) -> Channel:
         station=layout.facts.details.get("station", ""),
         details={
             "title": layout.table.title,
-            "event": layout.facts.details.get("event", ""),
+            "earthquake": layout.facts.details.get("earthquake", ""),
             "steps": tuple(layout.steps),
         },
     )
@@ -442,7 +442,7 @@ def _channels(
                 station=layout.facts.details.get("station", ""),
                 details={
                     "title": columns[i].title if layout.titles else layout.table.title,
-                    "event": layout.facts.details.get("event", ""),
+                    "earthquake": layout.facts.details.get("earthquake", ""),
                     "steps": (*layout.steps, *notes),
                 },
             )
@@ -497,7 +497,7 @@ def _interval(
 
     The user's replaces a column of times that was printed wrongly; a note says so.
     """
-    timed = [i for i, one in enumerate(columns) if one.quantity == "time"]
+    timed = [i for i, column in enumerate(columns) if column.quantity == "time"]
     left = [i for i in timed if i < column] or timed[:1]
     stated = layout.dt if layout.dt is not None else dt
     if not left:

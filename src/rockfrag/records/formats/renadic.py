@@ -50,7 +50,7 @@ def _channel(text: TextFile, first: int, values: Channel) -> Channel:
         station=_station(PurePath(text.name).name.split(".")[0], number),
         component=component[1] if component else "",
         details={
-            "event": re.split(r"\s*\(ORIGIN", " ".join(lines[2].split()))[0],
+            "earthquake": re.split(r"\s*\(ORIGIN", " ".join(lines[2].split()))[0],
             "record": number,
             **values.details,
         },

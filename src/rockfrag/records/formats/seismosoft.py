@@ -48,7 +48,7 @@ def _parse(text: TextFile) -> list[Channel]:
         text.refuse(
             f"the file holds {titles['quantity']}[{titles['unit']}], not acceleration", columns
         )
-    header = {"event": text.line(0)}
+    header = {"earthquake": text.line(0)}
     for line in text.lines(0, columns):
         key, colon, value = line.partition(":")
         if colon:
@@ -64,7 +64,7 @@ def _parse(text: TextFile) -> list[Channel]:
             station=station,
             component=component,
             details={
-                "event": header["event"].rstrip("."),
+                "earthquake": header["earthquake"].rstrip("."),
                 "source": header.get("source", ""),
                 "frequency_range": header.get("frequency range", ""),
                 "recording_station": header.get("recording station", ""),
@@ -103,7 +103,7 @@ def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None
     component = str(facts.get("component") or trace.stats.channel or "")
     station = " ".join(str(trace.stats.station or "unknown").split())
     lines = [
-        " ".join(str(facts.get("event") or "Unknown event").split()),
+        " ".join(str(facts.get("earthquake") or "Unknown earthquake").split()),
         f"Source: {' '.join(str(facts.get('source') or 'rockfrag').split())}",
         f"Recording station: {station}" + (f"({component})" if component else ""),
         "Frequency range: not stated",

@@ -81,7 +81,7 @@ def _parse(text: TextFile) -> list[Channel]:
             component=_component(whole, station[2].strip() if station else ""),
             details={
                 "station_name": station[1] if station else "",
-                "event": " ".join(words[3].split()),
+                "earthquake": " ".join(words[3].split()),
                 "corrected": held.startswith("CORRECTED"),
                 **_place(numbers),
                 **values.details,

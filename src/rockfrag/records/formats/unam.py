@@ -123,7 +123,7 @@ def _details(facts: dict[str, str]) -> dict[str, object]:
     magnitudes = magnitudes or re.findall(r"=\s*(\d\.\d)", facts.get("magnitud", ""))
     return {
         "station_name": facts.get("nombre de la estacion", ""),
-        "event": f"{facts.get('fecha del sismo', '')} {facts.get('hora epicentro', '')}".strip(),
+        "earthquake": f"{facts.get('fecha del sismo', '')} {facts.get('hora epicentro', '')}".strip(),
         "magnitude": max(map(float, magnitudes), default=None),
         **place,
     }

@@ -40,7 +40,7 @@ def _parse(text: TextFile) -> list[Channel]:
 
 
 def place_of(words: list[str], values: Channel) -> Channel:
-    """Return a channel with the station, component and event of the text header above it."""
+    """Return a channel with the station, component and earthquake of the text header above it."""
     lines = [line[: _LENGTH.start].strip() for line in words]
     station = component = name = ""
     for number, line in enumerate(lines):
@@ -56,11 +56,11 @@ def place_of(words: list[str], values: Channel) -> Channel:
         unit=values.unit,
         station=station,
         component=component,
-        details={"station_name": name, "event": _event(lines), **values.details},
+        details={"station_name": name, "earthquake": _earthquake(lines), **values.details},
     )
 
 
-def _event(lines: list[str]) -> str:
+def _earthquake(lines: list[str]) -> str:
     """Return the earthquake's name and date, the two lines below the one that names the volume."""
     volume = next((i for i, line in enumerate(lines) if "OF VOLUME" in line.upper()), 0)
     return ", ".join(lines[volume + 1 : volume + 3])

@@ -42,7 +42,7 @@ class Channel:
     raw
         Whether this is a raw recording, whose mean is the zero of the sensor and not motion.
     details
-        More facts for the metadata: ``station_name``, ``event``, ``title``, …
+        More facts for the metadata: ``station_name``, ``earthquake``, ``title``, …
     """
 
     npts: int

@@ -58,7 +58,7 @@ _FACTOR = re.compile(
     rf"\b(?:scal(?:e|ing)|conversion|calibration)[\s_-]*factor{_IS}(?P<value>[+-]?{_VALUE})", re.I
 )
 _KEYS = {
-    "event": re.compile(r"^\W*(?:event|earthquake)\b[^:=]*[:=]\s*(?P<value>\S.*)$", re.I),
+    "earthquake": re.compile(r"^\W*(?:event|earthquake)\b[^:=]*[:=]\s*(?P<value>\S.*)$", re.I),
     "station": re.compile(r"^\W*(?:recording\s+)?station\b[^:=]*[:=]\s*(?P<value>\S.*)$", re.I),
 }
 _SECONDS = {"ms": 1e-3, "mi": 1e-3, "us": 1e-6, "µs": 1e-6}
@@ -81,7 +81,7 @@ class StatedFacts:
     factor
         A factor that the samples are still to be multiplied by, with its words.
     details
-        ``event`` and ``station``.
+        ``earthquake`` and ``station``.
     contradiction
         Two statements that exclude each other, in words.
     """

@@ -8,8 +8,8 @@ from obspy import UTCDateTime
 
 from rockfrag.records.parsing.text_file import TextFile
 
-_SHARE_OF_STEP = 1e-4
-"""Share of a step by which a time may be off beyond the rounding of its print."""
+_FRACTION_OF_STEP = 1e-4
+"""Fraction of a step by which a time may be off beyond the rounding of its print."""
 
 _FINEST_DIGITS = 9
 
@@ -74,7 +74,7 @@ def step_of_times(
     mean = float((times[-1] - times[0]) / (times.size - 1))
     dt = _shortest_decimal(mean, float(printed[-1]) / (times.size - 1))
     off = np.abs(times - times[0] - np.arange(times.size) * dt)
-    wrong = np.flatnonzero(off > 0.5 * printed * (1 + 1e-9) + _SHARE_OF_STEP * dt)
+    wrong = np.flatnonzero(off > 0.5 * printed * (1 + 1e-9) + _FRACTION_OF_STEP * dt)
     if wrong.size:
         bad, steps = int(wrong[0]), np.diff(times)
         text.fail(

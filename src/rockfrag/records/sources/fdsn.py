@@ -170,7 +170,7 @@ def _window(
         return request.start, request.end, {}
     event = client.get_events(eventid=request.event)[0]
     origin = event.preferred_origin() or event.origins[0]
-    facts = {"event": request.event, "origin_time": str(origin.time)}
+    facts = {"earthquake": request.event, "origin_time": str(origin.time)}
     magnitude = event.preferred_magnitude() or (event.magnitudes[0] if event.magnitudes else None)
     if magnitude is not None:
         facts["magnitude"] = str(magnitude.mag)

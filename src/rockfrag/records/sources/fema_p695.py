@@ -50,7 +50,7 @@ def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
 
     Returns
     -------
-    The two horizontal components of each record. Their metadata have ``event``, ``station``, ``magnitude``,
+    The two horizontal components of each record. Their metadata have ``earthquake``, ``station``, ``magnitude``,
     ``distance_km`` (closest to the rupture), ``vs30_m_s`` and ``set``.
 
     Raises
@@ -68,14 +68,14 @@ def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
                 names = [text.decode("ascii") for text in texts]
                 facts = {
                     # PEER numbers the shocks of a sequence, as in Northridge-01
-                    "event": re.sub(r"-\d\d$", "", names[0]),
+                    "earthquake": re.sub(r"-\d\d$", "", names[0]),
                     "station": names[1],
                     "magnitude": float(numbers[0]),
                     "distance_km": float(numbers[2]),
                     "vs30_m_s": float(counts[2]),
                     "set": file.stem,
                 }
-                one, other = (
+                first, other = (
                     _component(
                         stored,
                         file,
@@ -86,7 +86,7 @@ def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
                     )
                     for part, name in zip("ab", names[5:7], strict=True)
                 )
-                pairs.append((one, other))
+                pairs.append((first, other))
     except (OSError, KeyError, ValueError, IndexError) as error:
         raise InputError(f"{file}: is not a readable set of FEMA P695 ({error}).") from error
     return pairs

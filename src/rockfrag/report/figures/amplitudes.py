@@ -97,7 +97,7 @@ def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     Parameters
     ----------
     tests
-        Tests of one reading, see :mod:`rockfrag.shaketable.tests_table`.
+        Tests of one definition, see :mod:`rockfrag.shaketable.tests_table`.
     means
         See :func:`rockfrag.shaketable.mean_amplitudes.mean_amplitudes`.
     """
@@ -218,7 +218,7 @@ def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDEST
         What is compared.
     """
     rows = drawn_tests(tests)
-    keys = ["object", "event", "floor", "motion"]
+    keys = ["object", "earthquake", "floor", "motion"]
     without = rows[rows["pedestal"] == "NP"]
     pairs = rows[rows["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
     objects = list(dict.fromkeys(pairs["object"]))
@@ -278,7 +278,7 @@ def slenderness_figure(
     rows = drawn_tests(tests)
     rows = rows.assign(x=rows["object"].map(slenderness))
     known = means[(means["by"] == "configuration") & means["mean_g"].notna()]
-    events = list(dict.fromkeys(tests["event"]))
+    earthquakes = list(dict.fromkeys(tests["earthquake"]))
     crowded = len(tests) > MOST_MARKS
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 3.0)
@@ -288,7 +288,7 @@ def slenderness_figure(
             if crowded:
                 _boxes(axes, part)
             else:
-                _against_slenderness(axes, part, events)
+                _against_slenderness(axes, part, earthquakes)
             own = known[known["pedestal"] == side]
             x = own["object"].map(slenderness).to_numpy(dtype=float)
             axes.plot(x, own["mean_g"], color=BLACK, lw=1.0, marker="_", ms=10, mew=1.8)
@@ -298,7 +298,9 @@ def slenderness_figure(
         figure.supxlabel("Slenderness H/B", fontsize=8)
         letter_panels(grid)
         figure.supylabel(AMPLITUDE, fontsize=8)
-        handles = _box_handles() if crowded else _event_handles(events) + bound_handle(tests)
+        handles = (
+            _box_handles() if crowded else _earthquake_handles(earthquakes) + bound_handle(tests)
+        )
         handles.append(Line2D([], [], color=BLACK, marker="_", ms=10, label="geometric mean"))
         figure.legend(handles=handles, loc="outside upper center", ncols=3, handletextpad=0.3)
     return figure
@@ -335,17 +337,19 @@ def _box_handles() -> list[Line2D]:
     return [Line2D([], [], color=BLUE, label="median, 25–75 %, 5–95 %")]
 
 
-def _event_handles(events: Sequence[str]) -> list[Line2D]:
+def _earthquake_handles(earthquakes: Sequence[str]) -> list[Line2D]:
     return [
-        Line2D([], [], ls="", marker=marker, mfc="none", mec=colour, label=shortened(event))
-        for event, (marker, colour) in _styles(events).items()
-        if len(events) <= len(MARKERS)
+        Line2D([], [], ls="", marker=marker, mfc="none", mec=colour, label=shortened(earthquake))
+        for earthquake, (marker, colour) in _styles(earthquakes).items()
+        if len(earthquakes) <= len(MARKERS)
     ]
 
 
-def _against_slenderness(axes: Axes, part: pd.DataFrame, events: Sequence[str]) -> None:
-    """Tests by event with a little sideways shift."""
-    shifts = np.linspace(-0.14, 0.14, max(len(events), 2))
-    for shift, (event, (marker, colour)) in zip(shifts, _styles(events).items(), strict=False):
-        own = part[part["event"] == event]
+def _against_slenderness(axes: Axes, part: pd.DataFrame, earthquakes: Sequence[str]) -> None:
+    """Tests by earthquake with a little sideways shift."""
+    shifts = np.linspace(-0.14, 0.14, max(len(earthquakes), 2))
+    for shift, (earthquake, (marker, colour)) in zip(
+        shifts, _styles(earthquakes).items(), strict=False
+    ):
+        own = part[part["earthquake"] == earthquake]
         plot_tests(axes, own["x"].to_numpy(dtype=float) + shift, own, marker, colour)

@@ -32,7 +32,7 @@ def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[s
     Parameters
     ----------
     tests
-        Tests of one reading, see :mod:`rockfrag.shaketable.tests_table`.
+        Tests of one definition, see :mod:`rockfrag.shaketable.tests_table`.
     curves
         Rows of :func:`rockfrag.fragility.fragility_table` with medians of peak acceleration [g]; may be empty.
     names

@@ -23,7 +23,7 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
     Parameters
     ----------
     recorded
-        As :func:`rockfrag.stages.sweep.as_recorded` returns it, of every configuration.
+        As :func:`rockfrag.stages.ida.as_recorded` returns it, of every configuration.
     """
     names = list(dict.fromkeys(recorded["configuration"]))
     motions = recorded.drop_duplicates("motion")
@@ -36,7 +36,7 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
         index="motion", columns="configuration", values="rotation", aggfunc="first"
     )
     table = table.reindex(index=rows, columns=names)
-    sensitive = shown[shown["share_near"].between(0, 1, inclusive="neither")]
+    sensitive = shown[shown["fraction_near"].between(0, 1, inclusive="neither")]
     with figure_style():
         figure = new_figure(WIDEST, 1.35 + 0.185 * len(rows))
         axes = figure.subplots()
@@ -63,8 +63,8 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
         )
         axes.set_ylim(len(rows) - 0.5, -0.5)
         peaks = dict(zip(motions["motion"], motions["pga_g"], strict=True))
-        axes.set_yticks(range(len(rows)), [f"{label(one)}, {peaks[one]:.2f} g" for one in rows])
-        axes.set_xticks(range(len(names)), [shortened(one, 16) for one in names], rotation=90)
+        axes.set_yticks(range(len(rows)), [f"{label(row)}, {peaks[row]:.2f} g" for row in rows])
+        axes.set_xticks(range(len(names)), [shortened(name, 16) for name in names], rotation=90)
         axes.tick_params(length=0, labelsize=7)
         axes.xaxis.tick_top()
         axes.spines[:].set_visible(False)

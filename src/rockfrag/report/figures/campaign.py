@@ -44,7 +44,7 @@ def agreement_figure(agreement: pd.DataFrame) -> Figure:
 
 
 def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label: str) -> Figure:
-    """Draw measured and simulated fragility in one measure: curves, and shares of tests in bins.
+    """Draw measured and simulated fragility in one measure: curves, and fractions of tests in bins.
 
     Parameters
     ----------
@@ -65,8 +65,8 @@ def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label
         styles = (("measured", "overturned", BLACK, "o"), ("rockfrag", "simulated", BLUE, "s"))
         for who, column, colour, marker in styles:
             middle = [np.exp(np.log(values[bins == k]).mean()) for k in range(len(edges) - 1)]
-            share = [tests[column].to_numpy()[bins == k].mean() for k in range(len(edges) - 1)]
-            axes.plot(middle, share, ls="", marker=marker, mfc="white", color=colour)
+            fraction = [tests[column].to_numpy()[bins == k].mean() for k in range(len(edges) - 1)]
+            axes.plot(middle, fraction, ls="", marker=marker, mfc="white", color=colour)
             row = curves[curves["who"] == who].iloc[0]
             if np.isfinite(row["theta"]):
                 name = "measured" if who == "measured" else "simulated"

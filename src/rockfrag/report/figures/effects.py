@@ -29,7 +29,7 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
     Parameters
     ----------
     effects
-        Rows of :func:`rockfrag.pedestal.effects_table`, of one reading.
+        Rows of :func:`rockfrag.pedestal.effects_table`, of one definition.
     sides
         What is compared.
     """
@@ -64,7 +64,7 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
 
 def _label(level: str, units: int, unit: str) -> str:
     name = "all pairs" if level == "all" else shortened(level.replace("/", ", "), 30)
-    return f"{name} ({counted(int(units), 'earthquake' if unit == 'event' else unit)})"
+    return f"{name} ({counted(int(units), 'earthquake' if unit == 'earthquake' else unit)})"
 
 
 def _too_near(ticks: Sequence[float], low: float, high: float) -> bool:

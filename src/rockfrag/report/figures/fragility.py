@@ -26,7 +26,7 @@ from rockfrag.figure_style import (
     plain_log,
 )
 from rockfrag.fragility.compared import compared_curves
-from rockfrag.fragility.empirical import local_share, share_in_bins
+from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit
 from rockfrag.report.wording import shortened
 
@@ -67,7 +67,7 @@ def fragility_figure(
         ):
             colour = CONFIGURATION_COLOURS[k % len(CONFIGURATION_COLOURS)]
             own = str(curve["configuration"])
-            _shares(panel, bins[bins["configuration"] == own], colour, 1.0)
+            _fractions(panel, bins[bins["configuration"] == own], colour, 1.0)
             points = bands[bands["configuration"] == own]
             _compared_curve(panel, points, colour, compared.nonparametric)
             _probability_axis(panel, np.array([bands["x"].min(), bands["x"].max()]))
@@ -83,13 +83,13 @@ def fragility_figure(
 
 def _compared_curve(axes: Axes, points: pd.DataFrame, colour: str, nonparametric: bool) -> None:
     """Draw the curve that is to be used with its band, and the other one without."""
-    lower, upper = ("share_lower", "share_upper") if nonparametric else ("lower", "upper")
+    lower, upper = ("fraction_lower", "fraction_upper") if nonparametric else ("lower", "upper")
     axes.fill_between(
         points["x"], points[lower], points[upper], color=colour, alpha=0.18, linewidth=0
     )
     if nonparametric:
         axes.plot(points["x"], points["probability"], ":", color=BLACK, linewidth=0.9)
-        axes.plot(points["x"], points["share"], color=colour)
+        axes.plot(points["x"], points["fraction"], color=colour)
     else:
         axes.plot(points["x"], points["probability"], color=colour)
 
@@ -113,14 +113,14 @@ def _curve_words(curve: Mapping[Hashable, Any]) -> str:
     return words + (f", β = {beta:.2f}" if np.isfinite(beta) else "")
 
 
-def _shares(axes: Axes, bins: pd.DataFrame, colour: str, shift: float) -> None:
+def _fractions(axes: Axes, bins: pd.DataFrame, colour: str, shift: float) -> None:
     """Fractions of overturned tests in bins with their binomial limits."""
-    share = bins["share"].to_numpy(dtype=float)
-    lower, upper = (bins[f"share_{end}"].to_numpy(dtype=float) for end in ("lower", "upper"))
-    reach = [np.maximum(share - lower, 0.0), np.maximum(upper - share, 0.0)]
+    fraction = bins["fraction"].to_numpy(dtype=float)
+    lower, upper = (bins[f"fraction_{end}"].to_numpy(dtype=float) for end in ("lower", "upper"))
+    reach = [np.maximum(fraction - lower, 0.0), np.maximum(upper - fraction, 0.0)]
     axes.errorbar(
         bins["x"].to_numpy(dtype=float) * shift,
-        share,
+        fraction,
         yerr=reach,
         fmt="o",
         color=colour,
@@ -147,7 +147,7 @@ def measures_figure(
         for axes, label in zip(grid_of_axes.flat, labels, strict=False):
             item, data = curves[label], outcomes[label]
             grid = _grid([item], [data])
-            _verdicts(axes, data, grid, BLACK, bins)
+            _outcomes(axes, data, grid, BLACK, bins)
             _curve(axes, item, grid, BLUE, "")
             _probability_axis(axes, grid)
             axes.set_title(
@@ -195,21 +195,21 @@ def surface_figure(
 
 
 def calibration_figure(judged: Mapping[str, "GoodnessOfFit"]) -> Figure:
-    """Draw observed against fitted shares in bins; points on the diagonal are well calibrated."""
+    """Draw observed against fitted fractions in bins; points on the diagonal are well calibrated."""
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 3.0)
         axes = figure.subplots()
         axes.plot([0, 1], [0, 1], color=GREY, linewidth=0.8)
         for k, (label, fit) in enumerate(judged.items()):
             table = fit.calibration
-            share = table["observed"].to_numpy()
+            fraction = table["observed"].to_numpy()
             reach = [
-                np.maximum(share - table["observed_lower"].to_numpy(), 0.0),
-                np.maximum(table["observed_upper"].to_numpy() - share, 0.0),
+                np.maximum(fraction - table["observed_lower"].to_numpy(), 0.0),
+                np.maximum(table["observed_upper"].to_numpy() - fraction, 0.0),
             ]
             axes.errorbar(
                 table["predicted"],
-                share,
+                fraction,
                 yerr=reach,
                 fmt="os^Dv"[k % 5],
                 color=OKABE_ITO[k % len(OKABE_ITO)],
@@ -237,11 +237,11 @@ def _curve(axes: Axes, item: "Fragility", grid: Floats, colour: str, label: str)
     axes.plot(grid, item.fit.probability(grid), color=colour, label=theta)
 
 
-def _verdicts(axes: Axes, data: Outcomes, grid: Floats, colour: str, bins: int) -> None:
-    _shares(axes, share_in_bins(data, bins).rename(columns={"im": "x"}), colour, 1.0)
+def _outcomes(axes: Axes, data: Outcomes, grid: Floats, colour: str, bins: int) -> None:
+    _fractions(axes, fraction_in_bins(data, bins).rename(columns={"im": "x"}), colour, 1.0)
     inside = grid[(grid >= data.im.min()) & (grid <= data.im.max())]
     if inside.size and np.ptp(data.log_im) > 0:
-        axes.plot(inside, local_share(data, inside), "--", color=colour, linewidth=0.8)
+        axes.plot(inside, local_fraction(data, inside), "--", color=colour, linewidth=0.8)
 
 
 def _grid(curves: Sequence["Fragility"], data: Sequence[Outcomes]) -> Floats:

@@ -23,8 +23,12 @@ MOST_PANELS = 8
 
 def _title(motion: Motion, peak_g: float) -> str:
     """Name of the earthquake and of the record, and the peak."""
-    event = str(motion.metadata.get("event") or "")
-    name = motion.name if event.casefold() in motion.name.casefold() else f"{event}, {motion.name}"
+    earthquake = str(motion.metadata.get("earthquake") or "")
+    name = (
+        motion.name
+        if earthquake.casefold() in motion.name.casefold()
+        else f"{earthquake}, {motion.name}"
+    )
     return f"{shortened(name, 44)}: {peak_g:.2f} g"
 
 

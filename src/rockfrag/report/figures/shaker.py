@@ -7,7 +7,7 @@ from matplotlib.patches import Patch
 
 from rockfrag.figure_style import OKABE_ITO, WIDEST, figure_style, new_figure
 from rockfrag.report.figures.amplitudes import GREY, MARKERS, drawn_tests
-from rockfrag.report.figures.sweep import MOST_ROWS
+from rockfrag.report.figures.ida import MOST_ROWS
 from rockfrag.report.wording import label, shortened
 
 
@@ -19,7 +19,7 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
     limits
         As :func:`rockfrag.shaketable.shaker.shaker_table` returns it.
     tests
-        Tests of one reading without the shaker's limits; those of lone objects are drawn, if there
+        Tests of one definition without the shaker's limits; those of lone objects are drawn, if there
         are any.
     """
     motions = list(limits["motion"])[:MOST_ROWS][::-1]

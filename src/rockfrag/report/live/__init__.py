@@ -49,7 +49,7 @@ class Start:
 def live_kernel(
     bodies: Mapping[str, System],
     motions: Sequence[Motion],
-    verdicts: pd.DataFrame | None = None,
+    outcomes: pd.DataFrame | None = None,
     start: Start | None = None,
 ) -> Markup:
     """Return the element of a page in which bodies rock under motions, live; one to a page.
@@ -60,7 +60,7 @@ def live_kernel(
         What may be chosen, by the name that a reader sees; of more than two blocks only the name is shown.
     motions
         Motions that may be chosen; no more than carry ``MOST_SAMPLES`` samples are taken, the first ones.
-    verdicts
+    outcomes
         Table of a study: ``configuration`` (a name of ``bodies``), ``motion``, ``amplitude_g``, ``overturned``,
         the same amplitudes for all. Without it the amplitudes ``AMPLITUDES_G`` are tried here.
     start
@@ -77,21 +77,23 @@ def live_kernel(
     with warnings.catch_warnings():
         # the page shows pure rocking; where that may be wrong is said in the report's own words
         warnings.simplefilter("ignore", LightBodies)
-        return _element(known, bodies, carried(motions), verdicts, start)
+        return _element(known, bodies, carried(motions), outcomes, start)
 
 
 def _element(
     bodies: Mapping[str, System],
     asked: Mapping[str, System],
     motions: Sequence[Motion],
-    verdicts: pd.DataFrame | None,
+    outcomes: pd.DataFrame | None,
     start: Start | None,
 ) -> Markup:
-    of_study = verdicts is not None
-    if verdicts is None:
-        verdicts = swept(bodies, motions)
-    amplitudes = np.sort(verdicts["amplitude_g"].unique())
-    rows = [[_row(verdicts, name, one.name, amplitudes) for one in motions] for name in bodies]
+    of_study = outcomes is not None
+    if outcomes is None:
+        outcomes = swept(bodies, motions)
+    amplitudes = np.sort(outcomes["amplitude_g"].unique())
+    rows = [
+        [_row(outcomes, name, motion.name, amplitudes) for motion in motions] for name in bodies
+    ]
     body, motion = _start(bodies, motions, rows, start)
     first = rows[body][motion].find("1")
     shown = first if first >= 0 else len(amplitudes) - 1
@@ -99,10 +101,10 @@ def _element(
         "source": "the study" if of_study else "the package",
         "gravity": GRAVITY,
         "module": _text(module_bytes()),
-        "bodies": [_body(name, one) for name, one in bodies.items()],
-        "motions": [_motion(one) for one in motions],
+        "bodies": [_body(name, body) for name, body in bodies.items()],
+        "motions": [_motion(motion) for motion in motions],
         "amplitudes": amplitudes.tolist(),
-        "verdicts": rows,
+        "outcomes": rows,
         "start": {"body": body, "motion": motion, "amplitude": float(amplitudes[shown])},
     }
     three = (
@@ -138,7 +140,7 @@ def carried(motions: Sequence[Motion]) -> list[Motion]:
 
 
 def swept(bodies: Mapping[str, System], motions: Sequence[Motion]) -> pd.DataFrame:
-    """Verdicts of all bodies under all motions at ``AMPLITUDES_G``."""
+    """Outcomes of all bodies under all motions at ``AMPLITUDES_G``."""
     values = np.array(AMPLITUDES_G)
     fell = overturns(
         list(bodies.values()),
@@ -153,11 +155,11 @@ def swept(bodies: Mapping[str, System], motions: Sequence[Motion]) -> pd.DataFra
     return pd.DataFrame({"overturned": fell.ravel()}, index=index).reset_index()
 
 
-def _row(verdicts: pd.DataFrame, body: str, motion: str, amplitudes: Any) -> str:
-    """Verdicts of one body under one motion, a digit an amplitude."""
-    own = verdicts[(verdicts["configuration"] == body) & (verdicts["motion"] == motion)]
+def _row(outcomes: pd.DataFrame, body: str, motion: str, amplitudes: Any) -> str:
+    """Outcomes of one body under one motion, a digit an amplitude."""
+    own = outcomes[(outcomes["configuration"] == body) & (outcomes["motion"] == motion)]
     fell = own.set_index("amplitude_g")["overturned"].reindex(amplitudes)
-    return "".join("1" if one else "0" for one in fell.to_numpy(dtype=bool))
+    return "".join("1" if item else "0" for item in fell.to_numpy(dtype=bool))
 
 
 def _start(
@@ -168,7 +170,9 @@ def _start(
 ) -> tuple[int, int]:
     """Place of the body and of the motion that are shown first."""
     if start is not None:
-        return list(bodies).index(start.body), [one.name for one in motions].index(start.motion)
+        return list(bodies).index(start.body), [motion.name for motion in motions].index(
+            start.motion
+        )
     kinds = list(bodies.values())
     order = sorted(range(len(kinds)), key=lambda number: -kinds[number].count)
     for body in order:

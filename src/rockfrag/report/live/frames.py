@@ -25,14 +25,14 @@ def outlines(system: System, theta: Sequence[float]) -> list[list[Vector]]:
     """Corners of each of one or two bodies at rotations [rad], from the middle of the base [m]; from below."""
     bodies, tilts = system.in_plane().bodies, [contact.tilt for contact in system.contacts]
     first = theta[0]
-    pole = Vector(math.copysign(system.shapes[0].b, first), 0.0)
-    corners = [[_turned_about(at, first, pole) for at in _corners(bodies[0], tilts[0])]]
+    pivot = Vector(math.copysign(system.shapes[0].b, first), 0.0)
+    corners = [[_turned_about(at, first, pivot) for at in _corners(bodies[0], tilts[0])]]
     if system.count == 2:
         pile, second = system.pile, theta[1]
         side = 1 if second >= first else -1
-        foot = Vector(side * pile.statue.b, 0.0).turned(pile.lean)
-        upper = _turned_about(Vector(*(pile.right if side > 0 else pile.left)), first, pole)
-        aside = pile.above.x - pile.statue.x
+        foot = Vector(side * pile.upper.b, 0.0).turned(pile.lean)
+        upper = _turned_about(Vector(*(pile.right if side > 0 else pile.left)), first, pivot)
+        aside = pile.above.x - pile.upper.x
         corners.append(
             [
                 _placed(Vector(at.x - aside, at.y).turned(pile.lean).minus(foot), second, upper)
@@ -56,8 +56,8 @@ def _placed(arm: Vector, angle: float, at: Vector) -> Vector:
     return Vector(at.x + turned.x, at.y + turned.y)
 
 
-def _turned_about(point: Vector, angle: float, pole: Vector) -> Vector:
-    return _placed(point.minus(pole), angle, pole)
+def _turned_about(point: Vector, angle: float, pivot: Vector) -> Vector:
+    return _placed(point.minus(pivot), angle, pivot)
 
 
 def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) -> tuple[Markup, str]:
@@ -81,7 +81,7 @@ def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) ->
     parts, words = [], []
     for place, peak in enumerate(amplitudes_g):
         response = simulate(system, scale_to_pga(motion, peak))
-        theta, verdict = _moment(response)
+        theta, outcome = _moment(response)
         shift = (place + 0.5) * _WIDTH
         for block, colour in zip(
             outlines(system, theta), ("--red", "--blue")[-len(theta) :], strict=True
@@ -92,10 +92,10 @@ def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) ->
             parts.append(Markup('<polygon points="{}" fill="var({})"/>').format(points, colour))
         parts.append(
             Markup('<text x="{:.0f}" y="170">{} g</text><text x="{:.0f}" y="185">{}</text>').format(
-                shift, number(peak, 3), shift, verdict
+                shift, number(peak, 3), shift, outcome
             )
         )
-        words.append(f"at {number(peak, 3)} g it {verdict}")
+        words.append(f"at {number(peak, 3)} g it {outcome}")
     said = listed(words) + "."
     drawing = Markup(
         '<svg viewBox="0 0 {} {}" role="img" aria-label="Still frames: {}" font-size="12" text-anchor="middle" '

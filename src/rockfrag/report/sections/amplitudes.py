@@ -5,8 +5,8 @@ from functools import partial
 import pandas as pd
 
 from rockfrag.files import file_name
-from rockfrag.report.figures.sweep import MOST_ROWS, verdict_map
-from rockfrag.report.findings import amplitudes_found, windows_found
+from rockfrag.report.figures.ida import MOST_ROWS, outcome_map
+from rockfrag.report.findings import amplitudes_found, resurrections_found
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
 from rockfrag.report.wording import amplitude, of_all
@@ -14,12 +14,16 @@ from rockfrag.report.wording import amplitude, of_all
 
 def _section(results: Results) -> Section:
     found = amplitudes_found(results.tests)
-    windows = windows_found(results.table("survival_windows"), results.table("tests"))
+    resurrections = resurrections_found(results.table("resurrections"), results.table("tests"))
     tests = results.tests
     tests = tests[tests["repetition"] == tests["repetition"].min()]
     names = list(dict.fromkeys(tests["configuration"]))
     shown = _wide(tests)
-    columns = [Column("event", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion")]
+    columns = [
+        Column("earthquake", "Earthquake"),
+        Column("floor", "Floor"),
+        Column("motion", "Motion"),
+    ]
     columns += [Column(name, f"{name} [g]", numeric=True) for name in names]
     return Section(
         "amplitudes",
@@ -27,7 +31,7 @@ def _section(results: Results) -> Section:
         f"{found.headline}.",
         [
             *opened(found),
-            windows.said,
+            resurrections.said,
             "The motion is raised in steps from rest until the body overturns. “>” stands before the largest "
             "amplitude survived by a body that never overturned, “<” before the first step where it overturned "
             "there already. These bounds enter no mean.",
@@ -46,7 +50,7 @@ def _section(results: Results) -> Section:
 def _wide(tests: pd.DataFrame) -> pd.DataFrame:
     """A row per motion and a column per configuration, amplitudes and bounds as text."""
     texts = tests.assign(text=[amplitude(test) for test in tests.to_dict("records")])
-    keys = ["event", "floor", "motion"]
+    keys = ["earthquake", "floor", "motion"]
     rows: dict[tuple[str, ...], dict[str, str]] = {}
     for row in texts.to_dict("records"):
         key = tuple(row[name] for name in keys)
@@ -56,23 +60,23 @@ def _wide(tests: pd.DataFrame) -> pd.DataFrame:
 
 
 def _maps(results: Results) -> list[FigureSpec]:
-    verdicts, windows = results.verdicts, results.table("survival_windows")
+    outcomes, resurrections = results.outcomes, results.table("resurrections")
     specs = []
     for name in results.objects:
-        own = verdicts[verdicts["object"] == name]
+        own = outcomes[outcomes["object"] == name]
         configurations = list(dict.fromkeys(own["configuration"]))
-        sweeps = windows[windows["configuration"].isin(configurations)]
+        ida_curves = resurrections[resurrections["configuration"].isin(configurations)]
         fallen = of_all(
-            int(sweeps["first_upper"].notna().sum()), len(sweeps), "analysis", "analyses"
+            int(ida_curves["first_upper"].notna().sum()), len(ida_curves), "analysis", "analyses"
         )
         caption = f"{name}: amplitudes that overturn it, by motion."
-        motions = sweeps["motion"].nunique()
+        motions = ida_curves["motion"].nunique()
         if motions > MOST_ROWS:
             caption += f" Shown are the first {MOST_ROWS} of {motions} motions; the table has all."
         alt = f"Map of the amplitudes that overturn {name}; it overturns in {fallen}."
-        draw = partial(verdict_map, own, configurations)
-        specs.append(FigureSpec(f"verdicts_{file_name(name)}", alt, caption, draw))
+        draw = partial(outcome_map, own, configurations)
+        specs.append(FigureSpec(f"outcomes_{file_name(name)}", alt, caption, draw))
     return specs
 
 
-AMPLITUDES = Part(("tests", "survival_windows"), _section)
+AMPLITUDES = Part(("tests", "resurrections"), _section)

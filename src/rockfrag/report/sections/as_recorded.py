@@ -12,7 +12,7 @@ def _section(results: Results) -> Section:
     recorded = results.table("as_recorded")
     names = list(dict.fromkeys(recorded["configuration"]))
     columns = [
-        *(Column("event", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion")),
+        *(Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion")),
         Column("pga_g", "Peak [g]", 3),
         *(Column(name, name) for name in names),
     ]
@@ -61,9 +61,9 @@ def _wide(recorded: pd.DataFrame) -> pd.DataFrame:
             if row.get("peak_slip_m", 0.0) > 0
             else "stays"
         )
-        if 0 < row["share_near"] < 1:
+        if 0 < row["fraction_near"] < 1:
             words += " (sensitive)"
-        about = {key: row[key] for key in ("event", "floor", "motion", "pga_g")}
+        about = {key: row[key] for key in ("earthquake", "floor", "motion", "pga_g")}
         rows.setdefault(row["motion"], about)[row["configuration"]] = words
     return pd.DataFrame(list(rows.values()))
 

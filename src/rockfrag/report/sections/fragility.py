@@ -45,14 +45,14 @@ def _section(results: Results) -> Section:
         message,
         [
             *(opened(found) if found else []),
-            "Lognormal curves have the form Φ(ln(IM/θ)/β). The reading “mean probability” counts every "
-            "amplitude, survival windows included; “first overturning” and “always overturning” take one "
+            "Lognormal curves have the form Φ(ln(IM/θ)/β). The definition “mean probability” counts every "
+            "amplitude, structural resurrections included; “first overturning” and “always overturning” take one "
             f"amplitude per motion. The {level} intervals resample earthquakes or motions, not amplitudes; "
             "“open” is a limit that the data do not set. A small p of the fit rejects the lognormal curve. "
             "The last column of each table gives the factor on the median without the most influential "
             "earthquake or motion.",
             *_rejected_words(known_curves),
-            *([f"Some readings give no curve for {listed(without)}."] if without else []),
+            *([f"Some definitions give no curve for {listed(without)}."] if without else []),
             *_notes(curves),
         ],
         [*_figures(results, curves), *_tables(known_curves, level)],
@@ -68,7 +68,7 @@ def _notes(curves: pd.DataFrame) -> list[str]:
 
 
 def _ordered(results: Results) -> pd.DataFrame:
-    order = {one.name: i for i, one in enumerate(results.study.configurations)}
+    order = {configuration.name: i for i, configuration in enumerate(results.study.configurations)}
     return results.table("fragility").sort_values(
         "configuration", key=lambda names: names.map(order), kind="stable"
     )
@@ -82,7 +82,11 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
     same, nonparametric, _ = compared_curves(same)
     specs = []
     for name in results.objects:
-        own = [one.name for one in results.study.configurations if one.names[-1] == name]
+        own = [
+            configuration.name
+            for configuration in results.study.configurations
+            if configuration.names[-1] == name
+        ]
         chosen = same[same["configuration"].isin(own)]
         caption = (
             f"{name}: probability of overturning over {measure}, with {level} limits (band). Points are "
@@ -121,7 +125,9 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
 def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
     """One narrow table per intensity measure and reading."""
     tables = []
-    for (measure, unit, reading), rows in curves.groupby(["im", "unit", "estimator"], sort=False):
+    for (measure, unit, definition), rows in curves.groupby(
+        ["im", "unit", "estimator"], sort=False
+    ):
         shown = rows.assign(
             **_nonparametric_texts(rows),
             theta_text=estimates(rows, ("theta", "theta_lower", "theta_upper")),
@@ -137,9 +143,7 @@ def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
             Column("lean_text", "Most influential"),
             *_nonparametric_columns(rows),
         )
-        caption = (
-            f"{sentence(str(measure))}, {str(reading).replace('_', ' ')}, with {level} intervals."
-        )
+        caption = f"{sentence(str(measure))}, {str(definition).replace('_', ' ')}, with {level} intervals."
         tables.append(table_html(shown, columns, caption))
     return tables
 
@@ -154,7 +158,7 @@ def _rejected_words(curves: pd.DataFrame) -> list[str]:
         f"{who} {agree(rejected, len(curves), 'is', 'are')} rejected (p below {REJECTED:g}). Where one is, all "
         "curves of that measure and reading are compared by the nonparametric monotone curve: the columns "
         "“nonparametric” give its median and half the distance from its 16 to its 84 % point; its points with "
-        "their intervals are in the table fragility_shares."
+        "their intervals are in the table fragility_fractions."
     ]
 
 
@@ -168,15 +172,15 @@ def _nonparametric_texts(rows: pd.DataFrame) -> dict[str, list[str]]:
     """Median and dispersion of the nonparametric curves, of all rows where one lognormal curve is rejected."""
     if not (rows["p_fit"] < REJECTED).any():
         return {}
-    return {f"{name}_share_text": estimates(rows, columns) for name, columns in _TEXTS.items()}
+    return {f"{name}_fraction_text": estimates(rows, columns) for name, columns in _TEXTS.items()}
 
 
 def _nonparametric_columns(rows: pd.DataFrame) -> tuple[Column, ...]:
     if not (rows["p_fit"] < REJECTED).any():
         return ()
     return (
-        Column("theta_share_text", "Nonparametric median", numeric=True),
-        Column("beta_share_text", "Nonparametric β", numeric=True),
+        Column("theta_fraction_text", "Nonparametric median", numeric=True),
+        Column("beta_fraction_text", "Nonparametric β", numeric=True),
     )
 
 

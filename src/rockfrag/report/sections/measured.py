@@ -23,7 +23,7 @@ from rockfrag.study.study import Study
 _TESTS = (
     Column("object", "Object"),
     Column("pedestal", "Side"),
-    Column("event", "Event"),
+    Column("earthquake", "Earthquake"),
     Column("floor", "Floor"),
     Column("text", "Measured [g]", numeric=True),
     Column("simulated_g", "Simulated [g]", 3),

@@ -7,20 +7,20 @@ import pandas as pd
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.wording import listed
-from rockfrag.stages.measure_choice import best_of
+from rockfrag.stages.measure_selection import best_of
 
 _COLUMNS = (
     Column("configuration", "Configuration"),
     Column("im", "Recommended"),
     Column("beta_amplitude", "β", 3),
     Column("auc", "AUC", 3),
-    Column("chosen_share", "Fraction of bootstrap samples in which it is best", 2),
+    Column("chosen_fraction", "Fraction of bootstrap samples in which it is best", 2),
     Column("words", "Reasons"),
 )
 
 
 def _section(results: Results) -> Section:
-    choice = results.table("measure_choice")
+    choice = results.table("measure_selection")
     asked = results.study.fragility.measures
     best = choice[choice["recommended"].astype(bool)]
     named = set(best["configuration"])
@@ -57,4 +57,4 @@ def _message(choice: pd.DataFrame, asked: Sequence[str]) -> str:
     return words
 
 
-MEASURES = Part(("measure_choice",), _section)
+MEASURES = Part(("measure_selection",), _section)

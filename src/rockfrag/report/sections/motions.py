@@ -9,13 +9,13 @@ from rockfrag.units import GRAVITY
 
 
 def _columns() -> list[Column]:
-    shown = [one for one in intensity_measures() if one.decimals is not None]
-    titles = (f"{one.title or one.label} [{one.unit or '-'}]" for one in shown)
+    shown = [measure for measure in intensity_measures() if measure.decimals is not None]
+    titles = (f"{item.title or item.label} [{item.unit or '-'}]" for item in shown)
     return [
         Column("name", "Motion"),
         *(
-            Column(one.column, title, one.decimals)
-            for one, title in zip(shown, titles, strict=True)
+            Column(item.column, title, item.decimals)
+            for item, title in zip(shown, titles, strict=True)
         ),
     ]
 

@@ -12,7 +12,7 @@ from rockfrag.report.page import MOST_TABLE_ROWS, Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
 from rockfrag.report.sides import WITH_PEDESTAL, Sides, sides_of
 from rockfrag.report.wording import estimate, has_interval, listed, number, probability, sentence
-from rockfrag.shaketable.readings import READING
+from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.study.study import Study
 
 MOST_ROWS = 45
@@ -31,7 +31,7 @@ EFFECT_COLUMNS = (
 """What is shown of :func:`rockfrag.pedestal.effects_table` after :func:`shown_effects`."""
 
 _METHODS = (
-    Column("reading", "Reading"),
+    Column("definition", "Definition"),
     Column("method", "Method"),
     Column("p_text", "p", numeric=True),
     Column("smallest_text", "Smallest possible p", numeric=True),
@@ -49,7 +49,7 @@ def shown_effects(effects: pd.DataFrame) -> pd.DataFrame:
     rows = effects.to_dict("records")
     return effects.assign(
         scope=effects["scope"].replace(
-            {"whole": "all pairs", "cell": "floor and object", "event": "earthquake"}
+            {"whole": "all pairs", "cell": "floor and object", "earthquake": "earthquake"}
         ),
         level=effects["level"].str.replace("/", ", "),
         ratio_text=[ratio_text(row) for row in rows],
@@ -70,13 +70,13 @@ def _detectable(row: Mapping[Hashable, Any]) -> str:
 def _section(results: Results) -> Section:
     study = results.study
     effects, whole = results.table("pedestal/effects"), results.table("pedestal/whole")
-    here = effects[effects["reading"] == READING]
+    here = effects[effects["definition"] == DEFINITION]
     about = sides_of(study)
     found = pedestal_effect(effects, about)
     parts: list[Any] = []
     if len(here):
         methods = whole.assign(
-            reading=whole["reading"].str.replace("_", " "),
+            definition=whole["definition"].str.replace("_", " "),
             ratio_text=[
                 estimate(row["estimate"], row["lower"], row["upper"], 3)
                 for row in whole.to_dict("records")
@@ -94,14 +94,14 @@ def _section(results: Results) -> Section:
             ),
         ]
     notes = results.table("pedestal/notes")
-    notes = notes[notes["reading"] == READING] if len(notes) else notes
+    notes = notes[notes["definition"] == DEFINITION] if len(notes) else notes
     return Section(
         "pedestal",
         "Arrangements compared" if study.counterparts else "Effect of the pedestal",
         f"{found[0].headline}.",
         [
             *opened(found[0]),
-            *(one.said for one in found[1:]),
+            *(item.said for item in found[1:]),
             f"The ratio is the overturning a{about.divided[1:]}, paired by "
             "object and motion. Motions of one earthquake are not independent, so intervals are over "
             "earthquakes where there are several. “Detectable” is the smallest ratio found with 80 % power. "
@@ -122,10 +122,12 @@ def _ratio_column(about: Sides) -> Column:
 def _table(effects: pd.DataFrame, about: Sides) -> Markup:
     caption = "Effect by scope, step protocol."
     if len(effects) > MOST_TABLE_ROWS:
-        of_events = effects["scope"] == "event"
-        caption += f" Each of the {of_events.sum()} earthquakes is in pedestal/effects.csv."
-        effects = effects[~of_events]
-    columns = [_ratio_column(about) if one.name == "ratio_text" else one for one in EFFECT_COLUMNS]
+        of_earthquakes = effects["scope"] == "earthquake"
+        caption += f" Each of the {of_earthquakes.sum()} earthquakes is in pedestal/effects.csv."
+        effects = effects[~of_earthquakes]
+    columns = [
+        _ratio_column(about) if column.name == "ratio_text" else column for column in EFFECT_COLUMNS
+    ]
     return table_html(shown_effects(effects), columns, caption, "pedestal/effects.csv")
 
 
@@ -137,10 +139,10 @@ def _plain(note: str) -> str:
 
 def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
     shown, left_out = effects, []
-    for scope in ("cell", "event"):
+    for scope in ("cell", "earthquake"):
         if len(shown) > MOST_ROWS:
             shown = shown[shown["scope"] != scope]
-            left_out.append({"cell": "floors by object", "event": "earthquakes"}[scope])
+            left_out.append({"cell": "floors by object", "earthquake": "earthquakes"}[scope])
     caption = (
         f"Overturning a{about.divided[1:]}, with 95 % intervals; grey is ±10 %, the range "
         " that counts as no effect. Step protocol."

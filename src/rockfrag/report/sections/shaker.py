@@ -22,7 +22,7 @@ def _asked(study: Study) -> bool:
 
 def _section(results: Results) -> Section:
     limits, tests = results.table("shaker"), results.table("tests")
-    limited = tests[tests["reading"] == LIMITED]
+    limited = tests[tests["definition"] == LIMITED]
     ended = limited[limited["censored"] == "right"]
     free = results.tests[results.tests["censored"] == "right"]
     new = ended[~ended["test"].isin(free["test"])]
@@ -45,8 +45,8 @@ def _section(results: Results) -> Section:
         words,
         [
             *([f"These are {listed(names)}."] if names else []),
-            "The reading “step protocol shaker” of the pedestal’s effect includes these limits. The other "
-            "readings do not, because the position at which the table starts is an assumption.",
+            "The definition “step protocol shaker” of the pedestal’s effect includes these limits. The other "
+            "definitions do not, because the position at which the table starts is an assumption.",
         ],
         [
             figure,

@@ -26,8 +26,8 @@ const spec = () => chosen.sizes ?? original();
 // the same operations in the same order as a study scales its motions
 const scaleOf = (peak) => (peak === motion().pga_g ? 1 : (peak * data.gravity) / motion().pga);
 
-function march(peak, history) {
-  return kernel.march({ body, samples: motion().samples, scale: scaleOf(peak), dt: motion().dt, ...shaking, history });
+function integrate(peak, history) {
+  return kernel.integrate({ body, samples: motion().samples, scale: scaleOf(peak), dt: motion().dt, ...shaking, history });
 }
 
 function build() {
@@ -42,13 +42,13 @@ function build() {
 function update() {
   try {
     build();
-    response = march(chosen.amplitude, true);
+    response = integrate(chosen.amplitude, true);
   } catch (error) {
     response = null;
     find("verdicts").textContent = error.message;
     return;
   }
-  peaks = response.events.filter((one) => one.kind === "impact").map((one) => one.time);
+  peaks = response.contact_events.filter((one) => one.kind === "impact").map((one) => one.time);
   time = Math.min(time, duration());
   tell();
   drawHistory();
@@ -361,7 +361,7 @@ function computeBar() {
     if (number !== computing) return;
     const until = performance.now() + 8;
     while (next.verdicts.length < CHEAP && performance.now() < until)
-      next.verdicts += march(next.amplitudes[next.verdicts.length], false).fallen > 0 ? "1" : "0";
+      next.verdicts += integrate(next.amplitudes[next.verdicts.length], false).fallen > 0 ? "1" : "0";
     bar = next;
     drawBar();
     if (next.verdicts.length < CHEAP) setTimeout(go, 0);

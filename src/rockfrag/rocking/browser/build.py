@@ -19,12 +19,12 @@ import numpy as np
 
 from rockfrag.engines.kernels._numba import whole_ir
 from rockfrag.engines.kernels.jit import KNOWN, TESTED_NUMBA
-from rockfrag.engines.kernels.record import EVENT, SAMPLE
+from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
 from rockfrag.engines.steps import FREE_TIME, STEP
-from rockfrag.rocking.browser.entry import CALL, describe, march_call
+from rockfrag.rocking.browser.entry import CALL, describe, integrate_call
 from rockfrag.units import GRAVITY
 
-MODULE = Path(__file__).with_name("march.wasm")
+MODULE = Path(__file__).with_name("integrate.wasm")
 
 TRIPLE = "wasm32-unknown-unknown"
 FEATURES = "+bulk-memory,+sign-ext,+nontrapping-fptoint"
@@ -39,9 +39,9 @@ def build() -> bytes:
     call = np.zeros(1, CALL)[0]
     entries = {
         "describe": (describe, (call,)),
-        "march": (
-            march_call,
-            (call, np.zeros(1), np.zeros(1), np.zeros(1, SAMPLE), np.zeros(1, EVENT)),
+        "integrate": (
+            integrate_call,
+            (call, np.zeros(1), np.zeros(1), np.zeros(1, SAMPLE), np.zeros(1, CONTACT_EVENT)),
         ),
     }
     objects = [_object(name, *entry) for name, entry in entries.items()]
@@ -63,9 +63,9 @@ def _object(name: str, function: Any, arguments: tuple[Any, ...]) -> bytes:
         cpu="", features=FEATURES, opt=3, reloc="static", codemodel="default"
     )
     module.triple, module.data_layout = TRIPLE, str(machine.target_data)
-    for one in [*module.functions, *module.global_variables]:
-        if not one.is_declaration and one.name != name:
-            one.linkage = "internal"
+    for item in [*module.functions, *module.global_variables]:
+        if not item.is_declaration and item.name != name:
+            item.linkage = "internal"
     module.verify()
     options = llvm.create_pipeline_tuning_options(speed_level=3)
     options.loop_vectorization = options.slp_vectorization = False
@@ -94,7 +94,7 @@ def _linked(objects: list[bytes], exports: list[str]) -> bytes:
 
 
 def _layout() -> bytes:
-    records = {"call": CALL, "sample": SAMPLE, "event": EVENT}
+    records = {"call": CALL, "sample": SAMPLE, "event": CONTACT_EVENT}
     layout: dict[str, Any] = {name: _described(dtype) for name, dtype in records.items()}
     layout["constants"] = {"gravity": GRAVITY, "step": STEP, "free_time": FREE_TIME}
     return json.dumps(layout, separators=(",", ":")).encode()

@@ -11,7 +11,7 @@ from rockfrag.engines.kernels.chatter import RESTORING
 from rockfrag.engines.kernels.equations import BODY, STATE
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.kernels.record import BALANCE, SUMMARY
-from rockfrag.engines.kernels.single import Scratch, Shaking, march
+from rockfrag.engines.kernels.single import Scratch, Shaking, integrate
 from rockfrag.engines.kernels.taylor import SERIES
 from rockfrag.laws import position, ratio
 from rockfrag.system import geometry
@@ -35,7 +35,7 @@ CALL = np.dtype(
         # what it leaves: whether the body stands (``geometry``), and the frequency parameters that steps and the
         # length of free rocking follow from [1/s]
         ("fault", _I), ("fastest", _F), ("slowest", _F),
-        # what march reads, the body among it, and leaves
+        # what integrate reads, the body among it, and leaves
         ("body", BODY), ("initial", STATE),
         ("scale", _F), ("dt", _F), ("substeps", _I), ("free_samples", _I),
         ("summary", SUMMARY), ("done", _I),
@@ -52,7 +52,7 @@ GAINS_ENERGY = 6
 """Fault of a measured restitution, beside those of ``geometry``."""
 
 # as a part of what is compiled here, and not as the entry that Python calls
-_march = kernel(march.py_func)
+_integrate = kernel(integrate.py_func)
 
 
 @kernel
@@ -79,17 +79,17 @@ def describe(call):
     if not geometry.can_stand(pedestal):
         call.fault = geometry.FALLS_ALONE
     if call.fault == geometry.STANDS:
-        call.fault = geometry.fault_of(pile)
+        call.fault = geometry.failed_stability_check(pile)
     geometry.fill_pile(body, pile)
     _measure(call, pedestal, call.ground, body.after1r, body.after1l)
-    _measure(call, pile.statue, call.interface, body.after2r, body.after2l)
+    _measure(call, pile.upper, call.interface, body.after2r, body.after2l)
     whole = geometry.joined(pile)
     call.fastest = 0.0
     call.slowest = np.inf
-    for pole in (1, -1):
-        p1 = geometry.frequency(pedestal, pole, g)
-        p2 = geometry.frequency(pile.statue, pole, g)
-        p12 = geometry.frequency(whole, pole, g)
+    for pivot in (1, -1):
+        p1 = geometry.frequency(pedestal, pivot, g)
+        p2 = geometry.frequency(pile.upper, pivot, g)
+        p12 = geometry.frequency(whole, pivot, g)
         call.fastest = max(call.fastest, max(p1, p2))
         call.slowest = min(call.slowest, min(p2, p12))
 
@@ -120,8 +120,8 @@ def _check_restitution(call, block, restitution):
 
 
 @kernel
-def march_call(call, samples, vertical, history, events):
-    """March the body of a call; see ``single.march``."""
+def integrate_call(call, samples, vertical, history, events):
+    """Integrate the body of a call; see ``single.integrate``."""
     shaking = Shaking(samples, vertical, call.scale, call.dt, call.substeps, call.free_samples)
     scratch = Scratch(
         call.state,
@@ -132,4 +132,4 @@ def march_call(call, samples, vertical, history, events):
         call.balances,
         call.beyond,
     )
-    call.done = _march(call.body, shaking, call.initial, history, events, call.summary, scratch)
+    call.done = _integrate(call.body, shaking, call.initial, history, events, call.summary, scratch)

@@ -9,7 +9,7 @@ from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, figure_style, new_
 from rockfrag.report.figures.amplitudes import BAND, GREY
 from rockfrag.report.figures.effects import NONE, ratio_axis
 from rockfrag.report.wording import counted
-from rockfrag_thesis.statements.floors import FIFTH, GROUND, THIRD
+from rockfrag_thesis.hypotheses.floors import FIFTH, GROUND, THIRD
 
 REPORTED_SIDE = {GROUND: 1, THIRD: -1, FIFTH: -1}
 """Whether the thesis reports a ratio above (1) or below one (-1) on a floor (sections 4.3 and 4.4)."""
@@ -26,7 +26,7 @@ def ratios_figure(effects: pd.DataFrame) -> Figure:
     Parameters
     ----------
     effects
-        Rows of one reading of :func:`rockfrag.pedestal.effects_table`.
+        Rows of one definition of :func:`rockfrag.pedestal.effects_table`.
     """
     whole, floors = effects[effects["scope"] == "whole"], effects[effects["scope"] == "floor"]
     rows = [("all pairs", row) for row in whole.to_dict("records")]

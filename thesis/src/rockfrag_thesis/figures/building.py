@@ -48,7 +48,9 @@ def floor_amplitudes(means: pd.DataFrame, axis: str) -> Figure:
             )
             doubtful = own[~own["credible"].astype(bool)]
             axes.plot(doubtful["label"].map(place), doubtful["mean_g"], "x", color=GREY, ms=6)
-        names = values if len(set(values)) == len(labels) else [shortened(one) for one in labels]
+        names = (
+            values if len(set(values)) == len(labels) else [shortened(label) for label in labels]
+        )
         axes.set_xticks(range(len(labels)), names, rotation=90 if len(labels) > 8 else 0)
         axes.set_ylim(bottom=0)
         axes.set_xlabel(AXIS_NAMES.get(axis, axis))

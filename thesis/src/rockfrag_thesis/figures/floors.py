@@ -1,4 +1,4 @@
-"""What the building's assumptions do to the thesis's statements on floors: order and margins."""
+"""What the building's assumptions do to the thesis's hypotheses on floors: order and margins."""
 
 from textwrap import fill
 
@@ -19,7 +19,7 @@ from rockfrag.figure_style import (
     new_figure,
 )
 from rockfrag_thesis.figures.building import AXIS_NAMES
-from rockfrag_thesis.floor_order import STATEMENTS, TIE
+from rockfrag_thesis.floor_order import HYPOTHESES, TIE
 
 FLOOR_STYLES = {
     "GF": ("ground floor", BLUE, "o"),
@@ -28,10 +28,10 @@ FLOOR_STYLES = {
 }
 
 MEANINGFUL = 0.02
-"""Margins below this mean nothing: the amplitudes of a sweep are 1 or 2 % apart."""
+"""Margins below this mean nothing: the amplitudes of an IDA curve are 1 or 2 % apart."""
 
 
-def floor_order(means: pd.DataFrame, margins: pd.DataFrame, reading: str) -> Figure:
+def floor_order(means: pd.DataFrame, margins: pd.DataFrame, definition: str) -> Figure:
     """Draw the mean overturning amplitude of lone objects on each floor against the first period.
 
     Parameters
@@ -40,16 +40,16 @@ def floor_order(means: pd.DataFrame, margins: pd.DataFrame, reading: str) -> Fig
         Means of every variant of the building, as the stage ``building_sensitivity`` writes them.
     margins
         See :func:`rockfrag_thesis.floor_order.margins_table`.
-    reading
-        Reading of the sweeps.
+    definition
+        Reading of the IDA curves.
 
     Returns
     -------
     Figure; shaded are the periods at which the order is the thesis's, ground highest and 3rd lowest.
     """
     means = means[(means["axis"] == "first_period_s") & (means["by"] == "floor")]
-    margins = margins[(margins["axis"] == "first_period_s") & (margins["statement"] == "order")]
-    order = margins[margins["reading"] == reading].sort_values("value")
+    margins = margins[(margins["axis"] == "first_period_s") & (margins["hypothesis"] == "order")]
+    order = margins[margins["definition"] == definition].sort_values("value")
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 2.9)
         axes = figure.subplots()
@@ -83,8 +83,8 @@ def _shade(axes: Axes, periods: np.ndarray, margins: np.ndarray) -> None:
             axes.axvspan(left, right, color=colour, lw=0, zorder=0)
 
 
-def floor_statements(margins: pd.DataFrame, axis: str, reading: str) -> Figure:
-    """Draw by how much each statement about floors holds along one assumption.
+def floor_hypotheses(margins: pd.DataFrame, axis: str, definition: str) -> Figure:
+    """Draw by how much each hypothesis about floors holds along one assumption.
 
     Parameters
     ----------
@@ -92,16 +92,16 @@ def floor_statements(margins: pd.DataFrame, axis: str, reading: str) -> Figure:
         As :func:`rockfrag_thesis.building_sensitivity.building_sensitivity` returns them.
     axis
         Assumption along which to draw, such as ``first_period_s``.
-    reading
-        Reading of the sweeps.
+    definition
+        Reading of the IDA curves.
     """
-    chosen = margins[(margins["axis"] == axis) & (margins["reading"] == reading)]
-    chosen = chosen[chosen["statement"].isin(list(STATEMENTS))]
+    chosen = margins[(margins["axis"] == axis) & (margins["definition"] == definition)]
+    chosen = chosen[chosen["hypothesis"].isin(list(HYPOTHESES))]
     chosen = chosen.sort_values("value", kind="stable")
     labels = list(dict.fromkeys(chosen["label"]))
     values = [f"{value:g}" for value in dict.fromkeys(chosen["value"])]
-    table = chosen.pivot_table(index="statement", columns="label", values="margin")
-    table = table.reindex(index=list(STATEMENTS), columns=labels)
+    table = chosen.pivot_table(index="hypothesis", columns="label", values="margin")
+    table = table.reindex(index=list(HYPOTHESES), columns=labels)
     with figure_style():
         figure = new_figure(WIDEST, 4.6)
         axes = figure.subplots()
@@ -117,7 +117,7 @@ def floor_statements(margins: pd.DataFrame, axis: str, reading: str) -> Figure:
             range(len(labels)), values if len(set(values)) == len(labels) else labels, rotation=90
         )
         axes.set_xlabel(AXIS_NAMES[axis])
-        names = [fill(f"{number}  {text}", 48) for number, text in STATEMENTS.items()]
+        names = [fill(f"{number}  {text}", 48) for number, text in HYPOTHESES.items()]
         axes.set_yticks(range(len(names)), names, fontsize=7)
         axes.tick_params(length=0)
         axes.spines[:].set_visible(False)
@@ -128,6 +128,6 @@ def floor_statements(margins: pd.DataFrame, axis: str, reading: str) -> Figure:
 
 
 def _mark(axes: Axes, table: pd.DataFrame) -> None:
-    """Put a dot where a statement holds by enough to mean something."""
+    """Put a dot where a hypothesis holds by enough to mean something."""
     rows, columns = np.nonzero(table.to_numpy() > MEANINGFUL)
     axes.plot(columns, rows, "o", color="black", ms=2)

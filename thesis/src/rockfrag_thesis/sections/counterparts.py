@@ -20,7 +20,7 @@ def _section(results: Results) -> Section | None:
     words = mean_sentence(means)
     levels = "; ".join(
         f"{level}: {ratio(scope, level)}"
-        for scope in ("floor", "event")
+        for scope in ("floor", "earthquake")
         for level in dict.fromkeys(tests[scope])
     )
     return Section(

@@ -4,11 +4,11 @@ from rockfrag.report.answer import could_change, questions, rests_on, study_answ
 from rockfrag.report.findings import FRICTION
 from rockfrag.report.part import Answer, FigureSpec, Results
 from rockfrag.report.wording import agree, of_all
-from rockfrag.shaketable.readings import READING
+from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag_thesis.figures.answer import has_thesis_floors, ratios_figure
 from rockfrag_thesis.first_page import first_page
-from rockfrag_thesis.sections.explanation import asks_explanation
-from rockfrag_thesis.sections.inversion import asks_inversion
+from rockfrag_thesis.sections.inverse_problem import asks_inverse_problem
+from rockfrag_thesis.sections.sensitivity_analysis import asks_sensitivity_analysis
 from rockfrag_thesis.settings import settings_of
 
 
@@ -18,12 +18,20 @@ def thesis_answer(results: Results) -> Answer:
     if not study.has_pairs:
         return study_answer(results)
     effects = results.table("pedestal/effects")
-    explanation = results.table("explanation/effects") if asks_explanation(study) else None
-    inversion = results.table("explanation/inversion") if asks_inversion(study) else None
-    settings = settings_of(study).explanation
+    sensitivity_analysis = (
+        results.table("sensitivity_analysis/effects") if asks_sensitivity_analysis(study) else None
+    )
+    inverse_problem = (
+        results.table("sensitivity_analysis/inverse_problem")
+        if asks_inverse_problem(study)
+        else None
+    )
+    settings = settings_of(study).sensitivity_analysis
     wanted = {} if settings is None else settings.wanted_percent
-    found = first_page(effects, results.table("claims"), explanation, inversion, wanted)
-    here = effects[effects["reading"] == READING]
+    found = first_page(
+        effects, results.table("hypotheses"), sensitivity_analysis, inverse_problem, wanted
+    )
+    here = effects[effects["definition"] == DEFINITION]
     return Answer(
         asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
         sentences=found,

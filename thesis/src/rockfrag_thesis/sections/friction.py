@@ -29,12 +29,14 @@ _COLUMNS = (
 
 def asks_friction(study: Study) -> bool:
     """Whether a study asks what friction does, and has pairs that could show it."""
-    explanation = settings_of(study).explanation
-    return explanation is not None and bool(explanation.friction) and study.has_pairs
+    sensitivity_analysis = settings_of(study).sensitivity_analysis
+    return (
+        sensitivity_analysis is not None and bool(sensitivity_analysis.friction) and study.has_pairs
+    )
 
 
 def _section(results: Results) -> Section | None:
-    effects = results.table("explanation/friction")
+    effects = results.table("sensitivity_analysis/friction")
     ground, above = _by_pair(effects, "ground"), _by_pair(effects, "above")
     if not ground:
         return None
@@ -52,8 +54,8 @@ def _section(results: Results) -> Section | None:
             for pair in ground
         ]
     )
-    explanation = settings_of(results.study).explanation
-    wanted = {} if explanation is None else dict(explanation.wanted_percent)
+    sensitivity_analysis = settings_of(results.study).sensitivity_analysis
+    wanted = {} if sensitivity_analysis is None else dict(sensitivity_analysis.wanted_percent)
     words = [*_ordinary(ground, above), *_wished(ground, above, wanted)]
     return Section(
         "friction",
@@ -138,7 +140,7 @@ def _wished(ground: Means, above: Means, wanted: dict[str, float]) -> list[str]:
     )
     if not signs:
         return [f"No pair of friction coefficients gives the signs asked for ({goal})."]
-    words = [f"{_coefficient(one)} and {_coefficient(two)}" for one, two in signs]
+    words = [f"{_coefficient(sign)} and {_coefficient(two)}" for sign, two in signs]
     usual = sum(map(_is_ordinary, signs))
     return [
         f"{len(signs)} of {len(ground)} pairs of friction coefficients (ground, interface) give the signs asked "
@@ -147,4 +149,4 @@ def _wished(ground: Means, above: Means, wanted: dict[str, float]) -> list[str]:
     ]
 
 
-FRICTION = Part(("explanation/friction",), _section, asked=asks_friction)
+FRICTION = Part(("sensitivity_analysis/friction",), _section, asked=asks_friction)

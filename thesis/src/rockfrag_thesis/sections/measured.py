@@ -1,22 +1,22 @@
-"""The thesis's statements tested on a laboratory's own tests."""
+"""The thesis's hypotheses tested on a laboratory's own tests."""
 
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.sections.measured import has_measured_tests
-from rockfrag_thesis.ledger_html import ledger_html
-from rockfrag_thesis.sections.statements import verdicts_in_words, words_on_verdicts
+from rockfrag_thesis.hypotheses_html import hypotheses_html
+from rockfrag_thesis.sections.hypotheses import outcomes_in_words, words_on_outcomes
 
 
 def _section(results: Results) -> Section | None:
-    claims = results.table("measured/claims")
-    if claims.empty:
+    hypotheses = results.table("measured/hypotheses")
+    if hypotheses.empty:
         return None
     return Section(
-        "measured_claims",
-        "The thesis’s statements on measured tests",
-        verdicts_in_words(claims),
-        [words_on_verdicts(claims)],
-        [ledger_html(claims)],
+        "measured_hypotheses",
+        "The thesis’s hypotheses on measured tests",
+        outcomes_in_words(hypotheses),
+        [words_on_outcomes(hypotheses)],
+        [hypotheses_html(hypotheses)],
     )
 
 
-MEASURED_STATEMENTS = Part(("measured/claims",), _section, asked=has_measured_tests)
+MEASURED_HYPOTHESES = Part(("measured/hypotheses",), _section, asked=has_measured_tests)

@@ -3,13 +3,13 @@
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.wording import agree, listed, of_all, sentence
-from rockfrag_thesis.pattern import departures_by_floor
-from rockfrag_thesis.sections.explanation import asks_explanation
-from rockfrag_thesis.statements.floors import FLOORS
+from rockfrag_thesis.hypotheses.floors import FLOORS
+from rockfrag_thesis.pattern import perturbations_by_floor
+from rockfrag_thesis.sections.sensitivity_analysis import asks_sensitivity_analysis
 
 
 def _section(results: Results) -> Section:
-    table = departures_by_floor(results.table("explanation/effects"))
+    table = perturbations_by_floor(results.table("sensitivity_analysis/effects"))
     named = list(table.loc[table["signs"], "name"])
     clear = list(table.loc[table["beyond_chance"], "name"])
     verb = agree(len(named), len(table), "gives", "give")
@@ -41,9 +41,9 @@ def _section(results: Results) -> Section:
         "signs",
         "What would give the thesis’s signs",
         message,
-        [one for one in words if one],
+        [word for word in words if word],
         [table_html(shown, columns, "Mean ratio of amplitudes with/without pedestal by floor.")],
     )
 
 
-SIGNS = Part(("explanation/effects",), _section, asked=asks_explanation)
+SIGNS = Part(("sensitivity_analysis/effects",), _section, asked=asks_sensitivity_analysis)

@@ -9,8 +9,8 @@ from rockfrag_thesis.settings import settings_of
 
 def run(job: Job[Study]) -> Results:
     """Yield the tests on the floors of every building, and their means."""
+    from rockfrag.shaketable.definitions import DEFINITION
     from rockfrag.shaketable.mean_amplitudes import mean_amplitudes_of
-    from rockfrag.shaketable.readings import READING
     from rockfrag_thesis.building_sensitivity import building_sensitivity, building_variants
 
     study = job.study
@@ -30,6 +30,6 @@ def run(job: Job[Study]) -> Results:
     )
     yield "building_sensitivity/tests", tests
     by = ["axis", "value", "label", "credible"]
-    laboratory = tests[tests["reading"] == READING]
+    laboratory = tests[tests["definition"] == DEFINITION]
     yield "building_sensitivity/means", mean_amplitudes_of(laboratory, by)
     job.log.info("buildings: %d", len(variants))

@@ -1,13 +1,13 @@
 """Ensembles of lone blocks, many cases side by side.
 
 Each lane carries one case; one pass of the vector loop advances every lane by one sample with the same
-straight-line arithmetic, and what is rare (impacts, rest, verdicts, the next case) is handled lane by lane
+straight-line arithmetic, and what is rare (impacts, rest, outcomes, the next case) is handled lane by lane
 between passes.  All cases need the same arithmetic, so a case lives in its lane and never waits for one,
 unlike those of stacks (``scheduler``).
 
 With ψ = θc - |θ|, A the ground acceleration over g, positive where it pushes the block back down, and W gravity
-over g, 1 unless the ground moves vertically, the equation of motion on either pole is ψ'' = p² (W sin ψ + A cos ψ)
-(Housner, 1963).  Time is counted in samples.
+over g, 1 unless the ground moves vertically, the equation of motion on either pivot is ψ'' = p² (W sin ψ + A cos
+ψ) (Housner, 1963).  Time is counted in samples.
 """
 
 import math
@@ -32,7 +32,7 @@ from rockfrag.engines.kernels.lanes.case import (
     weights_ahead,
 )
 from rockfrag.engines.kernels.roots import NEVER, crossing, graze, hops
-from rockfrag.engines.kernels.single import MAX_EVENTS_PER_STEP
+from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP
 from rockfrag.engines.kernels.taylor import (
     ORDER,
     keep_rates,
@@ -50,15 +50,15 @@ TOUCHES, FALLS = 1.0, 2.0
 
 _F, _I = np.float64, np.int64
 
-POLE = np.dtype(
+PIVOT = np.dtype(
     [
         ("alpha", _F), ("tan", _F), ("sine", _F), ("cosine", _F),  # critical angle
         ("swing", _F),  # p² dt²
-        ("restitution", _F),  # ratio of angular velocities of the impact that ends rocking on this pole
+        ("restitution", _F),  # ratio of angular velocities of the impact that ends rocking on this pivot
         ("per_alpha", _F), ("per_swing", _F),  # 1/θc and 1/(p² dt² θc²)
     ]
 )  # fmt: skip
-"""What the lanes know of a block on one pole."""
+"""What the lanes know of a block on one pivot."""
 
 LANE = np.dtype(
     [
@@ -66,20 +66,20 @@ LANE = np.dtype(
         ("body", _I, LANES), ("motion", _I, LANES),
         ("k", _I, LANES), ("first", _I, LANES), ("last", _I, LANES),  # samples: reached; of its motion
         ("following", _I, LANES),  # the sample after the one it has reached, if its motion has one
-        ("side", _I, LANES),  # 1 on the right pole, -1 on the left, 0 at rest
+        ("side", _I, LANES),  # 1 on the right pivot, -1 on the left, 0 at rest
         ("fell", _I, LANES),
         ("crowded", _I, LANES), ("crowd", _I, LANES),  # sample of the last impact, and how many that has had
         ("psi", _F, LANES), ("omega", _F, LANES),  # the state, ψ and ψ'
         ("ground", _F, LANES), ("ground_end", _F, LANES),  # A now and at the end of the sample
         ("weight", _F, LANES), ("weight_end", _F, LANES),  # W now and at the end of the sample
         ("part_left", _F, LANES),  # part of the sample that is left
-        ("tau", _F, LANES),  # time since sample k, between events
+        ("tau", _F, LANES),  # time since sample k, between contact events
         # extremes of the case so far: ψ/θc, ψ', distance from balance squared
         ("low", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
         # these where the step began
         ("was_psi", _F, LANES), ("was_omega", _F, LANES), ("was_left", _F, LANES),
         ("was_low", _F, LANES), ("was_fast", _F, LANES), ("was_near", _F, LANES),
-        ("angle", _F, LANES), ("kappa", _F, LANES),  # θc and κ = p² dt² of the pole
+        ("angle", _F, LANES), ("kappa", _F, LANES),  # θc and κ = p² dt² of the pivot
         ("per_angle", _F, LANES), ("per_speed", _F, LANES),  # 1/θc and 1/(κ θc²)
         ("bound", _F, LANES),  # the most that A can be from here on
         ("heavy", _F, LANES),  # the most that W can be
@@ -115,7 +115,7 @@ def worker() -> Worker:
 
 @kernel
 def advance(lane, upward):
-    """Advance every lane to the end of its sample, and flag those with an event in between.
+    """Advance every lane to the end of its sample, and flag those with a contact event in between.
 
     ``upward``: whether the ground moves vertically; where it does not, the weight is one and costs nothing.
     """
@@ -184,8 +184,8 @@ def _advance(lane, upward):
 
 
 @entry_kernel
-def march_blocks(ensemble, motions, worker, outcomes):
-    """March the cases of an ensemble of lone blocks until none is left.
+def integrate_blocks(ensemble, motions, worker, outcomes):
+    """Integrate the cases of an ensemble of lone blocks until none is left.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ def march_blocks(ensemble, motions, worker, outcomes):
             if lane.flag[i] == FALLS:
                 _fall(lane, i, tallies[i])
             elif lane.flag[i] != QUIET:
-                _take_event(lane, i, tallies[i], ensemble, motions)
+                _take_contact_event(lane, i, tallies[i], ensemble, motions)
             else:
                 lane.tau[i] = 0.0
             if lane.fell[i] != 0 or lane.side[i] == 0 or lane.k[i] >= lane.last[i]:
@@ -232,12 +232,12 @@ def march_blocks(ensemble, motions, worker, outcomes):
     return (passes * LANES,)
 
 
-# --------------------------------------------------------------------------- events
+# --------------------------------------------------------------------------- contact events
 
 
 @inlined_kernel
-def _pole(lane, i, side, ensemble):
-    """Constants of a lane's block on the pole of ``side``."""
+def _pivot(lane, i, side, ensemble):
+    """Constants of a lane's block on the pivot of ``side``."""
     return ensemble.bodies[lane.body[i], lane.motion[i], 0 if side > 0 else 1]
 
 
@@ -252,22 +252,22 @@ def _fall(lane, i, tally):
     else:
         near += psi * psi
     near = math.sqrt(max(0.0, near)) / lane.angle[i]
-    tally.closest = min(tally.closest, near)
+    tally.unstable_distance = min(tally.unstable_distance, near)
     lane.fell[i] = 1
 
 
 @inlined_kernel
 def _restore_extremes(lane, i):
-    """Forget what the step of a lane would have reached without its event."""
+    """Forget what the step of a lane would have reached without its contact event."""
     lane.low[i], lane.fast[i], lane.near[i] = lane.was_low[i], lane.was_fast[i], lane.was_near[i]
 
 
 @inlined_kernel
-def _take_event(lane, i, tally, ensemble, motions):
+def _take_contact_event(lane, i, tally, ensemble, motions):
     """Take a lane through the impact in its step, or to the step's end if there is none."""
     k, side = lane.k[i], lane.side[i]
     _restore_extremes(lane, i)
-    t, psi, w, stays = _event(lane, i, tally)
+    t, psi, w, stays = _contact_event(lane, i, tally)
     tau = 1.0
     if stays:
         side = 0
@@ -281,14 +281,14 @@ def _take_event(lane, i, tally, ensemble, motions):
             lane.crowded[i] = k
             lane.crowd[i] = 0
         lane.crowd[i] += 1
-        there = _pole(lane, i, side, ensemble)
+        there = _pivot(lane, i, side, ensemble)
         w = block_impact(there, w)
         side = -side
-        here = _pole(lane, i, side, ensemble)
+        here = _pivot(lane, i, side, ensemble)
         psi = here.alpha
         factor = lane.factor[i]
         ahead = Ahead(motions.samples, motions.vertical, factor, lane.last[i], k, tau, 1.0)
-        still = w > -1e-12 or lane.crowd[i] > MAX_EVENTS_PER_STEP
+        still = w > -1e-12 or lane.crowd[i] > MAX_CONTACT_EVENTS_PER_STEP
         if still or block_dies_out(-w, side, here, there, ahead):
             side = 0
     if tau >= 1.0 - 1e-13:
@@ -320,7 +320,7 @@ def _find_impacts(lane, stops):
 
 
 @inlined_kernel
-def _event(lane, i, tally):
+def _contact_event(lane, i, tally):
     """Time of the next impact in the lane's step, or NEVER; ψ and ψ' then or at the end; whether it never left.
 
     What the response reaches on the way goes into the tally.
@@ -384,8 +384,10 @@ def _note(tally, psi, w, angle, kappa):
     """Keep the largest rotation and speed and the closest approach to balance."""
     tally.peak2 = max(tally.peak2, 1.0 - psi / angle)
     tally.fast = max(tally.fast, abs(w))
-    if abs(psi) < tally.closest * angle:
-        tally.closest = min(tally.closest, math.sqrt(psi * psi + w * w / kappa) / angle)
+    if abs(psi) < tally.unstable_distance * angle:
+        tally.unstable_distance = min(
+            tally.unstable_distance, math.sqrt(psi * psi + w * w / kappa) / angle
+        )
 
 
 # --------------------------------------------------------------------------- between cases
@@ -409,7 +411,7 @@ def _next_case(lane, i, tally, ensemble, motions, outcomes):
             return
         _take_up(lane, i, number, ensemble, motions)
         tally.fallen, tally.certain, tally.impacts = 0, 0, 0
-        tally.peak1, tally.peak2, tally.fast, tally.closest = 0.0, 0.0, 0.0, math.inf
+        tally.peak1, tally.peak2, tally.fast, tally.unstable_distance = 0.0, 0.0, 0.0, math.inf
 
 
 @inlined_kernel
@@ -418,13 +420,13 @@ def _rise(lane, i, ensemble, motions):
     k, last, factor = lane.k[i], lane.last[i], lane.factor[i]
     if lane.fell[i] != 0 or lane.side[i] != 0 or k >= last or factor == 0.0:
         return
-    interval = -_pole(lane, i, 1, ensemble).tan, _pole(lane, i, -1, ensemble).tan
+    interval = -_pivot(lane, i, 1, ensemble).tan, _pivot(lane, i, -1, ensemble).tan
     k, tau, ground, _ = next_uplift(motions, k, lane.tau[i], last, factor, interval)
     if k >= 0:
         # it rocks towards the side that the ground comes from
         side = -1 if ground > 0.0 else 1
         lane.k[i], lane.tau[i], lane.side[i] = k, tau, side
-        lane.psi[i], lane.omega[i] = _pole(lane, i, side, ensemble).alpha, 0.0
+        lane.psi[i], lane.omega[i] = _pivot(lane, i, side, ensemble).alpha, 0.0
 
 
 @kernel
@@ -432,7 +434,7 @@ def _falls_freely(lane, i, tally, ensemble):
     """Whether the block falls once the ground is still; every speed follows from energy."""
     psi, w, side = lane.psi[i], lane.omega[i], lane.side[i]
     for _ in range(64):
-        here = _pole(lane, i, side, ensemble)
+        here = _pivot(lane, i, side, ensemble)
         angle, kappa = here.alpha, here.swing
         energy = 0.5 * w * w + kappa * cos(psi)
         if (psi > 0.0 and w <= 0.0) or psi <= 0.0:
@@ -446,7 +448,7 @@ def _falls_freely(lane, i, tally, ensemble):
         w = block_impact(here, v)
         side = -side
         other = here
-        here = _pole(lane, i, side, ensemble)
+        here = _pivot(lane, i, side, ensemble)
         psi, kappa = here.alpha, here.swing
         left = 0.5 * w * w
         if left < kappa * (1.0 - cos(psi)) and left < other.swing * (1.0 - cos(other.alpha)):
@@ -463,7 +465,7 @@ def _put_down(lane, i, tally, outcome):
     outcome.certain = lane.k[i] - lane.first[i] if fell else 0
     outcome.peak1, outcome.peak2 = 0.0, max(tally.peak2, 1.0 - lane.low[i])
     outcome.fast = max(tally.fast, lane.fast[i])
-    outcome.closest = min(tally.closest, math.sqrt(lane.near[i]))
+    outcome.unstable_distance = min(tally.unstable_distance, math.sqrt(lane.near[i]))
     # a lone block comes off as was measured, whatever the law
     outcome.impacts, outcome.given_way = tally.impacts, 0
 
@@ -505,10 +507,10 @@ def _place(lane, i, ensemble, motions):
     heavy = weight_of(motions, k + 1, factor)
     lane.weight[i], lane.weight_end[i] = light + tau * (heavy - light), heavy
     lane.part_left[i] = 1.0 - tau
-    pole = _pole(lane, i, side, ensemble)
-    lane.angle[i], lane.kappa[i] = pole.alpha, pole.swing
-    lane.per_angle[i], lane.per_speed[i] = pole.per_alpha, pole.per_swing
-    # largest A that can still push the block on this pole back down
+    pivot = _pivot(lane, i, side, ensemble)
+    lane.angle[i], lane.kappa[i] = pivot.alpha, pivot.swing
+    lane.per_angle[i], lane.per_speed[i] = pivot.per_alpha, pivot.per_swing
+    # largest A that can still push the block on this pivot back down
     most, least = motions.ahead_high[k // BLOCK], motions.ahead_low[k // BLOCK]
     bound = max(max(0.0, factor * most * side), factor * least * side)
     light, heavy = weights_ahead(motions, k, factor)

@@ -9,11 +9,11 @@ from rockfrag.engines.kernels.by_reference import by_reference
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
 LANES = 16
-"""Lanes of each kind that stacks march in."""
+"""Lanes of each kind that stacks integrate in."""
 
 WITHIN, QUIET, CLOSES, NEARS, RELEASE = -1.0, 0.0, 1.0, 2.0, 3.0
 """Flags of a lane after a pass: it has not yet reached the end of its sample, or has; positive ones are
-events: a contact closes, may have closed, or lets go."""
+contact events: a contact closes, may have closed, or lets go."""
 
 BLOCK = 16
 """Samples under one entry of the tables of extremes that rest is skipped with."""
@@ -24,7 +24,7 @@ OUTCOME = np.dtype(
         # certain
         ("fallen", np.int64), ("certain", np.int64),
         # extremes: of θ/θcritical of pedestal and statue, |θ'| of the statue per sample, distance from balance
-        ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("closest", np.float64),
+        ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("unstable_distance", np.float64),
         ("impacts", np.int64),
         ("given_way", np.int64),  # impacts in which the law of a measured restitution had to give way
     ],
@@ -68,7 +68,7 @@ class Ensemble(NamedTuple):
     ----------
     counter : (1,) the next case to take, shared by all threads
     count : number of cases
-    bodies : (bodies,) of BODY, or (bodies, motions, 2) of ``block.POLE`` for lone blocks
+    bodies : (bodies,) of BODY, or (bodies, motions, 2) of ``block.PIVOT`` for lone blocks
     factors : (motions, scales) on the samples
     rows : (bodies, motions) which of the sampled motions to use
     intervals : (bodies, motions) sampling interval of that [s]
@@ -104,9 +104,9 @@ def weights_ahead(motions, k, factor):
     """Least and largest gravity, over that of a ground that does not move vertically, from a sample on."""
     if motions.vertical.size == 0:
         return 1.0, 1.0
-    one = factor * motions.upward_high[k // BLOCK]
+    first = factor * motions.upward_high[k // BLOCK]
     other = factor * motions.upward_low[k // BLOCK]
-    return 1.0 + min(one, other), 1.0 + max(one, other)
+    return 1.0 + min(first, other), 1.0 + max(first, other)
 
 
 @kernel
@@ -130,8 +130,8 @@ def next_uplift(motions, k, tau, last, factor, interval):
         m = k + 1
         while True:
             # no limit of any later sample is nearer to zero than this
-            lightest, _ = weights_ahead(motions, m, factor)
-            least, most = low * lightest / factor, high * lightest / factor
+            least_gravity_ratio, _ = weights_ahead(motions, m, factor)
+            least, most = low * least_gravity_ratio / factor, high * least_gravity_ratio / factor
             if factor < 0.0:
                 least, most = most, least
             m = _first_outside(motions, m, last, least, most)
@@ -174,7 +174,7 @@ def _first_outside(motions, k, last, low, high):
 def next_samples(lane, factor, lanes, motions):
     """Give the lanes that have reached the end of their sample the next one; the bits of those that must stop.
 
-    A lane stops for an event, and at the end of its motion and after it.
+    A lane stops for a contact event, and at the end of its motion and after it.
 
     Parameters
     ----------

@@ -2,9 +2,9 @@
 
 There are lanes for the cases of which one part rotates and lanes for those of which both blocks do, because
 the arithmetic of the second costs twice that of the first.  One pass advances all lanes of a kind; what is
-rare (events, rest, verdicts, the next case) is handled case by case between passes.  A case whose event
-changes its kind waits for a lane of the other: there are as many cases in flight as lanes, so that one kind or
-the other can always fill its lanes.
+rare (contact events, rest, outcomes, the next case) is handled case by case between passes.  A case whose contact
+event changes its kind waits for a lane of the other: there are as many cases in flight as lanes, so that one kind
+or the other can always fill its lanes.
 
 A case's numbers depend on that case alone, so neither the number of lanes nor their neighbours nor the threads
 change a bit of them.
@@ -18,10 +18,10 @@ from rockfrag.engines.kernels.lanes.stack_case import (
     NO_CASE,
     ONE_ROTATES,
     SLOTS,
-    after_event,
-    event_of_one,
-    event_of_two,
-    find_events_of_two,
+    after_contact_event,
+    contact_event_of_one,
+    contact_event_of_two,
+    find_contact_events_of_two,
     general_impact,
     lane_of,
     next_case,
@@ -34,8 +34,8 @@ from rockfrag.engines.kernels.lanes.stack_case import (
 
 
 @entry_kernel
-def march_stacks(ensemble, motions, worker, outcomes):
-    """March the cases of an ensemble of stacks until none is left.
+def integrate_stacks(ensemble, motions, worker, outcomes):
+    """Integrate the cases of an ensemble of stacks until none is left.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def march_stacks(ensemble, motions, worker, outcomes):
             steps2 += LANES
             stack_two.advance(worker.two, g, upward)
             stops = next_samples(worker.two, worker.two.factor, LANES, motions)
-            find_events_of_two(stops, worker)
+            find_contact_events_of_two(stops, worker)
         while stops != 0:
             i = lowest_bit(stops)
             stops &= stops - 1
@@ -85,12 +85,12 @@ def march_stacks(ensemble, motions, worker, outcomes):
                         store_two(i, case, worker.two)
                 else:
                     if ones:
-                        closes = event_of_one(i, case, worker, ensemble, motions, g)
+                        closes = contact_event_of_one(i, case, worker, ensemble, motions, g)
                     else:
-                        closes = event_of_two(i, case, worker, ensemble, motions, g)
+                        closes = contact_event_of_two(i, case, worker, ensemble, motions, g)
                     if closes[0] or closes[1]:
                         general_impact(case, worker, ensemble.bodies[case.body], closes, motions)
-                    after_event(case)
+                    after_contact_event(case)
                 if not rocks_on(case):
                     next_case(case, ensemble, motions, worker, outcomes)
                 if lane_of(case) != kind:

@@ -1,7 +1,7 @@
-"""The life of a stack's case: taken, at rest, in a lane, through its events, and put down.
+"""The life of a stack's case: taken, at rest, in a lane, through its contact events, and put down.
 
 A case in flight is a CASE record; its slot holds the constants of its body.  Lanes of one rotation
-(``stack_one``) and of two (``stack_two``) hold copies of what they march; ``place_one``, ``store_one`` and
+(``stack_one``) and of two (``stack_two``) hold copies of what they integrate; ``place_one``, ``store_one`` and
 their like carry these over.
 """
 
@@ -12,8 +12,8 @@ import numpy as np
 
 from rockfrag.engines.kernels.by_reference import by_reference
 from rockfrag.engines.kernels.chatter import (
+    OUTCOME,
     RESTORING,
-    VERDICT,
     Ahead,
     Hop,
     closed,
@@ -36,7 +36,7 @@ from rockfrag.engines.kernels.equations import (
     barrier,
     kinetic_energy,
     potential_energy,
-    statue_balance,
+    upper_balance,
 )
 from rockfrag.engines.kernels.impact import ground_impact, interface_impact
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel, lowest_bit, take_next
@@ -58,7 +58,7 @@ from rockfrag.engines.kernels.lanes.stack_constants import (
     number_of,
 )
 from rockfrag.engines.kernels.roots import slope, value
-from rockfrag.engines.kernels.single import MAX_EVENTS_PER_STEP, land
+from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP, resolve_impact
 from rockfrag.engines.kernels.taylor import SERIES, quick_sine_cosine
 
 SLOTS = 2 * LANES
@@ -81,7 +81,8 @@ CASE = np.dtype(
         ("theta1", np.float64), ("omega1", np.float64), ("theta2", np.float64), ("omega2", np.float64),
         # gravity of a ground that does not move vertically
         ("gravity", np.float64),
-        # of its last event the ground acceleration, gravity over the above, the sample, and how many that has had
+        # of its last contact event the ground acceleration, gravity over the above, the sample, and how many that
+        # has had
         ("ground", np.float64), ("weight", np.float64), ("crowded", np.int64), ("crowd", np.int64),
         # extremes so far, as in the lanes; impacts; what fell, 1 the pedestal, 2 the statue
         ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("near", np.float64),
@@ -104,7 +105,7 @@ class Worker(NamedTuple):
     waits, busy : (2,) how many wait, and how many lanes are taken
     ones, twos, impacts : (SLOTS, 9) constants of the slots' bodies in every contact state
     restoring : (SLOTS,)
-    series : (LANES,) of the steps that events are looked for in
+    series : (LANES,) of the steps that contact events are looked for in
     state : of a case, with rates per second, for what the constants do not cover
     """
 
@@ -124,15 +125,15 @@ class Worker(NamedTuple):
 
 def worker() -> Worker:
     """Memory for one thread."""
-    one, two = np.zeros(1, stack_one.LANE)[0], np.zeros(1, stack_two.LANE)[0]
-    one["slot"] = two["slot"] = -1
+    first, two = np.zeros(1, stack_one.LANE)[0], np.zeros(1, stack_two.LANE)[0]
+    first["slot"] = two["slot"] = -1
     # these are written only where the ground moves vertically
-    one["was_weight"] = one["before_weight"] = two["was_weight"] = 1.0
+    first["was_weight"] = first["before_weight"] = two["was_weight"] = 1.0
     cases = np.zeros(SLOTS, CASE)
     cases["number"] = cases["body"] = -1
     cases["slot"] = np.arange(SLOTS)
     return Worker(
-        one=one,
+        one=first,
         two=two,
         cases=cases,
         waiting=np.zeros((2, SLOTS), np.int64),
@@ -213,7 +214,7 @@ def _is_safe(body, state, least):
     # low energy on this side of balance, not beyond it
     c1, c2 = state.c1, state.c2
     if c2 != 0:
-        critical, _, _, _ = statue_balance(body, c2)
+        critical, _, _, _ = upper_balance(body, c2)
         if c2 * state.theta2 >= critical:
             return False
     if c1 != 0:
@@ -229,7 +230,7 @@ def _put_down(case, outcome):
     outcome.fallen = case.fallen
     outcome.certain = case.k - case.first
     outcome.peak1, outcome.peak2 = case.peak1, case.peak2
-    outcome.fast, outcome.closest = case.fast, math.sqrt(case.near)
+    outcome.fast, outcome.unstable_distance = case.fast, math.sqrt(case.near)
     outcome.impacts, outcome.given_way = case.impacts, case.given_way
 
 
@@ -276,12 +277,12 @@ def _ahead(case, motions):
     return Ahead(motions.samples, motions.vertical, factor, case.last, case.k, case.tau, interval)
 
 
-# --------------------------------------------------------------------------- events
+# --------------------------------------------------------------------------- contact events
 
 
 @kernel
-def event_of_one(i, case, worker, ensemble, motions, g):
-    """Take a case in lane i of those of one rotation to its event or to the step's end, and through the event.
+def contact_event_of_one(i, case, worker, ensemble, motions, g):
+    """Take a case in lane i of those of one rotation to its contact event or to the step's end, and through the contact event.
 
     Returns
     -------
@@ -296,7 +297,7 @@ def event_of_one(i, case, worker, ensemble, motions, g):
     c1, c2 = case.c1, case.c2
     left = lane.was_left[i]
     constants = worker.ones[case.slot, number_of(c1, c2)]
-    when, fails = stack_one.next_event(constants, lane, i, series, g)
+    when, fails = stack_one.next_contact_event(constants, lane, i, series, g)
     at = min(1.0, when)
     theta, omega = value(series.one.angle, at), slope(series.one.angle, at) / left
     peak, case.fast, case.near = stack_one.nearest(lane, i, theta, omega)
@@ -313,7 +314,7 @@ def event_of_one(i, case, worker, ensemble, motions, g):
     case.tau -= left * (1.0 - at)
     case.ground, case.weight = stack_one.pull_at(lane, i, at)
     body = ensemble.bodies[case.body]
-    _count_event(case)
+    _count_contact_event(case)
     if fails:
         to_state(case, worker.state)
         contact = GROUND if c1 == 0 else INTERFACE
@@ -321,17 +322,17 @@ def event_of_one(i, case, worker, ensemble, motions, g):
         return False, False
     case.impacts += 1
     case.theta1, case.theta2 = 0.0, 0.0
-    if _forced(case) or not _land_alone(case, worker, body, g, motions):
+    if _forced(case) or not _impact_alone(case, worker, body, g, motions):
         return c1 != 0, c2 != 0
     return False, False
 
 
 @kernel
-def find_events_of_two(stops, worker):
-    """Find the events of lanes of two rotations, before any case goes through one.
+def find_contact_events_of_two(stops, worker):
+    """Find the contact events of lanes of two rotations, before any case goes through one.
 
     Each takes a long chain of arithmetic, and a processor works on several at once if nothing comes between them.
-    Lanes of one rotation have too few events in a pass to gain by it.
+    Lanes of one rotation have too few contact events in a pass to gain by it.
     """
     lane = worker.two
     while stops != 0:
@@ -340,14 +341,14 @@ def find_events_of_two(stops, worker):
         if lane.slot[i] >= 0 and lane.flag[i] > QUIET:
             case, series = worker.cases[lane.slot[i]], worker.series[i]
             stack_two.take_series(lane, i, series)
-            lane.when[i], lane.closes1[i], lane.closes2[i] = stack_two.next_event(
+            lane.when[i], lane.closes1[i], lane.closes2[i] = stack_two.next_contact_event(
                 case.c1, case.c2, lane.flag[i], series
             )
 
 
 @kernel
-def event_of_two(i, case, worker, ensemble, motions, g):
-    """Take a case in lane i of those of two rotations through the event that was found, or to the step's end.
+def contact_event_of_two(i, case, worker, ensemble, motions, g):
+    """Take a case in lane i of those of two rotations through the contact event that was found, or to the step's end.
 
     Returns
     -------
@@ -369,7 +370,7 @@ def event_of_two(i, case, worker, ensemble, motions, g):
     lift = lane.weight_end[i] - lane.was_weight[i]
     case.ground = lane.was_ground[i] + rise * (at * span / left)
     case.weight = lane.was_weight[i] + lift * (at * span / left)
-    _count_event(case)
+    _count_contact_event(case)
     if closes1:
         case.theta1 = 0.0
     if closes2:
@@ -392,7 +393,7 @@ def general_impact(case, worker, body, closes, motions):
     to_state(case, state)
     ahead = _ahead(case, motions)
     restoring = worker.restoring[case.slot]
-    _, gave_way = land(body, state, closes, restoring, ahead, VERDICT, _forced(case))
+    _, gave_way = resolve_impact(body, state, closes, restoring, ahead, OUTCOME, _forced(case))
     case.given_way += gave_way
     h = case.interval
     case.c1, case.c2, case.omega1, case.omega2 = (
@@ -404,16 +405,16 @@ def general_impact(case, worker, body, closes, motions):
 
 
 @inlined_kernel
-def _land_alone(case, worker, body, g, motions):
+def _impact_alone(case, worker, body, g, motions):
     """Take what rocks alone through its landing by the constants; whether that was possible."""
     slot = case.slot
-    landing = worker.impacts[slot, number_of(case.c1, case.c2)]
-    n1, n2 = landing.next1, landing.next2
+    impact_constants = worker.impacts[slot, number_of(case.c1, case.c2)]
+    n1, n2 = impact_constants.next1, impact_constants.next2
     omega = abs(case.omega2)
-    v1, v2 = omega * landing.after1, omega * landing.after2
+    v1, v2 = omega * impact_constants.after1, omega * impact_constants.after2
     h = case.interval
     # a contact that comes off slower than this stays closed
-    slow = VERDICT.closing_speed * h
+    slow = OUTCOME.closing_speed * h
     slow1 = n1 != 0 and abs(v1) < slow
     slow2 = n2 != 0 and abs(v2 - v1) < slow
     rests = (n1 == 0 or slow1) and (n2 == 0 or slow2)
@@ -423,7 +424,7 @@ def _land_alone(case, worker, body, g, motions):
     restoring = worker.restoring[slot]
     if not rests and speed < restoring.fastest:
         ahead = _ahead(case, motions)
-        rests = dies_out(speed, landing.share, 1.5, restoring, VERDICT.drop, ahead)
+        rests = dies_out(speed, impact_constants.fraction, 1.5, restoring, OUTCOME.drop, ahead)
     if rests:
         n1, n2, v1, v2 = 0, 0, 0.0, 0.0
     if n1 == 0 and n2 == 0:
@@ -435,7 +436,7 @@ def _land_alone(case, worker, body, g, motions):
     else:
         settled = True
     case.c1, case.c2, case.omega1, case.omega2 = n1, n2, v1, v2
-    case.given_way += landing.gives_way
+    case.given_way += impact_constants.gives_way
     if not settled:
         to_state(case, worker.state)
         case.c1, case.c2 = settle(body, worker.state)
@@ -461,7 +462,7 @@ def close_one(case, worker, ground, g, motions):
         v1, v2 = interface_impact(after, products, omega1, omega2)
         side, off, old = n2, v2 - v1, omega2 - omega1
         gap, toward = abs(case.theta1), -c1 * v1
-    if side * off <= VERDICT.closing_speed * case.interval:
+    if side * off <= OUTCOME.closing_speed * case.interval:
         return False
     # half the time in which the other contact would close
     longest = 0.5 * gap / toward if toward > 0.0 else math.inf
@@ -477,8 +478,8 @@ def close_one(case, worker, ground, g, motions):
 
 
 @inlined_kernel
-def _count_event(case):
-    """Count an event of a case within its sample."""
+def _count_contact_event(case):
+    """Count a contact event of a case within its sample."""
     if case.crowded != case.k:
         case.crowded = case.k
         case.crowd = 0
@@ -487,14 +488,14 @@ def _count_event(case):
 
 @inlined_kernel
 def _forced(case):
-    """Whether its sample has had so many events that contacts must stay closed."""
-    return case.crowd > MAX_EVENTS_PER_STEP
+    """Whether its sample has had so many contact events that contacts must stay closed."""
+    return case.crowd > MAX_CONTACT_EVENTS_PER_STEP
 
 
 @inlined_kernel
-def after_event(case):
-    """Take a case that has been through its event, or to the end of its step, to the sample that it is in."""
-    crowded = case.crowded == case.k and case.crowd > MAX_EVENTS_PER_STEP + 20
+def after_contact_event(case):
+    """Take a case that has been through its contact event, or to the end of its step, to the sample that it is in."""
+    crowded = case.crowded == case.k and case.crowd > MAX_CONTACT_EVENTS_PER_STEP + 20
     if case.tau >= 1.0 - 1e-13 or crowded:
         case.tau = 0.0
         case.k += 1
@@ -510,11 +511,11 @@ def after_event(case):
 @inlined_kernel
 def place_one(i, case, worker, motions):
     """Place a case into lane i of those of one rotation."""
-    lane, one = worker.one, worker.ones[case.slot, number_of(case.c1, case.c2)]
-    lane.gx[i], lane.gy[i] = one.gx, one.gy
-    lane.per_angle[i], lane.per_speed[i] = one.per_angle, one.per_speed
+    lane, item = worker.one, worker.ones[case.slot, number_of(case.c1, case.c2)]
+    lane.gx[i], lane.gy[i] = item.gx, item.gy
+    lane.per_angle[i], lane.per_speed[i] = item.per_angle, item.per_speed
     for n in range(HOLD):
-        lane.right[n, i], lane.left[n, i] = one.right[n, 0], one.left[n, 0]
+        lane.right[n, i], lane.left[n, i] = item.right[n, 0], item.left[n, 0]
     lane.side[i] = case.c1 + case.c2
     lane.theta[i], lane.omega[i] = case.theta2, case.omega2
     lane.factor[i], lane.part_left[i] = case.factor, 1.0 - case.tau

@@ -1,4 +1,4 @@
-"""The constants of a stack: all that its contact states fix, so that lanes and events need only look it up.
+"""The constants of a stack: all that its contact states fix, so that lanes and contact events need only look it up.
 
 Time is counted in samples, so lengths of time in the constants carry the sampling interval.
 """
@@ -18,9 +18,9 @@ from rockfrag.engines.kernels.equations import (
     inertia1,
     inertia2,
     kinetic_energy,
-    pole,
+    pivot,
     reach,
-    statue_balance,
+    upper_balance,
 )
 from rockfrag.engines.kernels.impact import impact
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
@@ -31,9 +31,9 @@ HOLD = 12
 
 ONE = np.dtype(
     [
-        # first moments about the pole times g over the moment of inertia, per sample²
+        # first moments about the pivot times g over the moment of inertia, per sample²
         ("gx", np.float64), ("gy", np.float64),
-        ("per_angle", np.float64),  # 1 over the critical angle, positive on the side of the pole
+        ("per_angle", np.float64),  # 1 over the critical angle, positive on the side of the pivot
         ("per_speed", np.float64),  # (1 over critical angle, frequency and interval)²
         ("right", np.float64, (HOLD, 1)), ("left", np.float64, (HOLD, 1)),  # corners of the closed contact
     ]
@@ -59,7 +59,7 @@ IMPACT = np.dtype(
         # landing of what rocks alone: contacts and velocities after it at unit speed, √ of the energy left, and
         # whether the law of a measured restitution has to give way in it
         ("next1", np.int64), ("next2", np.int64),
-        ("after1", np.float64), ("after2", np.float64), ("share", np.float64), ("gives_way", np.int64),
+        ("after1", np.float64), ("after2", np.float64), ("fraction", np.float64), ("gives_way", np.int64),
     ]
 )  # fmt: skip
 """Impacts out of a contact state."""
@@ -72,7 +72,7 @@ def number_of(c1, c2):
 
 
 @kernel
-def fill_constants(body, h, one, two, impacts, scratch):
+def fill_constants(body, h, lanes_of_one, two, impacts, scratch):
     """Fill the constants of the nine contact states of a body for a sampling interval h [s]."""
     hh = h * h
     for c1 in (-1, 0, 1):
@@ -82,33 +82,33 @@ def fill_constants(body, h, one, two, impacts, scratch):
                 _both_rotate(body, c1, c2, hh, two[at])
                 _closing(body, c1, c2, impacts[at])
             elif c1 != 0 or c2 != 0:
-                _one_rotates(body, c1, c2, hh, one[at])
-                _landing(body, c1, c2, impacts[at], scratch)
+                _one_rotates(body, c1, c2, hh, lanes_of_one[at])
+                _impact(body, c1, c2, impacts[at], scratch)
 
 
 @kernel
-def _one_rotates(body, c1, c2, hh, one):
+def _one_rotates(body, c1, c2, hh, lanes_of_one):
     if c1 != 0:
         critical, vx, vy, inertia = balance(body, c1, c2)
     else:
-        critical, vx, vy, inertia = statue_balance(body, c2)
+        critical, vx, vy, inertia = upper_balance(body, c2)
     for corner in (1.0, -1.0):
-        hold = one.right if corner > 0.0 else one.left
+        hold = lanes_of_one.right if corner > 0.0 else lanes_of_one.left
         for n in range(HOLD):
             hold[n, 0] = 0.0
         if c1 != 0:
-            _interface_hold(body, pole(c1), corner, hh, hold)
+            _interface_hold(body, pivot(c1), corner, hh, hold)
         else:
-            _ground_hold(body, corner, pole(c2), hh, hold)
+            _ground_hold(body, corner, pivot(c2), hh, hold)
     per = hh * body.gravity / inertia
-    one.gx, one.gy = per * vx, per * vy
-    one.per_angle = (c1 + c2) / critical
-    one.per_speed = 1.0 / (per * hypot(vx, vy) * critical * critical)
+    lanes_of_one.gx, lanes_of_one.gy = per * vx, per * vy
+    lanes_of_one.per_angle = (c1 + c2) / critical
+    lanes_of_one.per_speed = 1.0 / (per * hypot(vx, vy) * critical * critical)
 
 
 @kernel
 def _both_rotate(body, c1, c2, hh, two):
-    s1, s2 = pole(c1), pole(c2)
+    s1, s2 = pivot(c1), pivot(c2)
     two.m11, two.m22 = inertia1(body, s1, s2), inertia2(body, s2)
     two.e, two.f = coupling(body, s1, s2)
     scale = hh * body.gravity
@@ -116,7 +116,7 @@ def _both_rotate(body, c1, c2, hh, two):
     two.v1x, two.v1y = hh * vx, hh * vy
     two.per_angle1 = c1 / critical
     two.per_speed1 = inertia / (scale * hypot(vx, vy) * critical * critical)
-    critical, vx, vy, inertia = statue_balance(body, c2)
+    critical, vx, vy, inertia = upper_balance(body, c2)
     two.v2x, two.v2y = hh * vx, hh * vy
     two.per_angle2 = c2 / critical
     two.per_speed2 = inertia / (scale * hypot(vx, vy) * critical * critical)
@@ -150,7 +150,7 @@ def _interface_hold(body, s1, s2, hh, hold):
 @kernel
 def _closing(body, c1, c2, products):
     """Closing of one contact while the other stays open."""
-    s1, s2 = pole(c1), pole(c2)
+    s1, s2 = pivot(c1), pivot(c2)
     ax, ay = arm1(body, s1)
     bx, by = arm1(body, -s1)
     dx, dy = reach(body, s1, s2)
@@ -166,7 +166,7 @@ def _closing(body, c1, c2, products):
 
 
 @kernel
-def _landing(body, c1, c2, products, scratch):
+def _impact(body, c1, c2, products, scratch):
     """Landing of what rocks alone: the outcome is the same for every speed but for its size."""
     scratch.c1, scratch.c2, scratch.theta1, scratch.theta2 = c1, c2, 0.0, 0.0
     scratch.omega1, scratch.omega2 = -1.0 * c1, -1.0 * (c1 + c2)
@@ -175,4 +175,4 @@ def _landing(body, c1, c2, products, scratch):
     scratch.c1, scratch.c2, scratch.omega1, scratch.omega2 = n1, n2, w1, w2
     after = kinetic_energy(body, scratch)
     products.next1, products.next2, products.after1, products.after2 = n1, n2, w1, w2
-    products.share, products.gives_way = math.sqrt(after / before), gives_way
+    products.fraction, products.gives_way = math.sqrt(after / before), gives_way

@@ -93,7 +93,7 @@ def _rates(g_over_inertia, turn, w, left, ground, weight):
 
 @kernel
 def advance(lane, g, upward):
-    """Advance every lane to the end of its sample, and flag those with an event in between.
+    """Advance every lane to the end of its sample, and flag those with a contact event in between.
 
     ``upward``: whether the ground moves vertically; where it does not, all weights are one and cost nothing.
     """
@@ -200,16 +200,16 @@ def go_back(lane, i, g, upward):
 
 
 @inlined_kernel
-def next_event(one, lane, i, series, g):
-    """Time in the lane's step of its next event, NEVER if there is none; whether the closed contact lets go."""
+def next_contact_event(lanes_of_one, lane, i, series, g):
+    """Time in the lane's step of its next contact event, NEVER if there is none; whether the closed contact lets go."""
     if lane.flag[i] == CLOSES:
         when = crossing_time(series.gap)
         omega = slope(series.one.angle, when) / lane.was_left[i]
-        if least_hold(one, 0.0, omega, pull_at(lane, i, when), g) >= 0.0:
+        if least_hold(lanes_of_one, 0.0, omega, pull_at(lane, i, when), g) >= 0.0:
             return when, False
     else:
         when = closing_time(series.gap, 1.0)
-    time = _release_time(one, lane, i, series, min(1.0, when), g)
+    time = _release_time(lanes_of_one, lane, i, series, min(1.0, when), g)
     if time < when:
         return time, True
     return when, False
@@ -226,7 +226,7 @@ def pull_at(lane, i, tau):
 
 
 @kernel
-def least_hold(one, theta, omega, pull, g):
+def least_hold(lanes_of_one, theta, omega, pull, g):
     """Least contact moment of the closed contact; negative if it would have to pull.
 
     ``pull``: acceleration of the ground, and weight.
@@ -234,22 +234,24 @@ def least_hold(one, theta, omega, pull, g):
     ground, weight = pull
     turn = quick_sine_cosine(theta)
     s, c = turn
-    alpha = weight * (one.gx * c + one.gy * s) - ground / g * (one.gy * c - one.gx * s)
+    alpha = weight * (lanes_of_one.gx * c + lanes_of_one.gy * s) - ground / g * (
+        lanes_of_one.gy * c - lanes_of_one.gx * s
+    )
     return min(
-        _moment(one.right, 0, turn, alpha, omega * omega, pull),
-        _moment(one.left, 0, turn, alpha, omega * omega, pull),
+        _moment(lanes_of_one.right, 0, turn, alpha, omega * omega, pull),
+        _moment(lanes_of_one.left, 0, turn, alpha, omega * omega, pull),
     )
 
 
 @kernel
-def _release_time(one, lane, i, series, end, g):
+def _release_time(lanes_of_one, lane, i, series, end, g):
     """Time up to ``end`` at which the closed contact lets go; NEVER if it holds."""
     angle, left = series.one.angle, lane.was_left[i]
-    at_low = least_hold(one, angle[0], angle[1] / left, pull_at(lane, i, 0.0), g)
+    at_low = least_hold(lanes_of_one, angle[0], angle[1] / left, pull_at(lane, i, 0.0), g)
     if at_low < 0.0:
         return 0.0
     omega = slope(angle, end) / left
-    at_high = least_hold(one, value(angle, end), omega, pull_at(lane, i, end), g)
+    at_high = least_hold(lanes_of_one, value(angle, end), omega, pull_at(lane, i, end), g)
     if at_high >= 0.0:
         return NEVER
     bracket = (0.0, at_low, end, at_high, -1)
@@ -258,14 +260,14 @@ def _release_time(one, lane, i, series, end, g):
             break
         tau = guess_between(bracket)
         omega = slope(angle, tau) / left
-        hold = least_hold(one, value(angle, tau), omega, pull_at(lane, i, tau), g)
+        hold = least_hold(lanes_of_one, value(angle, tau), omega, pull_at(lane, i, tau), g)
         bracket = narrowed(bracket, tau, hold)
     return bracket[2]
 
 
 @inlined_kernel
 def nearest(lane, i, theta, omega):
-    """Largest θ/θcritical, |θ'| and least distance from balance squared, up to an event at θ, θ'."""
+    """Largest θ/θcritical, |θ'| and least distance from balance squared, up to a contact event at θ, θ'."""
     ratio = lane.per_angle[i] * theta
     near = (1.0 - ratio) * (1.0 - ratio) + lane.per_speed[i] * omega * omega
     return (

@@ -44,7 +44,8 @@ LANE = np.dtype(
         # extremes so far: of θ/θcritical, |θ2'|, and distance from balance squared
         ("ratio1", _F, LANES), ("ratio2", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
         ("flag", _F, LANES),
-        # time of its event in the step, whether ground and interface close then (numba has no rows of booleans)
+        # time of its contact event in the step, whether ground and interface close then (numba has no rows of
+        # booleans)
         ("when", _F, LANES), ("closes1", np.int64, LANES), ("closes2", np.int64, LANES),
         # these where the step began
         ("was_theta1", _F, LANES), ("was_omega1", _F, LANES),
@@ -69,7 +70,7 @@ def span_of(left, part):
 
 @kernel
 def advance(lane, g, upward):
-    """Advance every lane by a step, and flag those with an event in it.
+    """Advance every lane by a step, and flag those with a contact event in it.
 
     ``upward``: whether the ground moves vertically; where it does not, all weights are one and cost nothing.
     """
@@ -173,17 +174,17 @@ def _advance(lane, g, upward):
 @inlined_kernel
 def take_series(lane, i, series):
     """Copy the series of a lane's step out."""
-    one, two = series.one.angle, series.two.angle
+    first, two = series.one.angle, series.two.angle
     span = span_of(lane.was_left[i], lane.part[i])
-    one[0], one[1] = lane.was_theta1[i], lane.was_omega1[i] * span
+    first[0], first[1] = lane.was_theta1[i], lane.was_omega1[i] * span
     two[0], two[1] = lane.was_theta2[i], lane.was_omega2[i] * span
     for n in range(ORDER - 1):
-        one[2 + n] = lane.rates1[n, i] * (1.0 / (n + 2))
+        first[2 + n] = lane.rates1[n, i] * (1.0 / (n + 2))
         two[2 + n] = lane.rates2[n, i] * (1.0 / (n + 2))
 
 
 @inlined_kernel
-def next_event(c1, c2, flag, series):
+def next_contact_event(c1, c2, flag, series):
     """Time in a step of its first closing, NEVER if there is none; whether ground and interface close."""
     if flag != CLOSES:
         return first_closing(c1, c2, series)
@@ -199,7 +200,7 @@ def next_event(c1, c2, flag, series):
 
 @inlined_kernel
 def nearest(lane, i, state):
-    """Largest θ/θcritical of both, |θ2'|, least distance from balance squared, up to an event."""
+    """Largest θ/θcritical of both, |θ2'|, least distance from balance squared, up to a contact event."""
     theta1, omega1, theta2, omega2 = state
     ratio1 = lane.per_angle1[i] * theta1
     ratio2 = lane.per_angle2[i] * theta2

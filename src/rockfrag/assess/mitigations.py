@@ -1,0 +1,191 @@
+"""What helps: the object changed, as a body, shaken by the same motions, as a factor on the probability."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import stats
+
+from rockfrag.assess.objects import Objects, higher
+from rockfrag.assess.outcomes import ObjectOutcomes
+from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
+from rockfrag.system.blocks import Block, Body, Stack, stacked
+
+WIDER = 1.25
+"""Width of a foot plate over that of the base."""
+
+PLATE, STEEL = 0.02, 7850.0
+"""Thickness of a foot plate [m], square and of steel [kg/m³]."""
+
+LOWER = 0.8
+"""Factor of a lower centre of gravity."""
+
+BALLAST, BALLAST_AT = 0.25, 0.05
+"""Mass of ballast over that of the object, and its height over that of the object."""
+
+PEDESTAL_HEIGHT = 0.5
+"""Height of another pedestal over that of the one that is there."""
+
+
+@dataclass(frozen=True)
+class Mitigation:
+    """What a change does.
+
+    Attributes
+    ----------
+    name
+        What is changed, in words.
+    value
+        The probability, share or amplitude with it.
+    factor
+        That over the one without it [-]; 0 where no motion topples the object any more.
+    lower, upper
+        Limits of the factor, of the same motions with and without it; NaN where there are none.
+    helps
+        Whether the object is better off with it: what is estimated shrinks, or an amplitude grows.
+    """
+
+    name: str
+    value: float
+    factor: float
+    lower: float
+    upper: float
+    helps: bool
+
+
+def mitigations_of(objects: Objects) -> dict[str, Body]:
+    """Bodies that result from each change.
+
+    Parameters
+    ----------
+    objects
+        The object as it is.
+    """
+    statue, pedestals = objects.statue, objects.pedestals
+    lower = {
+        f"a centre of gravity {100 * (1 - LOWER):.0f} % lower": higher(statue, LOWER),
+        f"ballast of {100 * BALLAST:.0f} % of its mass in its foot": with_ballast(statue),
+    }
+    if not pedestals:
+        return {_plate_words(statue, "it"): on_plate(statue), **lower}
+    lowest, highest = pedestals[0], pedestals[-1]
+    where = "the lowest pedestal" if objects.many else "the pedestal"
+    found = {_plate_words(lowest, where): stacked((on_plate(lowest), *pedestals[1:], statue))}
+    if WIDER * statue.width <= highest.width:
+        # beyond the pedestal's edges a plate carries no further out
+        found[_plate_words(statue, "the object")] = stacked((*pedestals, on_plate(statue)))
+    found |= {name: stacked((*pedestals, body)) for name, body in lower.items()}
+    half = replace(
+        lowest, height=PEDESTAL_HEIGHT * lowest.height, mass=PEDESTAL_HEIGHT * lowest.mass
+    )
+    found[f"another pedestal, {100 * half.height:.3g} cm high and as wide"] = stacked(
+        (half, *pedestals[1:], statue)
+    )
+    return found | _fixed(objects)
+
+
+def on_plate(block: Block) -> Block:
+    """The block fixed to a square plate of steel under it, wider than its base."""
+    width = WIDER * block.width
+    plate = Block(width, PLATE, STEEL * PLATE * width**2)
+    return Stack(plate, block).rigidly_joined()
+
+
+def _plate_words(block: Block, what: str) -> str:
+    wide, thick = 100 * WIDER * block.width, 100 * PLATE
+    return f"a steel plate of {wide:.3g} cm, {thick:g} cm thick, fixed under {what}"
+
+
+def with_ballast(block: Block) -> Block:
+    """The block with ballast near its foot, in the middle of its base."""
+    added = BALLAST * block.mass
+    mass = block.mass + added
+    at = BALLAST_AT * block.height
+    height = (block.mass * block.h + added * at) / mass
+    aside = block.mass * block.cg_offset / mass
+    own = block.mass * ((block.h - height) ** 2 + (block.cg_offset - aside) ** 2)
+    inertia = block.centroidal_inertia + own + added * ((at - height) ** 2 + aside**2)
+    return replace(block, mass=mass, cg_height=height, cg_offset=aside, inertia=inertia)
+
+
+def _fixed(objects: Objects) -> dict[str, Body]:
+    """Bodies that result where a joint is closed for good, each by itself and all."""
+    blocks = (*objects.pedestals, objects.statue)
+    if not objects.many:
+        return {
+            "fixing the object to its pedestal": stacked(blocks).rigidly_joined(),
+            "fixing the pedestal to the floor": objects.statue,
+        }
+    found: dict[str, Body] = {}
+    for k in range(len(blocks) - 1):
+        if len(blocks) > k + 2 and blocks[k + 2].width > blocks[k + 1].width:
+            continue  # the two as one block would carry it further out
+        above, below = len(blocks) - 2 - k, len(blocks) - 1 - k
+        what = f"pedestal {above}" if above else "the object"
+        joined = stacked(blocks[k : k + 2]).rigidly_joined()
+        found[f"fixing {what} to pedestal {below}"] = stacked(
+            (*blocks[:k], joined, *blocks[k + 2 :])
+        )
+    return found | {
+        "fixing the object and its pedestals to each other": stacked(blocks).rigidly_joined(),
+        "fixing the lowest pedestal to the floor": stacked(blocks[1:]),
+        "fixing all pedestals to the floor": objects.statue,
+    }
+
+
+def compare(
+    target: Target, now: ObjectOutcomes, changed: Mapping[str, ObjectOutcomes]
+) -> list[Mitigation]:
+    """Factors of changes on what is estimated, the most helpful first.
+
+    Parameters
+    ----------
+    target
+        What is estimated.
+    now
+        Outcomes of the object as it is.
+    changed
+        Outcomes with each change.
+    """
+    found = [_mitigation(target, name, now, item) for name, item in changed.items()]
+    found.sort(key=lambda mitigation: mitigation.value)
+    return found
+
+
+def _mitigation(
+    target: Target, name: str, now: ObjectOutcomes, changed: ObjectOutcomes
+) -> Mitigation:
+    before, after = target.value(now), target.value(changed)
+    helps = after > before if math.isinf(target.certain) else after < before
+    if not (math.isfinite(before) and before > 0 and math.isfinite(after)):
+        return Mitigation(name, after, math.nan, math.nan, math.nan, helps)
+    factor = after / before
+    limits = _limits(target, now, changed, factor)
+    return Mitigation(name, after, factor, *limits, helps)
+
+
+def _limits(
+    target: Target, now: ObjectOutcomes, changed: ObjectOutcomes, factor: float
+) -> tuple[float, float]:
+    """Limits of a factor by a jackknife over earthquakes; NaN where one of them decides alone."""
+    weights = earthquake_weights(now.earthquakes)
+    groups = len(weights)
+    pairs = np.array([[target.value(v, w) for v in (changed, now)] for w in weights])
+    if groups < 2 or not np.isfinite(pairs).all() or (pairs <= 0).any():
+        return math.nan, math.nan
+    ratios = np.log(pairs[:, 0] / pairs[:, 1])
+    error = np.sqrt((groups - 1) / groups * ((ratios - ratios.mean()) ** 2).sum())
+    half = float(stats.t.ppf(0.5 + LEVEL / 2, groups - 1) * error)
+    return factor * math.exp(-half), factor * math.exp(half)
+
+
+def without_simulation() -> list[str]:
+    """What is named but not simulated, each in a sentence."""
+    return [
+        "Fixing everything to the floor ends rocking; its anchors then carry the whole inertia.",
+        "Base isolation helps against fast shaking and little against slow pulses; it needs a design of its own "
+        "and is not simulated here.",
+        "An object on a pad (--pad-friction) slides instead of rocking; how far is said, and that it may leave "
+        "what it stands on, or meet a wall, is not counted.",
+    ]

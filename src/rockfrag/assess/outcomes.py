@@ -1,0 +1,397 @@
+"""Which motions topple a body at which level of shaking: fractions of motions, no curve assumed."""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from rockfrag.assess.hazard.measure import Measure
+from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.objects import Objects
+from rockfrag.fragility.observations import Outcomes
+from rockfrag.outcomes.limit_states import limit_state_named
+from rockfrag.outcomes.outcomes import Outcomes as Simulated
+from rockfrag.plausibility import LARGEST_PEAK
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.ensemble import LightBodies, overturns
+from rockfrag.system.blocks import Body
+from rockfrag.system.contact import Friction
+from rockfrag.system.system import System
+
+Floats = NDArray[np.float64]
+
+LEVELS = 80
+"""Levels of shaking that are tried, a constant factor apart."""
+
+FEW_LEVELS = 28
+"""Levels for what is only compared, and for many objects."""
+
+FEWEST_LEVELS = 14
+"""Levels for what is only compared of many objects."""
+
+MOST_TESTS = 400_000
+"""Tests that are simulated at once, which bounds the memory of their results."""
+
+RANGE = (0.05, 8.0)
+"""Lowest and highest level over the median of the motions as recorded."""
+
+LARGEST_FACTOR = 10.0
+"""Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
+
+
+WORST_STEP_DEG = 15
+"""Angle between directions of which the worst is taken [degrees]."""
+
+
+@dataclass(frozen=True, eq=False)
+class IntensityLevels:
+    """Levels of a measure to which motions are scaled.
+
+    Attributes
+    ----------
+    measure
+        The intensity measure of the ground.
+    levels
+        Levels in its unit, rising, shape (levels,).
+    scales
+        Factors on the motions, shape (motions, levels).
+    allowed
+        Whether a factor is within ``LARGEST_FACTOR`` and the motion at the base one that a floor may feel, shape
+        (motions, levels).
+    """
+
+    measure: Measure
+    levels: Floats
+    scales: Floats
+    allowed: NDArray[np.bool_]
+
+
+AT_REST = 1e-9
+"""Factor of motions that are not counted: at rest costs nothing."""
+
+
+def believable_scales(base: Sequence[Motion]) -> Floats:
+    """Largest factor on each motion at which it is still one that a floor may feel, shape (motions, 1)."""
+    return np.array([[(1 - 1e-9) * LARGEST_PEAK / motion.pga] for motion in base])
+
+
+def make_intensity_levels(
+    motions: MotionSet, measure: Measure, asked: Sequence[float] = (), count: int = LEVELS
+) -> IntensityLevels:
+    """Make the levels for a set of motions.
+
+    Parameters
+    ----------
+    motions
+        The motions.
+    measure
+        Measure in which they are scaled.
+    asked
+        Levels that are wanted exactly, in the measure's unit.
+    count
+        Number of other levels.
+    """
+    values = motions.values(measure)
+    middle = motions.median(measure)
+    levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
+    levels = np.unique(np.append(levels, list(asked)))
+    scales = levels / values[:, np.newaxis]
+    allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
+    allowed &= scales <= believable_scales(motions.base)
+    return IntensityLevels(measure, levels, scales, allowed)
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectOutcomes:
+    """What happened to one body.
+
+    Attributes
+    ----------
+    intensity_levels
+        The levels.
+    overturned, rocked
+        Outcomes, shape (motions, levels).
+    earthquakes
+        Earthquake of each motion, shape (motions,).
+    light
+        Whether a body that was simulated with it may have left the ground, which the model holds shut.
+    """
+
+    intensity_levels: IntensityLevels
+    overturned: NDArray[np.bool_]
+    rocked: NDArray[np.bool_]
+    earthquakes: NDArray[np.object_]
+    light: bool = False
+
+    def fractions(self, weights: Floats | None = None, *, rocks: bool = False) -> Floats:
+        """Fraction of the motions that topple the body at each level, shape (levels,).
+
+        A motion that cannot be scaled so far is left out of a level; where none can, the fraction of the nearest
+        level below is kept, and nothing topples below the lowest level.
+
+        Parameters
+        ----------
+        weights
+            Weight of each motion, shape (motions,); all alike if None.
+        rocks
+            Fraction of those that make it rock instead.
+        """
+        w = np.ones(len(self.overturned)) if weights is None else weights
+        counted = self.intensity_levels.allowed * w[:, np.newaxis]
+        total = counted.sum(axis=0)
+        happened = self.rocked if rocks else self.overturned
+        fell = (counted * happened).sum(axis=0)
+        known = total > 0
+        at = np.maximum.accumulate(np.where(known, np.arange(total.size), 0))
+        fraction = np.divide(fell, total, out=np.zeros(total.size), where=known)
+        return np.asarray(fraction[at])
+
+    def band(self) -> tuple[Floats, Floats]:
+        """Limits of the fraction at each level that as few earthquakes leave open (90 %), shape (levels,) each.
+
+        Wilson's interval (1927) of the fraction with the earthquakes as the number of trials, since motions of one
+        earthquake are alike; it stays within 0 and 1.
+        """
+        n, z = len(set(self.earthquakes)), float(stats.norm.ppf(0.95))
+        p = self.fractions()
+        middle = (p + z**2 / (2 * n)) / (1 + z**2 / n)
+        half = z / (1 + z**2 / n) * np.sqrt(p * (1 - p) / n + z**2 / (4 * n**2))
+        low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, 1.0)
+        # what does not rock cannot topple
+        return np.where(p > 0, low, 0.0), np.where(self.fractions(rocks=True) > 0, high, 0.0)
+
+    def first(self) -> NDArray[np.intp]:
+        """Place of the least level at which each motion topples the body, -1 where none does, shape (motions,).
+
+        Levels to which a motion cannot be scaled do not count.
+        """
+        fell = self.overturned & self.intensity_levels.allowed
+        return np.where(fell.any(axis=1), fell.argmax(axis=1), -1)
+
+    def first_levels(self) -> Floats:
+        """Least level at which each motion topples the body, infinite where none does, shape (motions,)."""
+        first = self.first()
+        return np.where(first >= 0, self.intensity_levels.levels[first], np.inf)
+
+    def outcomes(self) -> Outcomes:
+        """All tests with their level, as :mod:`rockfrag.fragility` fits them."""
+        motion, level = np.nonzero(self.intensity_levels.allowed)
+        return Outcomes(
+            im=self.intensity_levels.levels[level],
+            overturned=self.overturned[motion, level].astype(np.float64),
+            trials=np.ones(motion.size),
+            motion=motion.astype(object),
+            earthquake=self.earthquakes[motion],
+            name=self.intensity_levels.measure.name,
+            unit=self.intensity_levels.measure.unit,
+        )
+
+
+def outcomes_of(
+    objects: Objects,
+    bodies: Mapping[str, Body],
+    motions: MotionSet,
+    intensity_levels: IntensityLevels,
+) -> dict[str, ObjectOutcomes]:
+    """Shake bodies by every motion at every level.
+
+    Parameters
+    ----------
+    objects
+        Where their restitution comes from.
+    bodies
+        Bodies by name.
+    motions
+        The motions.
+    intensity_levels
+        The levels.
+    """
+    return outcomes_of_each([objects], [bodies], motions, intensity_levels)[0]
+
+
+def outcomes_of_all(
+    objects: Sequence[Objects], motions: MotionSet, intensity_levels: IntensityLevels
+) -> list[ObjectOutcomes]:
+    """Shake several objects as they stand by every motion at every level.
+
+    Parameters
+    ----------
+    objects
+        The objects.
+    motions
+        The motions.
+    intensity_levels
+        The levels.
+    """
+    bodies = [{"": item.body} for item in objects]
+    return [found[""] for found in outcomes_of_each(objects, bodies, motions, intensity_levels)]
+
+
+def outcomes_of_each(
+    objects: Sequence[Objects],
+    bodies: Sequence[Mapping[str, Body]],
+    motions: MotionSet,
+    intensity_levels: IntensityLevels,
+) -> list[dict[str, ObjectOutcomes]]:
+    """Shake several bodies of each of several objects by every motion at every level.
+
+    Parameters
+    ----------
+    objects
+        The objects.
+    bodies
+        Bodies of each by name.
+    motions
+        The motions.
+    intensity_levels
+        The levels.
+    """
+    systems = [
+        item.system_of(body)
+        for item, named in zip(objects, bodies, strict=True)
+        for body in named.values()
+    ]
+    most = max(1, MOST_TESTS // intensity_levels.scales.size)
+    found: list[ObjectOutcomes] = []
+    for i in range(0, len(systems), most):
+        found += _shaken(systems[i : i + most], motions, intensity_levels)
+    each = iter(found)
+    return [{name: next(each) for name in named} for named in bodies]
+
+
+def _shaken(
+    systems: Sequence[System], motions: MotionSet, intensity_levels: IntensityLevels
+) -> list[ObjectOutcomes]:
+    """Outcomes of planar bodies; an engine in space would take both components of a record here."""
+    if motions.worst:
+        return _shaken_from_all_sides(systems, motions, intensity_levels)
+    scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)
+    scales = np.minimum(scales, believable_scales(motions.base))
+    result, light = simulated(systems, motions.base, scales)
+    rocked = limit_state_named("rocks").reached(result)
+    return [
+        ObjectOutcomes(
+            intensity_levels, result.overturned[i], rocked[i], motions.earthquakes, light
+        )
+        for i in range(len(systems))
+    ]
+
+
+def simulated(
+    systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
+) -> tuple[Simulated, bool]:
+    """What happened, and whether a body may have left the ground, which an assessment says in its own words.
+
+    Parameters
+    ----------
+    systems
+        What is shaken.
+    shaking
+        Motions of what it stands on.
+    scales
+        Factors on them, shape (motions, levels).
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", LightBodies)
+        result = overturns(
+            systems,
+            [motion.acceleration for motion in shaking],
+            [motion.dt for motion in shaking],
+            scales,
+        )
+    light = [issubclass(item.category, LightBodies) for item in caught]
+    for item, known in zip(caught, light, strict=True):
+        if not known:
+            warnings.warn_explicit(item.message, item.category, item.filename, item.lineno)
+    return result, any(light)
+
+
+def _shaken_from_all_sides(
+    systems: Sequence[System], motions: MotionSet, intensity_levels: IntensityLevels
+) -> list[ObjectOutcomes]:
+    """Outcomes by records, each in its worst direction; both components of a record get that of the record."""
+    records = motions.turned(WORST_STEP_DEG)
+    shaking = [motion for _, turned in records for motion in turned]
+    of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])
+    scales = np.minimum(intensity_levels.scales[of_row], believable_scales(shaking))
+    scales = np.where(intensity_levels.allowed[of_row], scales, AT_REST)
+    result, light = simulated(systems, shaking, scales)
+    # the place of the record that stands for each motion
+    place = np.arange(len(motions.base))
+    for first, second in motions.pairs:
+        place[second] = first
+    found = []
+    moves = limit_state_named("rocks").reached(result)
+    for i in range(len(systems)):
+        fell, rocked = (np.zeros(intensity_levels.scales.shape, dtype=bool) for _ in range(2))
+        np.logical_or.at(fell, of_row, result.overturned[i])
+        np.logical_or.at(rocked, of_row, moves[i])
+        found.append(
+            ObjectOutcomes(intensity_levels, fell[place], rocked[place], motions.earthquakes, light)
+        )
+    return found
+
+
+def on_pad(
+    objects: Objects, friction: float, motions: MotionSet, intensity_levels: IntensityLevels
+) -> tuple[ObjectOutcomes, Floats]:
+    """Outcomes of the object on a pad on which it may slide, and how far it does.
+
+    Parameters
+    ----------
+    objects
+        The object as it is.
+    friction
+        Coefficient of friction of the pad, which lies between the object and what it stands on [-].
+    motions
+        The motions.
+    intensity_levels
+        The levels.
+
+    Returns
+    -------
+    outcomes, slip
+        The largest displacement on the pad [m] has the shape (motions, levels).
+    """
+    system = objects.system_of(objects.body)
+    *below, pad = system.contacts
+    pad = replace(pad, friction=Friction(friction, friction))
+    system = replace(system, contacts=(*below, pad))
+    scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)
+    result = overturns(system, motions.base, scales=scales)
+    rocked = limit_state_named("rocks").reached(result)[0]
+    outcomes = ObjectOutcomes(intensity_levels, result.overturned[0], rocked, motions.earthquakes)
+    return outcomes, result.peak_slip[0, ..., -1]
+
+
+def fraction_with_sliding(
+    objects: Objects, motions: MotionSet, measure: Measure, level: float
+) -> float:
+    """Fraction of the motions at a level that topple the object as it stands if it may slide.
+
+    Simulations with friction take some hundred times as long as those without, so that they are made for
+    one level.
+
+    Parameters
+    ----------
+    objects
+        The object, with its friction.
+    motions
+        The motions.
+    measure
+        Measure of the level.
+    level
+        The level, in the measure's unit.
+    """
+    scales = level / motions.values(measure)
+    allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
+    fallen = overturns(
+        objects.system_of(objects.body),
+        motions.base,
+        scales=np.minimum(scales[:, np.newaxis], believable_scales(motions.base)),
+        friction=objects.friction,
+    ).overturned[0, :, 0]
+    return float(fallen[allowed].mean())

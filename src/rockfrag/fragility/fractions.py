@@ -1,0 +1,275 @@
+"""The curve that assumes no form: the never-falling fraction closest to the data, with limits over groups.
+
+It is what to use where a lognormal curve is rejected.  Its value is a fraction of dependent tests, so that its
+limits at a value of the measure are those of Korn and Graubard (1998, Survey Methodology 24: 193-201): of a
+binomial fraction whose number of trials gives the variance that leaving out whole motions or earthquakes shows,
+with Jeffreys's limits in the place of Clopper's.  The limits of the median are where those of the curve pass one
+half (Woodruff, 1952, J. Am. Stat. Assoc. 47: 635-646).  The dispersion is half the distance from the 16 % to the
+84 % point, smoothed as Harrell and Davis (1982, Biometrika 69: 635-640) do, and jackknifed over the same groups.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+from scipy import optimize, stats
+
+from rockfrag.fragility.intervals import (
+    BETA_POWER,
+    all_but_one,
+    blocks_of,
+    jackknife_error,
+    student,
+)
+from rockfrag.fragility.observations import Floats, Outcomes
+from rockfrag.fragility.pooling import cells, counts
+
+ENDS = (0.1587, 0.8413)
+"""Shares one standard deviation below and above the median of a lognormal curve [-]."""
+
+ROUNDING = 1e-6
+"""Values and shares that differ by less are one point of the curve [-]."""
+
+Limits = tuple[float, float]
+
+UNKNOWN: Limits = (float("nan"), float("nan"))
+
+
+@dataclass(frozen=True)
+class Fractions:
+    """Never-falling fraction of overturned tests, without a form.
+
+    Attributes
+    ----------
+    im
+        Values of the measure, rising, shape (n,).
+    fraction
+        Share at each of them, never falling, shape (n,).
+    lower, upper
+        Pointwise limits, shape (n,); NaN where there is but one group.
+    theta, theta_limits
+        Median, and its limits: 0 and infinite where the data set none; NaN where the fraction does not pass one
+        half.
+    beta, beta_limits
+        Half the logarithmic distance from the 16 % to the 84 % point, and its limits; NaN where the fraction does
+        not reach them.
+    """
+
+    im: Floats
+    fraction: Floats
+    lower: Floats
+    upper: Floats
+    theta: float
+    theta_limits: Limits
+    beta: float
+    beta_limits: Limits
+
+    def knots(self) -> tuple[Floats, Floats]:
+        """Points between which the curve is straight in the logarithm: both rise, the fraction from 0.
+
+        Values of equal fraction become one point in their middle, at 0 and 1 the one nearest to the others. Where
+        the lowest value already has a fraction above 0, half that value is given none.
+        """
+        first = np.flatnonzero(np.diff(self.fraction, prepend=-1.0) > ROUNDING)
+        last = np.append(first[1:], self.im.size) - 1
+        at = np.sqrt(self.im[first] * self.im[last])
+        fraction = self.fraction[first]
+        at = np.where(fraction <= 0.0, self.im[last], np.where(fraction >= 1.0, self.im[first], at))
+        if fraction[0] > 0:
+            at, fraction = np.append(0.5 * self.im[0], at), np.append(0.0, fraction)
+        # of points at one value, but for rounding, the last; the fraction of 0 is kept, a hair below
+        at[0] *= 1.0 - 10.0 * ROUNDING
+        apart = np.append(at[1:] > at[:-1] * (1.0 + ROUNDING), True)
+        return at[apart], fraction[apart]
+
+    def at(self, im: ArrayLike) -> tuple[Floats, Floats, Floats]:
+        """Share and its limits at any values > 0, three arrays of shape (n,)."""
+        x = np.atleast_1d(np.asarray(im, dtype=np.float64))
+        knots, fraction = self.knots()
+        value = np.interp(np.log(x), np.log(knots), fraction)
+        # between two values the limits are the outer ones
+        before = np.searchsorted(self.im, x, side="right")
+        lower = np.concatenate([[0.0], self.lower])[before]
+        upper = np.concatenate([self.upper, [1.0]])[np.searchsorted(self.im, x, side="left")]
+        if np.isnan(self.lower).any():
+            lower, upper = np.full(x.shape, np.nan), np.full(x.shape, np.nan)
+        return np.asarray(value), np.minimum(lower, value), np.maximum(upper, value)
+
+
+def fractions_of_outcomes(
+    outcomes: Outcomes, groups: NDArray[np.object_], level: float
+) -> Fractions:
+    """Fractions of tests with outcomes, with limits over groups.
+
+    Parameters
+    ----------
+    outcomes
+        The tests.
+    groups
+        Label of each test's motion or earthquake, shape (n,).
+    level
+        Of the limits [-], 0 to 1.
+    """
+    codes = pd.factorize(pd.Series(groups))[0]
+    column, values = cells(outcomes.log_im)
+    fell = counts(codes, column, outcomes.overturned)
+    total = counts(codes, column, outcomes.trials)
+    middle = values.copy()
+    middle[1:] -= 0.5 * np.diff(values)
+    return _fractions(values, middle, fell, total, outcomes.n_motions, level)
+
+
+def fractions_of_capacities(
+    log_capacity: Floats, groups: NDArray[np.object_], level: float
+) -> Fractions:
+    """Fractions of capacities, one a motion, with limits over groups.
+
+    Parameters
+    ----------
+    log_capacity
+        Logarithms, -∞ and ∞ where a capacity lies below or above all that was tried, shape (n,).
+    groups, level
+        As of :func:`fractions_of_outcomes`.
+    """
+    codes, names = pd.factorize(pd.Series(groups))
+    finite = np.isfinite(log_capacity)
+    if not finite.any():
+        nothing = np.empty(0)
+        nan = float("nan")
+        return Fractions(nothing, nothing, nothing, nothing, nan, UNKNOWN, nan, UNKNOWN)
+    # many neighbouring capacities are one
+    cell, values = cells(log_capacity[finite])
+    capacity = log_capacity.copy()
+    capacity[finite] = values[cell]
+    # up to just below a capacity the fraction is that of the one before
+    values = np.unique(np.append(values, values - 1e-9))
+    block = blocks_of(len(names))[codes]
+    # an infinite capacity lies in the column after the last value
+    columns = values.size + 1
+    flat = block * columns + np.searchsorted(values, capacity)
+    each = np.bincount(flat, minlength=(int(block.max()) + 1) * columns).reshape(-1, columns)
+    fell = np.cumsum(each, axis=1)[:, :-1].astype(np.float64)
+    total = np.repeat(np.bincount(block)[:, None], values.size, axis=1).astype(np.float64)
+    return _fractions(values, values, fell, total, log_capacity.size, level, len(names))
+
+
+def _fractions(
+    log_im: Floats,
+    middle: Floats,
+    fell: Floats,
+    total: Floats,
+    motions: int,
+    level: float,
+    witnesses: int | None = None,
+) -> Fractions:
+    """Shares from counts by group and value, shape (groups, values); ``middle`` is where capacities lie.
+
+    Every group bears witness to fractions of 0 and 1 where ``witnesses`` says how many groups there are.
+    """
+    groups = len(fell)
+    fraction = _rising(fell.sum(axis=0), total.sum(axis=0))
+    theta, beta = _median(log_im, fraction), _dispersion(middle, fraction, motions)
+    nothing = np.full(fraction.shape, np.nan)
+    if groups < 2:
+        return Fractions(np.exp(log_im), fraction, nothing, nothing, theta, UNKNOWN, beta, UNKNOWN)
+    weights = all_but_one(groups, 0)
+    left_out = np.array(
+        [_rising(f, t) for f, t in zip(weights @ fell, weights @ total, strict=True)]
+    )
+    seen = (
+        _witnesses(fraction, total)
+        if witnesses is None
+        else np.full(fraction.shape, float(witnesses))
+    )
+    lower, upper = _limits(fraction, jackknife_error(left_out), seen, motions, level)
+    theta_limits = UNKNOWN
+    if np.isfinite(theta):
+        theta_limits = _median_limits(np.exp(log_im), lower, upper, theta)
+    fewer = motions * weights.mean(axis=1)
+    betas = np.array([_dispersion(middle, *item) for item in zip(left_out, fewer, strict=True)])
+    beta_limits = _dispersion_limits(beta, betas, level)
+    return Fractions(np.exp(log_im), fraction, lower, upper, theta, theta_limits, beta, beta_limits)
+
+
+def _rising(fell: Floats, total: Floats) -> Floats:
+    """Never-falling fraction; where nothing was tried that of the value before, 0 before the first."""
+    tried = total > 0
+    fraction = np.zeros(total.shape)
+    if tried.any():
+        fitted = optimize.isotonic_regression(fell[tried] / total[tried], weights=total[tried]).x
+        place = np.cumsum(tried)
+        fraction = np.concatenate([[0.0], np.clip(fitted, 0.0, 1.0)])[place]
+    return np.asarray(fraction)
+
+
+def _witnesses(fraction: Floats, total: Floats) -> Floats:
+    """Groups that bear witness to a fraction of 0 (none fell there or above) or 1, shape (values,)."""
+    tried = (total > 0).astype(np.int64)
+    here = np.zeros(fraction.shape)
+    none, every = fraction <= 0.0, fraction >= 1.0
+    above = np.cumsum((tried * none)[:, ::-1], axis=1)[:, ::-1]
+    below = np.cumsum(tried * every, axis=1)
+    here[none] = (above > 0).sum(axis=0)[none]
+    here[every] = (below > 0).sum(axis=0)[every]
+    return here
+
+
+def _limits(
+    fraction: Floats, error: Floats, witnesses: Floats, motions: int, level: float
+) -> tuple[Floats, Floats]:
+    """Pointwise limits of shares with a standard error over groups."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        trials = np.where(error > 0, fraction * (1.0 - fraction) / error**2, np.inf)
+    certain = (fraction <= 0.0) | (fraction >= 1.0)
+    trials = np.where(certain, witnesses, np.minimum(trials, motions))
+    failed, tail = fraction * trials, 0.5 - 0.5 * level
+    lower = stats.beta.ppf(tail, failed + 0.5, trials - failed + 0.5)
+    upper = stats.beta.ppf(1.0 - tail, failed + 0.5, trials - failed + 0.5)
+    lower = np.where(fraction <= 0.0, 0.0, np.minimum(lower, fraction))
+    upper = np.where(fraction >= 1.0, 1.0, np.maximum(upper, fraction))
+    # limits of a curve that never falls do not fall, the cautious way round
+    return np.minimum.accumulate(lower[::-1])[::-1], np.maximum.accumulate(upper)
+
+
+def _median(log_im: Floats, fraction: Floats) -> float:
+    if not fraction[0] <= 0.5 <= fraction[-1]:
+        return float("nan")
+    plain = Fractions(
+        np.exp(log_im), fraction, fraction, fraction, np.nan, UNKNOWN, np.nan, UNKNOWN
+    )
+    knots, value = plain.knots()
+    return float(np.exp(np.interp(0.5, value, np.log(knots))))
+
+
+def _median_limits(im: Floats, lower: Floats, upper: Floats, theta: float) -> Limits:
+    """Values between which the limits of the curve hold one half."""
+    below, above = im[upper < 0.5], im[lower > 0.5]
+    low = float(below[-1]) if below.size else 0.0
+    high = float(above[0]) if above.size else np.inf
+    return min(low, theta), max(high, theta)
+
+
+def _dispersion(middle: Floats, fraction: Floats, motions: float) -> float:
+    """Half the distance between the 16 % and the 84 % point of Harrell and Davis."""
+    if not (fraction[0] <= ENDS[0] and fraction[-1] >= ENDS[1]):
+        return float("nan")
+    points = []
+    for end in ENDS:
+        reached = stats.beta.cdf(fraction, (motions + 1) * end, (motions + 1) * (1.0 - end))
+        # what lies beyond the last value counts there
+        weight = np.diff(reached, prepend=0.0)
+        weight[-1] += 1.0 - reached[-1]
+        points.append(float(weight @ middle))
+    return 0.5 * (points[1] - points[0])
+
+
+def _dispersion_limits(beta: float, left_out: Floats, level: float) -> Limits:
+    if not np.isfinite(beta):
+        return UNKNOWN
+    if len(left_out) < 3 or not (np.isfinite(left_out).all() and (left_out > 0).all() and beta > 0):
+        return 0.0, float("inf")
+    power = beta**BETA_POWER
+    half = student(level, len(left_out)) * float(jackknife_error(left_out**BETA_POWER))
+    upper = (power - half) ** (1 / BETA_POWER) if power > half else float("inf")
+    return float((power + half) ** (1 / BETA_POWER)), float(upper)

@@ -1,0 +1,55 @@
+"""What curves need of the IDA curves of one configuration, whether these are rows of a table or counts."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import pandas as pd
+
+from rockfrag.fragility.empirical import find_resurrections
+from rockfrag.fragility.observations import Outcomes, outcomes_from_table
+
+
+class IdaData(Protocol):
+    """IDA curves of one configuration."""
+
+    def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
+        """Survival windows, a row a motion, see :func:`rockfrag.fragility.empirical.find_resurrections`."""
+
+    def outcomes(self, column: str) -> Outcomes:
+        """All outcomes with a measure."""
+
+    def motions(self) -> pd.DataFrame:
+        """One row per motion."""
+
+
+@dataclass(frozen=True)
+class TableIda:
+    """IDA curves as a table with a row per motion and amplitude.
+
+    Attributes
+    ----------
+    table
+        With ``motion``, ``overturned``, the amplitude and the measures.
+    earthquake
+        Column of the earthquake; None where motions have none.
+    motion
+        Column of the motion.
+    """
+
+    table: pd.DataFrame
+    earthquake: str | None = "earthquake"
+    motion: str = "motion"
+
+    def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
+        """See :class:`IdaData`."""
+        return find_resurrections(self.table, amplitude=amplitude, by=by)
+
+    def outcomes(self, column: str) -> Outcomes:
+        """See :class:`IdaData`."""
+        return outcomes_from_table(
+            self.table, column, motion=self.motion, earthquake=self.earthquake, source="ida"
+        )
+
+    def motions(self) -> pd.DataFrame:
+        """See :class:`IdaData`."""
+        return self.table.drop_duplicates(self.motion)

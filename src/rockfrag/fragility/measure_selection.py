@@ -1,0 +1,354 @@
+"""Which intensity measure predicts overturning best, and how sure is that choice?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import stats
+from statsmodels.regression.linear_model import OLS
+from statsmodels.tools.tools import add_constant
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.held_out import fraction_best, outcome_scores, paired_p
+from rockfrag.fragility.intervals import Interval, interval_over_motions
+from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
+from rockfrag.fragility.observations import Floats, Outcomes, numbers, outcomes_from_table
+from rockfrag.fragility.surface import FragilitySurface, fit_surface
+from rockfrag.short_repr import short_repr
+
+TOLD_APART_P = 0.05
+"""Two measures are told apart below this p value of their held-out scores."""
+FEWEST_GROUPS_TO_CHOOSE = 10
+"""Below so many motions or earthquakes the words say that the choice is weak."""
+SUFFICIENT_P = 0.05
+"""A residual's dependence on a column is named below this p value."""
+
+
+@dataclass(frozen=True)
+class MeasureSelection:
+    """Comparison of intensity measures on the same tests.
+
+    Attributes
+    ----------
+    recommended
+        Column of the recommended measure; empty where no measure has a rising curve.
+    name
+        The same as the field writes it, for example ``PGV``.
+    table
+        One row per measure, best first: ``measure``, ``im``, ``unit``, ``theta``, ``beta``
+        (efficiency: the smaller the better), ``beta_lower``, ``beta_upper``, ``aic``, ``auc``,
+        ``score`` (mean log probability of what was held out, per test [-]; the larger the better),
+        ``p_worse`` (p value of scoring as the best does, t over motions or earthquakes), ``chosen_fraction``
+        (fraction of bootstrap samples of motions or earthquakes in which it scores best), and ``p_<column>``
+        for the sufficiency against each given column.
+    pair
+        Probit surface in the best measure and the one that adds most to it; None for a single
+        measure.
+    words
+        The recommendation with its reasons, for a report.
+    """
+
+    recommended: str
+    name: str
+    table: pd.DataFrame
+    pair: FragilitySurface | None
+    words: str
+
+    __repr__ = short_repr
+
+
+def area_under_curve(outcomes: Outcomes) -> float:
+    """Probability that an overturned test had the larger measure than a survived one; ties half.
+
+    NaN where all tests agree.
+
+    Parameters
+    ----------
+    outcomes
+        Outcomes with their measure, see :class:`Outcomes`.
+
+    Returns
+    -------
+    The area [-], from 0 to 1.
+    """
+    fell, stood = outcomes.overturned, outcomes.trials - outcomes.overturned
+    _, level = np.unique(outcomes.im, return_inverse=True)
+    falls, stands = np.bincount(level, fell), np.bincount(level, stood)
+    if falls.sum() == 0 or stands.sum() == 0:
+        return float("nan")
+    below = np.cumsum(stands) - stands
+    return float((falls * (below + 0.5 * stands)).sum() / (falls.sum() * stands.sum()))
+
+
+def sufficiency(outcomes: Outcomes, fit: FragilityFit, column: Floats) -> float:
+    """Test a linear dependence of the outcome's residual on ``column``, shape (n,); p value.
+
+    The residual is outcome minus fitted probability; the regression's standard error is robust to
+    dependence within a motion (earthquake where known). A measure is sufficient for a property, such as
+    magnitude or distance, on which nothing of its residual depends (Luco and Cornell, 2007,
+    Earthquake Spectra 23: 357-392). NaN with fewer than three groups or a constant column.
+    """
+    if not np.isfinite(fit.theta):
+        return float("nan")
+    residual = outcomes.overturned / outcomes.trials - fit.probability(outcomes.im)
+    return dependence_p_value(residual, column, outcomes.earthquake)
+
+
+def dependence_p_value(residual: Floats, column: Floats, groups: NDArray[np.object_]) -> float:
+    """Test a linear dependence of residuals on a column, robust to dependence within groups."""
+    codes, names = pd.factorize(pd.Series(groups))
+    if len(names) < 3 or np.ptp(column) == 0:
+        return float("nan")
+    scaled = (column - column.mean()) / column.std()
+    result = OLS(residual, add_constant(scaled)).fit(
+        cov_type="cluster", cov_kwds={"groups": codes, "use_correction": True}
+    )
+    error = float(np.sqrt(result.cov_params()[1, 1]))
+    if error == 0:
+        return float("nan")
+    return float(2.0 * stats.t.sf(abs(float(result.params[1])) / error, len(names) - 1))
+
+
+def recommend_measure(
+    table: pd.DataFrame,
+    measures: Sequence[str],
+    *,
+    given: Sequence[str] = (),
+    overturned: str = "overturned",
+    motion: str | None = "motion",
+    earthquake: str | None = None,
+    level: float = 0.90,
+    replicates: int = 200,
+    seed: int = 0,
+    source: str = "table",
+) -> MeasureSelection:
+    """Compare intensity measures on the same tests and recommend one, in words.
+
+    Motions (earthquakes where given) are held out in turn and predicted from the others; the measure with
+    the best score is recommended. Measures that the scores do not tell from it are named as equals,
+    with the more efficient one (smaller β) first.
+
+    Parameters
+    ----------
+    table
+        One row per test, with a column per measure.
+    measures
+        Columns of the measures, at least one.
+    given
+        Columns (magnitude, distance, …) against which sufficiency is tested.
+    overturned, motion, earthquake
+        Names of columns.
+    level
+        Of the limits of β.
+    replicates, seed
+        Of the bootstrap over motions (earthquakes where given) for ``chosen_fraction``.
+    source
+        What messages call the table.
+
+    Returns
+    -------
+    The :class:`MeasureSelection`.
+    """
+    if not measures:
+        raise InputError("measures: name at least one column with an intensity measure.")
+    rows, data = [], {}
+    extra = {column: numbers(table, column, source) for column in given}
+    for column in measures:
+        outcomes = outcomes_from_table(
+            table,
+            column,
+            overturned=overturned,
+            motion=motion,
+            earthquake=earthquake,
+            source=source,
+        )
+        data[column] = outcomes
+        fit = fit_lognormal(outcomes)
+        interval = interval_over_motions(outcomes, level=level)
+        rows.append(
+            _row(column, outcomes, fit, interval)
+            | {f"p_{name}": sufficiency(outcomes, fit, values) for name, values in extra.items()}
+        )
+    first = data[measures[0]]
+    group = pd.factorize(pd.Series(first.earthquake))[0]
+    scores = np.array(
+        [
+            outcome_scores(item.log_im[:, None], item.overturned, item.trials, group)
+            for item in data.values()
+        ]
+    )
+    compared = ranked(pd.DataFrame(rows), scores, first.n, replicates, seed)
+    if compared["theta"].isna().all():
+        return MeasureSelection(
+            "", "", compared, None, recommendation(compared, len(scores.T), given)
+        )
+    best = str(compared["measure"].iloc[0])
+    pair, p_pair, gain = _best_pair(data, best, group)
+    surface = None
+    if pair:
+        surface = fit_surface(table, (best, pair), overturned=overturned, source=source)
+    words = recommendation(compared, len(scores.T), given)
+    if surface is not None:
+        words = f"{words} {_pair_words(data[pair].name, p_pair, gain)}"
+    return MeasureSelection(best, str(compared["im"].iloc[0]), compared, surface, words)
+
+
+def ranked(
+    compared: pd.DataFrame,
+    scores: Floats,
+    tests: int,
+    replicates: int,
+    seed: int,
+    efficiency: str = "beta",
+) -> pd.DataFrame:
+    """Sort measures: best held-out score first, equals of it by efficiency, those without a curve last.
+
+    Parameters
+    ----------
+    compared
+        One row per measure.
+    scores
+        Log scores by group (:mod:`rockfrag.fragility.held_out`), shape (measures, groups).
+    tests
+        Number of tests scored.
+    replicates, seed
+        Of the bootstrap over groups.
+    efficiency
+        Column that orders equals.
+    """
+    rising = compared["theta"].notna().to_numpy()
+    known = rising & np.isfinite(scores).all(axis=1)
+    total = np.where(known, scores.sum(axis=1), -np.inf)
+    best = int(total.argmax())
+    p_worse = np.array(
+        [paired_p(scores[best], score) if known[best] else np.nan for score in scores]
+    )
+    fraction = np.zeros(len(scores))
+    if known.any():
+        fraction[known] = fraction_best(scores[known], replicates, seed)
+    near = known & ~(p_worse < TOLD_APART_P)
+    order = compared.assign(
+        score=np.where(known, total / tests, np.nan),
+        p_worse=p_worse,
+        chosen_fraction=fraction,
+        late=~rising,
+        rank=np.where(near, compared[efficiency], np.inf),
+        total=-total,
+    ).sort_values(["late", "rank", "total", "measure"], kind="stable")
+    return order.drop(columns=["late", "rank", "total"]).reset_index(drop=True)
+
+
+def _row(
+    column: str, outcomes: Outcomes, fit: FragilityFit, interval: Interval
+) -> dict[str, float | str]:
+    return {
+        "measure": column,
+        "im": outcomes.name,
+        "unit": outcomes.unit,
+        "theta": fit.theta,
+        "beta": fit.beta,
+        "beta_lower": interval.beta[0],
+        "beta_upper": interval.beta[1],
+        "aic": fit.aic,
+        "auc": area_under_curve(outcomes),
+    }
+
+
+def _best_pair(
+    data: Mapping[str, Outcomes], best: str, group: NDArray[np.intp]
+) -> tuple[str, float, float]:
+    """Measure that adds most to the best one, the p value of what it adds, and the gain of score."""
+    found = ("", float("nan"), -np.inf)
+    for name, other in data.items():
+        logs = np.column_stack([data[best].log_im, other.log_im])
+        proportional = np.linalg.matrix_rank(np.column_stack([np.ones(len(logs)), logs])) < 3
+        # proportional measures (PGA and a/(g tan α) of one block) tell nothing together
+        if name == best or proportional:
+            continue
+        outcomes = (other.overturned, other.trials, group)
+        both, alone = outcome_scores(logs, *outcomes), outcome_scores(logs, *outcomes, fitted=1)
+        gain = float((both - alone).sum() / other.n)
+        if gain > found[2]:
+            found = (name, paired_p(both, alone), gain)
+    return found
+
+
+_WORDS = {"mean_period_s": "mean period", "d5_95_s": "significant duration"}
+
+
+def _column(name: str) -> str:
+    return _WORDS.get(name, name)
+
+
+def p_text(p: float) -> str:
+    """P value in words: never as zero."""
+    return f"p = {p:.3f}" if p >= 0.001 else "p < 0.001"
+
+
+def _pair_words(name: str, p: float, gain: float) -> str:
+    if gain > 0 and p < TOLD_APART_P:
+        return f"Adding {name} improves the prediction of held-out tests ({p_text(p)}): use the surface in both."
+    if not np.isfinite(p):
+        return f"One group of motions cannot show whether {name} adds to it."
+    return (
+        f"Adding {name} does not improve the prediction of held-out tests: one measure is enough."
+    )
+
+
+def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> str:
+    """Put a ranked table of measures into words that say what to use and how sure that is."""
+    if table["theta"].isna().all():
+        return "The probability of overturning rises in none of the measures."
+    if table["score"].isna().all():
+        return (
+            "The measures cannot be compared: this needs two motions or earthquakes, and brackets of the "
+            "overturning amplitude that do not all overlap."
+        )
+    best = table.iloc[0]
+    others = table.iloc[1:]
+    scored = others[others["score"].notna()]
+    equal = scored[~(scored["p_worse"] < TOLD_APART_P)]
+    worse = scored[scored["p_worse"] < TOLD_APART_P].sort_values("score", ascending=False)
+    parts = [
+        f"Use {best['im']}: β = {best['beta']:.2f}, AUC {best['auc']:.3f}, mean log score of held-out "
+        f"tests {best['score']:.3f}."
+    ]
+    if len(equal):
+        listed = ", ".join(
+            f"{row['im']} ({row['score']:.3f}, β = {row['beta']:.2f})"
+            for row in equal.to_dict("records")
+        )
+        enough = groups >= FEWEST_GROUPS_TO_CHOOSE
+        advice = "any of them will do" if enough else "the tests are too few to rule these out"
+        parts.append(
+            f"It is not distinguishable from {listed}: {advice}. It is preferred for its smaller β."
+        )
+    if len(worse):
+        row = worse.iloc[0]
+        parts.append(
+            f"{row['im']} is worse: {row['score']:.3f} ({p_text(float(row['p_worse']))}, t-test over {groups} "
+            "groups of dependent tests)."
+        )
+    if len(others):
+        parts.append(
+            f"It scores best in {100 * best['chosen_fraction']:.0f} % of bootstrap samples of these groups."
+        )
+    if groups < FEWEST_GROUPS_TO_CHOOSE:
+        parts.append(f"{groups} groups are few: other earthquakes may change the choice.")
+    for column in given:
+        p = float(best[f"p_{column}"])
+        if np.isnan(p):
+            parts.append(
+                f"These motions cannot test its sufficiency with respect to {_column(column)}."
+            )
+        elif p < SUFFICIENT_P:
+            parts.append(
+                f"It is not sufficient: its residuals depend on {_column(column)} ({p_text(p)})."
+            )
+        else:
+            parts.append(
+                f"No dependence of its residuals on {_column(column)} is shown (p = {p:.2f})."
+            )
+    return " ".join(parts)

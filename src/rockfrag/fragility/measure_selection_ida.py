@@ -1,0 +1,159 @@
+"""Choice of the intensity measure from incremental dynamic analyses, one body at a time.
+
+A motion scaled up and down gives many outcomes but one capacity, so the measures are compared by
+how well they predict the bracket of the first overturning of earthquakes that were held out: one
+observation per motion.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.censored import (
+    Brackets,
+    bracket_interval,
+    brackets_from_table,
+    fit_brackets,
+)
+from rockfrag.fragility.held_out import capacity_scores
+from rockfrag.fragility.ida_curves import scale_power, with_measures
+from rockfrag.fragility.ida_data import IdaData, TableIda
+from rockfrag.fragility.lognormal import FragilityFit
+from rockfrag.fragility.measure_selection import (
+    MeasureSelection,
+    area_under_curve,
+    dependence_p_value,
+    ranked,
+    recommendation,
+)
+from rockfrag.fragility.observations import Floats, positive
+
+
+def recommend_ida_measure(
+    ida: pd.DataFrame | IdaData,
+    measures: pd.DataFrame,
+    columns: Sequence[str],
+    *,
+    given: Sequence[str] = (),
+    earthquake: str | None = "earthquake",
+    level: float = 0.90,
+    replicates: int = 200,
+    seed: int = 0,
+) -> MeasureSelection:
+    """Compare measures on the IDA curves of one body and recommend one, in words.
+
+    Parameters
+    ----------
+    ida
+        One row per motion and amplitude of one body, with ``motion``, ``amplitude_g``,
+        ``overturned``; or IDA curves in another form that know the measures.
+    measures
+        One row per motion as recorded, with ``name`` and ``pga_g``.
+    columns
+        Measures to compare; they must grow with the amplitude.
+    given
+        Further columns of ``measures`` against which sufficiency is tested, for example
+        ``d5_95_s``, ``mean_period_s``, magnitude.
+    earthquake
+        Column of the earthquake in ``ida``; None resamples motions.
+    level, replicates, seed
+        Of the limits and of the bootstrap.
+
+    Returns
+    -------
+    MeasureSelection
+        Its table has also ``beta_amplitude``: β over the power with which the measure grows with
+        the amplitude, which compares Arias intensity fairly with peaks. ``pair`` is None.
+
+    Raises
+    ------
+    InputError
+        As :func:`rockfrag.fragility.ida_curves.with_measures`, and if a measure does not grow with the
+        amplitude.
+    """
+    if not columns:
+        raise InputError("columns: name at least one intensity measure.")
+    powers = {column: scale_power(column) for column in columns}
+    fixed = [column for column, power in powers.items() if power == 0]
+    if fixed:
+        raise InputError(
+            f"measure {fixed[0]!r} does not grow with the amplitude, so no amplitude overturns by "
+            "it; name it among the given columns instead."
+        )
+    if isinstance(ida, pd.DataFrame):
+        ida = TableIda(with_measures(ida, measures, columns), earthquake)
+    resurrections = ida.resurrections(
+        "amplitude_g", ["motion"] if earthquake is None else ["motion", earthquake]
+    )
+    amplitude = brackets_from_table(
+        resurrections,
+        lower="first_lower",
+        upper="first_upper",
+        earthquake=earthquake,
+        measure="amplitude_g",
+    )
+    known = measures.set_index("name")
+    extra = {column: _of_motions(known, resurrections, column) for column in given}
+    pga = positive(known.loc[resurrections["motion"]], "pga_g", "measures")
+    rows, brackets = [], []
+    for column, power in powers.items():
+        unit_value = positive(known.loc[resurrections["motion"]], column, "measures") / pga**power
+        outcomes = ida.outcomes(column)
+        scaled = Brackets(
+            unit_value * amplitude.lower**power,
+            unit_value * amplitude.upper**power,
+            amplitude.motion,
+            amplitude.earthquake,
+            outcomes.name,
+            outcomes.unit,
+        )
+        fit = fit_brackets(scaled)
+        interval = bracket_interval(scaled, level=level)
+        residual, seen = _residuals(scaled, fit)
+        row = {
+            "measure": column,
+            "im": fit.im,
+            "unit": fit.unit,
+            "theta": fit.theta,
+            "beta": fit.beta,
+            "beta_lower": interval.beta[0],
+            "beta_upper": interval.beta[1],
+            "beta_amplitude": fit.beta / power,
+            "aic": fit.aic,
+            "auc": area_under_curve(outcomes),
+        }
+        for name, values in extra.items():
+            row[f"p_{name}"] = dependence_p_value(residual, values[seen], scaled.earthquake[seen])
+        rows.append(row)
+        brackets.append(scaled)
+    group = pd.factorize(pd.Series(amplitude.earthquake))[0]
+    scores = np.array([capacity_scores(bracket, group) for bracket in brackets])
+    tests = len(amplitude.lower)
+    table = ranked(pd.DataFrame(rows), scores, tests, replicates, seed, "beta_amplitude")
+    words = recommendation(table, scores.shape[1], given)
+    if table["score"].isna().all():
+        return MeasureSelection("", "", table, None, words)
+    best = table.iloc[0]
+    return MeasureSelection(str(best["measure"]), str(best["im"]), table, None, words)
+
+
+def _of_motions(known: pd.DataFrame, resurrections: pd.DataFrame, column: str) -> Floats:
+    if column not in known:
+        raise InputError(f"measures: there is no column {column!r}; correct the name.")
+    values = known.loc[resurrections["motion"], column].to_numpy(dtype=np.float64)
+    if not np.isfinite(values).all():
+        motion = resurrections["motion"].iloc[int(np.flatnonzero(~np.isfinite(values))[0])]
+        raise InputError(
+            f"measures, column {column!r}: motion {motion!r} has no value; leave the column out."
+        )
+    return np.asarray(values)
+
+
+def _residuals(brackets: Brackets, fit: FragilityFit) -> tuple[Floats, NDArray[np.bool_]]:
+    """Residual of ln capacity of the motions that overturned above a survived step, and which."""
+    seen = np.isfinite(brackets.upper) & (brackets.lower > 0)
+    middle = 0.5 * np.log(brackets.lower[seen] * brackets.upper[seen])
+    return np.asarray(middle - np.log(fit.theta)), seen

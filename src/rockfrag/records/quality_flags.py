@@ -1,0 +1,93 @@
+"""What looks wrong in a motion: a unit mistaken, a sensor at its end, a record begun too late."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.records.motion import Motion
+from rockfrag.units import GRAVITY
+
+STRONGEST_G = 3.0
+"""Peak [g] that hardly any record of an earthquake exceeds."""
+
+_COARSEST = 0.025
+"""Sampling interval [s] above which 20 Hz, which rocking bodies feel, are lost."""
+
+_DRIFT = 0.5
+"""Fraction of the peak velocity that is left at the end of a record with a drift."""
+
+_CLIPPED_RUN = 4
+"""Samples in a row at the largest value of a record that is cut off at its sensor's range."""
+
+_LATE = 0.2
+"""Fraction of the peak that a record has in its first tenth of a second if it began too late."""
+
+_SPIKE = 0.5
+"""Fraction of the peak by which a lone sample leaves its neighbours."""
+
+_SPIKE_RATIO = 20.0
+"""Ratio of a spike to what nine tenths of the samples leave their neighbours by."""
+
+_DOUBLED = 0.9
+"""Fraction of the samples that repeat the one before in a record of doubled samples."""
+
+
+def quality_flags(motion: Motion) -> list[str]:
+    """Return what looks wrong in a motion, one phrase each; none for a record in order.
+
+    Nothing is changed or refused for it: a record may be strange and right.
+    """
+    a, peak = motion.acceleration, motion.pga
+    if peak == 0:
+        return ["all samples are zero"]
+    found = []
+    if peak > STRONGEST_G * GRAVITY:
+        found.append(
+            f"a peak of {peak / GRAVITY:.3g} g, above {STRONGEST_G:g} g (is the unit right?)"
+        )
+    if motion.dt > _COARSEST:
+        found.append(f"a sampling interval of {motion.dt:g} s, too long for short impacts")
+    if a.size < 10:
+        return [*found, f"only {a.size} samples"]
+    left = _velocity_left(a)
+    if left > _DRIFT:
+        found.append(f"a drift: {100 * left:.0f} % of the peak velocity is left at the end")
+    if _longest_run(np.abs(a) >= peak * (1 - 1e-9)) >= _CLIPPED_RUN:
+        found.append("its peak is flat, as if clipped")
+    first = a[: max(2, round(0.1 / motion.dt))]
+    if first.size < a.size / 4 and np.abs(first).max() > _LATE * peak:
+        found.append("strong from its first samples, as if triggered late")
+    if _has_spike(a, peak):
+        found.append("a lone spike")
+    if _is_doubled(a):
+        found.append("every second sample repeats the one before it")
+    return found
+
+
+def _velocity_left(a: NDArray[np.float64]) -> float:
+    """Return the fraction of the peak velocity that is left at the end."""
+    velocity = np.cumsum(0.5 * (a[1:] + a[:-1]))
+    peak = float(np.abs(velocity).max())
+    return abs(float(velocity[-1])) / peak if peak else 0.0
+
+
+def _longest_run(mask: NDArray[np.bool_]) -> int:
+    """Return the length of the longest run of true values."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(np.int8), [0]))))
+    return int((edges[1::2] - edges[::2]).max()) if edges.size else 0
+
+
+def _has_spike(a: NDArray[np.float64], peak: float) -> bool:
+    off = np.abs(a[1:-1] - 0.5 * (a[:-2] + a[2:]))
+    usual = float(np.quantile(off, 0.9))
+    return bool(off.max() > _SPIKE * peak and off.max() > _SPIKE_RATIO * usual)
+
+
+def _is_doubled(a: NDArray[np.float64]) -> bool:
+    moving = a[: a.size // 2 * 2].reshape(-1, 2)
+    moving = moving[np.abs(moving).max(axis=1) > 0]
+    if moving.shape[0] < 10 or np.unique(a).size < 10:
+        return False
+    shifted = a[1 : (a.size - 1) // 2 * 2 + 1].reshape(-1, 2)
+    same = [float(np.mean(pairs[:, 0] == pairs[:, 1])) for pairs in (moving, shifted)]
+    # a coarse record repeats samples everywhere, a doubled one at every second
+    return max(same) > _DOUBLED and min(same) < 0.5

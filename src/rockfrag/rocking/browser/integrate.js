@@ -1,0 +1,207 @@
+/* The simulator of rockfrag in a page: plain script, no library, no network; works from a file, and in Node.
+ *
+ *   const kernel = await rockfragKernel(bytes);            // of integrate.wasm, a Uint8Array
+ *   const body = kernel.bodyOf({statue: {width: 0.3, height: 1.2, mass: 200}});
+ *   const response = kernel.integrate({body, samples, dt: 0.01, scale: 1.5});
+ *
+ * Everything that is computed about a body is computed by the module, which is made from the kernels that
+ * rockfrag.simulate runs: a history has its bits.
+ */
+async function rockfragKernel(bytes) {
+  "use strict";
+  const { module, instance } = await WebAssembly.instantiate(bytes, {});
+  const { memory, describe, integrate, __heap_base } = instance.exports;
+  const layout = JSON.parse(
+    new TextDecoder().decode(WebAssembly.Module.customSections(module, "layout")[0]),
+  );
+  const { gravity, step, free_time: freeTime } = layout.constants;
+  const KINDS = ["opening", "impact", "chatter", "lift-off"];
+  const FAULTS = [
+    "",
+    "A centre of gravity is not above its base, so the block cannot stand.",
+    "The statue's base does not lie on the pedestal.",
+    "The statue's centre of gravity is not above the part of its base that lies on the pedestal.",
+    "A centre of gravity is not above its base once the pedestal's lean is counted.",
+    "The statue could touch the ground beside its pedestal before anything has fallen.",
+    "restitution: it would gain energy or is no ratio.",
+  ];
+
+  // ---- memory: what a function returns, a call, and arrays after it, all aligned to eight bytes
+
+  const result = (__heap_base.value + 15) & ~15;
+  const call = result + 16;
+  const arrays = (call + layout.call.size + 15) & ~15;
+  let view = new DataView(memory.buffer);
+
+  function reserve(end) {
+    const missing = end - memory.buffer.byteLength;
+    if (missing > 0) memory.grow(Math.ceil(missing / 65536));
+    if (view.buffer !== memory.buffer) view = new DataView(memory.buffer);
+  }
+
+  // ---- records, by the names of their fields
+
+  function read(record, at) {
+    const found = {};
+    for (const [name, place] of Object.entries(record.fields)) {
+      found[name] = Array.isArray(place) ? number(place[1], at + place[0]) : read(place, at + place.at);
+    }
+    return found;
+  }
+
+  function number(kind, at) {
+    if (kind === "f8") return view.getFloat64(at, true);
+    if (kind === "i8") return Number(view.getBigInt64(at, true));
+    return view.getUint8(at) !== 0;
+  }
+
+  function write(record, at, values) {
+    for (const [name, value] of Object.entries(values)) {
+      const place = record.fields[name];
+      if (!Array.isArray(place)) write(place, at + place.at, value);
+      else if (place[1] === "f8") view.setFloat64(at + place[0], value, true);
+      else if (place[1] === "i8") view.setBigInt64(at + place[0], BigInt(value), true);
+      else view.setUint8(at + place[0], value ? 1 : 0);
+    }
+  }
+
+  const fields = layout.call.fields;
+  const bodyAt = call + fields.body.at;
+
+  // ---- bodies
+
+  function given(block, name) {
+    const numbers = {
+      width: block.width,
+      height: block.height,
+      mass: block.mass,
+      inertia: block.inertia ?? NaN,
+      cg_height: block.cgHeight ?? NaN,
+      cg_offset: block.cgOffset ?? 0,
+      lean: block.lean ?? 0,
+    };
+    for (const [key, value] of Object.entries(numbers)) {
+      const free = key === "cg_offset" || key === "lean";
+      const left = key === "inertia" || key === "cg_height";
+      if (!(free ? Number.isFinite(value) : value > 0 || (left && Number.isNaN(value)))) {
+        throw new Error(`${name}: ${key} of ${value} cannot be used.`);
+      }
+    }
+    return numbers;
+  }
+
+  // a body and its measured restitution: a ratio, of a stack [ground, interface]; null conserves momentum
+  function bodyOf({ statue, pedestal = null, offset = 0, restitution = null, linear = false, g = gravity }) {
+    const [ground, between] = pedestal ? (restitution ?? [null, null]) : [null, restitution];
+    const byMomentum = { law: 0, value: 1 };
+    reserve(arrays);
+    new Uint8Array(memory.buffer, bodyAt, fields.body.size).fill(0);
+    write(layout.call, call, {
+      statue: given(statue, "statue"),
+      offset,
+      stacked: pedestal ? 1 : 0,
+      ground: ground ?? NaN,
+      interface: between ?? NaN,
+      body: {
+        gravity: g, linear: linear ? (pedestal ? 1 : 2) : 0,
+        after1r: byMomentum, after1l: byMomentum, after2r: byMomentum, after2l: byMomentum,
+      },
+    });
+    if (pedestal) write(layout.call, call, { pedestal: given(pedestal, "pedestal") });
+    describe(result, result + 8, call);
+    const { fault, fastest, slowest } = read(layout.call, call);
+    if (fault !== 0) throw new Error(FAULTS[fault]);
+    return {
+      record: new Uint8Array(memory.buffer.slice(bodyAt, bodyAt + fields.body.size)),
+      fields: read(fields.body, bodyAt),
+      stacked: Boolean(pedestal),
+      fastest,
+      slowest,
+    };
+  }
+
+  function shakingOf(body, dt) {
+    return {
+      substeps: Math.max(1, Math.ceil((body.fastest * dt) / step - 1e-9)),
+      freeSamples: Math.ceil(freeTime / body.slowest / dt),
+    };
+  }
+
+  // ---- histories
+
+  // an array as the kernels take one: owner and parent, count and size of items, place, shape and strides
+  function array(at, count, size) {
+    return [0, 0, BigInt(count), BigInt(size), at, BigInt(count), BigInt(size)];
+  }
+
+  let room = 256; // events
+
+  function runIntegration({
+    body, samples, vertical = new Float64Array(0), dt, scale = 1, substeps, freeSamples, initial = {}, history = true,
+  }) {
+    const steps = substeps && freeSamples !== undefined ? null : shakingOf(body, dt);
+    const free = freeSamples ?? steps.freeSamples;
+    const rows = history ? samples.length + free : 0;
+    const samplesAt = arrays;
+    const verticalAt = samplesAt + 8 * samples.length;
+    const historyAt = verticalAt + 8 * vertical.length;
+    const eventsAt = historyAt + rows * layout.sample.size;
+    const places = history ? room : 0;
+    reserve(eventsAt + places * layout.event.size);
+    new Float64Array(memory.buffer, samplesAt, samples.length).set(samples);
+    // the kernels take it over gravity
+    const g = new DataView(body.record.buffer, body.record.byteOffset).getFloat64(fields.body.fields.gravity[0], true);
+    new Float64Array(memory.buffer, verticalAt, vertical.length).set(vertical.map((a) => a / g));
+    new Uint8Array(memory.buffer, bodyAt, fields.body.size).set(body.record);
+    write(layout.call, call, {
+      initial: { c1: 0, c2: 0, theta1: 0, omega1: 0, theta2: 0, omega2: 0, ...initial },
+      scale,
+      dt,
+      substeps: substeps ?? steps.substeps,
+      free_samples: free,
+    });
+    integrate(
+      result, result + 8, call,
+      ...array(samplesAt, samples.length, 8),
+      ...array(verticalAt, vertical.length, 8),
+      ...array(historyAt, rows, layout.sample.size),
+      ...array(eventsAt, places, layout.event.size),
+    );
+    const { summary, done } = read(layout.call, call);
+    if (history && summary.events > room) {
+      room = 2 * summary.events;
+      return runIntegration({ body, samples, vertical, dt, scale, substeps, freeSamples, initial, history });
+    }
+    return {
+      done,
+      fallen: summary.fallen,
+      fallTime: summary.fall_time,
+      ...summary,
+      ...(history ? columns(historyAt, done) : {}),
+      events: history ? listed(eventsAt, summary.events) : [],
+    };
+  }
+
+  function columns(at, done) {
+    const found = {};
+    for (const [name, [offset, kind]] of Object.entries(layout.sample.fields)) {
+      const values = kind === "f8" ? new Float64Array(done) : new Int8Array(done);
+      for (let i = 0, place = at + offset; i < done; i += 1, place += layout.sample.size) {
+        // contact states are whole numbers below 128, of which the first byte has all
+        values[i] = kind === "f8" ? view.getFloat64(place, true) : view.getInt8(place);
+      }
+      found[name] = values;
+    }
+    return found;
+  }
+
+  function listed(at, count) {
+    const size = layout.event.size;
+    return Array.from({ length: count }, (_, i) => {
+      const event = read(layout.event, at + i * size);
+      return { ...event, kind: KINDS[event.kind] };
+    });
+  }
+
+  return { bodyOf, shakingOf, integrate: runIntegration, restitution: true };
+}

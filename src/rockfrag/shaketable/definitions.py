@@ -1,0 +1,277 @@
+"""Three definitions of one incremental dynamic analysis, as tables of tests.
+
+The step protocol of the laboratory, the first overturning and the amplitude above which the
+specimen always overturns are three different figures; between the last two lie structural resurrections.
+"""
+
+import math
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.shaketable.protocols import Outcome, Protocol, measured
+from rockfrag.shaketable.swept import ABOUT, Swept, swept_of
+from rockfrag.shaketable.tests_table import as_tests_table
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+DEFINITIONS = ("step_protocol", "first_overturning", "always_overturning")
+
+DEFINITION = "step_protocol"
+"""The definition that resembles a laboratory's: statistics rest on it, the others stand beside."""
+
+_NEEDED = (
+    "configuration",
+    "object",
+    "pedestal",
+    "motion",
+    "earthquake",
+    "floor",
+    "amplitude_g",
+    "overturned",
+    "overturned_body",
+)
+
+
+def first_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
+    """Bounds of the least amplitude that overturns.
+
+    Parameters
+    ----------
+    amplitudes
+        Amplitudes [g], rising, shape (n,).
+    overturned
+        Whether each overturned, shape (n,).
+
+    Returns
+    -------
+    The :class:`Outcome`: bounds of the amplitude.
+    """
+    _check_ida(amplitudes, overturned, "ida")
+    return _climbed(amplitudes, overturned)
+
+
+def _climbed(amplitudes: Floats, overturned: Flags) -> Outcome:
+    """Bounds of the first overturning, as :func:`rockfrag.shaketable.protocols.climb` finds them."""
+    first = int(overturned.argmax()) if overturned.any() else overturned.size
+    survived = float(amplitudes[first - 1]) if first else 0.0
+    if first == overturned.size:
+        return Outcome(survived, math.nan, "limit reached" if first else "no step fits")
+    remark = "" if first else "overturned at the first step"
+    return Outcome(survived, float(amplitudes[first]), remark)
+
+
+def always_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
+    """Bounds of the amplitude above which every amplitude of the IDA curve overturns.
+
+    Censored if the largest amplitude was survived.
+
+    Parameters
+    ----------
+    amplitudes
+        Amplitudes [g], rising, shape (n,).
+    overturned
+        Whether each overturned, shape (n,).
+
+    Returns
+    -------
+    The :class:`Outcome`: bounds of the amplitude.
+    """
+    _check_ida(amplitudes, overturned, "ida")
+    return _always(amplitudes, overturned)
+
+
+def _always(amplitudes: Floats, overturned: Flags) -> Outcome:
+    survived = np.flatnonzero(~overturned)
+    if survived.size == 0:
+        return Outcome(0.0, float(amplitudes[0]), "overturned at the first step")
+    last = int(survived[-1])
+    if last == amplitudes.size - 1:
+        return Outcome(float(amplitudes[-1]), math.nan, "limit reached")
+    return Outcome(float(amplitudes[last]), float(amplitudes[last + 1]))
+
+
+def step_protocol(
+    amplitudes: Floats,
+    overturned: Flags,
+    protocol: Protocol,
+    limit_g: float | None = None,
+    repetition: int = 1,
+) -> Outcome:
+    """Climb the protocol's series of levels on an IDA curve, each level at the nearest amplitude of the IDA curve.
+
+    Parameters
+    ----------
+    amplitudes, overturned
+        As of :func:`first_overturning`.
+    protocol
+        Protocol; levels beyond the end of the IDA curve are not climbed.
+    limit_g
+        Limit of the shaker for this motion [g], if it has one; no level is above it.
+    repetition
+        Number of the repetition, from 1.
+
+    Returns
+    -------
+    The :class:`Outcome`: bounds of the amplitude.
+    """
+    _check_ida(amplitudes, overturned, "ida")
+    climbed = _levels(amplitudes, protocol, limit_g, repetition)
+    return _climbed(amplitudes[climbed], overturned[climbed])
+
+
+def _levels(
+    amplitudes: Floats, protocol: Protocol, limit_g: float | None, repetition: int
+) -> NDArray[np.intp]:
+    """Which amplitudes of an IDA curve the protocol's series of levels takes."""
+    levels = protocol.amplitudes(limit_g, repetition)
+    spacing = float(np.diff(amplitudes[-2:])[0]) if amplitudes.size > 1 else 0.0
+    levels = levels[levels <= amplitudes[-1] + spacing / 2]
+    above = np.searchsorted(amplitudes, levels).clip(1, amplitudes.size - 1)
+    if amplitudes.size == 1:
+        above = np.zeros(levels.size, dtype=np.intp)
+    else:
+        above -= levels - amplitudes[above - 1] < amplitudes[above] - levels
+    nearest = np.unique(above)
+    limit = protocol.limit_g if limit_g is None else min(limit_g, protocol.limit_g)
+    return np.asarray(nearest[amplitudes[nearest] <= limit * (1 + 1e-9)])
+
+
+def tests_from_ida(
+    ida: pd.DataFrame,
+    protocol: Protocol,
+    *,
+    definitions: Sequence[str] = DEFINITIONS,
+    limits_g: Mapping[str, float] | None = None,
+) -> pd.DataFrame:
+    """Read every IDA curve of a table as tests.
+
+    Parameters
+    ----------
+    ida
+        Columns ``configuration``, ``object``, ``pedestal``, ``motion``, ``earthquake``, ``floor``,
+        ``amplitude_g``, ``overturned``, ``overturned_body``; in any order of rows.
+    protocol
+        Protocol of the laboratory; its repetitions concern the step protocol, its reading and its
+        measurement concern all definitions.
+    definitions
+        Which of ``step_protocol``, ``first_overturning`` and ``always_overturning`` to take.
+    limits_g
+        Limit of the shaker [g] for each motion that has one. The step protocol stops there; the
+        other two definitions are of the specimen and not of the laboratory, and use the whole IDA curve.
+
+    Returns
+    -------
+    Table of tests, see :mod:`rockfrag.shaketable.tests_table`; in the order in which
+    the IDA curves first appear, then by reading and repetition.
+
+    Raises
+    ------
+    InputError
+        If a column is missing, a definition is unknown, or an amplitude occurs twice.
+    """
+    for column in _NEEDED:
+        if column not in ida.columns:
+            raise InputError(
+                f"IDA curve: column {column!r} is missing; it needs {', '.join(_NEEDED)}."
+            )
+    for definition in definitions:
+        if definition not in DEFINITIONS:
+            raise InputError(
+                f"protocol: reading {definition!r} is not one of {', '.join(DEFINITIONS)}."
+            )
+    return tests_from_swept(
+        swept_of(ida, ["configuration", "motion"], list(ABOUT)),
+        protocol,
+        definitions=definitions,
+        limits_g=limits_g,
+    )
+
+
+def tests_from_swept(
+    parts: Iterable[Swept],
+    protocol: Protocol,
+    *,
+    definitions: Sequence[str] = DEFINITIONS,
+    limits_g: Mapping[str, float] | None = None,
+) -> pd.DataFrame:
+    """Read IDA curves as tests, part after part, as :func:`tests_from_ida` does those of a table.
+
+    Parameters
+    ----------
+    parts
+        IDA curves, see :func:`rockfrag.shaketable.swept.read_swept`.
+    protocol, definitions, limits_g
+        As of :func:`tests_from_ida`.
+    """
+    rows: list[dict[str, object]] = []
+    for part in parts:
+        level_series: dict[tuple[float | None, int], NDArray[np.intp]] = {}
+        for place, about in enumerate(part.about.to_dict("records")):
+            limit = None if limits_g is None else limits_g.get(about["motion"])
+            _check_ida(
+                part.amplitude_g,
+                part.overturned[place],
+                f"{about['configuration']} {about['motion']}",
+            )
+            for repetition in range(1, protocol.repetitions + 1):
+                if (limit, repetition) not in level_series:
+                    intensity_levels = _levels(part.amplitude_g, protocol, limit, repetition)
+                    level_series[limit, repetition] = intensity_levels
+            climbed = [level_series[limit, number + 1] for number in range(protocol.repetitions)]
+            for definition in definitions:
+                rows.extend(_rows(part, place, about, protocol, definition, climbed))
+    return as_tests_table(rows)
+
+
+def _rows(
+    part: Swept,
+    place: int,
+    about: Mapping[Hashable, object],
+    protocol: Protocol,
+    definition: str,
+    level_series: Sequence[NDArray[np.intp]],
+) -> list[dict[str, object]]:
+    amplitudes, overturned = part.amplitude_g, part.overturned[place]
+    if definition == "step_protocol":
+        outcomes = [_climbed(amplitudes[levels], overturned[levels]) for levels in level_series]
+    elif definition == "first_overturning":
+        outcomes = [_climbed(amplitudes, overturned)]
+    else:
+        outcomes = [_always(amplitudes, overturned)]
+    rows = []
+    for repetition, true in enumerate(outcomes, start=1):
+        shown = measured(true, protocol.measurement, str(about["configuration"]))
+        body = ""
+        if not true.censored:
+            body = part.bodies[part.fallen[place, int(np.searchsorted(amplitudes, true.upper_g))]]
+        rows.append(
+            {
+                "test": f"{about['configuration']} {about['motion']}",
+                **{key: about[key] for key in ABOUT},
+                "lower_g": shown.lower_g,
+                "upper_g": shown.upper_g,
+                "amplitude_g": protocol.report(shown),
+                "censored": "right" if shown.censored else "none",
+                "overturned_body": body,
+                "repetition": repetition,
+                "remark": shown.remark,
+                "definition": definition,
+            }
+        )
+    return rows
+
+
+def _check_ida(amplitudes: Floats, overturned: Flags, name: str) -> None:
+    if amplitudes.size == 0 or amplitudes.shape != overturned.shape:
+        raise InputError(f"{name}: an IDA curve needs amplitudes and as many outcomes.")
+    if not (
+        np.isfinite(amplitudes).all() and amplitudes[0] > 0 and (np.diff(amplitudes) > 0).all()
+    ):
+        raise InputError(
+            f"{name}: amplitudes must be positive, rise, and occur once; check the IDA curve's rows."
+        )

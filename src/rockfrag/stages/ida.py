@@ -1,0 +1,276 @@
+"""Every configuration under every motion at every amplitude: what all statistics start from."""
+
+import warnings
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from rockfrag.files import whole_file
+from rockfrag.outcomes.limit_states import limit_states
+from rockfrag.outcomes.outcomes import Outcomes
+from rockfrag.records.motion import Motion
+from rockfrag.shaketable.swept import fallen_names, labels_of
+from rockfrag.stages.job import Job, Results
+from rockfrag.study.study import Study
+from rockfrag.system.system import System
+from rockfrag.units import GRAVITY
+
+NEAR = 1 + 0.01 * np.arange(-10, 11)
+"""Factors on a motion as recorded: itself, and up to a tenth weaker and stronger."""
+
+RECORDED = ("overturning_time", "certain_time", "impacts", "unstable_distance", "peak_rotation")
+"""Columns of outcomes in every IDA curve."""
+
+SLID = ("flights", "slip", "peak_slip")
+"""Columns of outcomes in IDA curves with friction."""
+
+ROWS_AT_ONCE = 131_072
+"""Histories in memory at a time, and of a row group of a file."""
+
+FEWEST_AT_ONCE = 12
+"""Motions shaken at a time are no fewer, to keep every core busy."""
+
+
+def run(job: Job[Study]) -> Results:
+    """Write the IDA curves of all configurations; yield the outcomes under the motions as recorded."""
+    yield from run_part(job)
+    yield from run_as_recorded(job)
+
+
+def run_part(job: Job[Study]) -> Results:
+    """Write the IDA curves of all configurations under the job's part of the motions."""
+    _ida_part(job)
+    yield from ()
+
+
+def run_as_recorded(job: Job[Study]) -> Results:
+    """Yield the outcomes under the motions as recorded."""
+    yield "as_recorded", _all_as_recorded(job)
+
+
+def _ida_part(job: Job[Study]) -> None:
+    """Write the IDA curve of every configuration under part of the motions, a few motions at a time."""
+    study, number = job.study, job.part
+    part = (number, study.ida_jobs)
+    motions = job.motions("motions/floors", part)
+    ups = job.motions("motions/vertical", part) if study.vertical else None
+    batch = max(FEWEST_AT_ONCE, ROWS_AT_ONCE // len(study.amplitudes.values_g))
+    histories = 0
+    for configuration in study.configurations:
+        with whole_file(job.folder / study.ida_file(configuration, number)) as path:
+            tables = (
+                ida_table(
+                    configuration,
+                    motions[i : i + batch],
+                    study.amplitudes.values_g,
+                    job.threads,
+                    None if ups is None else ups[i : i + batch],
+                )
+                for i in range(0, len(motions), batch)
+            )
+            histories += _write(tables, path)
+        if ups is not None and not configuration.loose:
+            _say_how_light(job, configuration, number)
+        job.log.info("%s: %d histories so far", configuration.name, histories)
+    job.log.info("response histories: %d", histories)
+
+
+def _say_how_light(job: Job[Study], configuration: System, number: int) -> None:
+    """Log in how many histories the ground takes more than half of all weight."""
+    from rockfrag.rocking.ensemble import LIGHT
+
+    path = job.folder / job.study.ida_file(configuration, number)
+    least_gravity_ratio = pq.read_table(path, columns=["minimum_gravity_ratio"])[
+        "minimum_gravity_ratio"
+    ].to_numpy()
+    job.log.info(
+        "%s: the ground takes more than half of all weight in %d of %d histories",
+        configuration.name,
+        int((least_gravity_ratio < LIGHT).sum()),
+        least_gravity_ratio.size,
+    )
+
+
+def _write(tables: Iterable[pa.Table], path: Path) -> int:
+    """Write tables to one Parquet file, a row group each, and return the number of rows."""
+    writer, rows = None, 0
+    try:
+        for table in tables:
+            # texts are read as texts, however compactly they are handed on here
+            if writer is None:
+                writer = pq.ParquetWriter(
+                    path, table.schema, compression="zstd", store_schema=False
+                )
+            writer.write_table(table)
+            rows += table.num_rows
+    finally:
+        if writer is not None:
+            writer.close()
+    return rows
+
+
+def _all_as_recorded(job: Job[Study]) -> pd.DataFrame:
+    motions = job.motions("motions/floors")
+    ups = job.motions("motions/vertical") if job.study.vertical else None
+    each = [
+        as_recorded(configuration, motions, job.threads, ups)
+        for configuration in job.study.configurations
+    ]
+    return pd.concat(each, ignore_index=True)
+
+
+def ida_table(
+    configuration: System,
+    motions: Sequence[Motion],
+    amplitudes_g: NDArray[np.float64],
+    threads: int = 1,
+    vertical: Sequence[Motion] | None = None,
+) -> pa.Table:
+    """Shake one configuration by every motion, scaled to every amplitude.
+
+    Parameters
+    ----------
+    configuration
+        What stands on the table.
+    motions
+        Motions of the table; each is scaled so that its peak is the amplitude.
+    amplitudes_g
+        Peaks of the motion [g].
+    threads
+        Threads to use; the result does not depend on it.
+    vertical
+        Vertical motion beside each motion, which is scaled with it; None shakes horizontally alone.
+
+    Returns
+    -------
+    One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``),
+    ``motion``, ``earthquake``, ``floor``, ``amplitude_g``, a column for each limit state that is counted
+    (``overturned``, with friction ``slides``), ``overturned_body``,
+    ``overturning_time_s`` and ``certain_time_s`` (instant of the fall, and from which it was certain),
+    ``impacts``, ``unstable_distance`` (small where the outcome nearly flipped), ``peak_rotation_body_1`` and on
+    (|θ| of each body from below over its critical angle); with vertical motion and without friction also
+    ``minimum_gravity_ratio``; with friction also ``peak_slip_m`` (of any contact), ``slip_contact_1_m`` and on (at
+    the end), ``peak_slip_contact_1_m`` and on, ``flights`` and ``overturned_without_sliding``, the outcome if
+    nothing could slide or fly.
+    """
+    from rockfrag.motions.scaling import factors_to_pga
+
+    scales = np.array([factors_to_pga(motion, amplitudes_g) for motion in motions])
+    result = _shaken(configuration, motions, scales, threads, vertical)
+    each = len(amplitudes_g)
+
+    def of_all(text: str) -> pa.DictionaryArray:
+        return _texts([text], np.zeros(each * len(motions), dtype=np.int32))
+
+    def of_motions(texts: Sequence[str]) -> pa.DictionaryArray:
+        return _texts(texts, np.repeat(np.arange(len(motions), dtype=np.int32), each))
+
+    made = {
+        **{key: of_all(text) for key, text in labels_of(configuration).items()},
+        "motion": of_motions([motion.name for motion in motions]),
+        "earthquake": of_motions(
+            [motion.metadata.get("earthquake") or motion.name for motion in motions]
+        ),
+        "floor": of_motions([motion.metadata["floor"] for motion in motions]),
+        "amplitude_g": np.tile(amplitudes_g, len(motions)),
+        **{
+            state.column: state.reached(result)[0].ravel()
+            for state in limit_states()
+            if state.counted(configuration)
+        },
+        "overturned_body": _texts(
+            fallen_names(configuration), result.overturned_body[0].ravel().astype(np.int32)
+        ),
+        **result.wide(0, RECORDED),
+    }
+    if configuration.loose:
+        rough = _shaken(configuration.held(), motions, scales, threads, vertical)
+        made["peak_slip_m"] = result.of_any("peak_slip")[0].ravel()
+        made |= result.wide(0, SLID)
+        made["overturned_without_sliding"] = rough.overturned[0].ravel()
+    elif vertical is not None:
+        made |= result.wide(0, ("minimum_gravity_ratio",))
+    return pa.table(made)
+
+
+def _texts(texts: Sequence[str], which: NDArray[np.int32]) -> pa.DictionaryArray:
+    different = list(dict.fromkeys(texts))
+    place = {text: number for number, text in enumerate(different)}
+    numbers = np.array([place[text] for text in texts], dtype=np.int32)
+    return pa.DictionaryArray.from_arrays(numbers[which], pa.array(different, pa.string()))
+
+
+def _shaken(
+    configuration: System,
+    motions: Sequence[Motion],
+    scales: NDArray[np.float64],
+    threads: int,
+    vertical: Sequence[Motion] | None,
+) -> Outcomes:
+    """Outcomes of one configuration under every motion at every scale."""
+    from rockfrag.rocking.ensemble import LightBodies, overturns
+
+    with warnings.catch_warnings():
+        # told of in the column minimum_gravity_ratio and in the report
+        warnings.simplefilter("ignore", LightBodies)
+        return overturns(
+            configuration,
+            motions,
+            scales=scales,
+            vertical=vertical,
+            threads=threads,
+        )
+
+
+def as_recorded(
+    configuration: System,
+    motions: Sequence[Motion],
+    threads: int = 1,
+    vertical: Sequence[Motion] | None = None,
+) -> pd.DataFrame:
+    """Shake one configuration by every motion as it was recorded.
+
+    Parameters
+    ----------
+    configuration
+        What stands on the table.
+    motions
+        Motions of the table.
+    threads
+        Threads to use; the result does not depend on it.
+    vertical
+        Vertical motion beside each motion, which is scaled with it; None shakes horizontally alone.
+
+    Returns
+    -------
+    One row per motion: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``), ``motion``, ``earthquake``,
+    ``floor``, ``pga_g``, ``overturned``, ``overturned_body``, ``peak_rotation`` (of the object, |θ| over the
+    critical angle), ``fraction_near`` (share that overturns of the motions up to a tenth weaker or stronger);
+    with friction also ``peak_slip_m``.
+    """
+    scales = np.tile(NEAR, (len(motions), 1))
+    result = _shaken(configuration, motions, scales, threads, vertical)
+    itself = len(NEAR) // 2
+    table = pd.DataFrame(
+        {
+            **labels_of(configuration),
+            "motion": [motion.name for motion in motions],
+            "earthquake": [motion.metadata.get("earthquake") or motion.name for motion in motions],
+            "floor": [motion.metadata["floor"] for motion in motions],
+            "pga_g": [motion.pga / GRAVITY for motion in motions],
+            "overturned": result.overturned[0, :, itself],
+            "overturned_body": np.take(
+                fallen_names(configuration), result.overturned_body[0, :, itself]
+            ),
+            "peak_rotation": result.peak_rotation[0, :, itself, -1],
+            "fraction_near": result.overturned[0].mean(axis=1),
+        }
+    )
+    if not configuration.loose:
+        return table
+    return table.assign(peak_slip_m=result.of_any("peak_slip")[0, :, itself])

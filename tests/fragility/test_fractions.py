@@ -1,0 +1,138 @@
+"""The non-parametric fragility function: what is left to use where a lognormal curve is rejected."""
+
+import numpy as np
+import pytest
+
+from rockfrag.fragility.estimators import fragility_of
+from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
+from rockfrag.fragility.observations import Outcomes
+
+RNG = 20261122
+
+
+def swept(log_capacity, earthquakes, levels):
+    """Outcomes of motions with one capacity each at common levels."""
+    motions = np.array([f"m{k}" for k in range(log_capacity.size)], dtype=object)
+    fell = np.log(levels)[None, :] > log_capacity[:, None]
+    return Outcomes(
+        np.tile(levels, motions.size),
+        fell.ravel().astype(float),
+        np.ones(fell.size),
+        np.repeat(motions, levels.size),
+        np.repeat(np.array([f"e{k}" for k in earthquakes], dtype=object), levels.size),
+    )
+
+
+def test_outcomes_and_capacities_give_the_same_curve():
+    rng = np.random.default_rng(RNG)
+    earthquakes = np.repeat(np.arange(6), 3)
+    log_a = 0.3 * rng.normal(size=18)
+    found = swept(log_a, earthquakes, np.geomspace(0.2, 5, 1000))
+    tested = fractions_of_outcomes(found, found.earthquake, 0.9)
+    exact = fractions_of_capacities(
+        log_a, np.array([f"e{k}" for k in earthquakes], dtype=object), 0.9
+    )
+    assert tested.theta == pytest.approx(exact.theta, rel=0.02)
+    assert tested.theta_limits == pytest.approx(exact.theta_limits, rel=0.01)
+    assert tested.beta == pytest.approx(exact.beta, rel=0.01)
+    assert tested.beta_limits == pytest.approx(exact.beta_limits, rel=0.03)
+
+
+def test_estimates_lie_in_their_limits_and_the_curve_in_its_band_and_never_falls():
+    rng = np.random.default_rng(RNG)
+    for earthquakes, each in ((4, 1), (4, 3), (12, 2)):
+        for _ in range(30):
+            labels = np.repeat(np.arange(earthquakes), each)
+            item = swept(rng.standard_t(2, labels.size), labels, np.geomspace(0.05, 20, 60))
+            found = fractions_of_outcomes(item, item.earthquake, 0.9)
+            x = np.geomspace(0.01, 100, 200)
+            value, lower, upper = found.at(x)
+            assert (np.diff(value) >= 0).all() and value[0] == 0
+            assert ((lower <= value) & (value <= upper)).all() and (upper > lower).all()
+            if np.isfinite(found.theta):
+                assert found.theta_limits[0] <= found.theta <= found.theta_limits[1]
+            if np.isfinite(found.beta):
+                assert found.beta_limits[0] <= found.beta <= found.beta_limits[1]
+
+
+def test_limits_are_over_earthquakes_and_not_over_amplitudes_or_motions_of_one():
+    """Ten motions of one earthquake that agree are worth one motion."""
+    rng = np.random.default_rng(RNG)
+    of_earthquake = 0.4 * rng.normal(size=5)
+    levels = np.geomspace(0.1, 10, 200)
+    lone = swept(of_earthquake, np.arange(5), levels)
+    tenfold = swept(np.repeat(of_earthquake, 10), np.repeat(np.arange(5), 10), levels)
+    item, ten = (fractions_of_outcomes(data, data.earthquake, 0.9) for data in (lone, tenfold))
+    assert ten.theta_limits == item.theta_limits
+    assert ten.upper[0] == item.upper[0] < 1
+    careless = fractions_of_outcomes(tenfold, tenfold.motion, 0.9)
+    assert careless.upper[0] < 0.5 * item.upper[0]
+
+
+def test_curve_may_stop_below_one_and_then_has_no_more_than_it_knows():
+    """A sixth of the motions overturns nothing: the median is known, the 84 % point is not."""
+    log_a = np.append(np.linspace(-0.5, 0.4, 10), [np.inf, np.inf])
+    found = fractions_of_capacities(log_a, np.arange(12).astype(object), 0.9)
+    assert found.theta == pytest.approx(1.05, rel=0.02) and found.theta_limits[1] < np.inf
+    assert np.isnan(found.beta) and np.isnan(found.beta_limits).all()
+    few = fractions_of_capacities(np.array([0.1, np.inf, np.inf]), np.arange(3).astype(object), 0.9)
+    assert np.isnan(few.theta) and np.isnan(few.theta_limits).all()
+
+
+def test_one_group_has_a_curve_and_no_limits():
+    found = fractions_of_capacities(np.array([0.1, 0.3]), np.array(["e", "e"], dtype=object), 0.9)
+    value, lower, upper = found.at([1.2])
+    assert np.isfinite(value).all() and np.isnan(lower).all() and np.isnan(upper).all()
+
+
+def test_points_rise_strictly_even_where_values_differ_by_rounding():
+    """Programs that read the points refuse any two at one value."""
+    x = np.array([0.5, 0.5 * (1 + 1e-12), 0.7, 0.7 * (1 + 1e-9), 0.9])
+    fraction = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
+    nan = (float("nan"), float("nan"))
+    at, value = Fractions(x, fraction, fraction, fraction, 0.6, nan, 0.3, nan).knots()
+    assert (np.diff(at) > 1e-7).all() and (np.diff(value) > 1e-7).all()
+    assert value[0] == 0 and value[-1] == 1
+
+
+def test_rejected_curve_says_the_median_and_dispersion_to_use_with_their_limits():
+    rng = np.random.default_rng(RNG)
+    low, high = np.log(0.1) + 0.05 * rng.normal(size=20), 0.05 * rng.normal(size=22)
+    data = swept(np.append(low, high), np.arange(42), np.geomspace(0.05, 2, 80))
+    found = fragility_of(data)
+    assert found.checks.rejected
+    (said,) = [note for note in found.warnings if "is rejected" in note]
+    assert "whose median is" in said and said.count("90 % limits") == 2
+    assert found.checks.fractions.theta == pytest.approx(1.0, rel=0.15)
+
+
+@pytest.mark.parametrize("law", ["normal", "t3"])
+def test_limits_of_the_median_and_the_dispersion_hold_in_few_data_sets(law):
+    """300 data sets tell gross faults only; the validation has the coverage."""
+    rng = np.random.default_rng(RNG)
+    truth = 0.4 if law == "normal" else 0.4 * 0.6914
+    held = []
+    groups = np.repeat(np.arange(6), 2).astype(object)
+    for _ in range(300):
+        drawn = rng.normal(size=12) if law == "normal" else rng.standard_t(3, 12) / np.sqrt(3)
+        found = fractions_of_capacities(0.4 * drawn, groups, 0.9)
+        held.append(
+            [
+                found.theta_limits[0] <= 1.0 <= found.theta_limits[1],
+                found.beta_limits[0] <= truth <= found.beta_limits[1],
+            ]
+        )
+    assert (np.mean(held, axis=0) > 0.84).all()
+
+
+def test_many_groups_are_left_out_in_blocks_with_the_same_curve():
+    rng = np.random.default_rng(RNG)
+    capacity = np.round(0.3 * rng.normal(size=600), 2)
+    each = np.array([f"e{k}" for k in range(600)], dtype=object)
+    few = np.array([f"e{k % 60}" for k in range(600)], dtype=object)
+    many, known = (fractions_of_capacities(capacity, groups, 0.9) for groups in (each, few))
+    assert np.array_equal(many.fraction, known.fraction)
+    assert many.theta == known.theta
+    width = np.diff(np.log(many.theta_limits))[0] / np.diff(np.log(known.theta_limits))[0]
+    assert 0.6 < width < 1.7
+    assert (many.lower <= many.fraction).all() and (many.fraction <= many.upper).all()

@@ -1,0 +1,156 @@
+"""The question turned round: which perturbed parameters give an effect that was asked for."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag_thesis.sensitivity_analysis.inverse_problem import (
+    friction_perturbations,
+    hotelling,
+    inverse_problem_words,
+    invert,
+)
+
+FLOORS = {"hall": 0, "loft": 2}
+WANTED = {"ground": 1.10, "above": 0.95}
+NEUTRAL = {"raises_ground": 0.0, "lowers_loft": 0.0, "raises_both": 0.0, "idle": 0.0}
+
+
+def ratios(scatter=0.002):
+    """One factor raises P/NP on the ground, one lowers it above, one raises both, one does nothing."""
+    rng = np.random.default_rng(2)
+    effects = {
+        "raises_ground": (0.02, 0.0),
+        "lowers_loft": (0.0, -0.01),
+        "raises_both": (0.02, 0.02),
+        "idle": (0.0, 0.0),
+    }
+    rows = []
+    for earthquake in "ABCDEF":
+        for place, floor in enumerate(FLOORS):
+            own = rng.normal(0, scatter)
+            for factor, effect in effects.items():
+                for level in ("ideal", "4", "8"):
+                    shift = 0.0 if level == "ideal" else effect[place] * float(level)
+                    rows.append(
+                        {
+                            "factor": factor,
+                            "level": level,
+                            "reference": level == "ideal",
+                            "object": "T",
+                            "earthquake": earthquake,
+                            "floor": floor,
+                            "motion": f"{earthquake}-{floor}",
+                            "ratio": np.exp(own + shift),
+                        }
+                    )
+    return pd.DataFrame(rows)
+
+
+def test_two_factors_that_make_up_the_effect_are_found_with_their_levels():
+    table = invert(ratios(), WANTED, FLOORS, NEUTRAL)
+    best = table.iloc[0]
+    assert {best["factor_1"], best["factor_2"]} == {"raises_ground", "lowers_loft"}
+    level = dict(zip(best[["factor_1", "factor_2"]], best[["level_1", "level_2"]], strict=True))
+    # straight lines: ln 1.1 = 0.02 x, ln 0.95 = -0.01 y, to the grid along each factor
+    assert level["raises_ground"] == pytest.approx(np.log(1.10) / 0.02, abs=0.4)
+    assert level["lowers_loft"] == pytest.approx(-np.log(0.95) / 0.01, abs=0.4)
+    assert best["reaches"] and best["plausible"]
+    assert best["ground"] == pytest.approx(1.10, rel=0.02)
+
+
+def test_no_factor_alone_makes_it_and_the_words_say_so():
+    table = invert(ratios(), WANTED, FLOORS, NEUTRAL)
+    alone = table[(table["factor_2"] == "") & (table["acts_on"] == "all floors")]
+    assert not alone["reaches"].any() and not alone["plausible"].any()
+    words = " ".join(inverse_problem_words(table, WANTED))
+    assert (
+        "No single perturbed parameter can produce +10 % on the ground and −5 % above it" in words
+    )
+    assert "lowers_loft with raises_ground" in words
+    assert "No mechanism that acts on the ground alone, or above it alone, can." in words
+
+
+def test_factor_that_acts_on_the_ground_alone_is_a_mechanism_of_its_own():
+    table = invert(ratios(), {"ground": 1.10, "above": 1.0}, FLOORS, NEUTRAL)
+    rows = table[(table["factor_1"] == "raises_both") & (table["factor_2"] == "")]
+    reaches = rows.set_index("acts_on")["reaches"]
+    assert reaches["ground"] and not reaches["all floors"] and not reaches["above"]
+    words = " ".join(inverse_problem_words(table, {"ground": 1.10, "above": 1.0}))
+    assert "act at one place only" in words and "raises_both on the ground alone" in words
+
+
+def test_scatter_between_earthquakes_and_the_intensity_levels_widen_what_is_plausible():
+    def plausible(**options):
+        table = invert(ratios(options.pop("scatter", 0.002)), WANTED, FLOORS, NEUTRAL, **options)
+        return int(table["plausible"].sum())
+
+    assert plausible() < plausible(resolution=0.05)
+    assert plausible() < plausible(scatter=0.2)
+
+
+def test_p_value_is_that_of_t_with_one_place_and_of_hotelling_with_two():
+    from scipy import stats
+
+    x = np.random.default_rng(4).normal(0.1, 0.2, (1, 7, 1))
+    assert hotelling(x, np.zeros(1), 0.0)[0] == pytest.approx(
+        stats.ttest_1samp(x[0, :, 0], 0.0).pvalue, rel=1e-2
+    )
+    two = np.random.default_rng(5).normal(0, 0.2, (4000, 6, 2))
+    p = hotelling(two, np.zeros(2), 0.0)
+    assert np.mean(p < 0.05) == pytest.approx(0.05, abs=0.012)
+
+
+def test_study_without_floors_above_asks_about_the_ground_only():
+    table = invert(ratios(), {"ground": 1.10}, FLOORS, NEUTRAL)
+    reached = table.loc[table["reaches"] & (table["factor_2"] == ""), "factor_1"]
+    assert set(reached) == {"raises_ground", "raises_both"}
+    assert set(table["acts_on"]) == {"all floors"}
+
+
+def tried_friction():
+    """P/NP over friction of both interfaces; on a ground of 0.3 the stout one never falls."""
+    rows = []
+    for earthquake in "ABCDEF":
+        for floor in FLOORS:
+            for thing, ideal in (("stout", 0.2), ("slender", -0.1)):
+                for ground in (0.3, np.inf):
+                    for interface in (0.4, np.inf):
+                        d = ideal + 0.05 * (interface < np.inf) - 0.03 * (ground < np.inf)
+                        d = np.nan if thing == "stout" and ground < np.inf else d
+                        rows.append(
+                            {
+                                "object": thing,
+                                "earthquake": earthquake,
+                                "floor": floor,
+                                "motion": f"{earthquake}-{floor}",
+                                "ground": ground,
+                                "interface": interface,
+                                "ratio": np.exp(d),
+                            }
+                        )
+    return pd.DataFrame(rows)
+
+
+def test_friction_of_either_interface_is_a_perturbation_like_others():
+    everything = pd.concat([ratios(), friction_perturbations(tried_friction())], ignore_index=True)
+    table = invert(everything, WANTED, FLOORS, NEUTRAL)
+    everywhere = table[table["acts_on"] == "all floors"]
+    found = {
+        frozenset(name for name in row if name)
+        for row in everywhere[["factor_1", "factor_2"]].itertuples(index=False)
+    }
+    for other in ("raises_ground", "lowers_loft", "raises_both", "idle"):
+        assert {
+            frozenset({name, other}) for name in ("ground_friction", "interface_friction")
+        } <= found
+    assert frozenset({"ground_friction", "interface_friction"}) in found
+
+
+def test_an_object_that_no_longer_falls_is_not_taken_for_an_effect():
+    """The stout one has a higher ratio: without it the plain mean would fall by 0.18."""
+    table = invert(friction_perturbations(tried_friction()), {"ground": 1.10}, FLOORS)
+    alone = table[(table["factor_2"] == "")].set_index("factor_1")
+    ideal = np.exp(0.05)
+    assert alone.loc["ground_friction", "ground"] == pytest.approx(ideal * np.exp(-0.03))
+    assert alone.loc["interface_friction", "ground"] == pytest.approx(ideal * np.exp(0.05))

@@ -1,0 +1,80 @@
+"""The IDA curve: every amplitude of every motion, the same whatever the threads."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.records.motion import Motion
+from rockfrag.stages.ida import ida_table
+from rockfrag.stages.pedestal import pedestal_tables
+from rockfrag.study.amplitudes import Amplitudes
+from rockfrag.system.blocks import Block, Stack
+
+TOWER = Block(0.124, 0.372, 2.172)
+STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
+AMPLITUDES = Amplitudes(0.2, 1.0, 10)
+
+
+def ida(*about, **options) -> pd.DataFrame:
+    """Return the table of an IDA curve as its file has it: texts as texts."""
+    table = ida_table(*about, **options).to_pandas()
+    texts = [name for name in table if isinstance(table[name].dtype, pd.CategoricalDtype)]
+    return table.astype(dict.fromkeys(texts, "str"))
+
+
+def motions() -> list[Motion]:
+    time, about = np.arange(300) * 0.01, {"earthquake": "E", "floor": "ground"}
+    return [
+        Motion(np.sin(2 * np.pi * f * time) * (time < 1.5), 0.01, f"{f} Hz", about)
+        for f in (1.0, 2.0)
+    ]
+
+
+def test_amplitudes_grow_by_the_step_up_to_the_highest():
+    values = Amplitudes(0.5, 2.0, 100).values_g
+    assert values == pytest.approx([0.5, 1.0, 2.0])
+    ratios = AMPLITUDES.values_g[1:] / AMPLITUDES.values_g[:-1]
+    assert ratios == pytest.approx(1.1)
+
+
+@pytest.mark.parametrize("body", [TOWER, STACK])
+def test_a_ida_does_not_depend_on_threads_or_on_the_batch(body: Block | Stack):
+    configuration = replace(body.system(), name="X")
+    whole = ida(configuration, motions(), AMPLITUDES.values_g, threads=2)
+    parts = [ida(configuration, [motion], AMPLITUDES.values_g, threads=1) for motion in motions()]
+    pd.testing.assert_frame_equal(whole, pd.concat(parts, ignore_index=True), check_exact=True)
+
+
+def test_below_its_threshold_a_block_never_moves():
+    table = ida(TOWER.system(), motions(), AMPLITUDES.values_g)
+    low = table["amplitude_g"] < 1 / 3
+    assert (table.loc[low, "peak_rotation_body_1"] == 0).all()
+    assert table.loc[~low, "peak_rotation_body_1"].iloc[-1] > 0
+    assert set(table["overturned_body"]) <= {"", "statue"}
+
+
+def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():
+    # variances of earthquakes and of motions cannot be told apart there
+    rows = []
+    for number, earthquake in enumerate("AABBCD"):
+        for side, amplitude in (("NP", 0.5), ("P", 0.5 + 0.01 * number)):
+            rows.append(
+                {
+                    "object": "T1",
+                    "pedestal": side,
+                    "earthquake": earthquake,
+                    "floor": "GF",
+                    "motion": f"motion {number}",
+                    "amplitude_g": amplitude,
+                    "definition": "step_protocol",
+                    "censored": "none",
+                    "lower_g": amplitude,
+                    "upper_g": amplitude,
+                }
+            )
+    found = pedestal_tables(pd.DataFrame(rows), seed=1, slenderness={"T1": 3.0})
+    whole = found["effects"].set_index("scope").loc["whole"]
+    assert whole["ratio"] == pytest.approx(1.05, abs=0.01)
+    assert len(found["pairs"]) == 6

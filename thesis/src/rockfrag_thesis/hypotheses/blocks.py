@@ -1,0 +1,349 @@
+"""C1, C3 to C8 and C20: the single block."""
+
+import math
+
+import numpy as np
+
+from rockfrag.motions.scaling import factors_to_pga
+from rockfrag.rocking import Block, overturns, simulate
+from rockfrag.rocking.restitution import (
+    RestitutionFit,
+    quarter_period,
+    restitution_from_history,
+)
+from rockfrag.rocking.spectra import uniform_block
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, SEEN, most
+from rockfrag_thesis.hypotheses.setting import (
+    EXACT,
+    Floats,
+    Setting,
+    below,
+    bisect,
+    jump,
+    listed,
+    require_thesis_specimens,
+    starts_at,
+)
+
+TABLE_3_1 = {
+    "T1": (0.322, 19.61, 6.13),
+    "T2": (0.245, 25.56, 5.36),
+    "T3": (0.197, 31.61, 4.82),
+    "P": (0.724, 13.89, 7.28),
+}
+"""Printed critical angle [rad], radius [cm], frequency parameter [1/s]."""
+DIGITS = (3, 2, 2)
+
+
+@hypothesis(
+    1,
+    "a block starts to rock once the ground accelerates by more than (b/h) g",
+    "2.1.1, eq. 2.1",
+    Kind.IDENTITY,
+    evidence="balance of moments about a corner, and simulations of sudden accelerations",
+    rule="simulated blocks start between 1 - 1e-9 and 1 + 1e-9 of (b/h) g",
+    error_rate=NO_ERROR,
+)
+def c1(setting: Setting) -> Result:
+    """The closed form, and simulations on either side of it."""
+    agree = [starts_at(block, setting.alone[name]) for name, block in setting.blocks.items()]
+    return Result(
+        Finding.FOR if all(agree) else Finding.AGAINST,
+        f"{listed(setting.alone)} m/s²; {sum(agree)} of {len(agree)} simulated blocks start there",
+    )
+
+
+@hypothesis(
+    3,
+    "the specimens have the critical angles, radii and frequencies of Table 3.1",
+    "3.1, Tab. 3.1",
+    Kind.IDENTITY,
+    evidence="the specimens' dimensions",
+    rule="computed figures round to the printed digits (g = 9.81 m/s²)",
+    error_rate=NO_ERROR,
+)
+def c3(setting: Setting) -> Result:
+    """Critical angle, radius and frequency parameter from the dimensions."""
+    require_thesis_specimens(setting)
+    assert setting.pedestal is not None
+    bodies = {**setting.blocks, "P": setting.pedestal}
+    wrong = []
+    for name, printed in TABLE_3_1.items():
+        block = bodies[name]
+        computed = (block.alpha, block.radius() * CENTIMETRES_PER_METRE, block.frequency())
+        for value, figure, digits in zip(computed, printed, DIGITS, strict=True):
+            if round(value, digits) != figure:
+                wrong.append(f"{name}: {value:.5g} against {figure}")
+    total = len(TABLE_3_1) * len(DIGITS)
+    return Result(
+        Finding.AGAINST if wrong else Finding.FOR,
+        f"{total - len(wrong)} of {total} figures agree" + "".join(f"; {item}" for item in wrong),
+        (total - len(wrong)) / total,
+    )
+
+
+@hypothesis(
+    4,
+    "the restitution depends on slenderness only, not on size or velocity",
+    "2.1.1, eq. 2.14",
+    Kind.IDENTITY,
+    evidence="conservation of momentum, and first impacts of simulated blocks of the specimens' "
+    "slendernesses in two sizes from two amplitudes",
+    rule="ω⁺/ω⁻ is 1 - 1.5 sin²α within 1e-9; about real blocks see C5",
+    error_rate=NO_ERROR,
+)
+def c4(setting: Setting) -> Result:
+    """Restitution of simulated impacts over sizes, speeds and slendernesses."""
+    law = {name: 1 - 1.5 * math.sin(block.alpha) ** 2 for name, block in setting.blocks.items()}
+    worst = 0.0
+    for name, block in setting.blocks.items():
+        for period in (0.5, 6.0):
+            for start in (0.1, 0.9):
+                uniform = uniform_block(block.alpha, period)
+                response = simulate(uniform, np.zeros(64), period / 32, theta0=start * block.alpha)
+                row = response.contact_events.query("kind == 'impact'").iloc[0]
+                found = row["omega_after"][0] / row["omega_before"][0]
+                worst = max(worst, abs(found / law[name] - 1))
+    return Result(
+        Finding.FOR if worst < EXACT else Finding.AGAINST,
+        f"e = {listed(law)}; largest relative difference of a simulated impact {below(worst)}",
+    )
+
+
+QUOTED = 0.87 - 0.70
+"""Difference between a measured and a computed restitution that the thesis quotes [-] (Priestley et al.
+1978)."""
+
+
+@hypothesis(
+    5,
+    "the restitution of real blocks differs from the computed one",
+    "2.1.1, eq. 2.14",
+    Kind.INFERENCE,
+    evidence="restitution fitted to measured histories of free rocking, 95 % intervals",
+    rule="true if every interval excludes the computed value, false if every one contains it and none a "
+    f"value as far from it as the one that the thesis quotes ({QUOTED:.2f})",
+    error_rate="5 % for each history",
+)
+def c5(setting: Setting) -> Result:
+    """Restitution fitted to measured free rocking, against conservation of momentum."""
+    if not setting.free_rocking:
+        raise Undecidable("there is no measured history of free rocking")
+    fits: dict[str, RestitutionFit] = {}
+    for name, (time, theta) in setting.free_rocking.items():
+        if name not in setting.blocks:
+            raise Undecidable(
+                f"free rocking of {name!r}, which is no lone block among the specimens"
+            )
+        fits[name] = restitution_from_history(setting.blocks[name], time, theta)
+    apart = [not fit.lower <= fit.computed <= fit.upper for fit in fits.values()]
+    close = [
+        max(abs(fit.lower - fit.computed), abs(fit.upper - fit.computed)) < QUOTED
+        for fit in fits.values()
+    ]
+    finding = Finding.OPEN
+    if all(apart):
+        finding = Finding.FOR
+    elif not any(apart) and all(close):
+        finding = Finding.AGAINST
+    name, fit = max(fits.items(), key=lambda item: abs(item[1].restitution - item[1].computed))
+    return Result(
+        finding,
+        "; ".join(
+            f"{k} {f.restitution:.4f} [{f.lower:.4f}, {f.upper:.4f}], computed {f.computed:.4f}"
+            for k, f in fits.items()
+        ),
+        fit.restitution - fit.computed,
+        fit.lower - fit.computed,
+        fit.upper - fit.computed,
+        basis="measured",
+        remark=f"the estimate is the difference of {name}, the largest",
+    )
+
+
+def _first_impact(block: Block, theta0: float, linear: bool = False) -> float:
+    """Time of the first impact after a release from rest [s]."""
+    dt = 0.002
+    seconds = 4 / block.frequency()
+    response = simulate(block, np.zeros(int(seconds / dt)), dt, theta0=theta0, linear=linear)
+    return float(response.contact_events.query("kind == 'impact'")["time"].iloc[0])
+
+
+@hypothesis(
+    6,
+    "the period of free rocking depends on the amplitude",
+    "2.1.2, eq. 2.20",
+    Kind.PROPERTY,
+    evidence="four times the time to the first impact of simulations from 0.2 and 0.9 of the critical "
+    "angle",
+    rule="it is longer from the larger amplitude for every block, and eq. 2.20 holds within 1e-6 for the "
+    "linear equation",
+    error_rate=NO_ERROR,
+)
+def c6(setting: Setting) -> Result:
+    """Period of free rocking over amplitude."""
+    ratios, law = {}, 0.0
+    for name, block in setting.blocks.items():
+        small, large = (fraction * block.critical_angle(1) for fraction in (0.2, 0.9))
+        ratios[name] = _first_impact(block, large) / _first_impact(block, small)
+        for theta0 in (small, large):
+            exact = quarter_period(block, theta0, linear=True)
+            law = max(law, abs(_first_impact(block, theta0, linear=True) / exact - 1))
+    return Result(
+        Finding.FOR if min(ratios.values()) > 1 and law < 1e-6 else Finding.AGAINST,
+        f"period from 0.9 over that from 0.2: {listed(ratios, '.2f')}; largest difference from eq. 2.20 "
+        f"{below(law, 1e-6)}",
+        min(ratios.values()),
+    )
+
+
+def _least_half_sine(block: Block, linear: bool) -> float:
+    """Least overturning peak of a half-sine pulse of ωp = 3 p, over g tan α [-]."""
+    duration = math.pi / (3 * block.frequency())
+    shape = np.sin(np.linspace(0, math.pi, 101))
+    unit = block.alpha * GRAVITY
+    return bisect(
+        lambda x: simulate(block, x * unit * shape, duration / 100, linear=linear).overturned,
+        1.0,
+        8.0,
+        1e-3,
+    )
+
+
+@hypothesis(
+    7,
+    "the linearised equation holds for slender blocks, H/B > 3",
+    "2.1.1, eq. 2.9",
+    Kind.PROPERTY,
+    evidence="simulations with the linearised and the nonlinear equation: time to the first impact from "
+    "half the critical angle, and least overturning half-sine pulse of ωp = 3 p",
+    rule=f"both change by less than {SEEN:.0%}, the least change that the experiment could show",
+    error_rate=NO_ERROR,
+)
+def c7(setting: Setting) -> Result:
+    """What the linearisation changes for blocks of H/B of 3 and more."""
+    slender = {k: block for k, block in setting.blocks.items() if block.slenderness >= 3 - 1e-9}
+    if not slender:
+        raise Undecidable("no specimen has H/B of 3 or more")
+    period, pulse = {}, {}
+    for name, block in slender.items():
+        theta0 = block.critical_angle(1) / 2
+        period[name] = 100 * abs(
+            _first_impact(block, theta0, True) / _first_impact(block, theta0) - 1
+        )
+        pulse[name] = 100 * (_least_half_sine(block, True) / _least_half_sine(block, False) - 1)
+    worst = max(*period.values(), *(abs(value) for value in pulse.values()))
+    return Result(
+        Finding.FOR if worst < 100 * SEEN else Finding.AGAINST,
+        f"error of the quarter period {listed(period, '.2f')} %, of the least overturning pulse "
+        f"{listed(pulse, '+.1f')} %",
+        worst,
+        unit="%",
+    )
+
+
+DRAWS = 20
+"""Copies of each block within its tolerances (C8)."""
+AMPLITUDES_G = np.geomspace(0.1, 2.0, 301)
+"""1 % steps in which the least overturning amplitude is sought (C8)."""
+
+
+def perturbed(block: Block, rng: np.random.Generator) -> tuple[Block, float]:
+    """Copy of a block within ±1 % of width and ±0.5 % of height, and a restitution within ±0.02."""
+    width = block.width * (1 + rng.uniform(-0.01, 0.01))
+    height = block.height * (1 + rng.uniform(-0.005, 0.005))
+    changed = Block(width, height, block.mass * width * height / (block.width * block.height))
+    return changed, min(1.0, changed.momentum_restitution() + rng.uniform(-0.02, 0.02))
+
+
+def least_overturning_amplitudes(
+    setting: Setting, bodies: list[Block], restitution: list[float]
+) -> Floats:
+    """Least overturning amplitude of `AMPLITUDES_G`, shape (bodies, motions); NaN if none does [g]."""
+    motions = setting.sample
+    found = overturns(
+        bodies,
+        [motion.acceleration for motion in motions],
+        [motion.dt for motion in motions],
+        np.array([factors_to_pga(motion, AMPLITUDES_G) for motion in motions]),
+        restitution=restitution,
+        threads=setting.threads,
+    )
+    first = found.overturned.argmax(axis=2)
+    return np.where(found.overturned.any(axis=2), AMPLITUDES_G[first], np.nan)
+
+
+@hypothesis(
+    8,
+    "the response is very sensitive to small changes of size, slenderness or input",
+    "1",
+    Kind.PROPERTY,
+    evidence=f"least overturning amplitudes of {DRAWS} copies of each lone block, uniform within ±1 % of "
+    "width, ±0.5 % of height and ±0.02 of restitution",
+    rule="ln a scatters more than ln(b/h), on which alone it would depend in statics, for most blocks and "
+    "motions",
+    error_rate=NO_ERROR,
+)
+def c8(setting: Setting) -> Result:
+    """Scatter of ln a when size and restitution change a little, over that of the static limit."""
+    rng = np.random.default_rng(setting.seed)
+    spread, ratio = [], []
+    for block in setting.blocks.values():
+        changed = [perturbed(block, rng) for _ in range(DRAWS)]
+        bodies = [body for body, _ in changed]
+        amplitude = np.log(least_overturning_amplitudes(setting, bodies, [e for _, e in changed]))
+        static = float(np.std([math.log(math.tan(body.alpha)) for body in bodies], ddof=1))
+        for column in amplitude.T:
+            if np.isfinite(column).all():
+                spread.append(float(np.std(column, ddof=1)))
+                ratio.append(spread[-1] / static)
+    if not ratio:
+        raise Undecidable(f"no specimen overturns below {AMPLITUDES_G[-1]:g} g")
+    more = int(np.sum(np.array(ratio) > 1))
+    return Result(
+        most(more, len(ratio)),
+        f"{more} of {len(ratio)} blocks and motions scatter more; standard deviation of ln a "
+        f"{np.median(spread):.3f} (median; {min(spread):.3f} to {max(spread):.3f}), "
+        f"{np.median(ratio):.1f} times that of ln(b/h)",
+        float(np.median(ratio)),
+        min(ratio),
+        max(ratio),
+        remark="limits: range over blocks and motions; amplitudes in steps of 1 %, the first overturning "
+        "of a rising IDA curve",
+    )
+
+
+@hypothesis(
+    20,
+    "a rocking block is infinitely stiff, then its stiffness is negative",
+    "2.3, Tab. 2.2",
+    Kind.IDENTITY,
+    evidence="restoring moment m g R sin(θc - θ), and simulations",
+    rule="no rotation under 0.999999 of the acceleration that starts rocking; the moment of simulations "
+    "follows the law within 1e-9 m g R, and its slope is negative up to the critical angle",
+    error_rate=NO_ERROR,
+)
+def c20(setting: Setting) -> Result:
+    """Rotation below the threshold, and slope of the restoring moment above it."""
+    moved, slope, law = 0.0, -math.inf, 0.0
+    fractions = np.linspace(0.01, 0.99, 5)
+    for name, block in setting.blocks.items():
+        rest = jump(block, 0.999999 * setting.alone[name])
+        moved = max(moved, float(np.abs(rest.theta).max()))
+        alpha = block.critical_angle(1)
+        unit = block.mass * GRAVITY * block.radius()
+        moments = []
+        for fraction in fractions:
+            response = simulate(block, np.zeros(2), 0.001, theta0=fraction * alpha)
+            moments.append(-block.pivot_inertia() * float(response.alpha[0, 0]) / unit)
+        slope = max(slope, float((np.diff(moments) / np.diff(fractions * alpha)).max()))
+        law = max(law, float(np.abs(moments - np.sin(alpha * (1 - fractions))).max()))
+    return Result(
+        Finding.FOR if moved == 0 and slope < 0 and law < EXACT else Finding.AGAINST,
+        f"largest rotation below the threshold {moved:g} rad; slope at most {slope:.3f} m g R per rad; "
+        f"difference from the law {below(law)} m g R",
+        slope,
+        unit="m g R/rad",
+    )

@@ -1,0 +1,162 @@
+"""What the hypotheses about the experiment are tested on, brought into the forms that the tests need."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.pedestal.cluster_means import Estimate, contrast, mean_effect
+from rockfrag.pedestal.paired_tests import Pairs, check_tests, pair_tests, pedestals_apart
+from rockfrag.system.blocks import Block
+from rockfrag_thesis.hypotheses.hypothesis import Undecidable
+from rockfrag_thesis.specimens import THESIS_BODIES
+
+PEDESTAL = "P"
+"""Name of the pedestal among the specimens."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """One table of tests and what may accompany it.
+
+    Parameters
+    ----------
+    tests
+        See `rockfrag.pedestal.paired_tests.check_tests`; columns friction_demand [-] and
+        least_normal_force_n [N] are used for C57, force_n [N] and moved_mass_kg [kg] for C56.
+    basis
+        ``simulated`` or ``measured``.
+    measures
+        Intensity measures by motion: name, pgv_over_pga_s, mean_period_s, d5_95_s.
+    bodies
+        Specimens by name, the pedestal as "P"; without them those of the thesis.
+    sliding
+        Pairs of simulations: earthquake, rocking_g, sliding_g (overturning amplitude with and without
+        the possibility to slide) [g].
+    """
+
+    tests: pd.DataFrame
+    basis: str
+    measures: pd.DataFrame | None = None
+    bodies: Mapping[str, Block] | None = None
+    sliding: pd.DataFrame | None = None
+
+    @property
+    def specimens(self) -> Mapping[str, Block]:
+        """Specimens by name, the pedestal as "P"."""
+        return THESIS_BODIES if self.bodies is None else self.bodies
+
+    @property
+    def slenderness(self) -> dict[str, float]:
+        """Height over width by object [-]."""
+        return {name: body.slenderness for name, body in self.specimens.items() if name != PEDESTAL}
+
+    @cached_property
+    def clean(self) -> pd.DataFrame:
+        """Checked tests."""
+        return check_tests(pedestals_apart(self.tests)[0])
+
+    @cached_property
+    def pairs(self) -> Pairs:
+        """Tests in pairs.
+
+        Raises
+        ------
+        Undecidable
+            If no object was tested under the same motion with and without pedestal, or the slenderness of
+            one is not known.
+        """
+        try:
+            return pair_tests(self.tests, self.slenderness)
+        except InputError as reason:
+            raise Undecidable(str(reason)) from None
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """Pairs with a figure.
+
+        Raises
+        ------
+        Undecidable
+            If there is none.
+        """
+        if self.pairs.table.empty:
+            raise Undecidable("every pair has a test that never overturned")
+        return self.pairs.table
+
+    @cached_property
+    def amplitudes(self) -> pd.DataFrame:
+        """Two rows per pair: side ("P" or "NP"), ln_a, a_g, slenderness and the pair's columns."""
+        rows = _sides(self.table)
+        return rows.assign(
+            side=np.where(rows["ped"] == 1, "P", "NP"),
+            a_g=np.exp(rows["ln_a"]),
+            slenderness=rows["object"].map(self.slenderness),
+        )
+
+    def part(self, **levels: str) -> pd.DataFrame:
+        """Pairs at the given levels, such as ``floor="GF", object="T1"``.
+
+        Raises
+        ------
+        Undecidable
+            If there is none.
+        """
+        rows = self.table
+        for column, level in levels.items():
+            rows = rows[rows[column] == self.level(column, level)]
+        if rows.empty:
+            raise Undecidable(f"no complete pair for {', '.join(levels.values())}")
+        return rows
+
+    def level(self, column: str, wanted: str) -> str:
+        """The level as the table spells it ("Loma Prieta" may be "loma_prieta" there).
+
+        Raises
+        ------
+        Undecidable
+            If the table has no such level.
+        """
+        try:
+            return self._spelled[column, _plain(wanted)]
+        except KeyError:
+            raise Undecidable(f"no complete pair with {column} {wanted}") from None
+
+    @cached_property
+    def _spelled(self) -> dict[tuple[str, str], str]:
+        """Levels as the table spells them, by column and plain spelling."""
+        return {
+            (column, _plain(name)): name
+            for column in ("object", "earthquake", "floor")
+            for name in reversed(self.table[column].astype(str).unique().tolist())
+        }
+
+    def effect(self, **levels: str) -> Estimate:
+        """Mean log ratio P/NP at the given levels."""
+        return mean_effect(self.part(**levels))
+
+    def lead(self, factor: str, word: str, other: str, block: str = "earthquake") -> Estimate:
+        """By how much the effect at one level of a factor exceeds that at another, block by block."""
+        names = self.level(factor, word), self.level(factor, other)
+        return contrast(self.table, factor, *names, block=block)
+
+
+def _plain(name: str) -> str:
+    return "".join(letter for letter in name.lower() if letter.isalnum())
+
+
+def _sides(pairs: pd.DataFrame) -> pd.DataFrame:
+    """Turn pairs into two tests each, with ln_a and ped (0 or 1).
+
+    ``resolution`` of a test is half the width of its step [-], half that of its pair.
+    """
+    sides = [
+        pairs[["object", "earthquake", "floor", "motion", "s_c"]].assign(
+            ped=value, ln_a=np.log(pairs[column]), resolution=pairs["resolution"] / 2
+        )
+        for value, column in ((0, "a_np_g"), (1, "a_p_g"))
+    ]
+    return pd.concat(sides, ignore_index=True)

@@ -1,0 +1,307 @@
+"""C34 to C44, C50, C51: what the floors do.
+
+Most say something about orders: a function returns differences that are positive if it is so.
+"""
+
+import math
+from dataclasses import replace
+
+import pandas as pd
+
+from rockfrag.pedestal.cluster_means import contrast, mean_effect, unit_means
+from rockfrag.pedestal.permutation import sign_flip_test
+from rockfrag_thesis.hypotheses.evidence import Evidence
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.orders import (
+    AMPLITUDES,
+    ONE_RULE,
+    PAIRS,
+    Part,
+    Parts,
+    Size,
+    order,
+    order_hypothesis,
+)
+from rockfrag_thesis.hypotheses.outcomes import ONE_INTERVAL, SEEN
+
+GROUND, THIRD, FIFTH = FLOORS = ("GF", "F3", "F5")
+TOWERS = ("T1", "T2", "T3")
+
+
+@order_hypothesis(
+    34,
+    "the increase is noticeable on the ground floor only",
+    "4.3, Fig. 4.6",
+    Kind.DESCRIPTION,
+    rule=f"an increase on GF; increases of {SEEN:.0%} or more excluded on F3 and F5",
+    several=True,
+)
+def c34(tests: Evidence) -> Parts:
+    """The ground floor's increase, and by how much those above stay below a noticeable one."""
+    parts = {"P/NP on GF": Part(tests.effect(floor=GROUND), Size.NOTICEABLE)}
+    for floor in (THIRD, FIFTH):
+        rows = tests.part(floor=floor)
+        below = mean_effect(rows.assign(d=math.log1p(SEEN) - rows["d"]))
+        parts[f"{1 + SEEN:g} over P/NP on {floor}"] = Part(below)
+    return parts
+
+
+@order_hypothesis(
+    35,
+    "on the ground floor the mean increases with the pedestal",
+    "4.3, 4.4, Fig. 4.6",
+    Kind.DESCRIPTION,
+    rule="an increase on GF",
+)
+def c35(tests: Evidence) -> Parts:
+    """The ground floor's increase."""
+    return {"P/NP on GF": Part(tests.effect(floor=GROUND))}
+
+
+@order_hypothesis(
+    36,
+    "on the 3rd floor the mean slightly decreases with the pedestal",
+    "4.3, Fig. 4.6",
+    Kind.DESCRIPTION,
+    rule="a decrease on F3, however slight",
+)
+def c36(tests: Evidence) -> Parts:
+    """The 3rd floor's decrease."""
+    return {"NP/P on F3": Part(tests.effect(floor=THIRD).times(-1))}
+
+
+@order_hypothesis(
+    37,
+    "on the 5th floor the mean slightly decreases with the pedestal",
+    "4.3, Fig. 4.6",
+    Kind.DESCRIPTION,
+    rule="a decrease on F5, however slight",
+)
+def c37(tests: Evidence) -> Parts:
+    """The 5th floor's decrease."""
+    return {"NP/P on F5": Part(tests.effect(floor=FIFTH).times(-1))}
+
+
+SIGNS = {GROUND: (1, 1, 1), THIRD: (1, -1, -1), FIFTH: (-1, -1, -1)}
+"""Signs of the effect that C38 hypotheses, by floor for T1, T2, T3."""
+
+
+@order_hypothesis(
+    38,
+    "each tower shows the floors' signs, except T1 on the 3rd floor",
+    "4.3, 4.4, Fig. 4.6b",
+    Kind.DESCRIPTION,
+    rule="increases of all towers on GF and of T1 on F3, decreases elsewhere",
+    several=True,
+)
+def c38(tests: Evidence) -> Parts:
+    """The effect in each of the nine cells, in the direction claimed."""
+    return {
+        f"{'P/NP' if sign > 0 else 'NP/P'} of {tower} on {floor}": Part(
+            tests.effect(floor=floor, object=tower).times(sign)
+        )
+        for floor, signs in SIGNS.items()
+        for tower, sign in zip(TOWERS, signs, strict=True)
+    }
+
+
+def _first_tower(tests: Evidence, floor: str, sign: int) -> Parts:
+    """T1's change on a floor, and by how much it exceeds those of T2 and T3."""
+    rows = tests.part(floor=floor)
+    rows = rows.assign(d=sign * rows["d"])
+    first, *others = (tests.level("object", name) for name in TOWERS)
+    ratio = "P/NP" if sign > 0 else "NP/P"
+    own = mean_effect(rows[rows["object"] == first])
+    return {f"{ratio} of {first}": Part(own, Size.NOTICEABLE)} | {
+        f"{ratio} of {first} over {other}": Part(
+            contrast(rows, "object", first, other), Size.NOTICEABLE
+        )
+        for other in others
+    }
+
+
+@order_hypothesis(
+    39,
+    "on the ground floor T1's increase is much greater than T2's and T3's",
+    "4.3, Fig. 4.6b",
+    Kind.DESCRIPTION,
+    rule="an increase of T1 on GF, and more than that of T2 and of T3, earthquake by earthquake",
+    several=True,
+)
+def c39(tests: Evidence) -> Parts:
+    """T1's increase on the ground floor, and its lead."""
+    return _first_tower(tests, GROUND, +1)
+
+
+@order_hypothesis(
+    40,
+    "on the 5th floor T1's decrease is much greater than T2's and T3's",
+    "4.3, Fig. 4.6b",
+    Kind.DESCRIPTION,
+    rule="a decrease of T1 on F5, and more than that of T2 and of T3, earthquake by earthquake",
+    several=True,
+)
+def c40(tests: Evidence) -> Parts:
+    """T1's decrease on the 5th floor, and its lead."""
+    return _first_tower(tests, FIFTH, -1)
+
+
+@order_hypothesis(
+    41,
+    "the relative change is largest on the ground floor",
+    "4.4, Fig. 4.5",
+    Kind.DESCRIPTION,
+    rule="the change on GF exceeds that on F3 and F5 and the opposite of each, earthquake by earthquake",
+    error_rate="at most 5 % to be true (GF's change may have either sign), 2.5 % to be false",
+)
+def c41(tests: Evidence) -> Parts:
+    """Whether |x| > |y| for the effects x on GF and y above: x - y and x + y have the sign of x."""
+    table = tests.table
+    ground, *others = (tests.level("floor", name) for name in FLOORS)
+    sign = 1.0 if tests.effect(floor=GROUND).mean >= 0 else -1.0
+    parts = {}
+    for other in others:
+        mirrored = table.assign(d=table["d"].where(table["floor"] != other, -table["d"]))
+        for word, rows in (("change", table), ("opposite change", mirrored)):
+            lead = contrast(rows, "floor", ground, other).times(sign)
+            parts[f"change on {ground} over the {word} on {other}"] = Part(lead)
+    return parts
+
+
+def _leading_floor(tests: Evidence, side: str, floor: str) -> Parts:
+    """By how much the amplitudes of a side on one floor exceed those on the others."""
+    rows = tests.amplitudes[tests.amplitudes["side"] == side]
+    top = tests.level("floor", floor)
+    others = [tests.level("floor", name) for name in FLOORS if name != floor]
+    return {
+        f"{side} on {top} over {other}": Part(contrast(rows, "floor", top, other, value="ln_a"))
+        for other in others
+    }
+
+
+@order_hypothesis(
+    42,
+    "with the pedestal the mean is largest on the 5th floor",
+    "4.4, Fig. 4.6",
+    Kind.DESCRIPTION,
+    evidence=AMPLITUDES,
+    rule="ln a of P on F5 exceeds that on GF and on F3, earthquake by earthquake",
+    several=True,
+    more=lambda tests: _means(tests, "P"),
+)
+def c42(tests: Evidence) -> Parts:
+    """With the pedestal, the 5th floor over the others."""
+    return _leading_floor(tests, "P", FIFTH)
+
+
+@order_hypothesis(
+    43,
+    "without the pedestal the mean is largest on the ground floor",
+    "4.4, Fig. 4.6",
+    Kind.DESCRIPTION,
+    evidence=AMPLITUDES,
+    rule="ln a of NP on GF exceeds that on F3 and on F5, earthquake by earthquake",
+    several=True,
+    more=lambda tests: _means(tests, "NP"),
+)
+def c43(tests: Evidence) -> Parts:
+    """Without the pedestal, the ground floor over the others."""
+    return _leading_floor(tests, "NP", GROUND)
+
+
+@order_hypothesis(
+    44,
+    "the 3rd floor has the smallest mean for every tower, with and without pedestal",
+    "4.4",
+    Kind.DESCRIPTION,
+    evidence=AMPLITUDES,
+    rule="ln a on GF and on F5 exceeds that on F3 for every tower and side, earthquake by earthquake",
+    several=True,
+)
+def c44(tests: Evidence) -> Parts:
+    """The other floors over the 3rd, for every tower on both sides."""
+    low, *others = (tests.level("floor", name) for name in (THIRD, GROUND, FIFTH))
+    return {
+        f"{name} {side} on {other} over {low}": Part(
+            contrast(rows, "floor", other, low, value="ln_a")
+        )
+        for (name, side), rows in tests.amplitudes.groupby(["object", "side"])
+        for other in others
+    }
+
+
+@hypothesis(
+    50,
+    "on the upper floors the pedestal lowers the acceleration, with few exceptions",
+    "5",
+    Kind.INFERENCE,
+    evidence=PAIRS,
+    rule="a decrease on F3 and F5 together, with more pairs decreasing than increasing by more than their "
+    f"steps. {ONE_RULE}",
+    error_rate=ONE_INTERVAL,
+)
+def c50(tests: Evidence) -> Result:
+    """The decrease on both upper floors together, and how many pairs are exceptions."""
+    floors = [tests.level("floor", name) for name in (THIRD, FIFTH)]
+    rows = tests.table[tests.table["floor"].isin(floors)]
+    steps = rows.get("resolution", 0.0)
+    down, up = int((rows["d"] < -steps).sum()), int((rows["d"] > steps).sum())
+    found = order(
+        {"NP/P on F3 and F5": Part(mean_effect(rows).times(-1))},
+        more=f"of {len(rows)} pairs {down} decrease and {up} increase by more than their steps",
+    )
+    if found.finding is Finding.FOR and down <= up:
+        return replace(found, finding=Finding.OPEN)
+    return found
+
+
+@hypothesis(
+    51,
+    "the increase on the ground floor is significant",
+    "5",
+    Kind.INFERENCE,
+    evidence=PAIRS,
+    rule=f"an increase on GF. {ONE_RULE}",
+    error_rate=ONE_INTERVAL,
+)
+def c51(tests: Evidence) -> Result:
+    """The test that the thesis did not make."""
+    rows = tests.part(floor=GROUND)
+    flips = sign_flip_test(unit_means(rows, "earthquake"))
+    return order(
+        {"P/NP on GF": Part(mean_effect(rows), Size.NOTICEABLE)},
+        more=f"the thesis made no test; sign flips give p = {flips.p:.3f}, and {flips.units} earthquakes "
+        f"cannot give less than {flips.smallest_p:.3g}",
+    )
+
+
+def floor_steps(tests: Evidence) -> Parts:
+    """The thesis's order of the floors for lone towers: 3rd below 5th below ground."""
+    rows = tests.amplitudes[tests.amplitudes["side"] == "NP"]
+    third, fifth, ground = (tests.level("floor", name) for name in (THIRD, FIFTH, GROUND))
+    return {
+        f"NP on {first} over {other}": Part(contrast(rows, "floor", first, other, value="ln_a"))
+        for first, other in ((fifth, third), (ground, fifth))
+    }
+
+
+def floor_means(tests: Evidence) -> pd.DataFrame:
+    """Arithmetic mean amplitude by floor and side [g], as the thesis plots it.
+
+    Raises
+    ------
+    Undecidable
+        If a floor of the thesis is missing.
+    """
+    for floor in FLOORS:
+        tests.level("floor", floor)
+    rows = tests.amplitudes
+    means = rows.pivot_table(index="floor", columns="side", values="a_g", aggfunc="mean")
+    if means.isna().any(axis=None):
+        raise Undecidable("a floor was tested on one side only")
+    return means
+
+
+def _means(tests: Evidence, side: str) -> str:
+    means = floor_means(tests)[side].to_dict()
+    return "arithmetic means " + ", ".join(f"{name} {means[name]:.3f} g" for name in means)

@@ -1,0 +1,182 @@
+"""What a hypothesis of the thesis is: its words, its kind, the rule that tests it, and what came out."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+
+class Kind(StrEnum):
+    """What sort of sentence a hypothesis is, which decides what can speak about it."""
+
+    IDENTITY = "identity"
+    """True or false by algebra or geometry; no data can change it."""
+    PROPERTY = "property of the model"
+    """About the equations of rigid blocks: simulations show it, or an exception."""
+    DESCRIPTION = "description of the thesis's plots"
+    """What the thesis saw in its own 72 tests; other tests show the same or do not."""
+    INFERENCE = "inference about the laboratory"
+    """What the thesis concludes for such specimens; only measured tests confirm or reject it."""
+
+
+class Finding(StrEnum):
+    """What the evidence says, whatever the word for it."""
+
+    FOR = "for"
+    AGAINST = "against"
+    OPEN = "open"
+    BOUNDED = "bounded"
+    """The sign of the change is not shown, but one of 10 % or more in the stated direction is excluded."""
+    SPECIMENS_ONLY = "specimens only"
+    """It holds for the thesis's specimens, with exceptions among other bodies or inputs."""
+
+
+UNDECIDED = "undecided"
+EXCLUDED = "a change of 10 % or more is excluded"
+
+_ABOUT_THE_MODEL = {
+    Finding.FOR: "confirmed",
+    Finding.AGAINST: "refuted",
+    Finding.OPEN: UNDECIDED,
+    Finding.BOUNDED: EXCLUDED,
+    Finding.SPECIMENS_ONLY: "confirmed for the specimens, with exceptions elsewhere",
+}
+_FROM_THE_MODEL = {
+    Finding.FOR: "reproduced",
+    Finding.AGAINST: "not reproduced",
+    Finding.OPEN: UNDECIDED,
+    Finding.BOUNDED: EXCLUDED,
+}
+_FROM_A_LABORATORY = {
+    Finding.FOR: "confirmed",
+    Finding.AGAINST: "rejected",
+    Finding.OPEN: UNDECIDED,
+    Finding.BOUNDED: EXCLUDED,
+}
+
+
+def outcome(kind: Kind, basis: str, finding: Finding) -> str:
+    """Word for a finding: a simulation reproduces a laboratory or does not, it cannot reject it.
+
+    Raises
+    ------
+    KeyError
+        If there is no such word, as for exceptions among the tests of a laboratory.
+    """
+    if kind in (Kind.IDENTITY, Kind.PROPERTY):
+        return _ABOUT_THE_MODEL[finding]
+    return (_FROM_A_LABORATORY if basis == "measured" else _FROM_THE_MODEL)[finding]
+
+
+@dataclass(frozen=True)
+class Result:
+    """What one test says about one hypothesis.
+
+    Parameters
+    ----------
+    finding
+        What the evidence says.
+    figure
+        The result with its interval, in words and digits.
+    estimate, lower, upper
+        The figure and its interval in ``unit``; NaN where there is no single figure.
+    unit
+        Unit of the three, ``-`` for ratios and probabilities.
+    p
+        Two-sided p value behind the finding [-], where there is inference; NaN elsewhere.
+    p_of
+        The hypothesis that p concerns, such as ``no change``; empty where there is none.
+    remark
+        What else a reader must know, such as the power needed where the finding is open.
+    basis
+        One of ``BASES`` where it is not that of the evidence as a whole, such as a measured history
+        among simulations.
+    """
+
+    finding: Finding
+    figure: str
+    estimate: float = math.nan
+    lower: float = math.nan
+    upper: float = math.nan
+    unit: str = "-"
+    p: float = math.nan
+    p_of: str = ""
+    remark: str = ""
+    basis: str | None = None
+
+
+class Undecidable(Exception):
+    """The data at hand cannot speak about a hypothesis; the message says why."""
+
+
+Test = Callable[[Any], Result]
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One hypothesis of the thesis, in our own words.
+
+    Parameters
+    ----------
+    number
+        Its number, 1 to 58 (written C1 to C58); it never changes.
+    text
+        What it says, shortly.
+    source
+        Chapter or section of the thesis, and the equation, table or figure where there is one.
+    kind
+        What sort of sentence it is.
+    evidence
+        What is looked at.
+    rule
+        When it is held to be true, and when false, in words a statistician can repeat.
+    error_rate
+        How often the rule errs by chance, or why it cannot.
+    test
+        Function that applies the rule.
+    """
+
+    number: int
+    text: str
+    source: str
+    kind: Kind
+    evidence: str
+    rule: str
+    error_rate: str
+    test: Test
+
+
+_HYPOTHESES: dict[int, Hypothesis] = {}
+
+HYPOTHESES: Mapping[int, Hypothesis] = _HYPOTHESES
+"""Hypothesis by number, as far as their modules are loaded; the package loads all 58."""
+
+
+def hypothesis(
+    number: int,
+    text: str,
+    source: str,
+    kind: Kind,
+    *,
+    evidence: str,
+    rule: str,
+    error_rate: str,
+) -> Callable[[Test], Test]:
+    """Enter the decorated function as the test of a hypothesis; see `Hypothesis`.
+
+    Raises
+    ------
+    ValueError
+        If the number is taken.
+    """
+
+    def enter(test: Test) -> Test:
+        if number in _HYPOTHESES:
+            raise ValueError(f"C{number} is there already")
+        _HYPOTHESES[number] = Hypothesis(
+            number, text, source, kind, evidence, rule, error_rate, test
+        )
+        return test
+
+    return enter

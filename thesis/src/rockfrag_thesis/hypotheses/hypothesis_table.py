@@ -1,0 +1,182 @@
+"""The table of hypotheses: every hypothesis with its kind, its rule, what came out, and the word for it."""
+
+import math
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import pandas as pd
+
+from rockfrag.pedestal.cluster_means import TooFewUnitsError
+from rockfrag.pedestal.multiplicity import holm
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.ensemble import LightBodies
+from rockfrag.system.blocks import Block, Stack
+from rockfrag_thesis.hypotheses import (  # noqa: F401  (each enters its hypotheses when it is loaded)
+    blocks,
+    earthquakes,
+    floors,
+    pedestal,
+    protocol,
+    slenderness,
+    spectra,
+    stacks,
+)
+from rockfrag_thesis.hypotheses.evidence import Evidence
+from rockfrag_thesis.hypotheses.hypothesis import (
+    HYPOTHESES,
+    Finding,
+    Hypothesis,
+    Kind,
+    Result,
+    Undecidable,
+    outcome,
+)
+from rockfrag_thesis.hypotheses.setting import FreeRocking, Setting, make_setting
+
+THEORY = range(1, 25)
+"""Numbers of the hypotheses about theory; the others are about tests."""
+
+COLUMNS = (
+    "number",
+    "hypothesis",
+    "source",
+    "kind",
+    "evidence",
+    "rule",
+    "error_rate",
+    "finding",
+    "outcome",
+    "figure",
+    "estimate",
+    "lower",
+    "upper",
+    "unit",
+    "p",
+    "p_of",
+    "p_holm",
+    "basis",
+    "remark",
+)
+"""Columns of the table of hypotheses, ``hypotheses.csv``."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A hypothesis and what came out."""
+
+    hypothesis: Hypothesis
+    result: Result
+    basis: str
+
+
+def theory_table(
+    specimens: Mapping[str, Block],
+    motions: Sequence[Motion],
+    *,
+    seed: int,
+    free_rocking: FreeRocking | None = None,
+    threads: int | None = None,
+    assemblies: Mapping[str, Stack] | None = None,
+) -> pd.DataFrame:
+    """Compute C1 to C24 for specimens and ground motions.
+
+    A hypothesis about which they cannot speak (no stack, no motion) is open, with the reason.
+
+    Parameters
+    ----------
+    specimens
+        Blocks by name.  A block named "P" is the pedestal: without ``assemblies`` each other block is put on it.
+    motions
+        Ground motions at their recorded amplitude.
+    seed
+        Of the perturbations and random geometries.
+    free_rocking
+        Measured free rocking by specimen: times [s] and rotations [rad] of a history (C5).
+    threads
+        Threads to use; the results do not depend on it.
+    assemblies
+        Stacks by name.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns of ``COLUMNS``.
+
+    Raises
+    ------
+    InputError
+        If a measured history cannot be used.
+    """
+    setting = make_setting(specimens, motions, seed, free_rocking, threads, assemblies)
+    return _table(_row(hypothesis, setting, "simulated") for hypothesis in _hypotheses(theory=True))
+
+
+def hypothesis_table(tests: Evidence) -> pd.DataFrame:
+    """Test C25 to C58 on one table of tests.
+
+    A hypothesis about which the table cannot speak (a floor that was not tested, a column that is
+    absent, a single object) is open, with the reason.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns of ``COLUMNS``.
+
+    Raises
+    ------
+    InputError
+        If the table of tests itself cannot be used.
+    """
+    _ = tests.clean  # a table that cannot be used is the user's error, and no hypothesis's
+    return _table(_row(hypothesis, tests, tests.basis) for hypothesis in _hypotheses(theory=False))
+
+
+def _hypotheses(theory: bool) -> list[Hypothesis]:
+    return [HYPOTHESES[n] for n in sorted(HYPOTHESES) if (n in THEORY) == theory]
+
+
+def _row(hypothesis: Hypothesis, evidence: Setting | Evidence, basis: str) -> Row:
+    try:
+        with warnings.catch_warnings():
+            # the hypotheses are about pure rocking, whose limits the chapter on validity counts
+            warnings.simplefilter("ignore", LightBodies)
+            result = hypothesis.test(evidence)
+    except (Undecidable, TooFewUnitsError) as reason:
+        result = Result(Finding.OPEN, "no figure", remark=f"these data cannot decide it: {reason}")
+    if hypothesis.kind is Kind.IDENTITY:
+        basis = "computed"
+    return Row(hypothesis, result, result.basis or basis)
+
+
+def _table(rows: Iterable[Row]) -> pd.DataFrame:
+    table = pd.DataFrame(
+        [
+            {
+                "number": row.hypothesis.number,
+                "hypothesis": row.hypothesis.text,
+                "source": row.hypothesis.source,
+                "kind": str(row.hypothesis.kind),
+                "evidence": row.hypothesis.evidence,
+                "rule": row.hypothesis.rule,
+                "error_rate": row.hypothesis.error_rate,
+                "finding": str(row.result.finding),
+                "outcome": outcome(row.hypothesis.kind, row.basis, row.result.finding),
+                "figure": row.result.figure,
+                "estimate": row.result.estimate,
+                "lower": row.result.lower,
+                "upper": row.result.upper,
+                "unit": row.result.unit,
+                "p": row.result.p,
+                "p_of": row.result.p_of,
+                "p_holm": math.nan,
+                "basis": row.basis,
+                "remark": row.result.remark,
+            }
+            for row in rows
+        ],
+        columns=list(COLUMNS),
+    )
+    # many hypotheses are tested on one table: what still stands when all of them are counted
+    table["p_holm"] = holm(table["p"])
+    return table

@@ -1,0 +1,110 @@
+"""The rules by which intervals become findings, the same for all hypotheses about tests.
+
+Every rule reads the 95 % interval that is printed, so that a reader can apply it to the row:
+
+* **Orders** ("higher", "largest", "lower on both floors") are differences that must all be positive.
+  They are true if every interval lies above zero (an intersection-union test, Berger 1982, which needs
+  no adjustment), false if one lies below, with Bonferroni's adjustment for the number of differences.
+* **Sizes.** No table excludes a change that may be as small as one likes.  Where the sign is not shown either
+  way, a change of `SEEN` or more, which the thesis's tests could have shown, may still be excluded; the word for
+  it says just that, whatever the hypothesis, so that equal figures get equal words.
+* **Sameness** ("nearly equal", "no correlation") is true if the interval lies inside ±`SEEN`, false
+  if it lies outside.
+
+A rule errs in at most 2.5 % of tables each way, whatever the truth is that makes it an error.
+"""
+
+import math
+
+from rockfrag.pedestal.cluster_means import Estimate
+from rockfrag.pedestal.power import power_note
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Result
+
+LEVEL = 0.025
+"""Error of a rule, each way [-]: that of one end of a 95 % interval."""
+
+SEEN = 0.10
+"""Least mean change of overturning amplitude that the thesis's tests could show with 80 % power [-].
+
+Four earthquakes, each with nine pairs that scatter by 0.134 through tolerances of geometry and
+restitution alone, show 10 % (power of t on four earthquake means)."""
+
+ONE_INTERVAL = "2.5 % each way"
+SEVERAL_INTERVALS = "at most 2.5 % each way (intersection-union to be true, Bonferroni to be false)"
+NO_ERROR = "none: nothing is sampled"
+
+
+def known(p: float) -> float:
+    """A p value; one unit alone has none, and shows nothing."""
+    return 1.0 if math.isnan(p) else p
+
+
+def p_nonzero(estimate: Estimate) -> float:
+    """Two-sided p value of a mean of zero; 1 if unknown."""
+    return 2 * min(known(estimate.p_above(0.0)), known(estimate.p_below(0.0)))
+
+
+def finding_of(p_for: float, p_against: float) -> Finding:
+    """Finding from the one-sided p values of a hypothesis's being false and of its being true."""
+    if p_for < LEVEL:
+        return Finding.FOR
+    return Finding.AGAINST if p_against < LEVEL else Finding.OPEN
+
+
+def same(
+    estimate: Estimate,
+    figure: str,
+    *,
+    bound: float = SEEN,
+    unit: str = "earthquake",
+    more: str = "",
+) -> Result:
+    """Judge "nearly equal" or "not correlated": a log ratio within ±ln(1 + bound).
+
+    Parameters
+    ----------
+    estimate
+        The log ratio that the hypothesis says is nothing [-].
+    figure
+        The result in words.
+    bound
+        Change that counts as none [-].
+    unit, more
+        What was sampled, for the note on power; what else there is to say.
+    """
+    limit = math.log1p(bound)
+    inside = max(known(estimate.p_above(-limit)), known(estimate.p_below(limit)))
+    outside = min(known(estimate.p_above(limit)), known(estimate.p_below(-limit)))
+    finding = finding_of(inside, outside)
+    notes = [more] if more else []
+    if finding is Finding.OPEN:
+        notes.append(power_note(estimate, unit))
+    return Result(
+        finding,
+        figure,
+        estimate.ratio,
+        estimate.ratio_lower,
+        estimate.ratio_upper,
+        p=min(1.0, 2 * min(inside, outside)),
+        p_of=_difference(bound, inside <= outside),
+        remark="; ".join(notes),
+    )
+
+
+def _difference(bound: float, large: bool) -> str:
+    """The hypothesis whose p value is the smaller one."""
+    return (
+        f"a difference {'of' if large else 'below'} {100 * bound:g} %{' or more' if large else ''}"
+    )
+
+
+def most(count: int, total: int) -> Finding:
+    """Finding on "usually", "nearly": true for more than half of the cases looked at; not inference."""
+    return Finding.FOR if count > total / 2 else Finding.AGAINST
+
+
+def all_of(*findings: Finding) -> Finding:
+    """Finding on a conjunction: one against suffices, support needs all."""
+    if Finding.AGAINST in findings:
+        return Finding.AGAINST
+    return Finding.FOR if all(finding is Finding.FOR for finding in findings) else Finding.OPEN

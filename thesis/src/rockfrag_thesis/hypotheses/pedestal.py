@@ -1,0 +1,98 @@
+"""C29, C31 to C33, C49: what the pedestal does on the whole, and to each tower."""
+
+import numpy as np
+
+from rockfrag.pedestal.cluster_means import slope_effect
+from rockfrag_thesis.hypotheses.evidence import Evidence
+from rockfrag_thesis.hypotheses.hypothesis import Kind, Result, hypothesis
+from rockfrag_thesis.hypotheses.orders import (
+    PAIRS,
+    Part,
+    Parts,
+    order_hypothesis,
+)
+from rockfrag_thesis.hypotheses.outcomes import ONE_INTERVAL, SEEN, same
+
+
+def general_increase(tests: Evidence) -> Parts:
+    """The effect over all pairs: C29 and C49 say the same and so have one rule."""
+    return {"P/NP of all pairs": Part(tests.effect())}
+
+
+def _changed(tests: Evidence) -> str:
+    """How many pairs change by more than the steps of their series of levels."""
+    table = tests.table
+    steps = table.get("resolution", 0.0)
+    return (
+        f"of {len(table)} pairs {int((table['d'] > steps).sum())} gain and "
+        f"{int((table['d'] < -steps).sum())} lose by more than their steps"
+    )
+
+
+@order_hypothesis(
+    29,
+    "overturning acceleration is generally higher with the pedestal",
+    "4.3, Fig. 4.3",
+    Kind.DESCRIPTION,
+    rule="an increase over all pairs",
+)
+def c29(tests: Evidence) -> Parts:
+    """The effect over all pairs."""
+    return general_increase(tests)
+
+
+@order_hypothesis(
+    49,
+    "towers are in general more stable atop the pedestal",
+    "5",
+    Kind.INFERENCE,
+    rule="as C29, which says the same",
+    more=_changed,
+)
+def c49(tests: Evidence) -> Parts:
+    """The effect over all pairs."""
+    return general_increase(tests)
+
+
+@hypothesis(
+    31,
+    "the increase with the pedestal is not correlated with slenderness",
+    "4.3, Fig. 4.4",
+    Kind.DESCRIPTION,
+    evidence=PAIRS,
+    rule=f"slope of ln P/NP on H/B inside each earthquake: over the range of H/B within ±{SEEN:.0%}",
+    error_rate=ONE_INTERVAL,
+)
+def c31(tests: Evidence) -> Result:
+    """No trend of the effect with slenderness."""
+    table = tests.table.assign(slenderness=tests.table["object"].map(tests.slenderness))
+    over = slope_effect(table, "slenderness").times(float(np.ptp(table["slenderness"])))
+    return same(over, f"P/NP of the most slender over that of the least {over.text()}")
+
+
+@order_hypothesis(
+    32,
+    "the increase with the pedestal is largest for T3",
+    "4.3, Fig. 4.4",
+    Kind.DESCRIPTION,
+    rule="P/NP of T3 exceeds that of T1 and of T2, earthquake by earthquake",
+    several=True,
+)
+def c32(tests: Evidence) -> Parts:
+    """T3's effect over T1's and T2's."""
+    return {
+        f"P/NP of T3 over {other}": Part(tests.lead("object", "T3", other))
+        for other in ("T1", "T2")
+    }
+
+
+@order_hypothesis(
+    33,
+    "for T2 the pedestal has nearly the opposite effect, still a slight increase",
+    "4.3",
+    Kind.DESCRIPTION,
+    rule="an increase of T2; “nearly opposite” cannot be tested",
+)
+def c33(tests: Evidence) -> Parts:
+    """T2's effect."""
+    return {"P/NP of T2": Part(tests.effect(object="T2"))}

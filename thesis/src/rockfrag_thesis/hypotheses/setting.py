@@ -1,0 +1,245 @@
+"""What the hypotheses about theory are tested on, and what several of them share."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from rockfrag.motions.scaling import scale_to_pga
+from rockfrag.plausibility import LARGEST_PEAK
+from rockfrag.records.motion import Motion
+from rockfrag.rocking import Block, Body, Response, Stack, simulate
+from rockfrag_thesis.hypotheses.hypothesis import Undecidable
+from rockfrag_thesis.hypotheses.motion_spectra import MotionSpectra
+from rockfrag_thesis.printed_tables import uplift_accelerations
+from rockfrag_thesis.specimens import THESIS_BODIES
+
+Floats = NDArray[np.float64]
+FreeRocking = Mapping[str, tuple[ArrayLike, ArrayLike]]
+
+PEAKS_G = (0.3, 0.5, 0.8, 1.2)
+"""Amplitudes to which the motions are scaled for the histories of the stacks [g]."""
+
+SAMPLE = 12
+"""Motions of a larger set that serve where each needs many histories, evenly spaced in its order."""
+
+EXACT = 1e-9
+"""Relative difference below which two computed figures are the same [-]."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Specimens and motions, ready for the tests.
+
+    Attributes
+    ----------
+    objects
+        Lone blocks by name, without the pedestal.
+    pedestal
+        The block named "P", if there is one.
+    stacks
+        Stacks by name.
+    all_motions
+        Ground motions, perhaps none.
+    seed, free_rocking, threads
+        As in `rockfrag_thesis.hypotheses.hypothesis_table.theory_table`.
+    """
+
+    objects: Mapping[str, Block]
+    pedestal: Block | None
+    stacks: Mapping[str, Stack]
+    all_motions: Sequence[Motion]
+    seed: int
+    free_rocking: FreeRocking | None
+    threads: int | None
+
+    @property
+    def blocks(self) -> dict[str, Block]:
+        """Lone blocks; raises Undecidable if there is none."""
+        if not self.objects:
+            raise Undecidable("there is no lone block among the specimens")
+        return dict(self.objects)
+
+    @property
+    def assemblies(self) -> dict[str, Stack]:
+        """Stacks; raises Undecidable if there is none."""
+        if not self.stacks:
+            raise Undecidable("there is no stack among the specimens and no block named P")
+        return dict(self.stacks)
+
+    @cached_property
+    def motions(self) -> list[Motion]:
+        """Motions that shake; raises Undecidable if there is none."""
+        shaking = [motion for motion in self.all_motions if motion.pga > 0]
+        if not shaking:
+            raise Undecidable("there is no ground motion")
+        return shaking
+
+    @property
+    def sample(self) -> list[Motion]:
+        """At most `SAMPLE` of the motions, evenly spaced in their order."""
+        motions = self.motions
+        step = max(1, math.ceil(len(motions) / SAMPLE))
+        return motions[::step]
+
+    @property
+    def where(self) -> str:
+        """Which histories were looked at, in words."""
+        several = f"{len(self.sample)} motions"
+        if len(self.sample) < len(self.motions):
+            several = f"{len(self.sample)} of {len(self.motions)} motions"
+        peaks = ", ".join(f"{peak:g}" for peak in PEAKS_G)
+        return f"{len(self.assemblies)} stacks under {several} scaled to {peaks} g"
+
+    @cached_property
+    def histories(self) -> list[Response]:
+        """Every stack under every motion of the sample at each amplitude of `PEAKS_G`."""
+        return [
+            simulate(stack, scale_to_pga(item, peak).acceleration, item.dt)
+            for stack in self.assemblies.values()
+            for item in self.sample
+            for peak in PEAKS_G
+        ]
+
+    @cached_property
+    def impacts(self) -> pd.DataFrame:
+        """Impacts of all histories, a row each, as in `rockfrag.rocking.Response.contact_events`."""
+        parts = [
+            history.contact_events[history.contact_events["kind"] == "impact"]
+            for history in self.histories
+        ]
+        return pd.concat(parts, ignore_index=True)
+
+    @cached_property
+    def spectra(self) -> MotionSpectra:
+        """Spectra of the motions, of blocks with the specimens' slendernesses."""
+        alpha = np.array(sorted(block.alpha for block in self.blocks.values()))
+        return MotionSpectra(self.motions, alpha, self.threads)
+
+    @cached_property
+    def alone(self) -> dict[str, float]:
+        """Least acceleration that starts each lone block (thesis eq. 2.1) [m/s²]."""
+        return {name: uplift_accelerations(block)[1] for name, block in self.blocks.items()}
+
+    @cached_property
+    def rocking_mode_3(self) -> dict[str, float]:
+        """Likewise each stack held together as one body (thesis eq. 2.21, 2.22) [m/s²]."""
+        return {
+            name: uplift_accelerations(assembly)[0] for name, assembly in self.assemblies.items()
+        }
+
+    @cached_property
+    def rocking_mode_4(self) -> dict[str, float]:
+        """Likewise the statue of each stack on a still pedestal (thesis eq. 2.24, 2.25) [m/s²]."""
+        return {
+            name: uplift_accelerations(assembly)[1] for name, assembly in self.assemblies.items()
+        }
+
+    @cached_property
+    def pedestal_too(self) -> dict[str, float]:
+        """Least sudden acceleration that moves each stack's pedestal under a free statue [m/s²]."""
+        return {
+            name: bisect(
+                lambda a, stack=stack: bool(np.any(jump(stack, a).state[:3, 0] != 0)),  # type: ignore[misc]
+                0.5 * self.rocking_mode_4[name],
+                LARGEST_PEAK,
+                1e-4,
+            )
+            for name, stack in self.assemblies.items()
+        }
+
+
+def make_setting(
+    specimens: Mapping[str, Block],
+    motions: Sequence[Motion],
+    seed: int,
+    free_rocking: FreeRocking | None = None,
+    threads: int | None = None,
+    stacks: Mapping[str, Stack] | None = None,
+) -> Setting:
+    """Put each tower on the pedestal if no stack is given."""
+    blocks, stacks = dict(specimens), dict(stacks or {})
+    pedestal = blocks.pop("P", None)
+    if pedestal is not None and not stacks:
+        stacks = {f"P&{name}": Stack(pedestal, block) for name, block in blocks.items()}
+    return Setting(blocks, pedestal, stacks, list(motions), seed, free_rocking, threads)
+
+
+def bisect(happens: Callable[[float], bool], low: float, high: float, tolerance: float) -> float:
+    """Least argument at which something happens that does not at ``low`` and does at ``high``.
+
+    Parameters
+    ----------
+    tolerance
+        Relative width of the bracket at which the search ends [-].
+
+    Raises
+    ------
+    Undecidable
+        If it happens at ``low`` already, or not even at ``high``.
+    """
+    if happens(low) or not happens(high):
+        raise Undecidable(f"no threshold lies between {low:.3g} and {high:.3g}")
+    while high - low > tolerance * high:
+        middle = math.sqrt(low * high)
+        low, high = (low, middle) if happens(middle) else (middle, high)
+    return high
+
+
+def jump(body: Body, acceleration: float) -> Response:
+    """Response to a ground acceleration [m/s²] that is there at once and ends after 0.15 s."""
+    return simulate(body, np.full(3, acceleration), 0.05)
+
+
+def moves(body: Body, acceleration: float) -> bool:
+    """Whether a sudden ground acceleration [m/s²] makes any block leave its base."""
+    return bool(np.any(jump(body, acceleration).state[:3] != 0))
+
+
+def starts_at(body: Body, acceleration: float) -> bool:
+    """Whether a simulated body starts to rock at this acceleration [m/s²] and not just below it."""
+    return moves(body, acceleration * (1 + EXACT)) and not moves(body, acceleration * (1 - EXACT))
+
+
+def require_thesis_specimens(setting: Setting) -> None:
+    """Raise Undecidable unless the specimens are those of which the thesis printed figures."""
+    given: dict[str, Block] = dict(setting.objects)
+    if setting.pedestal is not None:
+        given["P"] = setting.pedestal
+    for name, body in THESIS_BODIES.items():
+        if name not in given or not same_block(given[name], body):
+            raise Undecidable(f"the printed figures are of other specimens: {name} differs")
+    for name, stack in setting.stacks.items():
+        if not same_block(stack.lower, THESIS_BODIES["P"]):
+            raise Undecidable(f"the printed figures are of other specimens: {name} differs")
+
+
+def same_block(block: Block, other: Block) -> bool:
+    """Whether two blocks have the same size and mass but for rounding, and are uniform."""
+    uniform = (
+        block.inertia is None and block.cg_height is None and not block.cg_offset and not block.lean
+    )
+    return uniform and bool(
+        np.allclose(
+            (block.width, block.height, block.mass),
+            (other.width, other.height, other.mass),
+            rtol=1e-6,
+        )
+    )
+
+
+def listed(values: Mapping[str, float], form: str = ".3f") -> str:
+    """Names with their figures, for a sentence."""
+    return ", ".join(f"{name} {value:{form}}" for name, value in values.items())
+
+
+def below(value: float, limit: float = EXACT) -> str:
+    """A difference that should be rounding: only that it is below the limit, or how large it is.
+
+    Its digits differ between processors, and a report must not.
+    """
+    return f"below {limit:.0e}" if abs(value) < limit else f"{value:.1e}"

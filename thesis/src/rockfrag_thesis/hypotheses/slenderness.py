@@ -1,0 +1,281 @@
+"""C25 to C28, C30, C53, C54: what the towers' slenderness does."""
+
+import itertools
+import math
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.pedestal.cluster_means import Estimate, contrast, slope_effect, t_estimate
+from rockfrag.pedestal.power import power_note
+from rockfrag.system.blocks import Stack
+from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.orders import (
+    AMPLITUDES,
+    PAIRS,
+    Part,
+    Parts,
+    order,
+    order_hypothesis,
+)
+from rockfrag_thesis.hypotheses.outcomes import (
+    LEVEL,
+    NO_ERROR,
+    ONE_INTERVAL,
+    SEEN,
+    SEVERAL_INTERVALS,
+    all_of,
+    p_nonzero,
+    same,
+)
+
+TOWERS = ("T1", "T2", "T3")
+"""The towers from the squattest to the most slender."""
+
+
+def _fall(rows: pd.DataFrame) -> Estimate:
+    """Fall of ln a from one unit of H/B to the next, inside each earthquake."""
+    return slope_effect(rows, "slenderness", "ln_a").times(-1)
+
+
+def _earthquake_means(tests: Evidence) -> pd.DataFrame:
+    """Arithmetic mean amplitude by earthquake, a column per tower [g]."""
+    names = [tests.level("object", name) for name in TOWERS]
+    rows = tests.amplitudes
+    means = rows.pivot_table(index="earthquake", columns="object", values="a_g", aggfunc="mean")
+    return means[names].dropna()
+
+
+@hypothesis(
+    25,
+    "overturning acceleration falls almost linearly with slenderness",
+    "4.2, Fig. 4.1",
+    Kind.DESCRIPTION,
+    evidence=AMPLITUDES,
+    rule=f"ln a falls with H/B; mean of T2 within ±{SEEN:.0%} of the middle between T1 and T3",
+    error_rate=SEVERAL_INTERVALS,
+)
+def c25(tests: Evidence) -> Result:
+    """The slope, and the bend at T2; equilibrium alone (a as B/H) has a bend of -6 %."""
+    means = _earthquake_means(tests)
+    low, middle, high = (means[name] for name in means.columns)
+    bend = t_estimate(np.log(2 * middle / (low + high)))
+    falls = order({"fall of a per unit of H/B": Part(_fall(tests.amplitudes))})
+    straight = same(bend, f"T2 over the straight line {bend.text()}")
+    return Result(
+        all_of(falls.finding, straight.finding),
+        f"{straight.figure}; {falls.figure}",
+        straight.estimate,
+        straight.lower,
+        straight.upper,
+        p=max(falls.p, straight.p),
+        p_of=straight.p_of if straight.p >= falls.p else falls.p_of,
+        remark=straight.remark or falls.remark,
+    )
+
+
+@order_hypothesis(
+    26,
+    "the trend with slenderness is the same with and without pedestal",
+    "4.2, Fig. 4.1; 5",
+    Kind.DESCRIPTION,
+    evidence=AMPLITUDES,
+    rule="ln a falls with H/B inside each earthquake, with and without pedestal",
+    several=True,
+)
+def c26(tests: Evidence) -> Parts:
+    """The fall on both sides."""
+    rows = tests.amplitudes
+    return {
+        f"fall of {side} per unit of H/B": Part(_fall(rows[rows["side"] == side]))
+        for side in ("P", "NP")
+    }
+
+
+@hypothesis(
+    27,
+    "the relative decrease of the mean is nearly equal with and without pedestal",
+    "4.2",
+    Kind.DESCRIPTION,
+    evidence=PAIRS,
+    rule=f"decrease from T1 to T3 with P over that without, earthquake by earthquake, within ±{SEEN:.0%}",
+    error_rate=ONE_INTERVAL,
+)
+def c27(tests: Evidence) -> Result:
+    """Equal relative decrease from T1 to T3."""
+    difference = tests.lead("object", "T3", "T1")
+    return same(difference, f"decrease with P over decrease without {difference.text()}")
+
+
+@hypothesis(
+    28,
+    "the relative decrease differs by floor",
+    "4.2, Fig. 4.2",
+    Kind.DESCRIPTION,
+    evidence=AMPLITUDES,
+    rule="decrease from the squattest to the most slender tower of one floor over that of another, earthquake "
+    f"by earthquake: true if any pair of floors differs, false if all are within ±{SEEN:.0%}",
+    error_rate="at most 2.5 % to be true (Bonferroni over the pairs of floors) or to be false",
+)
+def c28(tests: Evidence) -> Result:
+    """Decreases by floor; as a description of plots it says no more than that the figures differ."""
+    span = float(np.ptp(list(tests.slenderness.values()))) if tests.slenderness else 0.0
+    if span == 0:
+        raise Undecidable("the towers must differ in slenderness")
+    falls = pd.DataFrame(
+        [
+            (earthquake, floor, span * _fall(rows).mean)
+            for (earthquake, floor), rows in tests.amplitudes.groupby(
+                ["earthquake", "floor"], observed=True
+            )
+            if len(set(rows["slenderness"])) > 1
+        ],
+        columns=["earthquake", "floor", "fall"],
+    )
+    table = falls.pivot_table(index="earthquake", columns="floor", values="fall").dropna()
+    if table.shape[1] < 2:
+        raise Undecidable("two towers on each of two floors are needed")
+    pairs = {
+        f"{first} over {other}": t_estimate(table[first] - table[other])
+        for first, other in itertools.combinations(table.columns, 2)
+    }
+    p_differ = {name: len(pairs) * p_nonzero(pair) for name, pair in pairs.items()}
+    widest = min(p_differ, key=p_differ.__getitem__)
+    alike = [same(pair, "") for pair in pairs.values()]
+    finding = Finding.OPEN
+    if p_differ[widest] < LEVEL:
+        finding = Finding.FOR
+    elif all(item.finding is Finding.FOR for item in alike):
+        finding = Finding.AGAINST
+    pair = pairs[widest]
+    p_alike = max(each.p for each in alike)
+    means = ", ".join(f"{floor} {math.exp(-fall):.3f}" for floor, fall in table.mean().items())
+    return Result(
+        finding,
+        f"mean of the most slender tower over that of the squattest: {means}; decrease on {widest} "
+        f"{pair.text()}",
+        pair.ratio,
+        pair.ratio_lower,
+        pair.ratio_upper,
+        p=min(1.0, p_differ[widest], p_alike),
+        p_of="no difference" if p_differ[widest] <= p_alike else "a difference of 10 % or more",
+        remark=power_note(pair) if finding is Finding.OPEN else "",
+    )
+
+
+def stack_slenderness(tests: Evidence) -> pd.DataFrame:
+    """Slenderness of the standing stack, height of the common centre over half the base's width.
+
+    Returns
+    -------
+    pandas.DataFrame
+        object, alone, stacked [-].
+
+    Raises
+    ------
+    Undecidable
+        If there is no pedestal among the specimens.
+    """
+    bodies = tests.specimens
+    if PEDESTAL not in bodies or len(bodies) < 2:
+        raise Undecidable("there is no pedestal, or nothing else, among the specimens")
+    base = bodies[PEDESTAL]
+    rows = []
+    for name in sorted(set(bodies) - {PEDESTAL}):
+        arm = Stack(base, bodies[name]).common_arm(1)
+        rows.append((name, bodies[name].h / bodies[name].b, arm.y / base.b))
+    return pd.DataFrame(rows, columns=["object", "alone", "stacked"])
+
+
+@hypothesis(
+    30,
+    "the stack is more slender than the tower and yet stronger",
+    "4.3",
+    Kind.IDENTITY,
+    evidence="dimensions and masses of the specimens",
+    rule="height of the common centre of gravity over half the pedestal's width against the tower's H/B: "
+    "false if no stack is the more slender",
+    error_rate=NO_ERROR,
+)
+def c30(tests: Evidence) -> Result:
+    """Geometry of the stack; about its strength see C29."""
+    table = stack_slenderness(tests)
+    ratio = table["stacked"] / table["alone"]
+    stacked = ", ".join(f"{value:.2f}" for value in table["stacked"])
+    alone = ", ".join(f"{value:.2f}" for value in table["alone"])
+    return Result(
+        Finding.AGAINST if (ratio <= 1).all() else Finding.OPEN,
+        f"stack {stacked} against {alone} of the towers alone ({', '.join(table['object'])})",
+        float(ratio.max()),
+        basis="computed",
+        remark="the common centre rises, but the base widens more"
+        if (ratio <= 1).all()
+        else "a stack is more slender than its tower; about its strength see C29",
+    )
+
+
+@order_hypothesis(
+    53,
+    "more slender structures overturn under smaller excitation",
+    "5",
+    Kind.INFERENCE,
+    evidence=AMPLITUDES,
+    rule="ln a of T1 exceeds that of T2, and that of T2 that of T3, earthquake by earthquake",
+    several=True,
+)
+def c53(tests: Evidence) -> Parts:
+    """T1 above T2 above T3."""
+    names = [tests.level("object", name) for name in TOWERS]
+    return {
+        f"{flat} over {slender}": Part(
+            contrast(tests.amplitudes, "object", flat, slender, value="ln_a")
+        )
+        for flat, slender in itertools.pairwise(names)
+    }
+
+
+@hypothesis(
+    54,
+    "trends should not be extrapolated to other geometries",
+    "5",
+    Kind.INFERENCE,
+    evidence=AMPLITUDES,
+    rule="the trends a on H/B (the thesis's), ln a on H/B and a on B/H through T1 and T2 prolonged to T3: "
+    f"true if all miss its mean, false if the thesis's own is within ±{SEEN:.0%}",
+    error_rate=SEVERAL_INTERVALS,
+)
+def c54(tests: Evidence) -> Result:
+    """Error of three extrapolations to T3; scatter alone makes none of them miss the mean."""
+    means = _earthquake_means(tests)
+    squat, middle, slender = (means[name] for name in means.columns)
+    s1, s2, s3 = (tests.slenderness[name] for name in means.columns)
+    weight = (s3 - s1) / (s2 - s1)
+    inverse = (1 / s3 - 1 / s1) / (1 / s2 - 1 / s1)
+    reached = float(slender.mean())
+    # errors as fractions of one mean: a ratio in each earthquake would be biased by its scatter
+    misses = {
+        "a on H/B": (squat + weight * (middle - squat) - slender) / reached,
+        "ln a on H/B": np.log(squat) + weight * np.log(middle / squat) - np.log(slender),
+        "a on B/H": (squat + inverse * (middle - squat) - slender) / reached,
+    }
+    errors = {name: t_estimate(miss) for name, miss in misses.items()}
+    p_miss = max(p_nonzero(error) for error in errors.values())
+    own = errors["a on H/B"]
+    reaches = same(own, "")
+    finding = Finding.OPEN
+    if p_miss < LEVEL:
+        finding = Finding.FOR
+    elif reaches.finding is Finding.FOR:
+        finding = Finding.AGAINST
+    return Result(
+        finding,
+        "predicted over observed mean of T3: "
+        + ", ".join(f"{name} {error.text()}" for name, error in errors.items()),
+        own.ratio,
+        own.ratio_lower,
+        own.ratio_upper,
+        p=min(1.0, p_miss, reaches.p),
+        p_of="no error" if p_miss <= reaches.p else reaches.p_of,
+        remark=power_note(own) if finding is Finding.OPEN else "",
+    )

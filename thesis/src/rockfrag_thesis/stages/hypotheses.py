@@ -1,0 +1,94 @@
+"""What a study does beyond its own when it is compared with the thesis: one stage."""
+
+import pandas as pd
+
+from rockfrag.stages.job import Job, Results
+from rockfrag.study.study import Study
+from rockfrag_thesis.settings import settings_of
+
+TABLES = ("table_3_1", "table_3_3", "table_4_1")
+
+
+def run(job: Job[Study]) -> Results:
+    """Yield printed tables beside computed ones, hypotheses with outcomes, contradictions."""
+    yield from _printed_tables(job)
+    yield from _hypotheses(job)
+    yield "standing", _standing(job)
+    if job.study.more.measured_tests is not None:
+        yield "measured/hypotheses", _measured_hypotheses(job)
+    if settings_of(job.study).sensitivity is not None:
+        from rockfrag_thesis.floor_order import margins_table
+
+        margins = margins_table(job.table("building_sensitivity/tests"))
+        yield "building_sensitivity/margins", margins
+
+
+def _printed_tables(job: Job[Study]) -> Results:
+    from rockfrag_thesis import printed_tables as printed
+
+    study = job.study
+    computed = (
+        (printed.block_properties(study.specimens), printed.TABLE_3_1),
+        (printed.ground_measures(job.motions("motions/ground")), printed.TABLE_3_3),
+        (printed.uplift_table(study.configurations), printed.TABLE_4_1),
+    )
+    for name, (table, quantities) in zip(TABLES, computed, strict=True):
+        beside = printed.compare(table, quantities, printed.FOLDER / f"{name}.csv")
+        yield name, beside
+        known = beside["agrees"].dropna()
+        job.log.info("%s: %d of %d printed values agree", name, known.sum(), len(known))
+
+
+def _hypotheses(job: Job[Study]) -> Results:
+    from rockfrag.shaketable.definitions import DEFINITION
+    from rockfrag_thesis.hypotheses import Evidence, contradictions, hypothesis_table, theory_table
+
+    study = job.study
+    theory = theory_table(
+        study.tested_blocks,
+        job.motions("motions/ground"),
+        seed=study.seed,
+        threads=job.threads,
+        assemblies=study.stacks,
+    )
+    yield "hypotheses_theory", theory
+    if not study.has_pairs:
+        return
+    tests, measures = job.table("tests"), job.table("measures")
+    forces = job.table("validity")[["test", "friction_demand", "least_normal_force_n"]]
+    tests = tests[tests["definition"] == DEFINITION].merge(forces, on="test", how="left")
+    bodies = study.tested_blocks
+    evidence = Evidence(tests, "simulated", measures, bodies)
+    hypotheses = pd.concat([theory, hypothesis_table(evidence)], ignore_index=True)
+    yield "hypotheses", hypotheses
+    yield "contradictions", contradictions(evidence)
+    outcomes = hypotheses["outcome"].value_counts().items()
+    job.log.info("hypotheses: %s", ", ".join(f"{n} {outcome}" for outcome, n in outcomes))
+
+
+def _standing(job: Job[Study]) -> pd.DataFrame:
+    """Return which definitions stand when motion and body differ a little."""
+    from rockfrag.stages.protocol import protocol_of
+    from rockfrag_thesis.standing import standing_definitions
+
+    study = job.study
+    table = standing_definitions(
+        study.configurations,
+        job.motions("motions/floors"),
+        study.amplitudes.values_g,
+        protocol_of(study),
+        study.seed,
+        job.threads,
+    )
+    columns = [name for name in table.columns if name.startswith("stands_")]
+    for definition, part in table.groupby("definition", sort=False):
+        fallen = ", ".join(f"{(~part[name]).sum()} at {name[7:]}" for name in columns)
+        job.log.info("%s: of %d definitions change %s", definition, len(part), fallen)
+    return table
+
+
+def _measured_hypotheses(job: Job[Study]) -> pd.DataFrame:
+    from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
+
+    tests, measures = job.table("measured/tests"), job.table("measures")
+    return hypothesis_table(Evidence(tests, "measured", measures, job.study.tested_blocks))
