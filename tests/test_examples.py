@@ -110,7 +110,7 @@ def test_a_result_at_the_prompt_fits_a_screen(name):
         (lambda: simulate(STATUE, PULSE, 0.01, frictions=0.3), "did you mean friction?"),
         (lambda: simulate(STATUE, PULSE, 0.01, mu=0.3), "it has body, motion, dt, "),
         (lambda: Block(0.3, 1.2, 180.0, cgheight=0.5), "did you mean cg_height?"),
-        (lambda: Stack(plinth=STATUE, statue=STATUE), "it has pedestal, statue, offset."),
+        (lambda: Stack(plinth=STATUE, statue=STATUE), "it has lower, upper, offset."),
         (lambda: read_motion("x.AT2", units="g"), "did you mean unit?"),
     ],
 )

@@ -78,7 +78,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     command.add_argument("--plot", metavar="IMAGE", help="draw the response, as .png or .svg")
     command.add_argument(
-        "--all-contact-events", action="store_true", help="print the whole pattern history"
+        "--all-contact-events", action="store_true", help="print the whole history of rocking modes"
     )
     command.set_defaults(run=_simulate)
 

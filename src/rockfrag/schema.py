@@ -19,6 +19,7 @@ from jsonschema.validators import extend
 
 from rockfrag.errors import InputError
 from rockfrag.plugins import plugins
+from rockfrag.renamed_keys import renamed
 from rockfrag.units import other_names, quantity, split_name
 
 LARGEST_WHOLE = 2**53
@@ -212,6 +213,8 @@ def _sentence(error: ValidationError) -> str:
     instance: Any = error.instance
     if error.validator == "additionalProperties" and "properties" in schema:
         known = sorted(schema["properties"])
+        if said := renamed(instance, known):
+            return f"key {_key(error)}: {said}"
         wrong = sorted(name for name in instance if name not in known)[0]
         close = difflib.get_close_matches(wrong, known, n=1)
         hint = f"did you mean {close[0]}?" if close else f"expected one of {', '.join(known)}."

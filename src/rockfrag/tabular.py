@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from rockfrag.errors import InputError
 from rockfrag.plain_text import read_text
+from rockfrag.renamed_keys import check_names
 from rockfrag.units import other_names, quantity, split_name
 
 DELIMITERS = (",", ";", "\t")
@@ -132,6 +133,7 @@ def read_rows(
     (_, header), body = lines[0], lines[1:]
     usual = {other: name for name in quantities for other in other_names(name)}
     names = [usual.get(title, title) for title in header]
+    check_names(str(path), names, known)
     for name, title in zip(names, header, strict=True):
         if name not in known:
             raise InputError(

@@ -19,7 +19,7 @@ PLUGIN = re.compile(
 )
 NO_NUMBER = re.compile(r"\b(?:nan|NaN|NaT|inf|infinity|null|True|False)\b|<NA>|mathdefault|\(s\)")
 INTERVAL = re.compile(r"(?:([−\d.]+) )?\[([−\d.]+|open), ([−\d.]+|open)\]")
-NOUNS = "record|test|motion|earthquake|earthquake|pair|floor|object|configuration|outcome|perturbation|building|row"
+NOUNS = "record|test|motion|earthquake|pair|floor|object|configuration|outcome|perturbation|building|row"
 PLURALS = re.compile(rf"\b1 (?:simulated |overturning )?(?:{NOUNS})s\b")
 SINGULARS = re.compile(rf"\b(?:[2-9]|[1-9]\d+) (?:{NOUNS})\b(?! on a pedestal)")
 VOID = {"meta", "link", "br", "img", "input", "hr"}

@@ -16,7 +16,7 @@ AMPLITUDES = np.geomspace(0.05, 2.0, 120)
 
 
 def parts(size: int) -> list[Swept]:
-    """Motions of eight earthquakes that overturn above scattered amplitudes, most with a structural resurrection."""
+    """Motions of eight earthquakes that overturn above scattered amplitudes, most with a resurrection."""
     rng = np.random.default_rng(4)
     capacity = 0.4 * np.exp(0.35 * rng.normal(size=MOTIONS))
     near = np.abs(np.log(AMPLITUDES / capacity[:, None])) < 0.15

@@ -204,5 +204,5 @@ def test_ida_curves_with_survival_windows_separate_first_from_always():
     within(result.first.fit)
     assert result.first.fit.theta < result.probability.fit.theta < result.always.fit.theta
     assert result.fraction_with_resurrections == pytest.approx(0.5, abs=0.02)
-    widths = result.resurrections.query("windows == 1").window_width
+    widths = result.resurrections.query("resurrections == 1").window_width
     assert widths.median() == pytest.approx(np.log(1.6 / 1.3), abs=0.03)

@@ -139,7 +139,7 @@ def test_a_bad_value_is_named_with_its_row_and_column(column, row, value, words)
 
 
 def test_counts_outside_zero_to_trials_and_empty_tables_are_refused():
-    with pytest.raises(InputError, match="share between 0 and 1"):
+    with pytest.raises(InputError, match="fraction between 0 and 1"):
         outcomes_from_table(STRIPES.assign(overturned=41), "pga_g", trials="trials", motion=None)
     with pytest.raises(InputError, match="no row"):
         outcomes_from_table(STRIPES.iloc[:0], "pga_g", trials="trials")

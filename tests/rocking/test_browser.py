@@ -45,7 +45,7 @@ rockfragKernel(new Uint8Array(fs.readFileSync(wasm))).then((kernel) => {
     for (const number of [(e) => e.time, (e) => e.energy_after, (e) => e.before.omega2]) {
       found.push(Float64Array.from(r.events, number));
     }
-    const numbers = ["done", "fallen", "fallTime", "impacts", "grazings", "closest", "peak1", "peak2"];
+    const numbers = ["done", "fallen", "fallTime", "impacts", "grazings", "unstable_distance", "peak1", "peak2"];
     return {
       ...Object.fromEntries(numbers.map((name) => [name, r[name]])),
       record: Buffer.from(body.record).toString("hex"),

@@ -214,9 +214,8 @@ def _arrangements(found: Assessment) -> Section:
             "from "
             f"its worst one, {100 * directions.factor:.0f} % of the shaking would topple the object"
             + (
-                f", and {100 * directions.worst_fraction:.0f} % instead of {100 * directions.fraction:.0f} % of the "
-                "records "
-                "at the site's level."
+                f", and {100 * directions.worst_fraction:.0f} % instead of "
+                f"{100 * directions.fraction:.0f} % of the records at the site's level."
                 if np.isfinite(directions.fraction)
                 else "."
             )

@@ -1,4 +1,4 @@
-"""Outcomes of large IDA curves as counts: what curves are fitted to, in memory that does not grow with the amplitudes.
+"""Outcomes of large analyses as counts, to which curves are fitted in memory that amplitudes do not fill.
 
 A motion raised through n amplitudes gives n outcomes. Estimates and their limits need only how many of them lie
 in each narrow cell of the measure and how many of those overturned, by what is resampled together; the

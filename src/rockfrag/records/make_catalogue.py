@@ -237,8 +237,8 @@ def _note_names_of_one_day(rows: Sequence[dict[str, Any]], draft: CatalogueDraft
             first, other = list(earthquakes)[:2]
             draft.note(
                 earthquakes[other],
-                f"its earthquake is {other!r}, that of {earthquakes[first]} on the same day ({day}) {first!r}; if they "
-                "are one, give it one name in the column earthquake",
+                f"its earthquake is {other!r}, that of {earthquakes[first]} on the same day ({day}) {first!r}; if "
+                "they are one, give it one name in the column earthquake",
             )
 
 

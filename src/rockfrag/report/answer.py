@@ -179,7 +179,7 @@ def could_change(results: Results) -> list[str]:
     earthquakes = results.study.catalogue["earthquake"].nunique()
     if earthquakes < FEW:
         words.append(
-            f"Other earthquakes: these {earthquakes} are few, and the intervals describe only what they have in common."
+            f"Other earthquakes: these {earthquakes} are few, and the intervals describe only what they share."
             if earthquakes > 1
             else "Other earthquakes: a single one does not show how much earthquakes differ."
         )

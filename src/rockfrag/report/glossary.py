@@ -27,7 +27,7 @@ TERMS: Mapping[str, str] = {
     "overturned (or everything did).",
     "open": "of a limit: the data set none on this side.",
     "undecided": "of a statement: the data neither confirm nor refute it.",
-    "structural resurrection": "range of stronger motions that the object survives although a weaker one overturned it.",
+    "structural resurrection": "stronger motions are survived although a weaker one overturned the object.",
     "robust": "of an outcome: the same for the motion scaled by anything within ±10 %.",
     "p value": "probability of data at least this far off if there were no effect; small values speak "
     "against that.",

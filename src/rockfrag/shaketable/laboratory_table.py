@@ -17,6 +17,7 @@ from collections.abc import Callable, Mapping
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.renamed_keys import check_names
 from rockfrag.shaketable.tests_table import BODIES, CENSORED, PEDESTALS, as_tests_table
 from rockfrag.tabular import read_cells
 from rockfrag.units import GRAVITY
@@ -90,6 +91,7 @@ def _unit(path: str, header: list[str]) -> str:
             f"{path}: the header needs either lower_g and upper_g or lower_m_s2 and upper_m_s2."
         )
     needed = (*_TEXT, *_BOUNDS[units[0]])
+    check_names(path, header, needed)
     for name in needed:
         if name not in header:
             raise InputError(f"{path}: column {name!r} is missing; it needs {', '.join(needed)}.")

@@ -1,4 +1,4 @@
-"""Outcomes of incremental dynamic analyses as matrices, motion by amplitude, read from files of any size in little memory.
+"""Outcomes of incremental dynamic analyses as matrices, motion by amplitude, read in little memory.
 
 A file of an IDA curve has a row per motion and amplitude, motion after motion, each raised through the same
 amplitudes. What statistics need of it is a byte a history.

@@ -93,7 +93,7 @@ BY = ["configuration", "earthquake", "floor", "motion"]
 
 @dataclass(frozen=True)
 class _IdaCurves:
-    """IDA curves by configuration, and by limit state, configuration and floor; structural resurrections of all."""
+    """IDA curves by configuration, and by limit state, configuration and floor; resurrections of all."""
 
     of_all: dict[str, "IdaData"]
     of_floors: "StateIdaCurves"

@@ -264,6 +264,6 @@ def _check_columns(source: Path, columns: Mapping[str, str], pulses: bool) -> No
         )
     if ("overturned" in columns) == all(brackets):
         raise InputError(
-            f"{source}: key campaign.columns: give either overturned, an outcome per test, or lower_g and upper_g, "
-            "between which the object overturned."
+            f"{source}: key campaign.columns: give either overturned, an outcome per test, or lower_g and "
+            "upper_g, between which the object overturned."
         )

@@ -3,7 +3,6 @@
 import pandas as pd
 
 from rockfrag_thesis.hypotheses.floors import FLOORS, GROUND
-from rockfrag_thesis.sections.sensitivity_analysis import perturbations
 
 _UPPER = [floor for floor in FLOORS if floor != GROUND]
 
@@ -23,6 +22,9 @@ def perturbations_by_floor(effects: pd.DataFrame) -> pd.DataFrame:
         the thesis, ``signs`` (the mean is above one on the ground floor and below one on the others) and
         ``beyond_chance`` (so are the 95 % intervals).
     """
+    # sections draw on this module
+    from rockfrag_thesis.sections.sensitivity_analysis import perturbations
+
     keys = ["factor", "level"]
 
     def by_floor(value: str) -> pd.DataFrame:

@@ -64,7 +64,7 @@ CONTACT_EVENT = np.dtype(
 """A change of the contact state."""
 
 OPENING, CLOSING, CHATTER, LIFTING = 0, 1, 2, 3
-"""Kinds of contact events; a contact that lifts would have to pull as a whole, and the integration goes on as if it did."""
+"""Kinds of contact events; a contact that lifts would have to pull as a whole; integration goes on as if so."""
 
 BALANCE = np.dtype([("critical", np.float64), ("frequency2", np.float64)])
 """A way to balance: critical angle [rad] and squared frequency parameter [1/s²]."""

@@ -270,7 +270,7 @@ def _count_impact(state, closes1, summary):
 
 @kernel
 def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, forced):
-    """Take a state through an impact to what follows from it; the kind of contact event, and 1 if a law had to give way.
+    """Take a state through an impact; return the kind of contact event, and 1 if a law had to give way.
 
     A contact that comes off slower than the closing speed stays closed, one that has met too often within a sample
     (``forced``) too, and impacts that are sure to end at rest are not followed.

@@ -1,1 +1,1 @@
-"""Columns of planar bodies that stick, slide, rock, fly and land, contact event by contact event (``docs/contact.md``)."""
+"""Columns of planar bodies that stick, slide, rock, fly and land, event by contact event (``docs/contact.md``)."""

@@ -45,8 +45,8 @@ def history_columns(count: int) -> int:
 
 
 def contact_event_columns(count: int) -> int:
-    """Columns of the contact events: time, kind, mode before and after, kinetic energy before and after [J], and of each
-    body or interface the slip [m], the rotation, the angular velocity before and after.
+    """Columns of contact events: time, kind, mode before and after, kinetic energy before and after [J], and of
+    each body or interface the slip [m], the rotation, the angular velocity before and after.
     """  # noqa: D205
     return 6 + 4 * count
 

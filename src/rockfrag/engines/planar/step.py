@@ -7,7 +7,7 @@ from rockfrag.engines.planar.compile import kernel
 from rockfrag.engines.planar.solve import AT_EDGE, end_of, look_at, rate, solve
 
 SLACK, TOUCH = 1e-12, 1e-13
-"""Slack before a contact event is seen, so that what has just begun is not taken for its end: forces over the weight;
+"""Slack before a contact event is seen, so that what has just begun is not taken for its end: forces over weight;
 speeds over √(g b) and lengths over b [-]."""
 
 ERROR = 1e-7

@@ -168,8 +168,8 @@ async function rockfragKernel(bytes) {
       ...array(eventsAt, places, layout.event.size),
     );
     const { summary, done } = read(layout.call, call);
-    if (history && summary.events > room) {
-      room = 2 * summary.events;
+    if (history && summary.contact_events > room) {
+      room = 2 * summary.contact_events;
       return runIntegration({ body, samples, vertical, dt, scale, substeps, freeSamples, initial, history });
     }
     return {
@@ -178,7 +178,7 @@ async function rockfragKernel(bytes) {
       fallTime: summary.fall_time,
       ...summary,
       ...(history ? columns(historyAt, done) : {}),
-      events: history ? listed(eventsAt, summary.events) : [],
+      events: history ? listed(eventsAt, summary.contact_events) : [],
     };
   }
 

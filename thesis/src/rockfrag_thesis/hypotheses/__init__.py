@@ -1,4 +1,4 @@
-"""The table of hypotheses of the thesis's 58 hypotheses, C1 to C58: what each says, what can test it, what came out.
+"""The 58 hypotheses of the thesis, C1 to C58: what each says, what can test it, what came out.
 
 **Where a hypothesis is.**  Its words, kind and rule stand beside the function that tests it, named after its
 number (``c35`` is C35), in the file of its group:

@@ -282,7 +282,7 @@ def _ahead(case, motions):
 
 @kernel
 def contact_event_of_one(i, case, worker, ensemble, motions, g):
-    """Take a case in lane i of those of one rotation to its contact event or to the step's end, and through the contact event.
+    """Take a case in lane i of those of one rotation through its contact event, or to the step's end.
 
     Returns
     -------
@@ -348,7 +348,7 @@ def find_contact_events_of_two(stops, worker):
 
 @kernel
 def contact_event_of_two(i, case, worker, ensemble, motions, g):
-    """Take a case in lane i of those of two rotations through the contact event that was found, or to the step's end.
+    """Take a case in lane i of those of two rotations through the contact event found, or to the step's end.
 
     Returns
     -------
@@ -494,7 +494,7 @@ def _forced(case):
 
 @inlined_kernel
 def after_contact_event(case):
-    """Take a case that has been through its contact event, or to the end of its step, to the sample that it is in."""
+    """Take a case past its contact event, or past the end of its step, to the sample that it is in."""
     crowded = case.crowded == case.k and case.crowd > MAX_CONTACT_EVENTS_PER_STEP + 20
     if case.tau >= 1.0 - 1e-13 or crowded:
         case.tau = 0.0

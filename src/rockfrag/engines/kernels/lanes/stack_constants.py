@@ -1,4 +1,4 @@
-"""The constants of a stack: all that its contact states fix, so that lanes and contact events need only look it up.
+"""The constants of a stack: all that its contact states fix, for lanes and contact events to look up.
 
 Time is counted in samples, so lengths of time in the constants carry the sampling interval.
 """

@@ -201,7 +201,7 @@ def go_back(lane, i, g, upward):
 
 @inlined_kernel
 def next_contact_event(lanes_of_one, lane, i, series, g):
-    """Time in the lane's step of its next contact event, NEVER if there is none; whether the closed contact lets go."""
+    """Time in the lane's step of its next contact event, or NEVER; whether the closed contact opens."""
     if lane.flag[i] == CLOSES:
         when = crossing_time(series.gap)
         omega = slope(series.one.angle, when) / lane.was_left[i]
