@@ -7,6 +7,7 @@ from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.errors import InputError
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.rocking.inputs import UnitWarning
+from rockfrag.system.blocks import UnlikelyBlock
 
 T = np.arange(0, 4, 0.01)
 SHAKE = 4 * np.sin(2 * np.pi * 1.5 * T) * np.sin(np.pi * T / 4)
@@ -109,3 +110,58 @@ def test_the_instant_of_a_fall_has_one_meaning():
 def test_forces_with_friction_are_refused_and_not_left_out():
     with pytest.raises(InputError, match="forces cannot be had together with friction"):
         overturns(B, SHAKE, 0.01, friction=0.4, forces=True)
+
+
+def near_jamming(seed):
+    """A block that slides on a corner near the configuration in which the normal force has no bound."""
+    rng = np.random.default_rng([901, seed])
+    b = rng.uniform(0.05, 0.4)
+    h = b * rng.uniform(1.5, 6)
+    block = Block(2 * b, 2 * h, 1000 * b * h, cg_offset=float(rng.uniform(-0.3, 0.3) * b))
+    t = np.arange(0, 6, 0.01)
+
+    def wave(peak):
+        made = sum(
+            np.sin(2 * np.pi * rng.uniform(0.3, 4) * t + rng.uniform(0, 6)) for _ in range(3)
+        )
+        made = made * np.sin(np.pi * t / 6) ** 2
+        return made * peak / abs(made).max()
+
+    along = wave(9.81 * rng.uniform(0.5, 1.5))
+    return block, along, wave(9.81 * rng.uniform(0.5, 1.2)), rng.uniform(0.8, 1.6)
+
+
+@pytest.mark.parametrize("seed", [60, 1096, 1490, 1827, 3412])
+def test_energy_is_kept_where_friction_nearly_jams_a_corner(seed):
+    block, along, up, mu = near_jamming(seed)
+    response = simulate(block, along, 0.01, friction=mu, vertical=up)
+    energy = response.energy
+    unit = max(block.mass * 9.81 * block.h, float(energy["input"].abs().max()))
+    assert energy["residual"].abs().max() < 1e-7 * unit
+    # the first of them was thrown to a rotation that is no number, and said to stand
+    assert np.isfinite(response.theta).all() and response.overturned
+    found = overturns(block, along, 0.01, friction=[mu], vertical=up)
+    assert found.overturned.item()
+
+
+def test_where_two_outcomes_satisfy_the_laws_the_choice_is_counted():
+    stack, a = ambiguous_stack()
+    rough = overturns([stack, stack], [a], 0.01, friction=[2.0, 0.6])
+    # with the usual friction of stone the laws leave one outcome alone
+    assert rough.several_modes.ravel().tolist() == [14, 0]
+
+
+def test_a_restitution_of_nothing_is_taken_as_it_is_said():
+    """Any ratio that gains no energy can have been measured, so that none is doubted: 0 stops dead."""
+    response = simulate(B, SHAKE, 0.01, restitution=0)
+    impacts = response.contact_events[response.contact_events["kind"] == "impact"]
+    assert len(impacts) and all(after == (0.0,) for after in impacts["omega_after"])
+
+
+def test_a_mass_without_a_depth_is_doubted_only_where_no_depth_explains_it():
+    with pytest.warns(UnlikelyBlock, match="lighter than air"):
+        Block(200.0, 800.0, 50.0)
+    with pytest.warns(UnlikelyBlock, match="radius of gyration"):
+        Block(0.2, 0.8, 50.0, inertia=1e9)
+    # a wall of 50 t: a planar block does not say how deep it is
+    assert Block(0.2, 0.8, 50_000.0).mass == 50_000.0

@@ -13,9 +13,11 @@ from rockfrag.engines.planar.search import mode_number
 from rockfrag.engines.planar.solve import end_of, look_at, solve
 from rockfrag.engines.planar.step import (
     EDGE,
+    ERROR,
     FALL,
     FRICTION,
     GAP,
+    SHORTEST,
     Stretch,
     beginning,
     comes_near,
@@ -24,6 +26,7 @@ from rockfrag.engines.planar.step import (
     least_margin,
     margin_at,
     start_step,
+    step_error,
     take_step,
 )
 
@@ -233,14 +236,18 @@ def integrate(p, shaking, start, closing, book, w):
             known_rest = False
             step = (math.floor(tau * substeps + 1e-9) + 1.0) / substeps - tau
             ah, av = ground_at(sample, tau)
-            stretch = Stretch(step * dt, ah, av, step * sample.rise_h, step * sample.rise_v)
             if fresh:
                 look_at(p, w, w.q)
                 solve(p, w, w.q, w.v, ah, av, False)
                 for d in range(3 * p.count):
                     w.a[d] = w.out[d]
             start_step(p, w)
-            work, rubbed = take_step(p, w, stretch, energy_balance)
+            while True:
+                stretch = Stretch(step * dt, ah, av, step * sample.rise_h, step * sample.rise_v)
+                work, rubbed = take_step(p, w, stretch, energy_balance)
+                if step < SHORTEST or step_error(p, w, stretch.length) <= ERROR:
+                    break
+                step *= 0.5
             at_end = least_margin(p, w, w.q1, w.v1)
             when = 2.0
             if idle <= MOST_IDLE:

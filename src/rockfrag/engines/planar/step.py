@@ -10,6 +10,11 @@ SLACK, TOUCH = 1e-12, 1e-13
 """Slack before a contact event is seen, so that what has just begun is not taken for its end: forces over weight;
 speeds over √(g b) and lengths over b [-]."""
 
+ERROR = 1e-7
+"""Error of a step above which it is taken again, half as long [-]."""
+SHORTEST = 1e-7
+"""Fraction of a sampling interval below which a step is not made shorter."""
+
 WIDTH = 1e-12
 """Fraction of a step to which the time of a contact event is found."""
 
@@ -150,6 +155,21 @@ def take_step(p, w, stretch, energy_balance):
     for d in range(size):
         w.a1[d] = w.out[d]
     return work * h, rubbed * h
+
+
+@kernel
+def step_error(p, w, h):
+    """Error of the velocities of the step just taken, by the pair's own estimate, in units of √(g b) [-].
+
+    It is large where a contact that slides comes near the configuration in which its normal force is infinite
+    (``docs/contact.md``, "Painlevé's cases").
+    """
+    worst = 0.0
+    for d in range(3 * p.count):
+        off = 71.0 / 57600.0 * w.ka[0, d] - 71.0 / 16695.0 * w.ka[2, d] + 71.0 / 1920.0 * w.ka[3, d]
+        off += -17253.0 / 339200.0 * w.ka[4, d] + 22.0 / 525.0 * w.ka[5, d] - 0.025 * w.ka[6, d]
+        worst = max(worst, abs(off) * (p.size if d % 3 == 2 else 1.0))
+    return worst * h / p.speed
 
 
 @kernel
