@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from rockfrag.figure_style import (
     BLUE,
+    OKABE_ITO,
     ORANGE,
     PAGE_WIDTH,
     figure_style,
@@ -13,7 +14,12 @@ from rockfrag.figure_style import (
     plain_log,
 )
 
-COLOURS = {"single block": BLUE, "two blocks": ORANGE}
+COLOURS = {
+    "single block": BLUE,
+    "two blocks": ORANGE,
+    "three blocks": OKABE_ITO[2],
+    "eight blocks": OKABE_ITO[3],
+}
 
 
 def draw_benchmark(programs: pd.DataFrame, scaling: pd.DataFrame) -> Figure:

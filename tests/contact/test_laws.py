@@ -186,3 +186,51 @@ def test_with_much_friction_impacts_are_those_of_pure_rocking(stacks: bool, law:
         np.testing.assert_allclose(slow.theta[:n], fast.theta[:n], atol=2e-7)
         compared += 1
     assert compared >= 3
+
+
+class Bounces(NamedTuple):
+    """What histories with friction and restitution showed: how many there were, gain, stop dead, and jump."""
+
+    impacts: int
+    gains: int
+    stops: int
+    jumps: int
+    open_ledgers: int
+
+
+def bouncing(cases: int, seed: int) -> Bounces:
+    """Integrate random blocks, stacks and columns with laws of impact, and with all numbers moved a little."""
+    rng = np.random.default_rng(seed)
+    impacts = gains = stops = jumped = ledgers = 0
+    for i in range(cases):
+        bodies, law = 1 + i % 3, LAWS[i // 3 % 3]
+        system = random_column(rng, bodies).system()
+        laws = drawn_laws(system, law, rng.uniform(0.7, 1.0))
+        mus, motion = rng.uniform(0.3, 1.2, bodies), 1.5 * random_motion(rng)
+        found = run(with_contacts(system, list(mus), laws), motion, free=200)
+        struck = found.contact_events[found.contact_events[:, 1] == 1]
+        before, after = struck[:, 4], struck[:, 5]
+        unit = 1e-9 * float(system.mass * G)
+        impacts += len(struck)
+        gains += int((after > before * (1 + 1e-9) + unit).sum())
+        # a couple multiplies what momentum leaves, which may be nothing
+        stops += law != "couple" and int(((after == 0) & (before > 1e4 * unit)).sum())
+        # not at the instant of a fall, where a base at a right angle to its face may touch it
+        whole = found.residual[:-1] if found.fallen else found.residual
+        ledgers += not np.abs(whole).max() < 2e-8
+        near = run(with_contacts(system, list(mus * (1 + 1e-9)), laws), motion, free=200)
+        until = found.contact_events[4, 0] if len(found.contact_events) > 4 else np.inf
+        n = min(int(np.searchsorted(found.time, until)), len(near.time))
+        jumped += bool(np.abs(found.theta[:n] - near.theta[:n]).max() > 1e-4)
+    return Bounces(impacts, gains, stops, jumped, ledgers)
+
+
+@pytest.mark.parametrize("cases", [18, pytest.param(1000, marks=pytest.mark.slow)])
+def test_histories_with_friction_and_restitution_gain_nothing_and_do_not_stop_dead(
+    cases: int,
+) -> None:
+    found = bouncing(cases, seed=11)
+    print(found)
+    assert found.impacts > 10 * cases
+    assert found.gains == found.stops == found.open_ledgers == 0
+    assert found.jumps <= max(1, cases // 50)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.motions.synthetic import evolutionary
-from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system.blocks import Block, Body, Column, Stack
 
 DT = 0.01
 SAMPLES = 4000
@@ -113,3 +113,39 @@ def cases(kind: str, count: int = 10_000, seed: int = 5) -> Cases:
     pga = np.sort(filled(rng, 0.1, 1.05, n_motions * n_scales).reshape(n_motions, n_scales), axis=1)
     made = blocks(n_bodies, seed) if kind == "lone" else stacks(n_bodies, seed)
     return Cases(made, motions(n_motions, seed), pga)
+
+
+def columns(bodies: int, count: int, seed: int = 3) -> Cases:
+    """Columns of as many blocks that narrow upwards, the uppermost slender, under two motions at two scales."""
+    rng = np.random.default_rng(seed)
+    made = []
+    for width in filled(rng, 0.3, 1.0, max(1, count // 4)):
+        widths = np.linspace(1.3 * width, width, bodies)
+        heights = np.append(filled(rng, 0.3, 1.0, bodies - 1) * widths[:-1], 3.5 * width)
+        made.append(
+            Column(
+                tuple(
+                    Block(float(b), float(h), DENSITY * float(b * b * h))
+                    for b, h in zip(widths, heights, strict=True)
+                )
+            )
+        )
+    return Cases(made, motions(2, seed), np.array([[0.4, 0.8], [0.4, 0.8]]))
+
+
+def drum_column(drums: int = 7) -> Column:
+    """Drums of equal height that taper from 1.11 to 0.90 m, and a capital: 5.95 m of 2620 kg/m³."""
+    height, capital = (5.95 - 0.45) / drums, (0.90, 0.45)
+    sizes = [(1.11 - 0.21 * (k + 0.5) / drums, height) for k in range(drums)]
+    made = []
+    for width, tall in (*sizes, capital):
+        # round: mass of a cylinder, inertia of one across its axis
+        mass = 2620 * np.pi / 4 * width**2 * tall
+        made.append(Block(width, tall, mass, mass * (0.75 * width**2 + tall**2) / 12))
+    return Column(tuple(made))
+
+
+def drum_pulse(duration: float, dt: float) -> NDArray[np.float64]:
+    """+1 for a duration [s], -1/2 for twice as long [m/s²]: the ground ends at rest."""
+    time = np.arange(0, 3 * duration + dt / 2, dt)
+    return np.where(time < duration, 1.0, np.where(time < 3 * duration, -0.5, 0.0))

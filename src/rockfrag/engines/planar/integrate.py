@@ -36,6 +36,12 @@ MOST_CONTACT_EVENTS = 300
 MOST_IDLE = 30
 """Contact events on the spot after which a step is taken without looking for more."""
 
+LARGEST_FAILURE = 1e-3
+"""Margin of a step after contact events on the spot beyond which it is no small one [-]."""
+
+BURST, LEAST_STEP = 100.0, 1e-9
+"""Margin at the end of a step beyond which a shorter one is taken [-], down to this part of a sample."""
+
 
 def history_columns(count: int) -> int:
     """Columns of a history: q (3 n), v (3 n), slip, normal force, shear and angular acceleration (n each), and
@@ -249,13 +255,26 @@ def integrate(p, shaking, start, closing, book, w):
                     break
                 step *= 0.5
             at_end = least_margin(p, w, w.q1, w.v1)
+            while not at_end >= -BURST and step > LEAST_STEP:
+                # sliding that jams: forces grow faster than the step sees
+                step *= 0.125
+                stretch = beginning(stretch, 0.125)
+                work, rubbed = take_step(p, w, stretch, energy_balance)
+                at_end = least_margin(p, w, w.q1, w.v1)
             when = 2.0
-            if idle <= MOST_IDLE:
+            if idle <= MOST_IDLE or at_end < -LARGEST_FAILURE:
                 when = _contact_event_in_step(p, w, at_end, stretch)
-            else:
-                # contact events that do not let time go on: leave them behind
+            if idle > MOST_IDLE:
+                # contact events that do not let time go on: leave them behind, or end them by an impulse
+                # where a step would not be a small one
                 idle = 0
                 w.forced += 1
+                if when <= 1.0:
+                    count = _jolt(
+                        p, w, Instant((i + tau) * dt, ah, av), closing, book.contact_events, count
+                    )
+                    fresh = True
+                    continue
             if when > 1.0:
                 for d in range(3 * p.count):
                     w.q[d] = w.q1[d]
@@ -398,12 +417,7 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
     -------
     Number of contact events so far.
     """
-    for d in range(3 * p.count):
-        w.old_v[d] = w.v[d]
-    for k in range(p.count):
-        w.old_slides[k] = w.slides[k]
-        for end in range(2):
-            w.old_closed[k, end] = w.closed[k, end]
+    _remember(p, w)
     passes = False
     if not all_ends:
         for k in range(p.count):
@@ -476,6 +490,33 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
         if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
             w.flights[k] += 1
     return _note(p, w, now.time, kind, contact_events, count)
+
+
+@kernel
+def _jolt(p, w, now, closing, contact_events, count):
+    """End by an impulse, as where no mode is consistent, what repeats on the spot as a step begins."""
+    for d in range(3 * p.count):
+        w.q[d] = w.q0[d]
+        w.v[d] = w.v0[d]
+    _remember(p, w)
+    _touch_closed(p, w)
+    look_at(p, w, w.q)
+    strike(p, w, now.ah, now.av, closing * p.speed, True)
+    _touch_closed(p, w)
+    settle(p, w, now.ah, now.av, False)
+    w.met += 1
+    return _note(p, w, now.time, PARADOX, contact_events, count)
+
+
+@kernel
+def _remember(p, w):
+    """Keep velocities and mode as they are before a contact event."""
+    for d in range(3 * p.count):
+        w.old_v[d] = w.v[d]
+    for k in range(p.count):
+        w.old_slides[k] = w.slides[k]
+        for end in range(2):
+            w.old_closed[k, end] = w.closed[k, end]
 
 
 @kernel
