@@ -86,7 +86,7 @@ def test_an_arrangement_names_another_one_as_its_counterpart(tmp_path: Path) -> 
 @pytest.mark.parametrize("row", ["all,venus,base|plinth", "all,venus | base | plinth,"])
 def test_an_arrangement_names_its_blocks_from_above(tmp_path: Path, row: str) -> None:
     (found,) = arrangements(tmp_path, row)
-    assert labels_of(found) == {"configuration": "all", "object": "venus", "lower": "P"}
+    assert labels_of(found) == {"configuration": "all", "object": "venus", "pedestal": "P"}
     assert [body.width for body in found.bodies] == [0.8, 0.5, 0.3]
     assert fallen_names(found) == ("", "plinth", "base", "venus")
 

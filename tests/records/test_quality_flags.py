@@ -73,7 +73,7 @@ def test_info_says_quality_flags_status_and_values_as_json_and_csv(tmp_path, cap
     assert main(["info", str(tmp_path), "--format", "csv"]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 4
-    assert lines[0].endswith("doubts,error,status")
+    assert lines[0].endswith("quality_flags,error,status")
     assert lines[3].endswith("unreadable")
 
 

@@ -199,7 +199,7 @@ def test_a_job_that_may_not_write_its_log_says_so(
     with pytest.raises(SystemExit), logged(str(tmp_path / "file" / "x.log"), "ida"):
         pass
     said = capsys.readouterr().err
-    assert said.startswith("IDA curve failed: ")
+    assert said.startswith("ida failed: ")
     assert said.count("\n") == 1
 
 
