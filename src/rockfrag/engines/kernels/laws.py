@@ -1,6 +1,6 @@
 """The laws of impacts (``rockfrag.laws``) as the kernels call them: chosen by number, and inlined."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from rockfrag.engines.kernels.jit import inlined_kernel
@@ -34,15 +34,24 @@ def own_rate(own: Any) -> Any:
     return chosen
 
 
-def _any_of(of: Sequence[Law]) -> Callable[[int], bool]:
-    """Return the function that says whether a number is that of one of some laws."""
-    numbers = tuple(law.number for law in of)
+def _any_of(of: Sequence[Law]) -> Any:
+    """Return the function that says whether a number is that of one of some laws, at least one."""
+    number = of[0].number
+    others = _any_of(of[1:]) if of[1:] else None
 
-    @inlined_kernel
-    def known(law):  # type: ignore[no-untyped-def]
-        return law in numbers
+    # a membership test would call what numba brings along, which the module of a page cannot hold
+    if others is None:
 
-    return known  # type: ignore[no-any-return]
+        @inlined_kernel
+        def known(law):  # type: ignore[no-untyped-def]
+            return law == number
+    else:
+
+        @inlined_kernel
+        def known(law):  # type: ignore[no-untyped-def]
+            return law == number or others(law)
+
+    return known
 
 
 _DECLARED = [law for law in laws() if law.rate is not None]
