@@ -30,7 +30,7 @@ def first(law, ratio):
 def turning(of):
     return of[1] - of[0]
 
-plain = simulate(body, shake, 0.01).contact events
+plain = simulate(body, shake, 0.01).contact_events
 plain = plain[plain["kind"] == "impact"].iloc[0]
 own = first("between", 0.8)
 wanted = 0.8 * (0.25 * turning(plain["omega_after"]) + 0.5 * turning(plain["omega_before"]))
