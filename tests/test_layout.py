@@ -106,7 +106,7 @@ def test_nothing_outside_of_systems_asks_whether_a_thing_is_a_block_or_a_stack()
     asking = [
         f"{path.name}: {found[0]}"
         for path in [*SOURCE.rglob("*.py"), *THESIS.rglob("*.py")]
-        if path.parent.name not in ("system", "reference")
+        if path.parent.name != "system"
         for found in [ASKS.search(path.read_text(encoding="utf-8"))]
         if found
     ]
@@ -116,8 +116,6 @@ def test_nothing_outside_of_systems_asks_whether_a_thing_is_a_block_or_a_stack()
 def test_no_field_or_column_is_named_after_the_role_of_a_body():
     looked_at = 0
     for path in [*SOURCE.rglob("*.py"), *THESIS.rglob("*.py")]:
-        if path.parent.name == "reference":
-            continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             names = []
             if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
