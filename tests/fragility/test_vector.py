@@ -143,6 +143,19 @@ def test_shakebot_tests_tell_velocity_from_acceleration(shared):
     assert min(fit.surface.coefficients[1:3]) > 0
 
 
+@pytest.mark.parametrize("pair", [("pga_g", "pgv_cm_s"), ("pgv_cm_s", "pga_g")])
+def test_contours_are_of_the_measure_that_decides_and_are_drawn(pair: tuple[str, str]):
+    rng = np.random.default_rng(0)
+    pga, pgv = np.exp(rng.normal(-1, 0.5, 300)), np.exp(rng.normal(3.7, 0.6, 300))
+    fell = rng.random(300) < (pgv / 40) ** 4 / (1 + (pgv / 40) ** 4)
+    about = {"earthquake": np.arange(300) % 12, "motion": np.arange(300), "overturned": fell}
+    table = pd.DataFrame({"pga_g": pga, "pgv_cm_s": pgv, **about})
+    found = vector_tables({"T1": table}, (pair,))
+    assert set(found.contours["of"]) == {"pgv_cm_s"}
+    lines = two_measures_figure(found.contours, found.cells).axes[0].lines
+    assert all(np.isfinite(line.get_xydata()).all(axis=1).sum() > 10 for line in lines)
+
+
 def test_tables_hold_the_fit_its_contours_and_its_cells_and_a_figure_is_drawn_of_them():
     table = laboratory(np.random.default_rng(10), 12)
     agreeing = table.assign(overturned=0)
@@ -152,8 +165,8 @@ def test_tables_hold_the_fit_its_contours_and_its_cells_and_a_figure_is_drawn_of
     assert (fitted["c0"], fitted["c1"], fitted["c2"]) == fit.surface.coefficients[:3]
     assert other["method"] == "none" and "all 360 tests" in other["warnings"]
     middle = found.contours[found.contours["probability"] == 0.5]
-    p = fit.probability(middle["value"], middle["at_second"])
-    assert p == pytest.approx(0.5)
+    assert set(middle["of"]) == {"pga_g"}
+    assert fit.probability(middle["value"], middle["at"]) == pytest.approx(0.5)
     figure = two_measures_figure(found.contours, found.cells)
     axes = figure.axes[0]
     assert axes.get_xlabel() == "PGA [g]" and axes.get_ylabel() == "PGV/PGA [s]"

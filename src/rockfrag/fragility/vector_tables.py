@@ -24,7 +24,7 @@ FITS = (
     *("first", "second", "c0", "c1", "c2", "c12", "aic", "tests", "overturned", "earthquakes"),
     *("p_interaction", "likelihood_ratio", "p_fit", "method", "warnings"),
 )
-CONTOURS = ("first", "second", "probability", "at_second", "value", "lower", "upper")
+CONTOURS = ("first", "second", "probability", "of", "at", "value", "lower", "upper")
 CELLS = ("first", "second", "at_first", "at_second", "tests", "overturned", "probability", "fitted")
 
 
@@ -38,8 +38,9 @@ class VectorTables:
         A row a fit: the labels given, the columns of the two measures, coefficients of 1, ln first, ln second and
         their product (0 where it earned no place), AIC, numbers, p values and warnings.
     contours
-        A row a point: the value of the first measure (``value``, with limits ``lower`` and ``upper``) at which
-        overturning has ``probability``, where the second one is ``at_second``.
+        A row a point: the value of the measure ``of`` (``value``, with limits ``lower`` and ``upper``) at which
+        overturning has ``probability``, where the other one is ``at``.  ``of`` is the measure that decides more
+        over the tests: the contour may run along the other one.
     cells
         A row a cell of the two measures: tests, those that overturned, the probability that rises in both
         measures, and the fitted one.
@@ -127,13 +128,15 @@ def _fit_row(fit: VectorFragility, checks: VectorChecks) -> dict[str, object]:
 
 
 def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:
-    values = tests[fit.measures[1]].to_numpy(dtype=np.float64)
-    second = np.geomspace(values.min(), values.max(), POINTS)
+    logs = np.log(tests[list(fit.measures)].to_numpy(dtype=np.float64))
+    of = int(np.argmax(np.array(fit.surface.coefficients[1:3]) * logs.std(axis=0)))
+    other = np.exp(np.linspace(logs[:, 1 - of].min(), logs[:, 1 - of].max(), POINTS))
     parts = []
     for probability in PROBABILITIES:
-        value, lower, upper = fit.contour(probability, second)
-        columns: dict[str, Floats | float] = {
-            "probability": probability, "at_second": second, "value": value, "lower": lower, "upper": upper,
+        value, lower, upper = fit.contour(probability, other, of)
+        columns: dict[str, Floats | float | str] = {
+            "probability": probability, "of": fit.measures[of], "at": other, "value": value, "lower": lower,
+            "upper": upper,
         }  # fmt: skip
         parts.append(pd.DataFrame(columns))
     return pd.concat(parts, ignore_index=True)

@@ -49,27 +49,27 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
             edgecolors="#999999",
             linewidths=0.3,
         )
-        reach = (0.8 * x.min(), 1.25 * x.max())
+        reach, rise = (0.8 * x.min(), 1.25 * x.max()), (0.9 * y.min(), 1.1 * y.max())
+        across = bool((contours["of"] == first).all())
+        within = reach if across else rise
+        fill = axes.fill_betweenx if across else axes.fill_between
         for probability, line in LINES.items():
             part = contours[np.isclose(contours["probability"], probability)]
-            inside = part["value"].between(*reach)
+            at, value = part["at"], part["value"].where(part["value"].between(*within))
             axes.plot(
-                part["value"].where(inside),
-                part["at_second"],
+                *((value, at) if across else (at, value)),
                 color=BLUE,
                 linestyle=line,
                 label=f"{probability:.0%}",
             )
             if probability == MEDIAN:
-                lower, upper = (part[side].clip(*reach) for side in ("lower", "upper"))
-                axes.fill_betweenx(
-                    part["at_second"], lower, upper, color=BLUE, alpha=0.2, linewidth=0
-                )
+                lower, upper = (part[side].clip(*within) for side in ("lower", "upper"))
+                fill(at, lower, upper, color=BLUE, alpha=0.2, linewidth=0)
         axes.set(
             xscale="log",
             yscale="log",
             xlim=reach,
-            ylim=(0.9 * y.min(), 1.1 * y.max()),
+            ylim=rise,
             xlabel=_axis(first),
             ylabel=_axis(second),
         )
