@@ -62,6 +62,13 @@ def test_the_estimator_cannot_turn_the_order_of_two_bodies_round():
     assert strength_found(table, "90 %").headline.startswith("slender is the most fragile")
 
 
+def test_objects_that_no_shown_digit_tells_apart_are_named_together():
+    table = curves(bust=(0.1, 0.3428, 0.9), torso=(0.1, 0.3429, 0.9), chest=(0.3, 0.6, 0.9))
+    found = strength_found(table, "90 %")
+    assert found.headline.startswith("bust and torso are the most fragile: ")
+    assert "overturns them with 50 % probability, while chest needs 0.60 g" in found.headline
+
+
 def test_without_limits_no_interval_is_spoken_of():
     found = strength_found(curves(bust=(math.nan, 0.523, math.nan)), "90 %")
     assert "interval" not in found.said and "[" not in found.said

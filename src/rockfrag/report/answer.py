@@ -109,8 +109,9 @@ def advice(results: Results) -> list[str]:
         curves = headline_curves(results.table("fragility")).rows
         curves = curves[curves["theta"].notna()]
         if len(curves) > 1 and curves["theta"].min() < curves["theta"].max():
-            weakest = min(curves.to_dict("records"), key=lambda row: float(row["theta"]))
-            words.append(f"Secure {weakest['configuration']} first.")
+            # within what three digits tell
+            weakest = curves.loc[curves["theta"] < 1.005 * curves["theta"].min(), "configuration"]
+            words.append(f"Secure {listed(weakest.tolist())} first.")
     validity = results.table("validity")
     if not results.study.slides and len(validity):
         demand = validity["friction_demand"].to_numpy(dtype=float)

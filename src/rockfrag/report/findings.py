@@ -54,14 +54,21 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     decimals = min(max(decimals_of(value, 2) for value in rows["theta"]), 3)
     texts = estimates(rows, ("theta", "theta_lower", "theta_upper"), decimals)
     named = [f"{name} {text}" for name, text in zip(rows["configuration"], texts, strict=True)]
-    by_median = sorted(rows.to_dict("records"), key=lambda row: float(row["theta"]))
-    low, high = by_median[0], by_median[-1]
-    least, most = (f"{number(row['theta'], decimals)} {unit}" for row in (low, high))
+    printed = [number(value, decimals) for value in rows["theta"]]
+    least, most = (
+        printed[int(place)] for place in (rows["theta"].argmin(), rows["theta"].argmax())
+    )
+    # what differs in no digit that is shown is named together
+    low, high = (
+        [name for name, text in zip(rows["configuration"], printed, strict=True) if text == end]
+        for end in (least, most)
+    )
+    are, them = ("is", "it") if len(low) == 1 else ("are", "them")
     headline = (
-        f"A {measure} of {least} overturns {listed(rows['configuration'].tolist())} with 50 % probability"
+        f"A {measure} of {least} {unit} overturns {listed(low)} with 50 % probability"
         if least == most
-        else f"{low['configuration']} is the most fragile: a {measure} of {least} overturns it with 50 % "
-        f"probability, while {high['configuration']} needs {most}"
+        else f"{listed(low)} {are} the most fragile: a {measure} of {least} {unit} overturns {them} with 50 % "
+        f"probability, while {listed(high)} {'needs' if len(high) == 1 else 'need'} {most} {unit}"
     )
     shown = named[:_MOST_CONFIGURATIONS]
     rest = f" and {len(named) - len(shown)} more in the table" if len(shown) < len(named) else ""
