@@ -6,8 +6,6 @@ Each request must be answered without a contradiction, or be refused in one sent
 Prints how many were answered and refused, and what went wrong; exit status 1 if anything did.
 """
 
-import argparse
-import os
 import random
 import sys
 import tempfile
@@ -18,11 +16,11 @@ from pathlib import Path
 import numpy as np
 
 from rockfrag.motions import bandpass, scale_to_pga
-from rockfrag.processes import in_processes
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 
 from ..assess import asking, samples
+from .draws import Found, Part, run_draws
 
 EARTHQUAKES = 6
 PART = 50
@@ -33,28 +31,10 @@ LEAST_ANSWERED = 0.25
 
 def main() -> int:
     """Run the draws; return 0 if every answer agreed with itself."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--requests", type=int, default=2000, help="how many")
-    parser.add_argument("--seed", type=int, default=0)
-    options = parser.parse_args()
-    parts = [
-        (options.seed, first, min(first + PART, options.requests))
-        for first in range(0, options.requests, PART)
-    ]
-    fates: Counter[int] = Counter()
-    wrong: list[str] = []
-    for found, lines in in_processes(_part, parts, os.cpu_count() or 1):
-        fates += found
-        wrong += lines
-    print(f"{options.requests} requests: {fates[0]} answered, {fates[2]} refused in one sentence")
-    print("\n".join(wrong) if wrong else "no contradiction")
-    if fates[0] < LEAST_ANSWERED * options.requests:
-        print("too few of them were answered for this to say anything")
-        return 1
-    return 1 if wrong else 0
+    return run_draws(_part, "requests", 2000, PART, LEAST_ANSWERED, __doc__)
 
 
-def _part(part: tuple[int, int, int]) -> tuple[Counter[int], list[str]]:
+def _part(part: Part) -> Found:
     seed, first, last = part
     fates: Counter[int] = Counter()
     wrong = []

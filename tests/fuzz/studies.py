@@ -7,8 +7,6 @@ anything runs (``tests/end_to_end/asking_studies.py``).  Prints how many ran and
 wrong; exit status 1 if anything did.
 """
 
-import argparse
-import os
 import random
 import sys
 import tempfile
@@ -16,9 +14,8 @@ import traceback
 from collections import Counter
 from pathlib import Path
 
-from rockfrag.processes import in_processes
-
 from ..end_to_end import asking_studies
+from .draws import Found, Part, run_draws
 
 PART = 10
 
@@ -27,29 +24,11 @@ LEAST_RUN = 0.4
 
 
 def main() -> int:
-    """Run the draws; return 0 if every study agreed with itself."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--studies", type=int, default=500, help="how many")
-    parser.add_argument("--seed", type=int, default=0)
-    options = parser.parse_args()
-    parts = [
-        (options.seed, first, min(first + PART, options.studies))
-        for first in range(0, options.studies, PART)
-    ]
-    fates: Counter[int] = Counter()
-    wrong: list[str] = []
-    for found, lines in in_processes(_part, parts, os.cpu_count() or 1):
-        fates += found
-        wrong += lines
-        print("\n".join(lines), end="\n" if lines else "", flush=True)
-    print(f"{options.studies} studies: {fates[0]} ran, {fates[2]} refused in one sentence")
-    if fates[0] < LEAST_RUN * options.studies:
-        print("too few of them ran for this to say anything")
-        return 1
-    return 1 if wrong else 0
+    """Run the draws; return 0 if every answer agreed with itself."""
+    return run_draws(_part, "studies", 500, PART, LEAST_RUN, __doc__)
 
 
-def _part(part: tuple[int, int, int]) -> tuple[Counter[int], list[str]]:
+def _part(part: Part) -> Found:
     seed, first, last = part
     fates: Counter[int] = Counter()
     wrong = []

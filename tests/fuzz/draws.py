@@ -1,0 +1,54 @@
+"""Random draws in parts, one process each, and what came of them."""
+
+import argparse
+import os
+from collections import Counter
+from collections.abc import Callable
+
+from rockfrag.processes import in_processes
+
+Part = tuple[int, int, int]
+"""Seed, first number and the number after the last one."""
+
+Found = tuple[Counter[int], list[str]]
+"""How many ended with each exit status, and what is wrong."""
+
+
+def run_draws(
+    one_part: Callable[[Part], Found], what: str, many: int, size: int, least: float, about: str
+) -> int:
+    """Make the draws that the command line asks for; return 0 if nothing is wrong with any.
+
+    Parameters
+    ----------
+    one_part
+        Makes the draws of one part.
+    what
+        What is drawn, in the plural: an option of the command line.
+    many
+        How many there are if the option is left out.
+    size
+        Draws of a part.
+    least
+        Fraction of them that must be answered, and not refused [-].
+    about
+        What the command does.
+    """
+    parser = argparse.ArgumentParser(description=about.splitlines()[0])
+    parser.add_argument(f"--{what}", type=int, default=many, dest="many", help="how many")
+    parser.add_argument("--seed", type=int, default=0)
+    asked = parser.parse_args()
+    parts = [
+        (asked.seed, first, min(first + size, asked.many)) for first in range(0, asked.many, size)
+    ]
+    fates: Counter[int] = Counter()
+    wrong: list[str] = []
+    for found, lines in in_processes(one_part, parts, os.cpu_count() or 1):
+        fates += found
+        wrong += lines
+    print(f"{asked.many} {what}: {fates[0]} answered, {fates[2]} refused in one sentence")
+    print("\n".join(wrong) if wrong else "no contradiction")
+    if fates[0] < least * asked.many:
+        print("too few of them were answered for this to say anything")
+        return 1
+    return 1 if wrong else 0
