@@ -339,8 +339,6 @@ def locate(body, tau, h, y, s):
         attempt(body, tau, middle, y, s)
         value, what = margin(body, s.new, s)
         at, middle = middle, 0.0
-        if what == LANDS:
-            middle = at - value / rising(body, s.new, lowest_open(body, s.new, s))
         if value >= 0:
             low, above = at, value
             below *= 0.5 if side > 0 else 1.0
