@@ -107,7 +107,7 @@ class Outcomes:
     peak_rotation: Floats = column(
         "bodies",
         "",
-        "Largest rotation over the critical angle of its side; infinite if it fell.",
+        "Largest rotation on what it stands on, over the critical angle of its side; infinite if it fell.",
         NOT_TOLD,
     )
     peak_velocity: Floats = column(
