@@ -390,7 +390,7 @@ def off_direction(s, i, e, f):
 
 @kernel
 def slide_alone(s, n, mask):
-    """Solve for the impulse at which the one contact of a set slides, with the least energy left; whether it can."""
+    """Solve for the impulse at which the one contact of a set slides, with the least energy left, if it can."""
     for j in range(3 * n):
         s.impulse[j] = 0.0
     i = 0
@@ -444,6 +444,14 @@ def direction_between(s, i, p, q, u, v, before, after):
         if value == 0.0 or high - low < 1e-15:
             break
     return e, f
+
+
+@kernel
+def solve_set(s, n, mask, scale, largest, slide):
+    """Solve for one set that sticks, or of which some slide; return whether that is a solution."""
+    if slide:
+        return slide_set(s, n, mask, scale, largest)
+    return stick_set(s, n, mask, scale, largest)
 
 
 @kernel
@@ -517,11 +525,7 @@ def fewest(s, n, least, slide):
         size = bits(mask)
         if mask >= (1 << n) or size < least or size > size_found:
             continue
-        if slide:
-            found = slide_set(s, n, mask, scale, largest)
-        else:
-            found = stick_set(s, n, mask, scale, largest)
-        if found:
+        if solve_set(s, n, mask, scale, largest, slide):
             ways += 1
             product(s, n, s.impulse, s.after)
             change = energy_left(s, n)
