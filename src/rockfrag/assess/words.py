@@ -164,18 +164,23 @@ def at_the_site(found: Assessment) -> str:
     if found.rocking.value == 0:
         return f"{who} {_at_rest(found, at)}"
     rocks = f"{_counted(found, ROCK)} it rock"
+    topples = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}"
     if found.fraction.value == 0:
-        return (
-            f"{who} is unlikely to topple {at}: none of {_total(found)} motions topples it (upper limit "
-            f"{fraction_words(found.fraction.upper)}); {rocks}."
+        topples = (
+            f"none of {_total(found)} motions topples it (upper limit "
+            f"{fraction_words(found.fraction.upper)})"
         )
-    said = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}; {rocks}."
+    said = f"{topples}; {rocks}."
     if not_decidable(found):
         whether = f"Whether {found.request.name} {_where(found)} topples {at}"
         return (
             f"{whether} is not decidable with what was given: {said} {_would_narrow(found)}".strip()
         )
-    may = "is likely to topple" if found.fraction.value >= MANY else "may topple"
+    may = "may topple"
+    if found.fraction.value >= MANY:
+        may = "is likely to topple"
+    elif found.fraction.value == 0:
+        may = "is unlikely to topple"
     return f"{who} {may} {at}: {said}"
 
 
@@ -329,6 +334,8 @@ def helps(found: Assessment) -> str:
         return "Nothing was tried."
     target = found.main
     if target.value == 0:
+        if not_decidable(found):
+            return "None of the motions topples it as it stands, so none can show what a change is worth."
         return "No change is needed for this: none of the motions topples it as it stands."
     best = [mitigation for mitigation in found.mitigations if mitigation.helps][:3]
     if not best:
@@ -481,12 +488,13 @@ def quality_flags(found: Assessment) -> list[str]:
         )
     if found.outcomes.light:
         lines.append(
-            "Under the strongest shaking that was tried a squat body may leave the ground, which this model "
-            "does not let it."
+            f"Under the strongest shaking that was tried, {found.measure.name} "
+            f"{found.outcomes.intensity_levels.levels[-1]:.2g} {found.measure.unit}, a body may leave the ground, "
+            "which this model does not let it."
         )
     for earthquake, fraction in _influential(found):
         lines.append(
-            f"{fraction:.0%} of the motions that topple it at that level are of {earthquake}."
+            f"{100 * fraction:.0f} % of the motions that topple it at that level are of {earthquake}."
         )
     return lines
 
