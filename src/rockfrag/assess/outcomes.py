@@ -143,10 +143,9 @@ class ObjectOutcomes:
             Fraction of those that make it rock instead.
         """
         w = np.ones(len(self.overturned)) if weights is None else weights
-        counted = self.intensity_levels.allowed * w[:, np.newaxis]
-        total = counted.sum(axis=0)
-        happened = self.rocked if rocks else self.overturned
-        fell = (counted * happened).sum(axis=0)
+        allowed = self.intensity_levels.allowed
+        total = w @ allowed
+        fell = w @ (allowed & (self.rocked if rocks else self.overturned))
         known = total > 0
         at = np.maximum.accumulate(np.where(known, np.arange(total.size), 0))
         fraction = np.divide(fell, total, out=np.zeros(total.size), where=known)
