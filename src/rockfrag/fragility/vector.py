@@ -246,9 +246,7 @@ def fit_vector(
     )
 
 
-def _replicates(
-    design: Floats, outcome: Floats, group: NDArray[np.intp], start: Floats
-) -> Floats:
+def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp], start: Floats) -> Floats:
     """Coefficients without one earthquake (or block of many) each; empty with one earthquake."""
     groups = int(group.max()) + 1
     if groups < 2:
