@@ -12,9 +12,9 @@ from rockfrag.assess.hazard.measure import Measure
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
-from rockfrag.fragility.observations import Outcomes
+from rockfrag.fragility.observations import Observations
 from rockfrag.outcomes.limit_states import limit_state_named
-from rockfrag.outcomes.outcomes import Outcomes as Simulated
+from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
@@ -192,10 +192,10 @@ class ObjectOutcomes:
             rocked=self.rocked | other.rocked,
         )
 
-    def outcomes(self) -> Outcomes:
+    def outcomes(self) -> Observations:
         """All tests with their level, as :mod:`rockfrag.fragility` fits them."""
         motion, level = np.nonzero(self.intensity_levels.allowed)
-        return Outcomes(
+        return Observations(
             im=self.intensity_levels.levels[level],
             overturned=self.overturned[motion, level].astype(np.float64),
             trials=np.ones(motion.size),
@@ -311,7 +311,7 @@ def _shaken(
 
 def simulated(
     systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
-) -> tuple[Simulated, bool]:
+) -> tuple[Outcomes, bool]:
     """What happened, and whether a body may have left the ground, which an assessment says in its own words.
 
     Parameters

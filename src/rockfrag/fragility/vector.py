@@ -25,7 +25,7 @@ from rockfrag.fragility.intervals import (
     student,
 )
 from rockfrag.fragility.observations import Floats, labels, name_and_unit, positive
-from rockfrag.fragility.observations import read_outcomes as read_outcomes
+from rockfrag.fragility.observations import read_observations as read_observations
 from rockfrag.fragility.surface import FragilitySurface, design_of, fit_surface
 
 INTERACTION_LEVEL = 0.05
@@ -221,7 +221,7 @@ def fit_vector(
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
     plain = fit_surface(table, measures, overturned=overturned, source=source)
     logs = [np.log(positive(table, column, source)) for column in measures]
-    outcome = read_outcomes(table, overturned, source)
+    outcome = read_observations(table, overturned, source)
     group = pd.factorize(pd.Series(labels(table, earthquake, source)))[0]
     interaction = NOT_TRIED
     if try_interaction:

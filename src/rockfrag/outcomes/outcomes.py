@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -106,7 +107,7 @@ class Outcomes:
     peak_rotation: Floats = column(
         "bodies",
         "",
-        "Largest rotation over the critical angle of its side; infinite if it fell.",
+        "Largest rotation on what it stands on, over the critical angle of its side; infinite if it fell.",
         NOT_TOLD,
     )
     peak_velocity: Floats = column(
@@ -237,6 +238,7 @@ class Outcomes:
         )
 
 
+@cache
 def columns(table: Table | None = None) -> tuple[Column, ...]:
     """Return the columns of a table of outcomes, or of all three, in their order."""
     return tuple(

@@ -126,7 +126,9 @@ def perturbed_case(object_name: str, stack: Stack, perturbations: Mapping[str, f
             block, places = _RESTITUTIONS[base]
             measured |= dict.fromkeys(places, _restitution(stack.blocks[block], level))
         except InputError as error:
-            raise InputError(f"explanation.{factor}, {level:g}, {object_name}: {error}") from error
+            raise InputError(
+                f"sensitivity_analysis.{factor}, {level:g}, {object_name}: {error}"
+            ) from error
     lone = measured.pop("lone", None)
     return Case(
         " + ".join(names),
