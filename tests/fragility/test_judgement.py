@@ -10,7 +10,7 @@ from rockfrag.fragility.goodness import goodness_of_fit
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.measure_selection import area_under_curve, recommend_measure
 from rockfrag.fragility.measure_selection_ida import recommend_ida_measure
-from rockfrag.fragility.observations import outcomes_from_table
+from rockfrag.fragility.observations import observations_from_table
 from rockfrag.fragility.states import fit_three_states
 from rockfrag.fragility.surface import fit_surface, linearly_separable
 from rockfrag.fragility.variance import split_variance
@@ -20,7 +20,7 @@ def cloud(n, seed, probability):
     rng = np.random.default_rng(seed)
     im = np.exp(rng.normal(np.log(0.35), 0.8, n))
     table = pd.DataFrame({"pga_g": im, "overturned": rng.random(n) < probability(im)})
-    return outcomes_from_table(table, "pga_g", motion=None)
+    return observations_from_table(table, "pga_g", motion=None)
 
 
 def lognormal(im):
@@ -64,7 +64,7 @@ def test_ida_curves_are_judged_as_motions_with_one_capacity_each():
             for level in levels
         ]
     )
-    data = outcomes_from_table(table, "pga_g")
+    data = observations_from_table(table, "pga_g")
     judged = goodness_of_fit(data, fit_lognormal(data), replicates=200)
     assert judged.dependence == "motions"
     assert judged.p_value > 0.05
@@ -72,7 +72,7 @@ def test_ida_curves_are_judged_as_motions_with_one_capacity_each():
 
 def test_the_area_under_the_curve_is_the_share_of_ordered_pairs():
     table = pd.DataFrame({"pga_g": [1, 2, 3, 3, 4], "overturned": [0, 1, 0, 1, 1]})
-    data = outcomes_from_table(table, "pga_g", motion=None)
+    data = observations_from_table(table, "pga_g", motion=None)
     # pairs (overturned, survived): 2>1, 2<3, 3>1, 3=3, 4>1, 4>3
     assert area_under_curve(data) == pytest.approx((1 + 0 + 1 + 0.5 + 1 + 1) / 6)
 

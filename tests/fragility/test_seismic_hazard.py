@@ -9,7 +9,7 @@ from scipy import integrate
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.observations import outcomes_from_table
+from rockfrag.fragility.observations import observations_from_table
 from rockfrag.fragility.seismic_hazard import overturning_rate
 
 
@@ -18,7 +18,7 @@ def fit():
     table = pd.DataFrame(
         {"pga_g": [0.2, 0.4, 0.6, 0.8], "overturned": [2, 10, 25, 34], "trials": 40}
     )
-    return fit_lognormal(outcomes_from_table(table, "pga_g", trials="trials", motion=None))
+    return fit_lognormal(observations_from_table(table, "pga_g", trials="trials", motion=None))
 
 
 @pytest.mark.parametrize("power", [0.5, 2.0, 4.0])

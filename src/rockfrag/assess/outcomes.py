@@ -12,9 +12,9 @@ from rockfrag.assess.hazard.measure import Measure
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
-from rockfrag.fragility.observations import Outcomes
+from rockfrag.fragility.observations import Observations
 from rockfrag.outcomes.limit_states import limit_state_named
-from rockfrag.outcomes.outcomes import Outcomes as Simulated
+from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
@@ -143,10 +143,9 @@ class ObjectOutcomes:
             Fraction of those that make it rock instead.
         """
         w = np.ones(len(self.overturned)) if weights is None else weights
-        counted = self.intensity_levels.allowed * w[:, np.newaxis]
-        total = counted.sum(axis=0)
-        happened = self.rocked if rocks else self.overturned
-        fell = (counted * happened).sum(axis=0)
+        allowed = self.intensity_levels.allowed
+        total = w @ allowed
+        fell = w @ (allowed & (self.rocked if rocks else self.overturned))
         known = total > 0
         at = np.maximum.accumulate(np.where(known, np.arange(total.size), 0))
         fraction = np.divide(fell, total, out=np.zeros(total.size), where=known)
@@ -193,10 +192,10 @@ class ObjectOutcomes:
             rocked=self.rocked | other.rocked,
         )
 
-    def outcomes(self) -> Outcomes:
+    def outcomes(self) -> Observations:
         """All tests with their level, as :mod:`rockfrag.fragility` fits them."""
         motion, level = np.nonzero(self.intensity_levels.allowed)
-        return Outcomes(
+        return Observations(
             im=self.intensity_levels.levels[level],
             overturned=self.overturned[motion, level].astype(np.float64),
             trials=np.ones(motion.size),
@@ -312,7 +311,7 @@ def _shaken(
 
 def simulated(
     systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
-) -> tuple[Simulated, bool]:
+) -> tuple[Outcomes, bool]:
     """What happened, and whether a body may have left the ground, which an assessment says in its own words.
 
     Parameters

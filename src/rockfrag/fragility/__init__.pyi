@@ -43,8 +43,8 @@ from .measure_selection import (
 from .measure_selection_ida import recommend_ida_measure as recommend_ida_measure
 from .nrml import write_nrml as write_nrml
 from .observations import (
-    Outcomes as Outcomes,
-    outcomes_from_table as outcomes_from_table,
+    Observations as Observations,
+    observations_from_table as observations_from_table,
 )
 from .seismic_hazard import (
     OverturningRate as OverturningRate,

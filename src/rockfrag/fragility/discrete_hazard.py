@@ -21,7 +21,13 @@ from statsmodels.tools.sm_exceptions import (
 from statsmodels.tools.tools import add_constant
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.observations import Floats, labels, name_and_unit, positive, read_outcomes
+from rockfrag.fragility.observations import (
+    Floats,
+    labels,
+    name_and_unit,
+    positive,
+    read_observations,
+)
 
 
 @dataclass(frozen=True)
@@ -117,7 +123,7 @@ def fit_step_hazard(
             "test": labels(shakes, test, source),
             "motion": labels(shakes, motion, source),
             "log_im": np.log(positive(shakes, amplitude, source)),
-            "overturned": read_outcomes(shakes, overturned, source),
+            "overturned": read_observations(shakes, overturned, source),
         }
     )
     if table.empty:

@@ -13,9 +13,9 @@ from rockfrag.fragility.observations import (
     labels,
     name_and_unit,
     numbers,
-    outcomes_from_table,
+    observations_from_table,
     positive,
-    read_outcomes,
+    read_observations,
 )
 from rockfrag.short_repr import short_repr
 
@@ -130,7 +130,7 @@ def fit_three_states(
     if not threshold_g > 0:
         raise InputError(f"threshold_g: must be above zero, got {threshold_g:g}.")
     rocked = peak > threshold_g
-    fell = read_outcomes(table, "overturned") == 1
+    fell = read_observations(table, "overturned") == 1
     bad = np.flatnonzero(fell & ~rocked)
     if bad.size:
         raise InputError(
@@ -144,13 +144,15 @@ def fit_three_states(
             "rocked; give stronger tests."
         )
     overturn = fragility_of(
-        outcomes_from_table(table[rocked], im, motion=motion, earthquake=earthquake), level=level
+        observations_from_table(table[rocked], im, motion=motion, earthquake=earthquake),
+        level=level,
     )
     rock = None
     if not np.array_equal(numbers(table, im), peak):
         with_rock = table.assign(overturned=rocked)
         rock = fragility_of(
-            outcomes_from_table(with_rock, im, motion=motion, earthquake=earthquake), level=level
+            observations_from_table(with_rock, im, motion=motion, earthquake=earthquake),
+            level=level,
         )
     return ThreeStates(
         float(threshold_g), rock, overturn, len(table), int(rocked.sum()), int(fell.sum())

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -237,6 +238,7 @@ class Outcomes:
         )
 
 
+@cache
 def columns(table: Table | None = None) -> tuple[Column, ...]:
     """Return the columns of a table of outcomes, or of all three, in their order."""
     return tuple(

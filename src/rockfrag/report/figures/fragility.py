@@ -25,7 +25,7 @@ from rockfrag.figure_style import (
 )
 from rockfrag.fragility.compared import compared_curves
 from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
-from rockfrag.fragility.observations import Floats, Outcomes
+from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.report.wording import shortened
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ def _fractions(axes: Axes, bins: pd.DataFrame, colour: str, shift: float) -> Non
 
 
 def measures_figure(
-    curves: Mapping[str, "Fragility"], outcomes: Mapping[str, Outcomes], *, bins: int = 10
+    curves: Mapping[str, "Fragility"], outcomes: Mapping[str, Observations], *, bins: int = 10
 ) -> Figure:
     """Draw the curve of each measure in a panel of its own, with AIC and β, to compare measures."""
     labels = [label for label, item in curves.items() if np.isfinite(item.fit.theta)]
@@ -200,14 +200,14 @@ def _curve(axes: Axes, item: "Fragility", grid: Floats, colour: str, label: str)
     axes.plot(grid, item.fit.probability(grid), color=colour, label=theta)
 
 
-def _outcomes(axes: Axes, data: Outcomes, grid: Floats, colour: str, bins: int) -> None:
+def _outcomes(axes: Axes, data: Observations, grid: Floats, colour: str, bins: int) -> None:
     _fractions(axes, fraction_in_bins(data, bins).rename(columns={"im": "x"}), colour, 1.0)
     inside = grid[(grid >= data.im.min()) & (grid <= data.im.max())]
     if inside.size and np.ptp(data.log_im) > 0:
         axes.plot(inside, local_fraction(data, inside), "--", color=colour, linewidth=0.8)
 
 
-def _grid(curves: Sequence["Fragility"], data: Sequence[Outcomes]) -> Floats:
+def _grid(curves: Sequence["Fragility"], data: Sequence[Observations]) -> Floats:
     """Values from where the lowest curve leaves zero to where the highest reaches one."""
     low = min(item.fit.theta * np.exp(-2.6 * item.fit.beta) for item in curves)
     high = max(item.fit.theta * np.exp(2.6 * item.fit.beta) for item in curves)
