@@ -20,7 +20,7 @@ def as_nrml(found: Assessment) -> str:
     name, outcomes = found.request.name, found.outcomes
     function = discrete_function(
         identifiers([name], "_:-")[name],
-        found.measure.name,
+        found.measure.imt,
         outcomes.intensity_levels.levels,
         {OVERTURNS: outcomes.fractions()},
     )

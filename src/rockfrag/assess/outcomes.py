@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from rockfrag.assess.hazard.measure import Measure
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.fragility.observations import Observations
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.outcomes.limit_states import limit_state_named
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.plausibility import LARGEST_PEAK
@@ -66,7 +66,7 @@ class IntensityLevels:
         (motions, levels).
     """
 
-    measure: Measure
+    measure: IntensityMeasure
     levels: Floats
     scales: Floats
     allowed: NDArray[np.bool_]
@@ -82,7 +82,7 @@ def believable_scales(base: Sequence[Motion]) -> Floats:
 
 
 def make_intensity_levels(
-    motions: MotionSet, measure: Measure, asked: Sequence[float] = (), count: int = LEVELS
+    motions: MotionSet, measure: IntensityMeasure, asked: Sequence[float] = (), count: int = LEVELS
 ) -> IntensityLevels:
     """Make the levels for a set of motions.
 
@@ -91,7 +91,7 @@ def make_intensity_levels(
     motions
         The motions.
     measure
-        Measure in which they are scaled.
+        Intensity measure in which they are scaled.
     asked
         Levels that are wanted exactly, in the measure's unit.
     count
@@ -202,7 +202,7 @@ class ObjectOutcomes:
             trials=np.ones(motion.size),
             motion=motion.astype(object),
             earthquake=self.earthquakes[motion],
-            name=self.intensity_levels.measure.name,
+            name=self.intensity_levels.measure.imt,
             unit=self.intensity_levels.measure.unit,
         )
 
@@ -419,7 +419,7 @@ def on_pad(
 
 
 def fraction_with_sliding(
-    objects: Objects, motions: MotionSet, measure: Measure, level: float
+    objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float
 ) -> float:
     """Fraction of the motions at a level that topple the object as it stands if it may slide.
 
@@ -433,7 +433,7 @@ def fraction_with_sliding(
     motions
         The motions.
     measure
-        Measure of the level.
+        Intensity measure of the level.
     level
         The level, in the measure's unit.
     """

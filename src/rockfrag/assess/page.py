@@ -359,7 +359,7 @@ def _levels(found: Assessment) -> Section:
         }
     )
     columns = [
-        Column("level", f"{found.measure.name} [{found.measure.unit}]", 3),
+        Column("level", f"{found.measure.imt} [{found.measure.unit}]", 3),
         Column("rocks", "Motions that make it rock", numeric=True),
         Column("topples", "Motions that topple it (90 % interval)", numeric=True),
     ]
@@ -381,7 +381,7 @@ def _levels(found: Assessment) -> Section:
             *curve.warnings,
         ]
     starts = (
-        f"It starts to rock at {found.measure.name} {found.rocks_from:.2g} {found.measure.unit}."
+        f"It starts to rock at {found.measure.imt} {found.rocks_from:.2g} {found.measure.unit}."
         if np.isfinite(found.rocks_from)
         else "Nothing that was tried makes it rock."
     )
