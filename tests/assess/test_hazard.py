@@ -11,6 +11,7 @@ from rockfrag.assess import read_hazard
 from rockfrag.assess.hazard.curve import curve_of_one_level
 from rockfrag.assess.hazard.measure import PGA, PGV, read_measure
 from rockfrag.errors import LONGEST_MESSAGE, InputError
+from rockfrag.motions.declared import intensity_measures
 
 from . import samples
 

@@ -45,6 +45,7 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.outcomes.limit_states import ROCKS
 from rockfrag.short_repr import short_repr
 
 RECORDS = "resources/records"
@@ -479,7 +480,7 @@ def _rocks_from(request: Request, now: ObjectOutcomes) -> float:
     """Least level that makes the object rock: by statics where it decides, else the least that was tried."""
     if _starts_by_statics(request, now.intensity_levels.measure):
         return request.objects.least_uplift
-    rocked = np.flatnonzero(now.fractions(rocks=True) > 0)
+    rocked = np.flatnonzero(now.fractions(state=ROCKS) > 0)
     return float(now.intensity_levels.levels[rocked[0]]) if rocked.size else math.inf
 
 

@@ -50,6 +50,9 @@ def as_json(found: Assessment) -> str:
         "fragility": {
             "levels": outcomes.intensity_levels.levels.tolist(),
             "fraction": outcomes.fractions().tolist(),
+            "other_states": {
+                name: outcomes.fractions(state=name).tolist() for name in outcomes.others
+            },
             **_curve(found),
         },
         "two_measures": _two_measures(found),

@@ -179,6 +179,7 @@ class Conversion:
             ),
             overturned=overturned,
             rocked=rocked | overturned,
+            others={name: cases[row, place] for name, cases in outcomes.others.items()},
             earthquakes=np.repeat(outcomes.earthquakes, count),
         )
 
