@@ -146,10 +146,10 @@ class ObjectOutcomes:
             Name of the limit state.
         """
         w = np.ones(len(self.overturned)) if weights is None else weights
-        counted = self.intensity_levels.allowed * w[:, np.newaxis]
-        total = counted.sum(axis=0)
+        allowed = self.intensity_levels.allowed
         happened = {OVERTURNS: self.overturned, ROCKS: self.rocked, **self.others}[state]
-        fell = (counted * happened).sum(axis=0)
+        total = w @ allowed
+        fell = w @ (allowed & happened)
         known = total > 0
         at = np.maximum.accumulate(np.where(known, np.arange(total.size), 0))
         fraction = np.divide(fell, total, out=np.zeros(total.size), where=known)

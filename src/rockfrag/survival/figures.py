@@ -55,7 +55,8 @@ def curves_figure(found: Constrained) -> Figure:
             xlabel=f"{measure.imt} of the ground [{measure.unit}]",
             ylabel="Annual rate of exceedance [1/year]",
         )
-        plain_log(axes, "x")
+        for which in "xy":
+            plain_log(axes, which)
         axes.legend(loc="lower left")
     return figure
 

@@ -45,10 +45,14 @@ def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Pat
 def weights_table(found: Constrained) -> pd.DataFrame:
     """A row a branch, its columns those of OpenQuake's realizations and what it had before."""
     table = found.result.table()
+    paths = table["branch"].str.replace(r"^rlz-\d+ ?", "", regex=True)
     return pd.DataFrame(
         {
-            "rlz_id": range(len(table)),
-            "branch_path": table["branch"],
+            "rlz_id": table["branch"]
+            .str.extract(r"^rlz-(\d+)")[0]
+            .fillna(table.index.to_series())
+            .astype(int),
+            "branch_path": paths,
             "weight": table["weight_after"],
             "weight_before": table["weight_before"],
             "survival": table["survival"],
