@@ -119,7 +119,7 @@ def headline(found: Assessment) -> str:
         half = found.amplitudes[0.5].value
         if not math.isfinite(half):
             return f"{name}: no shaking that was tried topples it in half of the motions"
-        return f"{name}: half of the motions topple it at {found.measure.name} {half:.2g} {found.measure.unit}"
+        return f"{name}: half of the motions topple it at {found.measure.imt} {half:.2g} {found.measure.unit}"
     at = found.level.words
     if does_not_move(found):
         return f"{name} does not move at {at}"
@@ -203,7 +203,7 @@ def _at_rest(found: Assessment, at: str) -> str:
 def _starts(found: Assessment) -> str:
     if not math.isfinite(found.rocks_from):
         return "more than was tried"
-    return f"{found.measure.name} {found.rocks_from:.2g} {found.measure.unit}"
+    return f"{found.measure.imt} {found.rocks_from:.2g} {found.measure.unit}"
 
 
 def _total(found: Assessment) -> int:
@@ -244,7 +244,7 @@ def _narrowing(better: Narrowed) -> str:
 
 def _amplitudes(found: Assessment) -> str:
     tenth, half = (found.amplitudes[p] for p in (0.1, 0.5))
-    name, unit = found.measure.name, found.measure.unit
+    name, unit = found.measure.imt, found.measure.unit
     starts = f"it starts to rock at {_starts(found)}; "
     if not math.isfinite(tenth.value):
         return f"{starts}even the strongest shaking that was tried topples it in fewer than one in ten motions."
@@ -452,7 +452,7 @@ def assumptions(found: Assessment) -> list[str]:
     if found.conversion:
         lines.append(found.conversion.words)
     if found.hazard:
-        lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.name}.")
+        lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.imt}.")
     factor = found.counted.intensity_levels.allowed.mean()
     lines.append(
         f"Motions are scaled by {1 / LARGEST_FACTOR:g} to {LARGEST_FACTOR:g} at most, which admits "
@@ -476,7 +476,7 @@ def quality_flags(found: Assessment) -> list[str]:
     if found.hazard is not None:
         strong = float(found.hazard.level(1 / 475))
         least, most = {"PGA": (0.01, 2.0), "SA": (0.01, 6.0), "PGV": (0.5, 250.0)}[
-            found.measure.kind
+            found.measure.openquake
         ]
         if not least <= strong <= most:
             lines.append(
