@@ -12,7 +12,7 @@ from scipy import special
 from rockfrag.assess.conversion import Conversion, find_conversion
 from rockfrag.assess.direction import Directions, find_directions
 from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.hazard.measure import PGA, PGV, Measure
+from rockfrag.assess.hazard.measure import PGA, PGV
 from rockfrag.assess.mitigations import Mitigation, compare, mitigations_of
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.moved import Moved
@@ -44,6 +44,8 @@ from rockfrag.assess.sources import SPACE
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
+from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.outcomes.limit_states import ROCKS
 from rockfrag.short_repr import short_repr
 
 RECORDS = "resources/records"
@@ -129,7 +131,7 @@ class Assessment:
     __repr__ = short_repr
 
     @property
-    def measure(self) -> Measure:
+    def measure(self) -> IntensityMeasure:
         """Measure of the levels."""
         return self.outcomes.intensity_levels.measure
 
@@ -481,14 +483,14 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
     if request.level is not None:
         if hazard is not None and request.level.measure != hazard.measure:
             raise InputError(
-                f"the level is in {request.level.measure.name} and the hazard in {hazard.measure.name}; give "
+                f"the level is in {request.level.measure.imt} and the hazard in {hazard.measure.imt}; give "
                 "both in one measure, or leave the level out."
             )
         return request.level
     return Level(hazard.measure, hazard.level(1 / 475)) if hazard else None
 
 
-def _starts_by_statics(request: Request, measure: Measure) -> bool:
+def _starts_by_statics(request: Request, measure: IntensityMeasure) -> bool:
     """Whether rocking starts where the measure passes a number: a peak acceleration of what it stands on."""
     return measure == PGA and (request.place.shakes_as_ground or request.records.on_floor)
 
@@ -497,7 +499,7 @@ def _rocks_from(request: Request, now: ObjectOutcomes, *, exact: bool) -> float:
     """Least level that makes the object rock: by statics where it decides, else the least that was tried."""
     if exact:
         return request.objects.least_uplift
-    rocked = np.flatnonzero(now.fractions(rocks=True) > 0)
+    rocked = np.flatnonzero(now.fractions(state=ROCKS) > 0)
     return float(now.intensity_levels.levels[rocked[0]]) if rocked.size else math.inf
 
 

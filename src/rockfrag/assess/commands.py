@@ -383,11 +383,11 @@ def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:
 
 
 def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
+    from rockfrag.assess.gallery import write_inventory
     from rockfrag.assess.inventory import (
         assess_inventory,
         inventory_lines,
         joint_lines,
-        write_inventory,
     )
 
     unfit = [key for key in ("name", "width", "height", "mesh") if key in shared]

@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.assess.hazard.measure import PGV, VELOCITY_PER_G, Measure
+from rockfrag.assess.hazard.measure import PGV, VELOCITY_PER_G
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
 from rockfrag.errors import InputError
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.motions.rotation import rotate
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.catalogue import load_motion, load_motions
@@ -72,14 +73,14 @@ class MotionSet:
     halves: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
     both: bool = False
     library: tuple[Motion, ...] = ()
-    measured: dict[Measure, Floats] = field(default_factory=dict)
+    measured: dict[IntensityMeasure, Floats] = field(default_factory=dict)
 
     @property
     def about(self) -> list[Mapping[str, object]]:
         """What is known of the records among which the motions were chosen."""
         return [motion.metadata for motion in self.library or self.ground]
 
-    def log_ratios(self, measure: Measure, *, of_all: bool = False) -> Floats:
+    def log_ratios(self, measure: IntensityMeasure, *, of_all: bool = False) -> Floats:
         """Return ln (PGV over a measure [s]) of each ground motion.
 
         Parameters
@@ -92,7 +93,9 @@ class MotionSet:
         if not (of_all and self.library):
             return np.log(self.values(PGV) / self.values(measure) / VELOCITY_PER_G)
         if measure not in self.measured:
-            ratios = np.array([PGV.of(motion) / measure.of(motion) for motion in self.library])
+            ratios = np.array(
+                [PGV.of_motion(motion) / measure.of_motion(motion) for motion in self.library]
+            )
             self.measured[measure] = np.log(ratios / VELOCITY_PER_G)
         return self.measured[measure]
 
@@ -103,16 +106,16 @@ class MotionSet:
             [str(m.metadata.get("earthquake") or m.name) for m in self.ground], dtype=object
         )
 
-    def values(self, measure: Measure) -> Floats:
+    def values(self, measure: IntensityMeasure) -> Floats:
         """Value of each ground motion in a measure, in its unit, shape (n,)."""
         if measure not in self._values:
-            values = np.array([measure.of(motion) for motion in self.ground])
+            values = np.array([measure.of_motion(motion) for motion in self.ground])
             for pair in self.pairs if self.both else ():
                 values[list(pair)] = np.sqrt(values[pair[0]] * values[pair[1]])
             self._values[measure] = values
         return self._values[measure]
 
-    def median(self, measure: Measure) -> float:
+    def median(self, measure: IntensityMeasure) -> float:
         """Median of the components in a measure, the same where both act at once."""
         return float(np.median(replace(self, both=False).values(measure)))
 
@@ -139,7 +142,7 @@ class MotionSet:
         return found + [(i, [m]) for i, m in enumerate(self.base) if i not in paired]
 
     @cached_property
-    def _values(self) -> dict[Measure, Floats]:
+    def _values(self) -> dict[IntensityMeasure, Floats]:
         return {}
 
     def thinned(self) -> "MotionSet":

@@ -119,7 +119,7 @@ def headline(found: Assessment) -> str:
         half = found.amplitudes[0.5].value
         if not math.isfinite(half):
             return f"{name}: no shaking that was tried topples it in half of the motions"
-        return f"{name}: half of the motions topple it at {found.measure.name} {half:.2g} {found.measure.unit}"
+        return f"{name}: half of the motions topple it at {found.measure.imt} {half:.2g} {found.measure.unit}"
     at = found.level.words
     if does_not_move(found):
         return f"{name} does not move at {at}"
@@ -164,18 +164,23 @@ def at_the_site(found: Assessment) -> str:
     if found.rocking.value == 0:
         return f"{who} {_at_rest(found, at)}"
     rocks = f"{_counted(found, ROCK)} it rock"
+    topples = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}"
     if found.fraction.value == 0:
-        return (
-            f"{who} is unlikely to topple {at}: none of {_total(found)} motions topples it (upper limit "
-            f"{fraction_words(found.fraction.upper)}); {rocks}."
+        topples = (
+            f"none of {_total(found)} motions topples it (upper limit "
+            f"{fraction_words(found.fraction.upper)})"
         )
-    said = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}; {rocks}."
+    said = f"{topples}; {rocks}."
     if not_decidable(found):
         whether = f"Whether {found.request.name} {_where(found)} topples {at}"
         return (
             f"{whether} is not decidable with what was given: {said} {_would_narrow(found)}".strip()
         )
-    may = "is likely to topple" if found.fraction.value >= MANY else "may topple"
+    may = "may topple"
+    if found.fraction.value >= MANY:
+        may = "is likely to topple"
+    elif found.fraction.value == 0:
+        may = "is unlikely to topple"
     return f"{who} {may} {at}: {said}"
 
 
@@ -198,7 +203,7 @@ def _at_rest(found: Assessment, at: str) -> str:
 def _starts(found: Assessment) -> str:
     if not math.isfinite(found.rocks_from):
         return "more than was tried"
-    return f"{found.measure.name} {found.rocks_from:.2g} {found.measure.unit}"
+    return f"{found.measure.imt} {found.rocks_from:.2g} {found.measure.unit}"
 
 
 def _total(found: Assessment) -> int:
@@ -239,7 +244,7 @@ def _narrowing(better: Narrowed) -> str:
 
 def _amplitudes(found: Assessment) -> str:
     tenth, half = (found.amplitudes[p] for p in (0.1, 0.5))
-    name, unit = found.measure.name, found.measure.unit
+    name, unit = found.measure.imt, found.measure.unit
     starts = f"it starts to rock at {_starts(found)}; "
     if not math.isfinite(tenth.value):
         return f"{starts}even the strongest shaking that was tried topples it in fewer than one in ten motions."
@@ -342,6 +347,8 @@ def helps(found: Assessment) -> str:
         return "Nothing was tried."
     target = found.main
     if target.value == 0:
+        if not_decidable(found):
+            return "None of the motions topples it as it stands, so none can show what a change is worth."
         return "No change is needed for this: none of the motions topples it as it stands."
     best = [mitigation for mitigation in found.mitigations if mitigation.helps][:3]
     if not best:
@@ -459,7 +466,7 @@ def assumptions(found: Assessment) -> list[str]:
     if found.conversion:
         lines.append(found.conversion.words)
     if found.hazard:
-        lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.name}.")
+        lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.imt}.")
     factor = found.counted.intensity_levels.allowed.mean()
     lines.append(
         f"Motions are scaled by {1 / LARGEST_FACTOR:g} to {LARGEST_FACTOR:g} at most, which admits "
@@ -483,7 +490,7 @@ def quality_flags(found: Assessment) -> list[str]:
     if found.hazard is not None:
         strong = float(found.hazard.level(1 / 475))
         least, most = {"PGA": (0.01, 2.0), "SA": (0.01, 6.0), "PGV": (0.5, 250.0)}[
-            found.measure.kind
+            found.measure.openquake
         ]
         if not least <= strong <= most:
             lines.append(
@@ -495,12 +502,13 @@ def quality_flags(found: Assessment) -> list[str]:
         )
     if found.outcomes.light:
         lines.append(
-            "Under the strongest shaking that was tried a squat body may leave the ground, which this model "
-            "does not let it."
+            f"Under the strongest shaking that was tried, {found.measure.name} "
+            f"{found.outcomes.intensity_levels.levels[-1]:.2g} {found.measure.unit}, a body may leave the ground, "
+            "which this model does not let it."
         )
     for earthquake, fraction in _influential(found):
         lines.append(
-            f"{fraction:.0%} of the motions that topple it at that level are of {earthquake}."
+            f"{100 * fraction:.0f} % of the motions that topple it at that level are of {earthquake}."
         )
     return lines
 

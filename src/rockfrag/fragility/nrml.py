@@ -53,8 +53,7 @@ def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
         raise InputError(
             f"NRML: {name} in {unit or 'no unit'} cannot be converted; use {' or '.join(factors)}."
         )
-    period = "" if measure.period is None else f"({measure.period:g})"
-    return measure.openquake + period, factors[unit]
+    return measure.imt, factors[unit]
 
 
 def lognormal_moments(theta: float, beta: float) -> tuple[float, float]:

@@ -233,7 +233,7 @@ def fit_vector(
         )
     design = design_of(logs, interaction.kept)
     groups = int(group.max()) + 1
-    replicates = _replicates(design, outcome, group)
+    replicates = _replicates(design, outcome, group, np.array(surface.coefficients))
     return VectorFragility(
         surface,
         replicates,
@@ -246,13 +246,13 @@ def fit_vector(
     )
 
 
-def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp]) -> Floats:
+def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp], start: Floats) -> Floats:
     """Coefficients without one earthquake (or block of many) each; empty with one earthquake."""
     groups = int(group.max()) + 1
     if groups < 2:
         return np.empty((0, design.shape[1]))
     weights = all_but_one(groups, 0)[:, group]
-    fit = fit_batch(design, weights * outcome, weights)
+    fit = fit_batch(design, weights * outcome, weights, start=start)
     coefficients = fit.coefficients.copy()
     wild = ~fit.converged | ~(np.abs(coefficients) < LARGEST_COEFFICIENT).all(axis=1)
     if wild.any():

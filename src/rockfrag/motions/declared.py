@@ -98,8 +98,29 @@ class IntensityMeasure:
         name, label = f"{self.name}_{digits}s", f"{self.label}({period:g}s)"
         return replace(self, name=name, label=label, period=period)
 
+    @property
+    def imt(self) -> str:
+        """Name in hazard models, as OpenQuake writes it: ``PGA``, ``SA(0.3)``."""
+        return self.openquake if self.period is None else f"{self.openquake}({self.period:g})"
+
+    def of_motion(self, motion: Motion, damping: float = 0.05) -> float:
+        """Return its value of a motion, in its unit.
+
+        Parameters
+        ----------
+        motion
+            What to measure.
+        damping
+            Damping of what is spectral [-].
+        """
+        if self.period is not None:
+            from rockfrag.motions.spectra import response_spectrum
+
+            return float(self.of(response_spectrum(motion, [self.period], damping))[0])
+        return float(self.of(motion if self.shared is None else self.shared(motion, damping)))
+
     def of(self, subject: Any) -> Any:
-        """Return its value of a motion, or of what measures fraction of it, in its unit."""
+        """Return its value of a motion, or of what several measures share of it, in its unit."""
         value = self.value(subject)
         if self.unit == "g":
             return value / GRAVITY

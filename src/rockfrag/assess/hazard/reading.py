@@ -43,7 +43,7 @@ def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
     curves = []
     for measure in dict.fromkeys(item.curve.measure for item in found):
         mine = [item for item in found if item.curve.measure == measure]
-        curves.append(_assembled(measure.name, mine))
+        curves.append(_assembled(measure.imt, mine))
     return curves
 
 
