@@ -164,18 +164,23 @@ def at_the_site(found: Assessment) -> str:
     if found.rocking.value == 0:
         return f"{who} {_at_rest(found, at)}"
     rocks = f"{_counted(found, ROCK)} it rock"
+    topples = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}"
     if found.fraction.value == 0:
-        return (
-            f"{who} is unlikely to topple {at}: none of {_total(found)} motions topples it (upper limit "
-            f"{fraction_words(found.fraction.upper)}); {rocks}."
+        topples = (
+            f"none of {_total(found)} motions topples it (upper limit "
+            f"{fraction_words(found.fraction.upper)})"
         )
-    said = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}; {rocks}."
+    said = f"{topples}; {rocks}."
     if not_decidable(found):
         whether = f"Whether {found.request.name} {_where(found)} topples {at}"
         return (
             f"{whether} is not decidable with what was given: {said} {_would_narrow(found)}".strip()
         )
-    may = "is likely to topple" if found.fraction.value >= MANY else "may topple"
+    may = "may topple"
+    if found.fraction.value >= MANY:
+        may = "is likely to topple"
+    elif found.fraction.value == 0:
+        may = "is unlikely to topple"
     return f"{who} {may} {at}: {said}"
 
 
@@ -311,8 +316,8 @@ def safest(found: Assessment) -> str:
 
 def worst_direction(found: Assessment) -> str:
     """In which plane it rocks, and whether the worst direction is counted."""
-    if found.request.objects.round:
-        return "The base is round; it rolls in space under both components of each record, and falls anywhere."
+    if found.motions.both:
+        return _in_space(found)
     plane = f"It rocks {found.request.objects.plane}."
     directions = found.directions
     if directions is None or not math.isfinite(directions.factor):
@@ -323,12 +328,27 @@ def worst_direction(found: Assessment) -> str:
     )
 
 
+def _in_space(found: Assessment) -> str:
+    """That it is simulated in space, and what one plane would say beside it."""
+    is_round = found.request.objects.round
+    words = "The base is round; it rolls" if is_round else "It rocks, turns and walks"
+    words += " in space under both components of each record"
+    if found.planar is None:
+        return f"{words}."
+    return (
+        f"{words}, which counts; in one plane, along one component, it would be "
+        f"{_position_value(found, found.planar)}."
+    )
+
+
 def helps(found: Assessment) -> str:
     """Changes that help, most helpful first."""
     if not found.mitigations:
         return "Nothing was tried."
     target = found.main
     if target.value == 0:
+        if not_decidable(found):
+            return "None of the motions topples it as it stands, so none can show what a change is worth."
         return "No change is needed for this: none of the motions topples it as it stands."
     best = [mitigation for mitigation in found.mitigations if mitigation.helps][:3]
     if not best:
@@ -425,7 +445,8 @@ def assumptions(found: Assessment) -> list[str]:
         lines.append(
             "The building stays elastic; one that cracks shakes its floors less strongly and more slowly."
         )
-    lines.append("It rocks in one plane on sharp rigid edges.")
+    if not found.motions.both:
+        lines.append("It rocks in one plane on sharp rigid edges.")
     if found.directions is not None and math.isfinite(found.directions.factor):
         lines.append(
             "Motions come in the direction in which they were recorded, at random. The worst direction is not "
@@ -475,18 +496,19 @@ def quality_flags(found: Assessment) -> list[str]:
             lines.append(
                 f"The hazard's level of 475 years, {strong:.2g} {found.measure.unit}, is unusual; check its unit."
             )
-    if found.request.objects.round and not found.motions.pairs:
+    if found.request.objects.in_space and not found.motions.pairs:
         lines.append(
-            "No record has two components; the round base was shaken by one, which may understate what it feels."
+            "No record has two components; it was shaken by one, which may understate what it feels."
         )
     if found.outcomes.light:
         lines.append(
-            "Under the strongest shaking that was tried a squat body may leave the ground, which this model "
-            "does not let it."
+            f"Under the strongest shaking that was tried, {found.measure.name} "
+            f"{found.outcomes.intensity_levels.levels[-1]:.2g} {found.measure.unit}, a body may leave the ground, "
+            "which this model does not let it."
         )
     for earthquake, fraction in _influential(found):
         lines.append(
-            f"{fraction:.0%} of the motions that topple it at that level are of {earthquake}."
+            f"{100 * fraction:.0f} % of the motions that topple it at that level are of {earthquake}."
         )
     return lines
 

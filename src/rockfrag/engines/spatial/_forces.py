@@ -50,6 +50,7 @@ CASE = np.dtype(
         ("count", np.int64),
         ("rests", np.int64),
         ("jammed", np.int64),  # nothing holds but what sticks; cones are not looked at
+        ("goes_on", np.int64),  # the rates at the end of the last step are still right
         ("closed", np.int64, (MOST,)),
         ("slides", np.int64, (MOST,)),
         ("direction", np.float64, (MOST, 2)),

@@ -144,9 +144,8 @@ def swept(bodies: Mapping[str, System], motions: Sequence[Motion]) -> pd.DataFra
     values = np.array(AMPLITUDES_G)
     fell = overturns(
         list(bodies.values()),
-        [motion.acceleration for motion in motions],
-        [motion.dt for motion in motions],
-        np.array([factors_to_pga(motion, values) for motion in motions]),
+        motions,
+        scales=np.array([factors_to_pga(motion, values) for motion in motions]),
     ).overturned
     index = pd.MultiIndex.from_product(
         [list(bodies), [motion.name for motion in motions], values],
