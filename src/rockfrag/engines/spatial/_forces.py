@@ -376,7 +376,7 @@ def fill_rates(y, omega, alpha, acceleration, dy):
 
 @kernel
 def push_at(body, y, rows, i, impulse):
-    """Change the velocities by an impulse (world) at contact i."""
+    """Change the velocities in ``y`` by an impulse [N s], in axes of the ground, at contact i."""
     p = arm(body, rows[2], i)
     turned = times(body.inverse, cross(p, to_body(rows, impulse)))
     for k in range(3):

@@ -417,7 +417,7 @@ def slides_any(s):
 
 @kernel
 def happen(body, what, tau, y, cut, stuck, s):
-    """Let what ended a step change the velocities and the mode."""
+    """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J]."""
     g = s.field[6]
     before = energy(body, y, g)
     if what == LANDS:
