@@ -80,6 +80,7 @@ bench: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[peers]" || \
 		echo "Not all other programs can be had here: rows of those that are absent are left out"
 	@.venv/bin/python benchmarks/run.py
+	@.venv/bin/python benchmarks/space.py || echo "MuJoCo cannot be had here: bodies in space are not compared"
 	@.venv/bin/python benchmarks/latency.py
 
 .venv/installed: pyproject.toml thesis/pyproject.toml constraints.txt $(wildcard hashes/*.txt)
