@@ -11,7 +11,6 @@ from rockfrag.study.loading import load_any
 from .checked_report import check_first_page, check_report
 from .studies import STUDIES, Foreign, run
 
-
 LONG = (
     "with and without a plinth on one upper floor",
     "the thesis's bodies, but nobody asks for the thesis",
