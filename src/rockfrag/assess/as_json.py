@@ -43,6 +43,8 @@ def as_json(found: Assessment) -> str:
         "probability": _estimate(found.probability),
         "amplitude_toppling": {f"{p:g}": _estimate(e) for p, e in found.amplitudes.items()},
         "arrangements": found.by_arrangement,
+        "in_space": found.motions.both,
+        "in_one_plane": found.planar,
         "directions": found.directions and vars(found.directions),
         "mitigations": [vars(mitigation) for mitigation in found.mitigations],
         "rules_of_thumb": [vars(rule) for rule in found.rules],

@@ -55,9 +55,9 @@ class MotionSet:
         Motions of floors that were needed before, by :attr:`Place.key`.
     halves
         Those of the thinned set.
-    worst
-        Whether each record comes from its worst direction: both of its components stand for the record, their
-        level is the geometric mean of theirs, and it topples an object if it does from any direction.
+    both
+        Whether both components of each record act at once: both stand for the record, and their level is the
+        geometric mean of theirs.
     library
         Motions of the set among which these were chosen; empty where all were taken.
     measured
@@ -71,7 +71,7 @@ class MotionSet:
     warnings: tuple[str, ...] = ()
     floors: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
     halves: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
-    worst: bool = False
+    both: bool = False
     library: tuple[Motion, ...] = ()
     measured: dict[IntensityMeasure, Floats] = field(default_factory=dict)
 
@@ -110,21 +110,21 @@ class MotionSet:
         """Value of each ground motion in a measure, in its unit, shape (n,)."""
         if measure not in self._values:
             values = np.array([measure.of_motion(motion) for motion in self.ground])
-            for pair in self.pairs if self.worst else ():
+            for pair in self.pairs if self.both else ():
                 values[list(pair)] = np.sqrt(values[pair[0]] * values[pair[1]])
             self._values[measure] = values
         return self._values[measure]
 
     def median(self, measure: IntensityMeasure) -> float:
-        """Median of the components in a measure, the same for records in their worst direction."""
-        return float(np.median(replace(self, worst=False).values(measure)))
+        """Median of the components in a measure, the same where both act at once."""
+        return float(np.median(replace(self, both=False).values(measure)))
 
-    def in_worst_direction(self) -> "MotionSet":
-        """The same records, each from its worst direction; one without a second component as it is."""
+    def with_both_components(self) -> "MotionSet":
+        """The same records, both components of each at once; one without a second component as it is."""
         words = self.words
         if self.pairs:
             words += f", {len(self.pairs)} records each with both components"
-        return replace(self, worst=True, words=words)
+        return replace(self, both=True, words=words)
 
     def turned(self, step_deg: int) -> list[tuple[int, list[Motion]]]:
         """Records at the object's base turned through all directions, each with the place of its first component.
@@ -147,7 +147,7 @@ class MotionSet:
 
     def thinned(self) -> "MotionSet":
         """Every second motion, one component of each record of the default set: enough to compare."""
-        if self.worst:
+        if self.both:
             return self._fewer_records()
         return replace(
             self, ground=self.ground[::2], base=self.base[::2], pairs=(), floors=self.halves

@@ -274,34 +274,50 @@ def outcomes_of_each(
         (item, body) for item, named in zip(objects, bodies, strict=True) for body in named.values()
     ]
     systems = [item.system_of(body) for item, body in every]
-    rolling = [item.rolling(body) for item, body in every]
+    solids = [item.solid(body) for item, body in every]
+    worst = any(item.round for item in objects)
     most = max(1, MOST_TESTS // intensity_levels.scales.size)
     found: list[ObjectOutcomes] = []
     for i in range(0, len(systems), most):
-        found += _shaken(systems[i : i + most], rolling[i : i + most], motions, intensity_levels)
+        found += _shaken(
+            systems[i : i + most], solids[i : i + most], motions, intensity_levels, worst=worst
+        )
     each = iter(found)
     return [{name: next(each) for name in named} for named in bodies]
 
 
 def _shaken(
     systems: Sequence[System],
-    rolling: Sequence[System | None],
+    solids: Sequence[System | None],
     motions: MotionSet,
     intensity_levels: IntensityLevels,
+    *,
+    worst: bool,
 ) -> list[ObjectOutcomes]:
-    """Outcomes of planar bodies; round ones that are free to roll are shaken in space.
+    """Outcomes in space where both components act and a body is known in space, in a plane elsewhere.
 
-    On a pedestal that may lift both answers count: what falls in either falls.
+    On a pedestal that may lift both answers count: what falls in either falls. ``worst`` takes planar answers from
+    the worst direction of each record.
     """
-    if motions.worst:
-        planar = [i for i, item in enumerate(rolling) if item is None or systems[i].count > 1]
-        fallen = _shaken_from_all_sides([systems[i] for i in planar], motions, intensity_levels)
-        found = dict(zip(planar, fallen, strict=True))
-        for i, item in enumerate(rolling):
-            if item is not None:
-                rolled = _rolled(item, motions, intensity_levels)
-                found[i] = found[i].joined(rolled) if i in found else rolled
-        return [found[i] for i in range(len(systems))]
+    if not motions.both:
+        return _shaken_in_plane(systems, motions, intensity_levels)
+    planar = [i for i, item in enumerate(solids) if item is None or systems[i].count > 1]
+    shake = _shaken_from_all_sides if worst else _shaken_in_plane
+    fallen = shake([systems[i] for i in planar], motions, intensity_levels)
+    found = dict(zip(planar, fallen, strict=True))
+    for i, item in enumerate(solids):
+        if item is not None:
+            solid = _in_space(item, motions, intensity_levels)
+            found[i] = found[i].joined(solid) if i in found else solid
+    return [found[i] for i in range(len(systems))]
+
+
+def _shaken_in_plane(
+    systems: Sequence[System], motions: MotionSet, intensity_levels: IntensityLevels
+) -> list[ObjectOutcomes]:
+    """Outcomes of planar bodies, by components as recorded."""
+    if not systems:
+        return []
     scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)
     scales = np.minimum(scales, believable_scales(motions.base))
     result, light = simulated(systems, motions.base, scales)
@@ -358,8 +374,10 @@ def simulated(
     return result, any(light)
 
 
-def _rolled(body: System, motions: MotionSet, intensity_levels: IntensityLevels) -> ObjectOutcomes:
-    """Outcomes of a round body in space under both components of each record, where it has two."""
+def _in_space(
+    body: System, motions: MotionSet, intensity_levels: IntensityLevels
+) -> ObjectOutcomes:
+    """Outcomes of a body in space under both components of each record, where it has two."""
     paired = {i for pair in motions.pairs for i in pair}
     shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]
     shaking += [GroundMotion(m) for i, m in enumerate(motions.base) if i not in paired]
@@ -462,6 +480,14 @@ def fraction_with_sliding(
     """
     scales = level / motions.values(measure)
     allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
+    solid = objects.solid(objects.body) if motions.both else None
+    if solid is not None and objects.friction is not None and not objects.pedestals:
+        friction = Friction(objects.friction, objects.friction)
+        slides = replace(solid, contacts=(replace(solid.contacts[0], friction=friction),))
+        one_level = IntensityLevels(
+            measure, np.array([level]), scales[:, np.newaxis], allowed[:, np.newaxis]
+        )
+        return float(_in_space(slides, motions, one_level).fractions()[0])
     fallen = overturns(
         objects.system_of(objects.body),
         motions.base,

@@ -85,7 +85,7 @@ def _rate_weights(levels: bytes, hazard: HazardCurve, shift: float) -> Floats:
 
 
 def probability_in(rate: float, years: float) -> float:
-    """Probability of at least one earthquake of a Poisson process [-].
+    """Probability of at least one earthquake in a time, 1 - exp(-rate × time), if they are a Poisson process.
 
     Parameters
     ----------

@@ -316,8 +316,8 @@ def safest(found: Assessment) -> str:
 
 def worst_direction(found: Assessment) -> str:
     """In which plane it rocks, and whether the worst direction is counted."""
-    if found.request.objects.round:
-        return "The base is round; it rolls in space under both components of each record, and falls anywhere."
+    if found.motions.both:
+        return _in_space(found)
     plane = f"It rocks {found.request.objects.plane}."
     directions = found.directions
     if directions is None or not math.isfinite(directions.factor):
@@ -325,6 +325,19 @@ def worst_direction(found: Assessment) -> str:
     return (
         f"{plane} Motions come in the direction in which they were recorded, at random; in the worst one "
         f"{100 * directions.factor:.0f} % of the shaking is enough, which is not counted in these figures."
+    )
+
+
+def _in_space(found: Assessment) -> str:
+    """That it is simulated in space, and what one plane would say beside it."""
+    is_round = found.request.objects.round
+    words = "The base is round; it rolls" if is_round else "It rocks, turns and walks"
+    words += " in space under both components of each record"
+    if found.planar is None:
+        return f"{words}."
+    return (
+        f"{words}, which counts; in one plane, along one component, it would be "
+        f"{_position_value(found, found.planar)}."
     )
 
 
@@ -432,7 +445,8 @@ def assumptions(found: Assessment) -> list[str]:
         lines.append(
             "The building stays elastic; one that cracks shakes its floors less strongly and more slowly."
         )
-    lines.append("It rocks in one plane on sharp rigid edges.")
+    if not found.motions.both:
+        lines.append("It rocks in one plane on sharp rigid edges.")
     if found.directions is not None and math.isfinite(found.directions.factor):
         lines.append(
             "Motions come in the direction in which they were recorded, at random. The worst direction is not "
@@ -482,9 +496,9 @@ def quality_flags(found: Assessment) -> list[str]:
             lines.append(
                 f"The hazard's level of 475 years, {strong:.2g} {found.measure.unit}, is unusual; check its unit."
             )
-    if found.request.objects.round and not found.motions.pairs:
+    if found.request.objects.in_space and not found.motions.pairs:
         lines.append(
-            "No record has two components; the round base was shaken by one, which may understate what it feels."
+            "No record has two components; it was shaken by one, which may understate what it feels."
         )
     if found.outcomes.light:
         lines.append(

@@ -174,7 +174,7 @@ def _value(name: str, limits: tuple[float, float], fraction: float) -> float:
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:
-    """Restitution above the value that conserves momentum is that value, None.
+    """Return a restitution that gains no energy: as given, or None, which conserves momentum, where it would.
 
     Parameters
     ----------
