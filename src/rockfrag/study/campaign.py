@@ -208,6 +208,12 @@ _OF_A_MESH = ("direction_deg", "contact_tolerance_mm")
 
 def _check_object(source: Path, thing: Mapping[str, Any], unknowns: Mapping[str, Any]) -> None:
     where = f"{source}: key object"
+    of_space = "friction" in unknowns
+    if ("restitution" in unknowns) == of_space or (of_space and "mesh" not in thing):
+        raise InputError(
+            f"{source}: key unknowns: expected the range of restitution, of a planar body, or that of "
+            "friction, of a mesh in space."
+        )
     if "mesh" in thing:
         strange = [key for key in _BY_HAND if key in thing and key != "mass_kg"]
         if strange:
