@@ -442,7 +442,7 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
         [change.turned(few.at_site) for change in shaken.moved],
         compared.at_site(shaken.before),
         None if shaken.planar is None else conversion.at_site(shaken.planar),
-        {name: compared.at_site(item) for name, item in shaken.changed.items()},
+        {name: compared.at_site(changed) for name, changed in shaken.changed.items()},
     )
 
 
@@ -459,9 +459,9 @@ def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
     about.
     """
     asked = request.level.measure if request.level else None
-    curves = [item for item in request.hazard if item.measure == asked] or request.hazard
+    curves = [curve for curve in request.hazard if curve.measure == asked] or request.hazard
     others = [curve for curve in curves if curve.measure != PGV]
-    velocity = [item for item in request.hazard if item.measure == PGV]
+    velocity = [curve for curve in request.hazard if curve.measure == PGV]
     if not others:
         return tuple(velocity)
     if len(others) == 1:

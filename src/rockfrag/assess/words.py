@@ -353,7 +353,7 @@ def helps(found: Assessment) -> str:
     best = [mitigation for mitigation in found.mitigations if mitigation.helps][:3]
     if not best:
         return "None of the changes that were tried helps."
-    return _capital("; ".join(mitigation_words(found, item) for item in best)) + "."
+    return _capital("; ".join(mitigation_words(found, mitigation) for mitigation in best)) + "."
 
 
 def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
@@ -377,7 +377,7 @@ def _limits(mitigation: Mitigation, sign: int) -> str:
     """Limits of a reduction (1) or a gain (-1) in per cent."""
     if not math.isfinite(mitigation.lower):
         return ""
-    low, high = sorted(sign * 100 * (1 - item) for item in (mitigation.lower, mitigation.upper))
+    low, high = sorted(sign * 100 * (1 - limit) for limit in (mitigation.lower, mitigation.upper))
     return f" ({low:.0f} to {high:.0f} %)".replace("-", "−")
 
 
@@ -405,7 +405,9 @@ def uncertainty(found: Assessment) -> list[str]:
 
 def main_assumptions(found: Assessment) -> list[str]:
     """What was assumed that matters most, a sentence each."""
-    return [item.words for item in all_assumed(found) if item.short][:MOST_ASSUMPTIONS]
+    return [assumption.words for assumption in all_assumed(found) if assumption.short][
+        :MOST_ASSUMPTIONS
+    ]
 
 
 def _listed(words: list[str]) -> str:
@@ -422,7 +424,7 @@ def _assumed(found: Assessment) -> list[str]:
 
 def _main_assumptions(found: Assessment) -> tuple[list[str], int]:
     """What matters most, in a few words each, and how many more there are."""
-    lines = [item for item in all_assumed(found) if item.short]
+    lines = [assumption for assumption in all_assumed(found) if assumption.short]
     return [line.short for line in lines[:MOST_ASSUMPTIONS]], max(0, len(lines) - MOST_ASSUMPTIONS)
 
 
@@ -440,7 +442,7 @@ def all_assumed(found: Assessment) -> list[Assumption]:
 def assumptions(found: Assessment) -> list[str]:
     """Sentences of all that was assumed and of all that a reader must know."""
     request = found.request
-    lines = [item.words for item in all_assumed(found)]
+    lines = [assumption.words for assumption in all_assumed(found)]
     if request.place.building is not None:
         lines.append(
             "The building stays elastic; one that cracks shakes its floors less strongly and more slowly."

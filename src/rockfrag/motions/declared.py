@@ -183,14 +183,14 @@ def intensity_measures(
 ) -> tuple[IntensityMeasure, ...]:
     """Return the measures that a table of motions has, in its order, spectral ones at these periods [s]."""
     found: list[IntensityMeasure] = []
-    spectral = [item for item in declared() if item.spectral]
-    for item in declared():
-        if item.of_block or item in spectral[1:]:
+    spectral = [measure for measure in declared() if measure.spectral]
+    for measure in declared():
+        if measure.of_block or measure in spectral[1:]:
             continue
         found += (
             [each.at(period) for period in periods for each in spectral]
-            if item.spectral
-            else [item]
+            if measure.spectral
+            else [measure]
         )
     return tuple(found)
 
@@ -235,9 +235,9 @@ def measure_of(column: str) -> IntensityMeasure | None:
 def measure_labelled(label: str) -> IntensityMeasure | None:
     """Return the measure of a label: ``PGA``, ``SA(0.3s)`` or, of a floor, ``PFA``; None if there is none."""
     kind, _, rest = label.partition("(")
-    for item in declared():
-        if label in (item.label, item.floor_label):
-            return item
-        if item.spectral and kind == item.label and rest.endswith("s)"):
-            return item.at(float(rest.removesuffix("s)")))
+    for measure in declared():
+        if label in (measure.label, measure.floor_label):
+            return measure
+        if measure.spectral and kind == measure.label and rest.endswith("s)"):
+            return measure.at(float(rest.removesuffix("s)")))
     return None
