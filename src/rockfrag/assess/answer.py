@@ -157,7 +157,9 @@ class Plan:
     intensity_levels, fewer_intensity_levels
         Levels of both sets.
     brief
-        Whether directions are left out, and changes compared with few motions and levels.
+        Whether directions, and ways to stand other than its own, are left out.
+    coarse
+        Whether changes are compared with few motions and levels.
     """
 
     motions: MotionSet
@@ -167,6 +169,7 @@ class Plan:
     intensity_levels: IntensityLevels
     fewer_intensity_levels: IntensityLevels
     brief: bool
+    coarse: bool
 
     @property
     def asked(self) -> list[float]:
@@ -255,17 +258,19 @@ def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
     asked = [level.value] if level else []
-    few = brief or request.objects.many or request.objects.round
+    coarse = brief or request.objects.many
+    few = coarse or request.objects.round
     fewer = motions.thinned() if few else motions
-    fewer = fewer.thinned() if brief else fewer
+    fewer = fewer.thinned() if coarse else fewer
     return Plan(
         motions,
         fewer,
         curves,
         level,
         make_intensity_levels(motions, measure, asked, FEW_LEVELS if few else LEVELS),
-        make_intensity_levels(fewer, measure, asked, FEWEST_LEVELS if brief else FEW_LEVELS),
+        make_intensity_levels(fewer, measure, asked, FEWEST_LEVELS if coarse else FEW_LEVELS),
         brief,
+        coarse,
     )
 
 
@@ -284,18 +289,17 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     if plan.brief:
         ways = [dict(list(bodies.items())[:1]) for bodies in ways]
     arrangements = outcomes_of_each(objects, ways, plan.motions, plan.intensity_levels)
-    # of few motions the object as it stands comes first, then with each mitigation
-    changes = [{"": item.body, **mitigations_of(item)} for item in objects]
-    under = (
-        (plan.fewer, plan.fewer_intensity_levels)
-        if plan.brief
-        else (plan.motions, plan.intensity_levels)
-    )
+    under = (plan.motions, plan.intensity_levels)
+    changes = [mitigations_of(item) for item in objects]
+    if plan.coarse:
+        # of few motions the object as it stands comes first, then with each mitigation
+        under = (plan.fewer, plan.fewer_intensity_levels)
+        changes = [{"": item.body, **each} for item, each in zip(objects, changes, strict=True)]
     compared = outcomes_of_each(objects, changes, *under)
     moved = _moved(requests, plan)
     found = []
     for item, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
-        before = change.pop("")
+        before = change.pop("") if plan.coarse else next(iter(way.values()))
         if item.pad_friction is not None:
             outcomes, slip = on_pad(item, item.pad_friction, *under)
             change[_pad_words(item.pad_friction, slip, plan, under[1])] = outcomes
@@ -413,7 +417,7 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
     if conversion is None or conversion.known is None:
         return shaken
     few = conversion.of(plan.fewer)
-    compared = few if plan.brief else conversion
+    compared = few if plan.coarse else conversion
     return Shaken(
         {
             name: conversion.at_site(arrangement)
