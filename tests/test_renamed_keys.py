@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.observations import outcomes_from_table
+from rockfrag.fragility.observations import observations_from_table
 from rockfrag.pedestal.paired_tests import check_tests
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.renamed_keys import RENAMED, check_names
@@ -45,6 +45,6 @@ def test_a_study_with_an_old_key_is_told_the_new_one():
 def test_a_data_frame_with_the_old_column_is_told_the_new_one():
     table = pd.DataFrame({"pga_g": [0.1, 0.2], "overturned": [0, 1], "event": ["a", "b"]})
     with pytest.raises(InputError, match="event is now called earthquake"):
-        outcomes_from_table(table, "pga_g", motion=None, earthquake="earthquake")
+        observations_from_table(table, "pga_g", motion=None, earthquake="earthquake")
     with pytest.raises(InputError, match="event is now called earthquake"):
         check_tests(pd.DataFrame({"event": ["a"], "object": ["b"]}))

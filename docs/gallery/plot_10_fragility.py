@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from rockfrag import Block, fit_lognormal, overturns
-from rockfrag.fragility import Outcomes, interval_over_motions
+from rockfrag.fragility import Observations, interval_over_motions
 from rockfrag.motions import evolutionary, scale_to_pgv
 
 statue = Block(width=0.35, height=1.20, mass=180.0)
@@ -27,7 +27,7 @@ fallen = overturns(statue, motions, scales=pgv / 100).overturned[0]
 # One row per motion and level; rows of one motion are not independent.
 
 names = np.repeat([f"motion {number}" for number in range(60)], pgv.size).astype(object)
-outcomes = Outcomes(
+outcomes = Observations(
     im=np.tile(pgv, 60),
     overturned=fallen.ravel().astype(float),
     trials=np.ones(fallen.size),

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from rockfrag import Block, overturns
-from rockfrag.fragility import Outcomes, area_under_curve
+from rockfrag.fragility import Observations, area_under_curve
 from rockfrag.motions import evolutionary, pga, pgv
 
 draw = np.random.default_rng(4)
@@ -40,5 +40,5 @@ for panel, (name, values) in zip(panels, measures.items(), strict=True):
             color=colour,
         )
     panel.set(xlabel=name, yticks=[0, 1], yticklabels=["stands", "overturns"])
-    outcomes = Outcomes(values, fallen.astype(float), np.ones(100), names, names)
+    outcomes = Observations(values, fallen.astype(float), np.ones(100), names, names)
     panel.set_title(f"area under the ROC curve {area_under_curve(outcomes):.2f}", fontsize=9)

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.patches import Polygon
 
 from rockfrag import Block, Stack, fit_lognormal, overturns, simulate
-from rockfrag.fragility import Outcomes
+from rockfrag.fragility import Observations
 from rockfrag.motions import evolutionary, mavroeidis_papageorgiou, scale_to_pgv
 
 BLUE, ORANGE, GREY = "#0072B2", "#D55E00", "#b8b8b8"
@@ -69,7 +69,7 @@ def draw_fragility(axes: plt.Axes) -> None:
         (fallen[1], "on its pedestal", BLUE, "s"),
     ):
         tests = np.tile(PGV, 40), outcomes.ravel().astype(float), np.ones(outcomes.size)
-        fit = fit_lognormal(Outcomes(*tests, names, names, "PGV", "cm/s"))
+        fit = fit_lognormal(Observations(*tests, names, names, "PGV", "cm/s"))
         axes.plot(at, fit.probability(at), color=colour, label=label)
         axes.plot(PGV, outcomes.mean(axis=0), mark, color=colour, markersize=4)
     axes.set(xlabel="peak ground velocity [cm/s]", ylabel="probability of falling [-]")

@@ -47,6 +47,7 @@ def test_objects_are_ranked_by_risk(own_records, tmp_path, capsys):
             "name,width_cm,height_cm,pedestal_width_cm,pedestal_height_cm\na,35,120,50|x,30|30\n",
             "line 2.*pedestal_width",
         ),
+        ("name,width_cm,height_cm\ninventory,35,120\n", "the page of the gallery"),
     ],
 )
 def test_a_wrong_row_is_named(text, words, tmp_path):

@@ -155,4 +155,7 @@ def test_pad_and_gallery_from_the_command_line(own_records, tmp_path, capsys):
     assert "The mean loss a year" in said
     for name in ("together.csv", "losses.csv", "correlation.csv"):
         assert (tmp_path / "out" / name).exists()
+    page = (tmp_path / "out" / "inventory.html").read_text(encoding="utf-8")
+    assert "What 5 objects risk together" in page and "of the mean loss" in page
+    assert page.count("<svg") == 3
     assert not math.isnan(float(said.split("mean loss a year is ")[1].split()[0]))

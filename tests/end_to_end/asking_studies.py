@@ -151,7 +151,7 @@ def fate(study: Foreign, folder: Path) -> tuple[int, list[str]]:
         return 2, [*_one_sentence(str(error)), f"refused only while it ran: {error}"]
     wrong = _tables(results)
     try:
-        check_report(results, study.names)
+        check_report(results, study.names, plugin="compare_with" in study.content)
         check_first_page(Results(loaded, results))
     except AssertionError as error:
         wrong.append(str(error).splitlines()[0])
@@ -172,8 +172,10 @@ def _tables(results: Path) -> list[str]:
     ]
     shaken = pd.read_parquet(results / "as_recorded.parquet")
     fell = shaken["overturned"].fillna(False).astype(bool)
-    if (shaken.loc[fell, "peak_rotation"] <= 0).any():
-        wrong.append("as_recorded: a fall without a rotation")
+    if not shaken.loc[fell, "rocked"].all():
+        wrong.append("as_recorded: a fall without rocking")
+    if not shaken.loc[shaken["peak_rotation"] > 0, "rocked"].all():
+        wrong.append("as_recorded: a rotation without rocking")
     tests = pd.read_parquet(results / "tests.parquet")
     ends = tests[["lower_g", "amplitude_g", "upper_g"]].to_numpy(float)
     known = np.isfinite(ends).all(axis=1)

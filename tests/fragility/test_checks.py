@@ -8,7 +8,7 @@ from rockfrag.fragility.estimators import fit_cloud, fit_step_tests
 from rockfrag.fragility.ida_curves import fragility_table
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.measure_selection import recommend_measure
-from rockfrag.fragility.observations import outcomes_from_table
+from rockfrag.fragility.observations import observations_from_table
 
 
 def ida(capacities, levels):
@@ -106,7 +106,7 @@ def test_second_measure_is_not_recommended_for_what_it_learns_of_the_motions_by_
         choice = recommend_measure(table, ["pgv_cm_s", "other_cm"], replicates=20)
         assert choice.recommended == "pgv_cm_s"
         helped += "use the surface" in choice.words
-        lone = fit_lognormal(outcomes_from_table(table, "pgv_cm_s")).aic
+        lone = fit_lognormal(observations_from_table(table, "pgv_cm_s")).aic
         aic += choice.pair is not None and choice.pair.aic < lone - 2
     assert aic >= 10
     assert helped <= 3

@@ -12,7 +12,7 @@ from rockfrag.fragility.empirical import (
     local_fraction,
     wilson_interval,
 )
-from rockfrag.fragility.observations import outcomes_from_table
+from rockfrag.fragility.observations import observations_from_table
 
 
 def ida(fell, amplitudes=None, motion="m"):
@@ -60,7 +60,7 @@ def test_a_repeated_amplitude_of_a_ida_is_refused():
 def test_the_local_share_shows_a_fall_that_no_fitted_curve_can():
     im = np.repeat([0.1, 0.3, 1.0], 30)
     fell = np.repeat([0, 1, 0], 30)
-    outcomes = outcomes_from_table(
+    outcomes = observations_from_table(
         pd.DataFrame({"pga_g": im, "overturned": fell}), "pga_g", motion=None
     )
     low, peak, high = local_fraction(outcomes, [0.1, 0.3, 1.0], bandwidth=0.2)
@@ -72,9 +72,9 @@ def test_the_local_share_shows_a_fall_that_no_fitted_curve_can():
 def test_bins_hold_about_equal_numbers_and_stripes_keep_their_levels():
     rng = np.random.default_rng(2)
     table = pd.DataFrame({"pga_g": np.exp(rng.normal(size=997)), "overturned": 0})
-    cloud = fraction_in_bins(outcomes_from_table(table, "pga_g", motion=None), bins=10)
+    cloud = fraction_in_bins(observations_from_table(table, "pga_g", motion=None), bins=10)
     assert cloud.tests.sum() == 997 and cloud.tests.between(99, 100).all()
     assert (cloud.im_lower.to_numpy()[1:] > cloud.im_upper.to_numpy()[:-1]).all()
     table["pga_g"] = rng.choice([0.2, 0.4, 0.8], 997)
-    stripes = fraction_in_bins(outcomes_from_table(table, "pga_g", motion=None), bins=10)
+    stripes = fraction_in_bins(observations_from_table(table, "pga_g", motion=None), bins=10)
     assert stripes.im.to_numpy() == pytest.approx([0.2, 0.4, 0.8])

@@ -6,7 +6,7 @@ import pytest
 
 from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.goodness import goodness_of_fit
-from rockfrag.fragility.observations import outcomes_from_table
+from rockfrag.fragility.observations import observations_from_table
 from rockfrag.report.figures.fragility import (
     calibration_figure,
     measures_figure,
@@ -31,14 +31,14 @@ def ida():
 
 def test_each_measure_has_a_panel_with_its_curve(ida):
     pga, pgv = fit_cloud(ida, "amplitude_g"), fit_cloud(ida, "pgv_cm_s")
-    data = {name: outcomes_from_table(ida, name) for name in ("amplitude_g", "pgv_cm_s")}
+    data = {name: observations_from_table(ida, name) for name in ("amplitude_g", "pgv_cm_s")}
     figure = measures_figure({"amplitude_g": pga, "pgv_cm_s": pgv}, data)
     assert [axes.get_xlabel() for axes in figure.axes] == ["PGA [g]", "PGV [cm/s]"]
     assert f"AIC {pgv.fit.aic:.1f}" in figure.axes[1].get_title(loc="left")
 
 
 def test_calibration_is_drawn_with_its_p_value(ida):
-    outcomes = outcomes_from_table(ida, "amplitude_g")
+    outcomes = observations_from_table(ida, "amplitude_g")
     judged = goodness_of_fit(outcomes, fit_cloud(ida, "amplitude_g").fit, replicates=20)
     figure = calibration_figure({"T1": judged})
     assert figure.axes[0].get_legend().get_texts()[0].get_text().startswith("T1 (p = ")

@@ -5,7 +5,7 @@ import pytest
 
 from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
-from rockfrag.fragility.observations import Outcomes
+from rockfrag.fragility.observations import Observations
 
 RNG = 20261122
 
@@ -14,7 +14,7 @@ def swept(log_capacity, earthquakes, levels):
     """Outcomes of motions with one capacity each at common levels."""
     motions = np.array([f"m{k}" for k in range(log_capacity.size)], dtype=object)
     fell = np.log(levels)[None, :] > log_capacity[:, None]
-    return Outcomes(
+    return Observations(
         np.tile(levels, motions.size),
         fell.ravel().astype(float),
         np.ones(fell.size),

@@ -10,7 +10,7 @@ from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.ida_curves import fragility_table
 from rockfrag.fragility.intervals import interval_over_motions, outcome_fitter
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.observations import outcomes_from_table
+from rockfrag.fragility.observations import observations_from_table
 
 LEVELS = np.exp(np.arange(np.log(0.1), np.log(1.2), 0.1))
 
@@ -23,7 +23,7 @@ def swept_motions(n, seed=0, theta=0.35, beta=0.4):
         for k in range(n)
         for level in LEVELS
     ]
-    return outcomes_from_table(pd.DataFrame(rows), "amplitude_g")
+    return observations_from_table(pd.DataFrame(rows), "amplitude_g")
 
 
 def test_the_refit_with_unit_weights_is_the_estimator():
@@ -40,7 +40,7 @@ def test_leaving_a_motion_out_by_its_weight_equals_leaving_its_rows_out():
     table = pd.DataFrame(
         {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}
     )[kept]
-    alone = fit_lognormal(outcomes_from_table(table, "amplitude_g"))
+    alone = fit_lognormal(observations_from_table(table, "amplitude_g"))
     weights = np.array([[1.0, 1.0, 0.0, 1.0, 1.0]])
     assert fit(weights)[0] == pytest.approx(alone.coefficients, abs=1e-6)
 
@@ -66,7 +66,7 @@ def test_intervals_follow_motions_and_not_the_number_of_amplitudes():
     table = pd.DataFrame(
         {"amplitude_g": once.im, "overturned": once.overturned, "motion": once.motion}
     )
-    often = outcomes_from_table(pd.concat([table] * 10, ignore_index=True), "amplitude_g")
+    often = observations_from_table(pd.concat([table] * 10, ignore_index=True), "amplitude_g")
     first = interval_over_motions(once)
     second = interval_over_motions(often)
     assert second.theta == pytest.approx(first.theta, rel=1e-6)
@@ -128,7 +128,7 @@ def test_limits_over_motions_of_shared_earthquakes_warn():
         {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}
     )
     table["earthquake"] = table["motion"].map(lambda name: int(name[1:]) % 4)
-    shared = outcomes_from_table(table, "amplitude_g", earthquake="earthquake")
+    shared = observations_from_table(table, "amplitude_g", earthquake="earthquake")
     assert interval_over_motions(shared).over == "earthquake"
     assert not interval_over_motions(shared).warnings
     assert "come from 4 earthquakes" in interval_over_motions(shared, over="motion").warnings[0]

@@ -8,7 +8,7 @@ import statsmodels.api as sm
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.observations import name_and_unit, outcomes_from_table
+from rockfrag.fragility.observations import name_and_unit, observations_from_table
 
 STRIPES = pd.DataFrame(
     {
@@ -22,7 +22,7 @@ STRIPES = pd.DataFrame(
 def outcomes_of(im, outcomes, motions=None):
     table = pd.DataFrame({"pga_g": im, "overturned": outcomes})
     table["motion"] = motions if motions is not None else range(len(table))
-    return outcomes_from_table(table, "pga_g")
+    return observations_from_table(table, "pga_g")
 
 
 def random_cloud(n, theta, beta, seed):
@@ -32,7 +32,7 @@ def random_cloud(n, theta, beta, seed):
 
 
 def test_published_stripes_give_their_maximum_likelihood_estimate():
-    fit = fit_lognormal(outcomes_from_table(STRIPES, "pga_g", trials="trials", motion=None))
+    fit = fit_lognormal(observations_from_table(STRIPES, "pga_g", trials="trials", motion=None))
     assert fit.theta == pytest.approx(1.076116, abs=1e-5)
     assert fit.beta == pytest.approx(0.429237, abs=1e-5)
     assert fit.log_likelihood == pytest.approx(-10.797705, abs=1e-5)
@@ -135,16 +135,18 @@ def test_a_bad_value_is_named_with_its_row_and_column(column, row, value, words)
     ).astype({"overturned": float})
     table.loc[row, column] = value
     with pytest.raises(InputError, match=words):
-        outcomes_from_table(table, "pga_g")
+        observations_from_table(table, "pga_g")
 
 
 def test_counts_outside_zero_to_trials_and_empty_tables_are_refused():
     with pytest.raises(InputError, match="fraction between 0 and 1"):
-        outcomes_from_table(STRIPES.assign(overturned=41), "pga_g", trials="trials", motion=None)
+        observations_from_table(
+            STRIPES.assign(overturned=41), "pga_g", trials="trials", motion=None
+        )
     with pytest.raises(InputError, match="no row"):
-        outcomes_from_table(STRIPES.iloc[:0], "pga_g", trials="trials")
+        observations_from_table(STRIPES.iloc[:0], "pga_g", trials="trials")
     with pytest.raises(InputError, match="no column 'pgv_cm_s'"):
-        outcomes_from_table(STRIPES, "pgv_cm_s", trials="trials", motion=None)
+        observations_from_table(STRIPES, "pgv_cm_s", trials="trials", motion=None)
     with pytest.raises(InputError, match="at least two values"):
         fit_lognormal(outcomes_of([0.3, 0.3], [0, 1]))
 

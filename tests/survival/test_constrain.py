@@ -60,6 +60,8 @@ def test_answer_page_json_and_tables(site, capsys):
     page = (folder / "Hill.html").read_text(encoding="utf-8")
     assert "reweighted, not validated" in page
     assert "validated by" not in page
+    # labels of axes are numbers and no markup
+    assert "mathdefault" not in page and ">0.0001<" in page
     weights = pd.read_csv(folder / "Hill-weights.csv")
     assert list(weights.columns[:3]) == ["rlz_id", "branch_path", "weight"]
     assert weights["weight"].tolist() == pytest.approx(after)
@@ -143,7 +145,7 @@ def test_two_tables_give_two_measures_of_the_same_branches(tmp_path):
     table["pgv_cm_s"] *= 100
     table.to_csv(tmp_path / "pgv.csv", index=False)
     found = read_branches([tmp_path / "pga.csv", tmp_path / "pgv.csv"])
-    assert {m.name for m in found[0].curves} == {"PGA", "PGV"}
+    assert {m.imt for m in found[0].curves} == {"PGA", "PGV"}
     table["weight"] = 1 / 3
     table.to_csv(tmp_path / "pgv.csv", index=False)
     with pytest.raises(InputError, match="elsewhere"):
@@ -151,15 +153,20 @@ def test_two_tables_give_two_measures_of_the_same_branches(tmp_path):
 
 
 def test_the_example_of_the_documentation_runs_as_it_stands_there(tmp_path, monkeypatch, capsys):
-    document = Path(__file__).resolve().parents[2] / "docs" / "survival.md"
-    first, second = re.findall(r"```python\n(.*?)```", document.read_text(encoding="utf-8"), re.S)
+    document = Path(__file__).resolve().parents[2] / "docs" / "how-to" / "constrain.md"
+    *made, asked = re.findall(r"```python\n(.*?)```", document.read_text(encoding="utf-8"), re.S)
     monkeypatch.chdir(tmp_path)
-    exec(first, {})
+    for block in made:
+        exec(block, {})
     assert main(["constrain", "site.yaml"]) == 0
-    assert "lower" in capsys.readouterr().out
-    exec(second, {})
+    said = capsys.readouterr().out
+    assert "lower" in said and "tells most" in said
+    exec(asked, {})
     table = capsys.readouterr().out
     assert "weight_after" in table and "level_ratio" in table
+    assert {"Hill.html", "Hill.json", "Hill-weights.csv", "Hill-curves.csv"} == {
+        path.name for path in Path("constrained").iterdir()
+    }
 
 
 def simulated_site(folder, catalogue, more="", velocity=""):

@@ -18,7 +18,7 @@ from rockfrag.fragility.intervals import (
     population,
     resampled_interval,
 )
-from rockfrag.fragility.observations import Outcomes
+from rockfrag.fragility.observations import Observations
 
 from .documented import document
 
@@ -73,7 +73,7 @@ def simulated(
     step = np.clip(np.searchsorted(np.log(levels), log_a), 1, levels.size - 1)
     brackets = Brackets(levels[step - 1], levels[step], labels, earthquake_labels)
     fell = np.log(levels)[None, :] > log_a[:, None]
-    outcomes = Outcomes(
+    outcomes = Observations(
         np.tile(levels, earthquake.size),
         fell.ravel().astype(float),
         np.ones(fell.size),

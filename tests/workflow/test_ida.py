@@ -7,13 +7,14 @@ import pandas as pd
 import pytest
 
 from rockfrag.records.motion import Motion
-from rockfrag.stages.ida import ida_table
+from rockfrag.stages.ida import as_recorded, ida_table
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.system.blocks import Block, Stack
 
 TOWER = Block(0.124, 0.372, 2.172)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
+PILLAR, SQUAT = Block(0.2725, 0.9899, 62.6), Block(0.6, 1.2, 372.0)
 AMPLITUDES = Amplitudes(0.2, 1.0, 10)
 
 
@@ -55,11 +56,20 @@ def test_below_its_threshold_a_block_never_moves():
     assert set(table["overturned_body"]) <= {"", "statue"}
 
 
-def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():
-    # variances of earthquakes and of motions cannot be told apart there
+def test_a_statue_that_its_pedestal_carries_along_rocks_and_does_not_stay():
+    table = as_recorded(
+        Stack(PILLAR, SQUAT).system(),
+        [replace(motion, acceleration=6 * motion.acceleration) for motion in motions()],
+    )
+    assert set(table["overturned_body"]) == {"pedestal"}
+    assert (table["peak_rotation"] == 0).all()
+    assert table["rocked"].all()
+
+
+def pairs(earthquakes: str, step: float = 0.01) -> pd.DataFrame:
     rows = []
-    for number, earthquake in enumerate("AABBCD"):
-        for side, amplitude in (("NP", 0.5), ("P", 0.5 + 0.01 * number)):
+    for number, earthquake in enumerate(earthquakes):
+        for side, amplitude in (("NP", 0.5), ("P", 0.5 + step * number)):
             rows.append(
                 {
                     "object": "T1",
@@ -74,7 +84,20 @@ def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():
                     "upper_g": amplitude,
                 }
             )
-    found = pedestal_tables(pd.DataFrame(rows), seed=1, slenderness={"T1": 3.0})
+    return pd.DataFrame(rows)
+
+
+def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():
+    # variances of earthquakes and of motions cannot be told apart there
+    found = pedestal_tables(pairs("AABBCD"), seed=1, slenderness={"T1": 3.0})
     whole = found["effects"].set_index("scope").loc["whole"]
     assert whole["ratio"] == pytest.approx(1.05, abs=0.01)
     assert len(found["pairs"]) == 6
+
+
+def test_a_reading_without_any_pair_leaves_the_numbers_of_the_others_numbers():
+    # one motion: neither limits nor p values; a table that follows no motion: no effect at all
+    known, other = pairs("A", 0.0), pairs("A", 0.0).assign(definition="step_protocol_shaker")
+    other = other.assign(censored="right", upper_g=np.inf)
+    found = pedestal_tables(pd.concat([known, other]), seed=1, slenderness={"T1": 3.0})
+    assert found["effects"]["lower"].dtype == float

@@ -3,7 +3,7 @@
 from rockfrag.assess.answer import Assessment
 from rockfrag.fragility.identifiers import identifiers
 from rockfrag.fragility.nrml import discrete_function, model_text
-from rockfrag.outcomes.limit_states import OVERTURNS
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 
 
 def as_nrml(found: Assessment) -> str:
@@ -18,13 +18,13 @@ def as_nrml(found: Assessment) -> str:
         The assessment.
     """
     name, outcomes = found.request.name, found.outcomes
+    reached = {*outcomes.others, OVERTURNS}
+    states = [state.name for state in limit_states() if state.name in reached]
     function = discrete_function(
         identifiers([name], "_:-")[name],
-        found.measure.name,
+        found.measure.imt,
         outcomes.intensity_levels.levels,
-        {OVERTURNS: outcomes.fractions()},
+        {state: outcomes.fractions(state=state) for state in states},
     )
-    words = (
-        f"{name}, {found.request.place.words}: fraction of {found.motions.words} that topple it."
-    )
-    return model_text(words, [OVERTURNS], [function])
+    words = f"{name}, {found.request.place.words}: fractions of {found.motions.words}."
+    return model_text(words, states, [function])

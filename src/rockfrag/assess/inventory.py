@@ -13,7 +13,6 @@ import pandas as pd
 from rockfrag.assess.answer import (
     RECORDS,
     Assessment,
-    assess_with,
     assessed,
     plan_for,
     shake_all,
@@ -21,7 +20,6 @@ from rockfrag.assess.answer import (
 from rockfrag.assess.joint import JointRisk, joint_risk
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
-from rockfrag.assess.page import write_answer
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.scale import SCALE_WORDS, step_of
 from rockfrag.assess.words import (
@@ -32,7 +30,7 @@ from rockfrag.assess.words import (
     range_words,
 )
 from rockfrag.errors import InputError
-from rockfrag.files import check_name, file_name, write_table
+from rockfrag.files import check_name, file_name
 from rockfrag.report.wording import counted
 from rockfrag.tabular import Row, read_rows
 
@@ -133,7 +131,8 @@ def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Asses
     """Assess objects, those in places that shake alike at once."""
     groups: dict[object, list[int]] = {}
     for i, request in enumerate(requests):
-        kind = request.place.key, request.objects.round, request.objects.many
+        about = request.objects
+        kind = request.place.key, about.round, about.in_space, about.many
         # of several curves the one that counts may differ from object to object
         alone = i if len(request.hazard) > 2 else -1
         groups.setdefault((*kind, alone), []).append(i)
@@ -177,7 +176,7 @@ def read_inventory(
     if len(rows) > MOST_OBJECTS:
         raise InputError(f"{path}: {len(rows)} objects are more than the {MOST_OBJECTS} allowed.")
     requests: list[Request] = []
-    taken: dict[str, str] = {}
+    taken = {"inventory": "the page of the gallery"}
     for row in rows:
         try:
             name = _own_name(row, taken)
@@ -358,30 +357,3 @@ def _half(found: Assessment) -> str:
     if not math.isfinite(half):
         return "no shaking tried topples it in half of the motions"
     return f"half of the motions topple it at {half:.2g} {found.measure.unit}"
-
-
-def write_inventory(
-    inventory: Inventory, folder: str | os.PathLike[str], *, pages: bool = False
-) -> Path:
-    """Write the ranking as CSV and, if wanted, the whole answer of each object; return the path of the table.
-
-    Parameters
-    ----------
-    inventory
-        The objects.
-    folder
-        Where to write; made if absent.
-    pages
-        Whether to assess each object in full and write its page.
-    """
-    place = Path(folder) / "inventory.csv"
-    write_table(inventory_table(inventory), place)
-    if inventory.joint is not None:
-        write_table(inventory.joint.numbers, place.with_name("together.csv"))
-        write_table(inventory.joint.losses, place.with_name("losses.csv"))
-        write_table(inventory.joint.correlation.reset_index(), place.with_name("correlation.csv"))
-    if pages:
-        for found in inventory.found:
-            motions = inventory.motions.at(found.request.place)
-            write_answer(assess_with(found.request, motions), folder)
-    return place

@@ -15,7 +15,7 @@ from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fra
 from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
-from rockfrag.fragility.observations import Outcomes
+from rockfrag.fragility.observations import Observations
 
 TAILS = (
     "The limits of β assume lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
@@ -70,7 +70,7 @@ class Checks:
 
 
 def checks_of_outcomes(
-    outcomes: Outcomes,
+    outcomes: Observations,
     fit: FragilityFit,
     interval: Interval,
     dependence: Literal["tests", "motions"] | None = None,

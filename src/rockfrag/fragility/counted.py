@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rockfrag.fragility.empirical import resurrections_of
 from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.fragility.intervals import blocks_of
-from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit, positive
+from rockfrag.fragility.observations import Floats, Observations, name_and_unit, positive
 from rockfrag.machine_code import cached_njit
 from rockfrag.shaketable.swept import Swept
 
@@ -24,8 +24,8 @@ CELLS = 2000
 
 
 @dataclass(frozen=True)
-class CountedOutcomes(Outcomes):
-    """Outcomes whose rows are the cells of each block of motions (earthquakes), see :class:`Outcomes`.
+class CountedObservations(Observations):
+    """Outcomes whose rows are the cells of each block of motions (earthquakes), see :class:`Observations`.
 
     Attributes
     ----------
@@ -78,16 +78,16 @@ class CountedOutcomes(Outcomes):
         """Nothing: each test is told from the others."""
         return np.zeros(1)
 
-    def by_value(self) -> Outcomes:
+    def by_value(self) -> Observations:
         """Cells of all blocks together."""
         values, cell = np.unique(self.im, return_inverse=True)
         trials = np.bincount(cell, self.trials).astype(np.float64)
         labels = np.full(values.size, "", dtype=object)
         fell = np.bincount(cell, self.overturned).astype(np.float64)
-        return Outcomes(values, fell, trials, labels, labels, self.name, self.unit)
+        return Observations(values, fell, trials, labels, labels, self.name, self.unit)
 
     def group_weights(self, weights: Floats) -> Floats:
-        """Weights of the blocks from those of motions or earthquakes, which are equal within a block."""
+        """Weights of the blocks of motions, all of whose motions or earthquakes must weigh the same."""
         assert self.block is not None
         first = np.unique(self.block, return_index=True)[1]
         found = weights[:, first]
@@ -224,7 +224,7 @@ class CountedIda:
         rows = self._resurrections
         return rows if not floor else rows[rows["floor"] == floor]
 
-    def outcomes(self, floor: str, column: str) -> Outcomes:
+    def outcomes(self, floor: str, column: str) -> Observations:
         """Outcomes on a floor with a measure."""
         return self._counts[floor, column].outcomes()
 
@@ -245,7 +245,7 @@ class FloorIda:
         others += by
         return found[[*by, *found.columns.drop(others)]].sort_values(by, ignore_index=True)
 
-    def outcomes(self, column: str) -> Outcomes:
+    def outcomes(self, column: str) -> Observations:
         """Outcomes with a measure."""
         return self.ida.outcomes(self.floor, column)
 
@@ -299,13 +299,13 @@ class _Counts:
             *(self.trials, self.fell, self.total),
         )
 
-    def outcomes(self) -> CountedOutcomes:
+    def outcomes(self) -> CountedObservations:
         block, cell = np.nonzero(self.trials)
         with np.errstate(invalid="ignore", divide="ignore"):
             middle = np.exp(self.total / self.trials.sum(axis=0))
         names = [f"block {item + 1}" for item in range(len(self.trials))]
         labels = np.array(names, dtype=object)[block]
-        return CountedOutcomes(
+        return CountedObservations(
             middle[cell],
             self.fell[block, cell],
             self.trials[block, cell],

@@ -8,7 +8,7 @@ import pandas as pd
 
 from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility
-from rockfrag.fragility.observations import Outcomes
+from rockfrag.fragility.observations import Observations
 
 POINTS = 120
 """Points of a curve, in equal ratios."""
@@ -17,7 +17,9 @@ _TAIL = 2.6
 """Standard deviations on either side of the median within which a curve is drawn: 0.5 to 99.5 %."""
 
 
-def curve_points(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes) -> pd.DataFrame:
+def curve_points(
+    labels: Mapping[str, Any], item: Fragility, outcomes: Observations
+) -> pd.DataFrame:
     """Points of one curve over the range of its data.
 
     Returns
@@ -81,7 +83,9 @@ def fraction_points(labels: Mapping[str, Any], item: Fragility) -> pd.DataFrame:
     return about.assign(x=x, fraction=fraction, lower=lower, upper=upper)
 
 
-def outcome_bins(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes) -> pd.DataFrame:
+def outcome_bins(
+    labels: Mapping[str, Any], item: Fragility, outcomes: Observations
+) -> pd.DataFrame:
     """Fractions of overturned tests in bins, under the labels of their curve.
 
     Returns

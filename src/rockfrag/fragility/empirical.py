@@ -13,7 +13,7 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.observations import Floats, Outcomes, positive, read_outcomes
+from rockfrag.fragility.observations import Floats, Observations, positive, read_observations
 from rockfrag.shaketable.swept import Swept
 
 
@@ -41,7 +41,7 @@ def wilson_interval(
     return np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
 
 
-def bin_codes(outcomes: Outcomes, bins: int = 10) -> NDArray[np.int64]:
+def bin_codes(outcomes: Observations, bins: int = 10) -> NDArray[np.int64]:
     """Put rows into numbered bins, shape (n,), with about equally many tests in each bin.
 
     Equal values share a bin; up to ``bins`` different values keep a bin each.
@@ -54,7 +54,7 @@ def bin_codes(outcomes: Outcomes, bins: int = 10) -> NDArray[np.int64]:
     return np.asarray(middle[level] / outcomes.n * bins, dtype=np.int64)
 
 
-def fraction_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd.DataFrame:
+def fraction_in_bins(outcomes: Observations, bins: int = 10, level: float = 0.90) -> pd.DataFrame:
     """Fraction of overturned tests in bins of about equal numbers of tests.
 
     Stripes with at most ``bins`` levels keep their levels.
@@ -62,7 +62,7 @@ def fraction_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) ->
     Parameters
     ----------
     outcomes
-        Outcomes with their measure, see :class:`Outcomes`.
+        Outcomes with their measure, see :class:`Observations`.
     bins
         Number of bins.
     level
@@ -99,7 +99,7 @@ def fraction_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) ->
     return table.assign(fraction_lower=lower, fraction_upper=upper)
 
 
-def local_fraction(outcomes: Outcomes, im: ArrayLike, bandwidth: float | None = None) -> Floats:
+def local_fraction(outcomes: Observations, im: ArrayLike, bandwidth: float | None = None) -> Floats:
     """Fraction of overturned tests near each ``im``, weighted by a normal kernel in ln IM; may fall.
 
     Parameters
@@ -167,7 +167,7 @@ def find_resurrections(
     """
     keys = [by] if isinstance(by, str) else by
     values = positive(ida, amplitude)
-    table = ida[keys].assign(amplitude=values, overturned=read_outcomes(ida, "overturned") == 1)
+    table = ida[keys].assign(amplitude=values, overturned=read_observations(ida, "overturned") == 1)
     doubled = table.duplicated([*keys, "amplitude"])
     if doubled.any():
         row = int(np.flatnonzero(doubled)[0])

@@ -18,7 +18,7 @@ from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_outc
 from rockfrag.fragility.ida_data import IdaData, TableIda
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
-from rockfrag.fragility.observations import Outcomes, outcomes_from_table
+from rockfrag.fragility.observations import Observations, observations_from_table
 from rockfrag.keywords import named_keywords
 from rockfrag.short_repr import short_repr
 
@@ -86,7 +86,7 @@ class IncrementalFragility:
 
 
 def fragility_of(
-    outcomes: Outcomes,
+    outcomes: Observations,
     *,
     link: Link = "probit",
     level: float = 0.90,
@@ -98,7 +98,7 @@ def fragility_of(
     Parameters
     ----------
     outcomes
-        Outcomes with their measure, see :class:`Outcomes`.
+        Outcomes with their measure, see :class:`Observations`.
     link
         ``probit`` (lognormal curve) or ``logit``.
     level
@@ -146,7 +146,7 @@ def fit_cloud(
     -------
     The :class:`Fragility`.
     """
-    outcomes = outcomes_from_table(
+    outcomes = observations_from_table(
         table, im, overturned=overturned, motion=motion, earthquake=earthquake
     )
     return fragility_of(outcomes, level=level)
@@ -183,7 +183,7 @@ def fit_stripes(
     -------
     The :class:`Fragility`.
     """
-    outcomes = outcomes_from_table(
+    outcomes = observations_from_table(
         table, im, overturned=overturned, trials=trials, motion=motion, earthquake=earthquake
     )
     whole = fragility_of(outcomes, level=level)
@@ -280,10 +280,10 @@ def fragility_of_brackets(brackets: Brackets, level: float) -> Fragility:
     return Fragility(fit, interval, checks_of_brackets(brackets, fit, interval))
 
 
-def _pooled(outcomes: Outcomes) -> Outcomes:
+def _pooled(outcomes: Observations) -> Observations:
     values, code = np.unique(outcomes.im, return_inverse=True)
     overturned = np.bincount(code, outcomes.overturned).astype(np.float64)
     trials = np.bincount(code, outcomes.trials).astype(np.float64)
     # labels only feed notes on the number of motions, which a stripe no longer has one of
     labels = np.array([f"stripe {k + 1}" for k in range(values.size)], dtype=object)
-    return Outcomes(values, overturned, trials, labels, labels, outcomes.name, outcomes.unit)
+    return Observations(values, overturned, trials, labels, labels, outcomes.name, outcomes.unit)

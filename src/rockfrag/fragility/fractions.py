@@ -22,7 +22,7 @@ from rockfrag.fragility.intervals import (
     jackknife_error,
     student,
 )
-from rockfrag.fragility.observations import Floats, Outcomes
+from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.pooling import cells, counts
 
 ENDS = (0.1587, 0.8413)
@@ -45,7 +45,7 @@ class Fractions:
     im
         Values of the measure, rising, shape (n,).
     fraction
-        Share at each of them, never falling, shape (n,).
+        Fraction at each of them, never falling, shape (n,).
     lower, upper
         Pointwise limits, shape (n,); NaN where there is but one group.
     theta, theta_limits
@@ -98,7 +98,7 @@ class Fractions:
 
 
 def fractions_of_outcomes(
-    outcomes: Outcomes, groups: NDArray[np.object_], level: float
+    outcomes: Observations, groups: NDArray[np.object_], level: float
 ) -> Fractions:
     """Fractions of tests with outcomes, with limits over groups.
 

@@ -12,7 +12,7 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.empirical import bin_codes, wilson_interval
 from rockfrag.fragility.lognormal import FragilityFit
-from rockfrag.fragility.observations import Floats, Outcomes
+from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.pooling import cells
 from rockfrag.short_repr import short_repr
 
@@ -56,7 +56,7 @@ class GoodnessOfFit:
 
 
 def goodness_of_fit(
-    outcomes: Outcomes,
+    outcomes: Observations,
     fit: FragilityFit,
     *,
     dependence: Literal["tests", "motions"] | None = None,

@@ -6,7 +6,7 @@ from typing import Protocol
 import pandas as pd
 
 from rockfrag.fragility.empirical import find_resurrections
-from rockfrag.fragility.observations import Outcomes, outcomes_from_table
+from rockfrag.fragility.observations import Observations, observations_from_table
 
 
 class IdaData(Protocol):
@@ -15,7 +15,7 @@ class IdaData(Protocol):
     def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
         """Structural resurrections, a row a motion: :func:`rockfrag.fragility.empirical.find_resurrections`."""
 
-    def outcomes(self, column: str) -> Outcomes:
+    def outcomes(self, column: str) -> Observations:
         """All outcomes with a measure."""
 
     def motions(self) -> pd.DataFrame:
@@ -44,9 +44,9 @@ class TableIda:
         """See :class:`IdaData`."""
         return find_resurrections(self.table, amplitude=amplitude, by=by)
 
-    def outcomes(self, column: str) -> Outcomes:
+    def outcomes(self, column: str) -> Observations:
         """See :class:`IdaData`."""
-        return outcomes_from_table(
+        return observations_from_table(
             self.table, column, motion=self.motion, earthquake=self.earthquake, source="ida"
         )
 

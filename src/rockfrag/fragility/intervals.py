@@ -16,7 +16,7 @@ from scipy import special, stats
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import Link, fit_batch, separated
 from rockfrag.fragility.lognormal import LEAST_SLOPE
-from rockfrag.fragility.observations import Floats, Grouped, Outcomes, Over
+from rockfrag.fragility.observations import Floats, Grouped, Observations, Over
 from rockfrag.fragility.pooling import cells, counts
 from rockfrag.short_repr import short_repr
 
@@ -100,7 +100,7 @@ def population(tests: Grouped, over: Over | None) -> tuple[Over, tuple[str, ...]
 
 
 def outcome_fitter(
-    outcomes: Outcomes, over: Over, link: Link = "probit"
+    outcomes: Observations, over: Over, link: Link = "probit"
 ) -> tuple[WeightedFit, int]:
     """Make the function that refits a curve to reweighted groups of tests.
 
@@ -139,7 +139,7 @@ def outcome_fitter(
 
 
 def interval_over_motions(
-    outcomes: Outcomes, *, over: Over | None = None, level: float = 0.90, link: Link = "probit"
+    outcomes: Observations, *, over: Over | None = None, level: float = 0.90, link: Link = "probit"
 ) -> Interval:
     """Confidence limits of a curve fitted to outcomes, by leaving out whole motions or earthquakes.
 

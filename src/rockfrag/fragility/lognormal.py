@@ -16,7 +16,7 @@ from statsmodels.tools.sm_exceptions import (
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import Link, fit_batch, separated
-from rockfrag.fragility.observations import Floats, Outcomes
+from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.pooling import cells
 from rockfrag.keywords import named_keywords
 from rockfrag.short_repr import short_repr
@@ -122,7 +122,7 @@ def curve_parameters(coefficients: Floats, covariance: Floats) -> Curve:
 
 
 @named_keywords
-def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
+def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> FragilityFit:
     """Fit a curve to outcomes by maximum likelihood (statsmodels GLM, binomial).
 
     Where one value of the measure separates survival from overturning the likelihood has no maximum
@@ -134,7 +134,7 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
     Parameters
     ----------
     outcomes
-        Outcomes with their measure, see :class:`Outcomes`.
+        Outcomes with their measure, see :class:`Observations`.
     link
         ``probit`` (lognormal curve) or ``logit``.
 
@@ -188,13 +188,13 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
     return _fit(outcomes, link, method, notes, log_likelihood, curve)
 
 
-def _pooled(outcomes: Outcomes) -> Outcomes:
+def _pooled(outcomes: Observations) -> Observations:
     """Tests in cells, each a motion of its own: only the likelihood is taken from them."""
     cell, values = cells(outcomes.log_im, 10_000)
     labels = np.arange(values.size).astype(object)
     fell = np.bincount(cell, outcomes.overturned)
     trials = np.bincount(cell, outcomes.trials)
-    return Outcomes(
+    return Observations(
         np.exp(values),
         np.asarray(fell, float),
         np.asarray(trials, float),
@@ -205,7 +205,7 @@ def _pooled(outcomes: Outcomes) -> Outcomes:
     )
 
 
-def _statsmodels(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:
+def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
     links = {"probit": families.links.Probit, "logit": families.links.Logit}
     # tests at one value are one row of counts: the same likelihood, and a tenth of the time
     values, level = np.unique(outcomes.log_im, return_inverse=True)
@@ -220,7 +220,7 @@ def _statsmodels(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:
     return np.asarray(result.params), -np.asarray(model.hessian(result.params, observed=False))
 
 
-def _penalised(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:
+def _penalised(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
     design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
     fit = fit_batch(
         design,
@@ -232,7 +232,7 @@ def _penalised(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:
     return fit.coefficients[0], fit.information[0]
 
 
-def _log_likelihood(outcomes: Outcomes, coefficients: Floats, link: Link) -> float:
+def _log_likelihood(outcomes: Observations, coefficients: Floats, link: Link) -> float:
     eta = coefficients[0] + coefficients[1] * outcomes.log_im
     fell, stood = outcomes.overturned, outcomes.trials - outcomes.overturned
     if link == "probit":
@@ -242,7 +242,7 @@ def _log_likelihood(outcomes: Outcomes, coefficients: Floats, link: Link) -> flo
     return float((terms + outcomes.ways()).sum())
 
 
-def _notes(outcomes: Outcomes) -> tuple[str, ...]:
+def _notes(outcomes: Observations) -> tuple[str, ...]:
     notes = []
     if outcomes.n_motions == 1:
         notes.append(
@@ -257,7 +257,7 @@ def _notes(outcomes: Outcomes) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _separation_note(outcomes: Outcomes) -> str:
+def _separation_note(outcomes: Observations) -> str:
     survived = outcomes.im[outcomes.trials > outcomes.overturned].max()
     fell = outcomes.im[outcomes.overturned > 0].min()
     return (
@@ -267,7 +267,7 @@ def _separation_note(outcomes: Outcomes) -> str:
     )
 
 
-def _all_agree(outcomes: Outcomes) -> str:
+def _all_agree(outcomes: Observations) -> str:
     # exact binomial bound when all of n independent motions agree (Clopper and Pearson, 1934)
     bound = 1.0 - 0.1 ** (1.0 / outcomes.n_motions)
     if outcomes.n_overturned == 0:
@@ -287,7 +287,7 @@ def _all_agree(outcomes: Outcomes) -> str:
 
 
 def _fit(
-    outcomes: Outcomes,
+    outcomes: Observations,
     link: Link,
     method: str,
     notes: tuple[str, ...],

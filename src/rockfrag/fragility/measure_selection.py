@@ -14,7 +14,7 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.held_out import fraction_best, outcome_scores, paired_p
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
-from rockfrag.fragility.observations import Floats, Outcomes, numbers, outcomes_from_table
+from rockfrag.fragility.observations import Floats, Observations, numbers, observations_from_table
 from rockfrag.fragility.surface import FragilitySurface, fit_surface
 from rockfrag.short_repr import short_repr
 
@@ -59,7 +59,7 @@ class MeasureSelection:
     __repr__ = short_repr
 
 
-def area_under_curve(outcomes: Outcomes) -> float:
+def area_under_curve(outcomes: Observations) -> float:
     """Probability that an overturned test had the larger measure than a survived one; ties half.
 
     NaN where all tests agree.
@@ -67,7 +67,7 @@ def area_under_curve(outcomes: Outcomes) -> float:
     Parameters
     ----------
     outcomes
-        Outcomes with their measure, see :class:`Outcomes`.
+        Outcomes with their measure, see :class:`Observations`.
 
     Returns
     -------
@@ -82,7 +82,7 @@ def area_under_curve(outcomes: Outcomes) -> float:
     return float((falls * (below + 0.5 * stands)).sum() / (falls.sum() * stands.sum()))
 
 
-def sufficiency(outcomes: Outcomes, fit: FragilityFit, column: Floats) -> float:
+def sufficiency(outcomes: Observations, fit: FragilityFit, column: Floats) -> float:
     """Test a linear dependence of the outcome's residual on ``column``, shape (n,); p value.
 
     The residual is outcome minus fitted probability; the regression's standard error is robust to
@@ -156,7 +156,7 @@ def recommend_measure(
     rows, data = [], {}
     extra = {column: numbers(table, column, source) for column in given}
     for column in measures:
-        outcomes = outcomes_from_table(
+        outcomes = observations_from_table(
             table,
             column,
             overturned=overturned,
@@ -241,7 +241,7 @@ def ranked(
 
 
 def _row(
-    column: str, outcomes: Outcomes, fit: FragilityFit, interval: Interval
+    column: str, outcomes: Observations, fit: FragilityFit, interval: Interval
 ) -> dict[str, float | str]:
     return {
         "measure": column,
@@ -257,7 +257,7 @@ def _row(
 
 
 def _best_pair(
-    data: Mapping[str, Outcomes], best: str, group: NDArray[np.intp]
+    data: Mapping[str, Observations], best: str, group: NDArray[np.intp]
 ) -> tuple[str, float, float]:
     """Measure that adds most to the best one, the p value of what it adds, and the gain of score."""
     found = ("", float("nan"), -np.inf)

@@ -42,7 +42,7 @@ class Grouped:
 
 
 @dataclass(frozen=True)
-class Outcomes(Grouped):
+class Observations(Grouped):
     """Overturned or not, at known values of one intensity measure.
 
     Attributes
@@ -109,12 +109,12 @@ class Outcomes(Grouped):
         ways = special.gammaln(self.trials + 1) - special.gammaln(self.overturned + 1)
         return np.asarray(ways - special.gammaln(stood + 1))
 
-    def by_value(self) -> "Outcomes":
+    def by_value(self) -> "Observations":
         """The same tests in no more rows than a kernel estimate needs."""
         return self
 
     def group_weights(self, weights: Floats) -> Floats:
-        """Weights of the groups that rows are labelled with from those of motions or earthquakes."""
+        """Weights of the groups of rows: those of the motions or earthquakes, as each group is one."""
         return weights
 
     def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:
@@ -193,7 +193,7 @@ def positive(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
     return values
 
 
-def read_outcomes(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
+def read_observations(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
     """Return a column of yes/no outcomes as 0 and 1, shape (n,).
 
     Raises
@@ -235,7 +235,7 @@ def labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.o
     return values.to_numpy(dtype=object)
 
 
-def outcomes_from_table(
+def observations_from_table(
     table: pd.DataFrame,
     im: str,
     *,
@@ -244,7 +244,7 @@ def outcomes_from_table(
     motion: str | None = "motion",
     earthquake: str | None = None,
     source: str = "table",
-) -> Outcomes:
+) -> Observations:
     """Read outcomes and one intensity measure out of a table.
 
     Parameters
@@ -265,7 +265,7 @@ def outcomes_from_table(
 
     Returns
     -------
-    The :class:`Outcomes`, of n rows.
+    The :class:`Observations`, of n rows.
 
     Raises
     ------
@@ -278,7 +278,7 @@ def outcomes_from_table(
     values = positive(table, im, source)
     if trials is None:
         counts = np.ones(len(table))
-        failed = read_outcomes(table, overturned, source)
+        failed = read_observations(table, overturned, source)
     else:
         counts = numbers(table, trials, source)
         failed = numbers(table, overturned, source)
@@ -292,4 +292,4 @@ def outcomes_from_table(
     motions = labels(table, motion, source)
     earthquakes = motions if earthquake is None else labels(table, earthquake, source)
     name, unit = name_and_unit(im)
-    return Outcomes(values, failed, counts, motions, earthquakes, name, unit)
+    return Observations(values, failed, counts, motions, earthquakes, name, unit)

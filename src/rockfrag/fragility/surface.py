@@ -14,7 +14,7 @@ from statsmodels.tools.sm_exceptions import PerfectSeparationError, PerfectSepar
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
-from rockfrag.fragility.observations import Floats, positive, read_outcomes
+from rockfrag.fragility.observations import Floats, positive, read_observations
 from rockfrag.short_repr import short_repr
 
 MOST_FOR_THE_PLANE = 20_000
@@ -95,7 +95,7 @@ def fit_surface(
         If a value is missing or out of range, all tests agree, or measures are proportional.
     """
     logs = [np.log(positive(table, column, source)) for column in measures]
-    outcome = read_outcomes(table, overturned, source)
+    outcome = read_observations(table, overturned, source)
     if outcome.min() == outcome.max():
         raise InputError(
             f"{source}, column {overturned!r}: all {outcome.size} tests have the outcome "

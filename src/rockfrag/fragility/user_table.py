@@ -12,7 +12,7 @@ from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.goodness import GoodnessOfFit
 from rockfrag.fragility.ida_curves import fragility_row, table_hash
 from rockfrag.fragility.measure_selection import MeasureSelection, recommend_measure
-from rockfrag.fragility.observations import Outcomes, outcomes_from_table
+from rockfrag.fragility.observations import Observations, observations_from_table
 from rockfrag.fragility.tests_file import Measures, read_tests
 from rockfrag.fragility.vector_tables import VectorTables, vector_tables
 from rockfrag.short_repr import short_repr
@@ -39,7 +39,7 @@ class UserFragility:
     """
 
     tests: pd.DataFrame
-    outcomes: Mapping[str, Outcomes]
+    outcomes: Mapping[str, Observations]
     fits: Mapping[str, Fragility]
     goodness: Mapping[str, GoodnessOfFit]
     choice: MeasureSelection
@@ -97,7 +97,7 @@ def fit_user_table(
     outcomes, fits, goodness, rows, bins = {}, {}, {}, [], []
     digest = table_hash(tests)
     for column in columns:
-        data = outcomes_from_table(tests, column, earthquake=earthquake_column, source=source)
+        data = observations_from_table(tests, column, earthquake=earthquake_column, source=source)
         # rows of one motion are tests at different scales, each with its own outcome
         result = fragility_of(data, level=level, dependence="tests", seed=seed)
         outcomes[column], fits[column] = data, result

@@ -25,7 +25,7 @@ from rockfrag.fragility.intervals import (
     student,
 )
 from rockfrag.fragility.observations import Floats, labels, name_and_unit, positive
-from rockfrag.fragility.observations import read_outcomes as read_outcomes
+from rockfrag.fragility.observations import read_observations as read_observations
 from rockfrag.fragility.surface import FragilitySurface, design_of, fit_surface
 
 INTERACTION_LEVEL = 0.05
@@ -221,7 +221,7 @@ def fit_vector(
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
     plain = fit_surface(table, measures, overturned=overturned, source=source)
     logs = [np.log(positive(table, column, source)) for column in measures]
-    outcome = read_outcomes(table, overturned, source)
+    outcome = read_observations(table, overturned, source)
     group = pd.factorize(pd.Series(labels(table, earthquake, source)))[0]
     interaction = NOT_TRIED
     if try_interaction:
@@ -233,7 +233,7 @@ def fit_vector(
         )
     design = design_of(logs, interaction.kept)
     groups = int(group.max()) + 1
-    replicates = _replicates(design, outcome, group)
+    replicates = _replicates(design, outcome, group, np.array(surface.coefficients))
     return VectorFragility(
         surface,
         replicates,
@@ -246,13 +246,13 @@ def fit_vector(
     )
 
 
-def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp]) -> Floats:
+def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp], start: Floats) -> Floats:
     """Coefficients without one earthquake (or block of many) each; empty with one earthquake."""
     groups = int(group.max()) + 1
     if groups < 2:
         return np.empty((0, design.shape[1]))
     weights = all_but_one(groups, 0)[:, group]
-    fit = fit_batch(design, weights * outcome, weights)
+    fit = fit_batch(design, weights * outcome, weights, start=start)
     coefficients = fit.coefficients.copy()
     wild = ~fit.converged | ~(np.abs(coefficients) < LARGEST_COEFFICIENT).all(axis=1)
     if wild.any():

@@ -12,7 +12,7 @@ from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.goodness import binned_deviance
 from rockfrag.fragility.observations import Floats, labels, positive
-from rockfrag.fragility.observations import read_outcomes as read_outcomes
+from rockfrag.fragility.observations import read_observations as read_observations
 from rockfrag.fragility.pooling import cells
 from rockfrag.fragility.surface import design_of
 from rockfrag.fragility.vector import VectorFragility
@@ -83,7 +83,7 @@ def check_vector(
         p value, calibration and non-parametric surface.
     """
     logs = [np.log(positive(table, column)) for column in fit.measures]
-    outcome = read_outcomes(table, overturned)
+    outcome = read_observations(table, overturned)
     design = design_of(logs, fit.interaction.kept)
     eta = design @ np.array(fit.surface.coefficients)
     bins = _bins(eta)

@@ -4,6 +4,7 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -76,7 +77,7 @@ class Motion:
         """Time of each sample [s], shape (n,), from zero."""
         return np.arange(self.acceleration.size, dtype=np.float64) * self.dt
 
-    @property
+    @cached_property
     def pga(self) -> float:
         """Peak absolute acceleration [m/s²]."""
         return float(np.abs(self.acceleration).max())

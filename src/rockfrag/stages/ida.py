@@ -249,9 +249,9 @@ def as_recorded(
     Returns
     -------
     One row per motion: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``), ``motion``, ``earthquake``,
-    ``floor``, ``pga_g``, ``overturned``, ``overturned_body``, ``peak_rotation`` (of the object, |θ| over the
-    critical angle), ``fraction_near`` (share that overturns of the motions up to a tenth weaker or stronger);
-    with friction also ``peak_slip_m``.
+    ``floor``, ``pga_g``, ``rocked`` (any body), ``overturned``, ``overturned_body``, ``peak_rotation`` (of the
+    object on what it stands on, |θ| over the critical angle), ``fraction_near`` (fraction that overturns of the
+    motions up to a tenth weaker or stronger); with friction also ``peak_slip_m``.
     """
     scales = np.tile(NEAR, (len(motions), 1))
     result = _shaken(configuration, motions, scales, threads, vertical)
@@ -263,6 +263,7 @@ def as_recorded(
             "earthquake": [motion.metadata.get("earthquake") or motion.name for motion in motions],
             "floor": [motion.metadata["floor"] for motion in motions],
             "pga_g": [motion.pga / GRAVITY for motion in motions],
+            "rocked": (result.peak_rotation[0, :, itself] > 0).any(axis=-1),
             "overturned": result.overturned[0, :, itself],
             "overturned_body": np.take(
                 fallen_names(configuration), result.overturned_body[0, :, itself]

@@ -73,4 +73,8 @@ def pedestal_tables(
             parts[name].append(labelled)
     if not parts["pairs"]:
         raise InputError("tests: no reading has tests with and without a pedestal.")
-    return {name: pd.concat(tables, ignore_index=True) for name, tables in parts.items()}
+    return {
+        # a table without rows has columns without types, which those of numbers would take over
+        name: pd.concat([table for table in tables if len(table)] or tables, ignore_index=True)
+        for name, tables in parts.items()
+    }

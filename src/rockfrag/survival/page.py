@@ -45,10 +45,14 @@ def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Pat
 def weights_table(found: Constrained) -> pd.DataFrame:
     """A row a branch, its columns those of OpenQuake's realizations and what it had before."""
     table = found.result.table()
+    paths = table["branch"].str.replace(r"^rlz-\d+ ?", "", regex=True)
     return pd.DataFrame(
         {
-            "rlz_id": range(len(table)),
-            "branch_path": table["branch"],
+            "rlz_id": table["branch"]
+            .str.extract(r"^rlz-(\d+)")[0]
+            .fillna(table.index.to_series())
+            .astype(int),
+            "branch_path": paths,
             "weight": table["weight_after"],
             "weight_before": table["weight_before"],
             "survival": table["survival"],
@@ -66,7 +70,7 @@ def json_of(found: Constrained) -> str:
     }
     content = {
         "site": found.site.name,
-        "measure": found.site.measure.name,
+        "measure": found.site.measure.imt,
         "unit": found.site.measure.unit,
         "information_bit": found.result.information,
         "ruled_out": found.ruled_out,
@@ -99,7 +103,7 @@ def _level_sentence(found: Constrained) -> str:
     change = row["level_ratio"] - 1
     direction = "lower" if change < 0 else "higher"
     return (
-        f"The mean {measure.name} at 1e-4 a year is {row['level_after']:.3g} {measure.unit} after "
+        f"The mean {measure.imt} at 1e-4 a year is {row['level_after']:.3g} {measure.unit} after "
         f"{row['level_before']:.3g} {measure.unit} before, {abs(change):.0%} {direction}."
     )
 

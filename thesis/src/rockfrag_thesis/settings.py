@@ -1,7 +1,7 @@
 """What the thesis's study asks for beyond any other: a comparison, other buildings, a sensitivity analysis."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from rockfrag.errors import InputError
@@ -103,7 +103,21 @@ def read_settings(content: Mapping[str, Any], study: Study) -> Settings:
     if settings.sensitivity is not None:
         _check_varied_building(study, settings.sensitivity)
     _check_mechanics(study, settings)
+    if sensitivity_analysis is not None:
+        _check_perturbed_bodies(study, sensitivity_analysis)
     return settings
+
+
+def _check_perturbed_bodies(study: Study, levels: SensitivityAnalysis) -> None:
+    """Raise where a level makes a body that cannot stand, or a restitution that adds energy."""
+    from rockfrag_thesis.sensitivity_analysis.simulated import factor_cases
+    from rockfrag_thesis.stages.sensitivity_analysis import tested_stacks
+
+    for name, stack in tested_stacks(study).items():
+        try:
+            factor_cases(name, stack, asdict(levels))
+        except InputError as error:
+            raise InputError(f"{study.source}: key {error}") from error
 
 
 def _check_mechanics(study: Study, settings: Settings) -> None:

@@ -381,7 +381,9 @@ def _track(p, w):
     for k in range(p.count):
         theta = w.q[3 * k + 2]
         limit = p.critical[k, 1] if theta > 0.0 else p.critical[k, 0]
-        w.peak[k] = max(w.peak[k], abs(theta) / limit)
+        if not (w.closed[k, 0] and w.closed[k, 1]):
+            # a body on its whole base is carried along
+            w.peak[k] = max(w.peak[k], abs(theta) / limit)
         w.peak_speed[k] = max(w.peak_speed[k], abs(w.v[3 * k + 2]))
         w.peak_slip[k] = max(w.peak_slip[k], abs(slip(p, w, k)))
 

@@ -56,7 +56,7 @@ def _wide(recorded: pd.DataFrame) -> pd.DataFrame:
             "overturns"
             if row["overturned"]
             else "rocks"
-            if row["peak_rotation"] > 0
+            if row["rocked"]
             else "slides"
             if row.get("peak_slip_m", 0.0) > 0
             else "stays"

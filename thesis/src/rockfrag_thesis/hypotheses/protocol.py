@@ -1,6 +1,5 @@
 """C55 to C58: how the figures were obtained, and what was assumed not to happen."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -34,14 +33,14 @@ def c55(tests: Evidence) -> Result:
     clean = tests.clean
     counts = clean.groupby(["object", "pedestal"])["motion"].nunique()
     exact = clean[clean["censored"] == "none"]
-    width = math.nan
+    close = "no test has both an amplitude survived and one that overturned"
     if len(exact):
         width = 100 * float((1 - exact["lower_g"] / exact["upper_g"]).median())
+        close = f"the largest amplitude survived lies {width:.1f} % (median) below the one that overturned"
     as_told = bool((counts == MOTIONS).all())
     return Result(
         Finding.FOR if as_told else Finding.OPEN,
-        f"{counts.min()} to {counts.max()} motions for {len(counts)} configurations; the largest "
-        f"amplitude survived lies {width:.1f} % (median) below the one that overturned",
+        f"{counts.min()} to {counts.max()} motions for {len(counts)} configurations; {close}",
         float(counts.min()),
         float(counts.min()),
         float(counts.max()),

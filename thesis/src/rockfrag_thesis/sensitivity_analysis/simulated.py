@@ -126,7 +126,9 @@ def perturbed_case(object_name: str, stack: Stack, perturbations: Mapping[str, f
             block, places = _RESTITUTIONS[base]
             measured |= dict.fromkeys(places, _restitution(stack.blocks[block], level))
         except InputError as error:
-            raise InputError(f"explanation.{factor}, {level:g}, {object_name}: {error}") from error
+            raise InputError(
+                f"sensitivity_analysis.{factor}, {level:g}, {object_name}: {error}"
+            ) from error
     lone = measured.pop("lone", None)
     return Case(
         " + ".join(names),
@@ -281,9 +283,8 @@ def level_amplitudes(
             break
         found = overturns(
             [systems[i] for i in here.tolist()],
-            [motions[j].acceleration for j in under.tolist()],
-            [motions[j].dt for j in under.tolist()],
-            scales[np.ix_(under, levels)],
+            [motions[j] for j in under.tolist()],
+            scales=scales[np.ix_(under, levels)],
             threads=threads,
         ).overturned
         # a pair that has fallen already has its first fall below

@@ -1,0 +1,263 @@
+"""The page of a gallery: what topples together, what is lost, who adds most to it and what helps each."""
+
+import math
+import os
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter, NullFormatter
+
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.inventory import Inventory, best_change, inventory_table, joint_lines
+from rockfrag.assess.joint import JointRisk
+from rockfrag.assess.page import write_answer
+from rockfrag.assess.risk import probability_in
+from rockfrag.assess.words import estimate_words, fraction_words, mitigation_words, range_words
+from rockfrag.figure_style import (
+    BLUE,
+    COLUMN_WIDTH,
+    PAGE_WIDTH,
+    figure_style,
+    new_figure,
+    plain_log,
+)
+from rockfrag.files import write_table, write_text
+from rockfrag.report.page import Column, render, table_html
+from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.study_report import draw
+
+MOST_DRAWN = 40
+"""Objects of which the correlation is drawn: those that add most."""
+
+RANKING = (
+    Column("name", "Object"),
+    Column("place", "Stands"),
+    Column("probability", "Topples (90 % interval)", numeric=True),
+    Column("contribution", "Part of the mean [%]", 1),
+    Column("change", "What helps most"),
+)
+
+
+def write_inventory(
+    inventory: Inventory, folder: str | os.PathLike[str], *, pages: bool = False
+) -> Path:
+    """Write ranking and joint risk as tables and a page; return the path of the ranking.
+
+    Parameters
+    ----------
+    inventory
+        The objects.
+    folder
+        Where to write; made if absent.
+    pages
+        Whether to assess each object in full and write its page.
+    """
+    place = Path(folder) / "inventory.csv"
+    write_table(inventory_table(inventory), place)
+    if inventory.joint is not None:
+        write_table(inventory.joint.numbers, place.with_name("together.csv"))
+        write_table(inventory.joint.losses, place.with_name("losses.csv"))
+        write_table(inventory.joint.correlation.reset_index(), place.with_name("correlation.csv"))
+        write_text(gallery_page(inventory, inventory.joint), place.with_suffix(".html"))
+    if pages:
+        for found in inventory.found:
+            motions = inventory.motions.at(found.request.place)
+            write_answer(assess_with(found.request, motions), folder)
+    return place
+
+
+def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
+    """Return the page as HTML, which loads nothing from outside.
+
+    Parameters
+    ----------
+    inventory
+        The objects, assessed.
+    joint
+        What topples together.
+    """
+    first = inventory.found[0].request
+    years, valued = first.years, math.isfinite(first.value)
+    numbers = FigureSpec(
+        "numbers",
+        "Probability that at least so many objects topple in one earthquake.",
+        f"Probability that at least so many objects topple in one earthquake of {years:g} years. Limits (90 %) "
+        "count few earthquakes, the model and both components.",
+        lambda: numbers_figure(joint, years),
+    )
+    losses = FigureSpec(
+        "losses",
+        "Probability that one earthquake costs more than a loss.",
+        f"Probability that the loss in one earthquake of {years:g} years is as large or larger.",
+        lambda: losses_figure(joint, years),
+    )
+    correlation = FigureSpec(
+        "correlation",
+        "Correlation of the toppling of each two objects, from 0 (white) to 1 (dark).",
+        "Correlation of the toppling of each two objects in time: the rate of earthquakes that topple both over "
+        "the geometric mean of both rates. Equal objects on one floor have 1.",
+        lambda: correlation_figure(joint),
+    )
+    drawn = [numbers, correlation, *([losses] if valued and len(joint.losses) > 1 else [])]
+    with TemporaryDirectory(prefix="rockfrag.") as scratch:
+        pictures = {spec.name: draw(spec, Path(scratch)) for spec in drawn}
+    count = len(inventory.found)
+    return render(
+        title=f"What {count} objects risk together",
+        lead=f"{count} objects, shaken by the same {len(inventory.motions.ground)} motions.",
+        answer=Answer(
+            "How many topple in one earthquake, what is lost, and what helps?",
+            [
+                _how_many(joint, years),
+                *(Finding(words.rstrip(".")) for words in joint_lines(inventory)[1:]),
+            ],
+            numbers,
+        ),
+        sections=[
+            _ranking(inventory, joint, "loss" if valued else "number"),
+            _numbers(joint, drawn[2:]),
+            _correlation(joint, correlation),
+        ],
+        pictures=pictures,
+        provenance={"Program": f"rockfrag {version('rockfrag')}"},
+    )
+
+
+def _how_many(joint: JointRisk, years: float) -> Finding:
+    """How probably one object or more topples, and so many together."""
+    row = joint.numbers.iloc[0]
+    limits = range_words(row["probability_lower"], row["probability_upper"])
+    last = joint.numbers.iloc[-1]
+    return Finding(
+        f"One or more topple in {years:g} years with {fraction_words(row['probability'])} ({limits})",
+        f"At least {last['at_least']:.0f} topple together with {fraction_words(last['probability'])}.",
+    )
+
+
+def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
+    parts = joint.objects.set_index("name")["contribution"]
+    rows = []
+    for found in inventory.found:
+        best = best_change(found)
+        name = found.request.name
+        rows.append(
+            {
+                "name": name,
+                "place": found.request.place.words,
+                "probability": estimate_words(found.main),
+                "contribution": 100 * float(parts[name]),
+                "change": mitigation_words(found, best) if best else "–",
+            }
+        )
+    top = joint.objects.iloc[0]
+    message = f"{top['name']} adds most"
+    if math.isfinite(top["contribution"]):
+        message += f", {top['contribution']:.0%} of the mean {mean}"
+    caption = (
+        "The objects, the one that adds most first; each change is simulated as a body of its own."
+    )
+    table = table_html(pd.DataFrame(rows), RANKING, caption, "inventory.csv")
+    return Section("ranking", "Rank and what helps", f"{message}.", (), [table])
+
+
+def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
+    numbers = joint.numbers.assign(annual_rate=joint.numbers["annual_rate"].map("{:.2g}".format))
+    for name in ("probability", "probability_lower", "probability_upper"):
+        numbers[name] = 100 * numbers[name]
+    columns = (
+        Column("at_least", "At least so many", 0),
+        Column("annual_rate", "Earthquakes that topple so many [1/year]", numeric=True),
+        Column("probability", "Probability [%]", 2),
+        Column("probability_lower", "Lower limit [%]", 2),
+        Column("probability_upper", "Upper limit [%]", 2),
+    )
+    most = int(joint.numbers["at_least"].max())
+    rate = joint.numbers["annual_rate"].iloc[-1]
+    return Section(
+        "numbers",
+        "How many topple",
+        f"At least {most} topple together every {float(f'{1 / rate:.2g}'):.0f} years."
+        if rate
+        else "None topples.",
+        (
+            "What is not known of each body itself is in the interval of that body, and not counted here.",
+        ),
+        [table_html(numbers, columns, "How many objects topple in one earthquake."), *figures],
+    )
+
+
+def _correlation(joint: JointRisk, figure: FigureSpec) -> Section:
+    apart = joint.correlation.to_numpy()[np.triu_indices(len(joint.correlation), 1)]
+    known = apart[np.isfinite(apart)]
+    message = (
+        f"Two objects of the gallery have a correlation of {np.median(known):.2f} (median)."
+        if known.size
+        else "No two objects topple under the motions tried."
+    )
+    return Section("correlation", "What belongs together", message, (), [figure])
+
+
+def numbers_figure(joint: JointRisk, years: float) -> Figure:
+    """How probably at least so many topple in one earthquake."""
+    numbers = joint.numbers
+    at = numbers["at_least"].to_numpy()
+    middle, low, high = (
+        100 * numbers[name].to_numpy()
+        for name in ("probability", "probability_lower", "probability_upper")
+    )
+    bars = [np.maximum(middle - low, 0), np.maximum(high - middle, 0)]
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 2.5)
+        axes = figure.subplots()
+        axes.errorbar(at, middle, yerr=bars, fmt="o", color=BLUE, capsize=2)
+        axes.set(
+            xscale="log",
+            yscale="log",
+            xlabel="Objects that topple in one earthquake, at least",
+            ylabel=f"Probability in {years:g} years [%]",
+        )
+        axes.set_xticks(at, [f"{n:g}" for n in at])
+        axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
+        plain_log(axes, "y")
+    return figure
+
+
+def losses_figure(joint: JointRisk, years: float) -> Figure:
+    """How probably a loss is exceeded in one earthquake."""
+    losses = joint.losses
+    chance = [100 * probability_in(rate, years) for rate in losses["annual_rate"]]
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 2.5)
+        axes = figure.subplots()
+        axes.step(losses["loss"], chance, where="pre", color=BLUE)
+        axes.set(
+            xscale="log",
+            yscale="log",
+            xlabel="Loss in one earthquake [unit of the values]",
+            ylabel=f"Probability in {years:g} years [%]",
+        )
+        axes.xaxis.set_major_formatter(EngFormatter(sep=""))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        plain_log(axes, "y")
+    return figure
+
+
+def correlation_figure(joint: JointRisk) -> Figure:
+    """Correlation of the toppling of each two of the objects that add most."""
+    names = list(joint.objects["name"][:MOST_DRAWN])
+    table = joint.correlation.loc[names, names].to_numpy()
+    side = min(PAGE_WIDTH, 2.4 + 0.11 * len(names))
+    with figure_style():
+        figure = new_figure(side, 0.8 * side)
+        axes = figure.subplots()
+        image = axes.imshow(table, vmin=0, vmax=1, cmap="Blues")
+        short = [name if len(name) <= 18 else f"{name[:17]}…" for name in names]
+        axes.set_xticks(range(len(names)), short, rotation=90, fontsize=6)
+        axes.set_yticks(range(len(names)), short, fontsize=6)
+        figure.colorbar(image, ax=axes, label="Correlation [-]")
+    return figure
