@@ -39,8 +39,8 @@ smoke: run
 report-pdf: .venv/installed
 	@$(RUN) rockfrag.report.pdf "$(STUDY)"
 
-# each of pytest's workers has a processor to itself, so threads of its linear algebra would only wait for each other
-test validate coverage: export OPENBLAS_NUM_THREADS = 1
+# each process has a processor to itself, so threads of its linear algebra would only wait for each other
+test validate coverage fuzz: export OPENBLAS_NUM_THREADS = 1
 
 test: .venv/installed
 	@$(RUN) pytest -n auto --dist worksteal -m "not slow"

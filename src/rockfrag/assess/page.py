@@ -105,8 +105,9 @@ def _live(found: Assessment) -> Markup:
     motions = carried([motion for motion in chosen if motion.pga > 0])
     if not motions:
         return Markup("")
-    bodies = found.request.objects.arrangements
-    return live_kernel({name: body.system() for name, body in bodies.items()}, motions)
+    objects = found.request.objects
+    bodies = {name: objects.system_of(body) for name, body in objects.arrangements.items()}
+    return live_kernel(bodies, motions)
 
 
 def _name_of(found: Assessment, i: int) -> str:

@@ -504,7 +504,7 @@ def quality_flags(found: Assessment) -> list[str]:
         )
     if found.outcomes.light:
         lines.append(
-            f"Under the strongest shaking that was tried, {found.measure.name} "
+            f"Under the strongest shaking that was tried, {found.measure.imt} "
             f"{found.outcomes.intensity_levels.levels[-1]:.2g} {found.measure.unit}, a body may leave the ground, "
             "which this model does not let it."
         )
