@@ -36,10 +36,11 @@ def spatial_figure(
 
 
 def _path_of_axis(panel: Axes, outcome: SpatialOutcome, history: pd.DataFrame) -> None:
-    sine = np.maximum(np.hypot(history.axis_x, history.axis_y), 1e-300)
-    x, y = (history.tilt_rad * part / sine for part in (history.axis_x, history.axis_y))
+    axis = history[["axis_x", "axis_y"]].to_numpy()
+    sine = np.maximum(np.hypot(*axis.T), 1e-300)
+    x, y = axis.T * (history["tilt_rad"].to_numpy() / sine)
     panel.plot(x, y, color=BLUE, lw=0.7)
-    panel.plot(x.iloc[-1], y.iloc[-1], "o", color=BLACK, ms=3)
+    panel.plot(x[-1], y[-1], "o", color=BLACK, ms=3)
     if outcome.overturned:
         towards = np.degrees(outcome.fall_direction)
         panel.set_title(
