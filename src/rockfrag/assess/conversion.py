@@ -52,6 +52,10 @@ ours."""
 NODES = 11
 """Values of equal probability that stand for the spread of ln PGV/IM."""
 
+OF_DISPLACEMENT = 2.0
+"""Largest weight of ln PGV/IM [-]: a motion stretched in time by r at a given PGA has a PGV larger by r and a
+displacement larger by r²."""
+
 MOST_LEVELS = 8
 """Levels of a motion that are fitted; tests under one motion depend on each other."""
 
@@ -84,7 +88,7 @@ class Conversion:
         P(topples | measure, PGV over the measure), columns ``im`` and ``ratio_s``.
     weight
         Effect of ln ratio over that of ln measure: 0 where PGV says nothing beside the measure, 1 where it says
-        all [-].
+        all, up to 2 where displacement does [-].
     logs
         ln (PGV over the measure [s]) of each motion, shape (motions,).
     known
@@ -167,6 +171,8 @@ class Conversion:
         inside = (moved >= x[0]) & (moved <= x[-1])
         overturned = outcomes.overturned[row, place]
         rocked = np.repeat(outcomes.rocked, count, axis=0)
+        # at a level where it does not rock a motion says nothing of one that makes it rock
+        says = outcomes.rocked[row, place] | ~rocked
         if self.by_statics:
             overturned &= rocked
         return replace(
@@ -174,7 +180,7 @@ class Conversion:
             intensity_levels=replace(
                 intensity_levels,
                 scales=intensity_levels.scales[row, place],
-                allowed=intensity_levels.allowed[row, place] & inside,
+                allowed=intensity_levels.allowed[row, place] & inside & says,
             ),
             overturned=overturned,
             rocked=rocked | overturned,
@@ -263,7 +269,7 @@ def _fitted(outcomes: ObjectOutcomes, logs: Floats, brief: bool) -> VectorFragil
 
 
 def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
-    """Effect of ln ratio over that of ln measure at half toppling, from 0 to 1, and its standard error."""
+    """Effect of ln ratio over that of ln measure at half toppling, within its bounds, and its standard error."""
 
     def weight(c: Floats, log_level: float) -> Floats:
         more = c[:, 3] if c.shape[1] > 3 else 0.0
@@ -275,7 +281,7 @@ def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
     error = 0.0
     if len(fit.replicates) > 1:
         error = float(jackknife_error(weight(fit.replicates, log_level)))
-    return float(np.clip(own, 0.0, 1.0)), error if math.isfinite(error) else 0.0
+    return float(np.clip(own, 0.0, OF_DISPLACEMENT)), error if math.isfinite(error) else 0.0
 
 
 def _known(
