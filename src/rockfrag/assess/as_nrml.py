@@ -2,6 +2,7 @@
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.fragility.identifiers import identifiers
+from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.fragility.nrml import discrete_function, model_text
 from rockfrag.outcomes.limit_states import OVERTURNS
 
@@ -24,7 +25,11 @@ def as_nrml(found: Assessment) -> str:
         outcomes.intensity_levels.levels,
         {OVERTURNS: outcomes.fractions()},
     )
+    kind = found.request.objects.kind
+    error = MODEL_ERRORS[kind]
     words = (
-        f"{name}, {found.request.place.words}: fraction of {found.motions.words} that topple it."
+        f"{name}, {found.request.place.words}: fraction of {found.motions.words} that topple it. "
+        f"What is not known of body, floor and model is not in it; of the model alone that is {error.beyond:g} "
+        f"of ln level ({kind}: {error.words})."
     )
     return model_text(words, [OVERTURNS], [function])
