@@ -11,7 +11,10 @@ import numpy as np
 from scipy.stats import norm
 
 from rockfrag import fit_lognormal
-from rockfrag.fragility import Observations, overturning_rate
+from rockfrag.assess import HazardCurve
+from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.risk import probability_in, toppling_rate
+from rockfrag.fragility import Observations
 
 # %%
 # Outcomes of 300 tests drawn from a curve with a median of 0.5 g, and a hazard curve made up for this page.
@@ -23,8 +26,9 @@ names = np.array([f"test {number}" for number in range(300)], dtype=object)
 fit = fit_lognormal(Observations(pga, fell.astype(float), np.ones(300), names, names, "PGA", "g"))
 levels = np.array([0.05, 0.1, 0.2, 0.4, 0.8, 1.6])
 rates = np.array([2e-2, 7e-3, 1.8e-3, 3.2e-4, 3.5e-5, 2e-6])
-found = overturning_rate(fit, levels, rates, years=50.0)
-print(f"{found.annual_rate:.2e} a year, {100 * found.probability:.1f} % in 50 years")
+shaking = np.geomspace(0.05, 1.6, 100)
+rate = toppling_rate(shaking, fit.probability(shaking), HazardCurve(PGA, levels, rates, "made up"))
+print(f"{rate:.2e} a year, {100 * probability_in(rate, 50.0):.1f} % in 50 years")
 
 edges = np.geomspace(0.05, 1.6, 26)
 exceeded = np.exp(np.interp(np.log(edges), np.log(levels), np.log(rates)))

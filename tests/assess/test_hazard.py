@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from rockfrag.assess import read_hazard
 from rockfrag.assess.hazard.curve import curve_of_one_level
-from rockfrag.assess.hazard.measure import PGA, read_measure
+from rockfrag.assess.hazard.measure import PGA, PGV, read_measure
 from rockfrag.errors import LONGEST_MESSAGE, InputError
+from rockfrag.motions.declared import intensity_measures
 
 from . import samples
 
@@ -31,8 +32,11 @@ def test_every_kind_of_file_gives_the_rates_it_was_made_of(name, tmp_path):
 
 def test_measures_are_known_by_all_their_names():
     for text in ("SA(0.2)", "SA0P2", "sa_0.2s", "PSA-0.2s", "SA[0.2]"):
-        assert read_measure(text, "here").name == "SA(0.2)"
+        assert read_measure(text, "here").imt == "SA(0.2)"
     assert read_measure("pga", "here") == PGA
+    # they are those of tables and curves
+    known = intensity_measures([0.2])
+    assert {PGA, PGV, read_measure("SA(0.2)", "here")} <= set(known)
     with pytest.raises(InputError, match="MMI"):
         read_measure("MMI", "here")
 
@@ -58,7 +62,7 @@ def test_several_measures_are_several_curves(tmp_path):
         write(tmp_path, f"{i}.csv", samples.openquake_csv(imt=imt))
         for i, imt in enumerate(("PGA", "SA(0.3)"))
     ]
-    assert [curve.measure.name for curve in read_hazard(files)] == ["PGA", "SA(0.3)"]
+    assert [curve.measure.imt for curve in read_hazard(files)] == ["PGA", "SA(0.3)"]
 
 
 def test_one_level_passes_through_its_return_period():

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from rockfrag.assess.answer import assess_with
+from rockfrag.assess.as_json import as_json
+from rockfrag.assess.as_nrml import as_nrml
 from rockfrag.assess.hazard.measure import PGA
 from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.inventory import read_inventory
@@ -23,6 +25,7 @@ from rockfrag.assess.words import assumptions, five_lines
 from rockfrag.building.floors import floor_motions
 from rockfrag.cli import main
 from rockfrag.errors import InputError
+from rockfrag.outcomes.limit_states import forget_limit_state, limit_state
 
 STATUE = {"width": "42 cm", "height": "1.65 m", "mass": "410 kg", "cg_height": "0.75 m"}
 
@@ -370,6 +373,27 @@ def test_a_centre_of_gravity_off_the_middle_is_answered(motions):
     assert "restitution" in {effect.name for effect in found.effects}
     # b/h on the nearer side: 0.05 / 0.6
     assert found.rocks_from == pytest.approx(0.05 / 0.6)
+
+
+@pytest.mark.parametrize("level", [{"pga": "0.3 g"}, {"pga": "0.3 g", "pgv": "25 cm/s"}])
+@pytest.mark.parametrize("base", [{}, {"round": True}])
+def test_a_limit_state_that_is_declared_is_counted_and_exported(motions, level, base):
+    @limit_state("turns_far", order=50, label="turning far")
+    def _(outcomes):
+        return (np.nan_to_num(outcomes.peak_rotation, posinf=9.0) > 0.3).any(axis=-1)
+
+    try:
+        request = asked(**STATUE, **base, **level)
+        found = assess_with(request, motions, brief=True)
+        rocks, far, topples = (
+            found.outcomes.fractions(state=name) for name in ("rocks", "turns_far", "overturns")
+        )
+        assert (rocks >= far).all() and (far >= topples).all() and far.sum() > topples.sum()
+        assert "turning far" in page_of(found)
+        assert json.loads(as_json(found))["fragility"]["other_states"]["turns_far"] == far.tolist()
+        assert re.search("<limitStates>turns_far overturns</limitStates>", as_nrml(found))
+    finally:
+        forget_limit_state("turns_far")
 
 
 def test_a_round_base_topples_earlier_and_says_why(motions):

@@ -11,8 +11,20 @@ from rockfrag.study.loading import load_any
 from .checked_report import check_first_page, check_report
 from .studies import STUDIES, Foreign, run
 
+LONG = (
+    "with and without a plinth on one upper floor",
+    "the thesis's bodies, but nobody asks for the thesis",
+    "pairs of which some never overturn",
+    "two pedestals under one figure",
+    "a base between figure and plinth, and nothing else",
+    "three cabinets on floors of their own",
+)
+"""Studies of five seconds and more, of which others have every part."""
 
-@pytest.mark.parametrize("name", STUDIES)
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in STUDIES]
+)
 def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
     study = STUDIES[name]
     results = run(study, tmp_path)

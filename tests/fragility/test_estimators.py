@@ -7,7 +7,6 @@ from scipy import optimize, stats
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.censored import brackets_from_table, fit_brackets
-from rockfrag.fragility.discrete_hazard import fit_step_hazard
 from rockfrag.fragility.estimators import fit_cloud, fit_incremental, fit_step_tests, fit_stripes
 
 THETA, BETA = 0.35, 0.4
@@ -35,25 +34,6 @@ def step_tests(capacity, step, limit=np.inf, start=0.05):
                 "upper_g": upper[0] if upper.size else np.nan,
             }
         )
-    return pd.DataFrame(rows)
-
-
-def shakes_of(tests, step):
-    """All shakes of the tests: the steps survived down to 0.05 g, and the last one."""
-    rows = []
-    for test in tests.itertuples():
-        level = test.lower_g
-        survived = []
-        while level > 0.05:
-            survived.append(level)
-            level /= 1 + step
-        outcomes = [(a, False) for a in survived[::-1]]
-        if np.isfinite(test.upper_g):
-            outcomes.append((test.upper_g, True))
-        rows += [
-            {"test": test.test, "motion": test.motion, "amplitude_g": a, "overturned": fell}
-            for a, fell in outcomes
-        ]
     return pd.DataFrame(rows)
 
 
@@ -156,36 +136,6 @@ def test_brackets_without_resolution_or_without_overturning_are_stated():
     for low, high in ((0.3, 0.2), (-0.1, 0.2), (np.nan, 0.2), (0.0, np.nan)):
         with pytest.raises(InputError, match="row 1"):
             brackets_from_table(pd.DataFrame({"lower_g": [low], "upper_g": [high]}), motion=None)
-
-
-@pytest.mark.parametrize("step", [0.02, 0.20])
-def test_the_step_hazard_recovers_a_weibull_capacity_whatever_the_step(step):
-    theta, shape = 0.35, 3.0
-    exponent = np.random.default_rng(8).exponential(size=500)
-    capacity = theta * (exponent / np.log(2)) ** (1 / shape)
-    tests = step_tests(np.maximum(capacity, 0.06), step)
-    fit = fit_step_hazard(shakes_of(tests[tests.lower_g > 0.05], step))
-    assert abs(np.log(fit.theta / theta)) < 3.5 * fit.se_log_theta
-    assert abs(fit.shape - shape) < 3.5 * fit.se_shape
-    assert fit.probability(fit.theta) == pytest.approx(0.5)
-    assert fit.beta == pytest.approx(np.pi / np.sqrt(6) / fit.shape)
-
-
-def test_a_step_protocol_must_rise_and_end_with_its_overturning():
-    good = pd.DataFrame(
-        {
-            "test": [1, 1, 1, 2, 2, 2],
-            "motion": list("aaabbb"),
-            "amplitude_g": [0.1, 0.2, 0.3, 0.1, 0.2, 0.4],
-            "overturned": [0, 0, 1, 0, 1, 0],
-        }
-    )
-    with pytest.raises(InputError, match="row 6"):
-        fit_step_hazard(good)
-    with pytest.raises(InputError, match="row 3"):
-        fit_step_hazard(good.iloc[:5].assign(amplitude_g=[0.1, 0.2, 0.2, 0.1, 0.2]))
-    with pytest.raises(InputError, match="0 of 2 shakes"):
-        fit_step_hazard(good.iloc[:2])
 
 
 def test_ida_curves_with_survival_windows_separate_first_from_always():

@@ -1,4 +1,4 @@
-"""Goodness of fit, intensity-measure selection, three states, surface, split of the variance."""
+"""Goodness of fit, intensity-measure selection, surface."""
 
 import numpy as np
 import pandas as pd
@@ -11,9 +11,7 @@ from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.measure_selection import area_under_curve, recommend_measure
 from rockfrag.fragility.measure_selection_ida import recommend_ida_measure
 from rockfrag.fragility.observations import observations_from_table
-from rockfrag.fragility.states import fit_three_states
 from rockfrag.fragility.surface import fit_surface, linearly_separable
-from rockfrag.fragility.variance import split_variance
 
 
 def cloud(n, seed, probability):
@@ -171,86 +169,3 @@ def test_separation_by_a_plane_is_found_although_no_single_measure_separates():
     fit = fit_surface(table, ["pga_g", "pgv_cm_s"])
     assert "penalised" in fit.method
     assert np.isfinite(fit.coefficients).all() and np.abs(fit.coefficients[1]) < 50
-
-
-def test_three_states_sum_to_one_and_rocking_starts_at_the_threshold():
-    rng = np.random.default_rng(8)
-    velocity = np.exp(rng.normal(np.log(24.0), 0.5, 1200))
-    peak = velocity / 60.0 * np.exp(0.3 * rng.normal(size=1200))
-    capacity = 0.5 * np.exp(0.3 * rng.normal(size=1200))
-    table = pd.DataFrame(
-        {
-            "amplitude_g": peak,
-            "pgv_cm_s": velocity,
-            "overturned": (peak > capacity) & (peak > 0.25),
-            "motion": np.arange(1200),
-        }
-    )
-    by_peak = fit_three_states(table, 0.25)
-    states = by_peak.probabilities([0.1, 0.25, 0.251, 0.5, 2.0])
-    assert states.no_rocking.tolist() == [1.0, 1.0, 0.0, 0.0, 0.0]
-    assert states[["no_rocking", "safe_rocking", "overturned"]].sum(axis=1).to_numpy() == (
-        pytest.approx(1.0)
-    )
-    assert states.overturned.iloc[3] == pytest.approx(0.5, abs=0.05)
-    by_velocity = fit_three_states(table, 0.25, "pgv_cm_s")
-    # the peak follows the velocity with a scatter of 0.3, so P(rock) is lognormal about 15 cm/s
-    assert by_velocity.rock is not None
-    assert by_velocity.rock.fit.theta == pytest.approx(15.0, rel=0.05)
-    assert by_velocity.rock.fit.beta == pytest.approx(0.3, abs=0.04)
-    table.loc[0, ["amplitude_g", "overturned"]] = [0.2, True]
-    with pytest.raises(InputError, match=r"row 1.*below the 0.25 g"):
-        fit_three_states(table, 0.25)
-
-
-def crossed(motions, samples, seed, sd=(0.4, 0.2, 0.1)):
-    rng = np.random.default_rng(seed)
-    by_motion, by_sample = sd[0] * rng.normal(size=motions), rng.normal(size=(2, samples))
-    rows = []
-    for i in range(motions):
-        for j in range(samples):
-            log_a = np.log(0.35) + by_motion[i] + sd[1] * (0.8 * by_sample[0, j])
-            log_a += sd[1] * 0.6 * by_sample[1, j] + sd[2] * rng.normal()
-            rows.append(
-                {
-                    "motion": f"m{i}",
-                    "sample": j,
-                    "restitution": by_sample[0, j],
-                    "width": by_sample[1, j],
-                    "amplitude_g": np.exp(log_a),
-                }
-            )
-    return pd.DataFrame(rows)
-
-
-def test_the_variance_splits_into_the_parts_that_made_it():
-    split = split_variance(crossed(200, 200, 9), parameters=["restitution", "width"])
-    part = split.table.set_index("component")["standard_deviation"]
-    assert part["motion"] == pytest.approx(0.4, rel=0.15)
-    assert part["parameters"] == pytest.approx(0.2, rel=0.15)
-    assert part["motion x parameters"] == pytest.approx(0.1, rel=0.05)
-    assert part["parameters: restitution"] == pytest.approx(0.16, rel=0.15)
-    assert part["parameters: width"] == pytest.approx(0.12, rel=0.15)
-    assert part["fit"] == pytest.approx(part["motion"] / np.sqrt(200), rel=0.02)
-    fractions = split.table.set_index("component")["fraction"]
-    assert fractions[["motion", "parameters", "motion x parameters"]].sum() == pytest.approx(1.0)
-
-
-def test_variance_components_are_unbiased_in_small_ensembles():
-    splits = [split_variance(crossed(6, 5, 100 + k)).table for k in range(120)]
-    mean = pd.concat(splits).groupby("component")["variance"].mean()
-    assert mean["motion"] == pytest.approx(0.16, rel=0.15)
-    assert mean["parameters"] == pytest.approx(0.04, rel=0.15)
-    assert mean["motion x parameters"] == pytest.approx(0.01, rel=0.1)
-
-
-def test_a_component_that_is_nothing_but_chance_is_zero_and_said():
-    table = crossed(8, 8, 10, sd=(0.4, 0.0, 0.3))
-    notes = [split_variance(crossed(8, 8, k, sd=(0.4, 0.0, 0.3))).warnings for k in range(10)]
-    assert any("parameters was estimated as -" in " ".join(note) for note in notes)
-    with pytest.raises(InputError, match="every motion needs every sample"):
-        split_variance(table.iloc[1:])
-    with pytest.raises(InputError, match=r"row 65.*twice"):
-        split_variance(pd.concat([table, table.iloc[:1]]))
-    with pytest.raises(InputError, match="never varies"):
-        split_variance(table.assign(mass=1.0), parameters=["mass"])

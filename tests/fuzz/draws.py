@@ -1,11 +1,9 @@
 """Random draws in parts, one process each, and what came of them."""
 
 import argparse
-import os
 from collections import Counter
 from collections.abc import Callable
-
-from rockfrag.processes import in_processes
+from concurrent.futures import ProcessPoolExecutor
 
 Part = tuple[int, int, int]
 """Seed, first number and the number after the last one."""
@@ -43,11 +41,13 @@ def run_draws(
     ]
     fates: Counter[int] = Counter()
     wrong: list[str] = []
-    for found, lines in in_processes(one_part, parts, os.cpu_count() or 1):
-        fates += found
-        wrong += lines
+    with ProcessPoolExecutor() as pool:
+        for found, lines in pool.map(one_part, parts):
+            fates += found
+            wrong += lines
+            print("\n".join([f"{sum(fates.values())} of {asked.many}", *lines]), flush=True)
     print(f"{asked.many} {what}: {fates[0]} answered, {fates[2]} refused in one sentence")
-    print("\n".join(wrong) if wrong else "no contradiction")
+    print(f"{len(wrong)} contradictions" if wrong else "no contradiction")
     if fates[0] < least * asked.many:
         print("too few of them were answered for this to say anything")
         return 1

@@ -76,7 +76,7 @@ def means_of(**objects: float) -> pd.DataFrame:
 def test_slenderness_is_spoken_of_only_where_objects_differ_in_it():
     slenderness = {"low": 2.0, "high": 5.0, "also": 5.0}
     (found,) = objects_compared(means_of(high=0.3, low=0.6), slenderness)
-    assert found.headline == "More slender objects overturn earlier"
+    assert found.headline == "More slender objects overturn at lower amplitudes"
     assert "low 0.600 g and high 0.300 g" in found.numbers
     (found,) = objects_compared(means_of(high=0.7, low=0.6), slenderness)
     assert "not simply follow" in found.headline

@@ -9,13 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rockfrag.engines.contract import Engine
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.report.live import MOST_SAMPLES, Start, carried, live_kernel, swept
 from rockfrag.report.live.frames import frames_svg, outlines
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page
-from rockfrag.rocking import Block, Stack, overturns
+from rockfrag.rocking import Block, Column, Stack, overturns
+from rockfrag.rocking.browser import ENGINE
+from rockfrag.rocking.options import system_of
 
 STATUE = Block(0.3, 1.2, 110.0)
 BODIES = {
@@ -47,6 +50,19 @@ def test_no_name_ends_the_script():
     html = live_kernel(BODIES, [motion("</script><b>")])
     assert html.count("</script>") == 2
     assert "<b>" not in html
+
+
+def test_what_the_kernel_of_the_page_does_not_know_is_left_out_by_name():
+    held = system_of(STATUE, restitution=0.9)
+    slippery = system_of(STATUE, friction=0.4)
+    drum = Column((Block(0.5, 0.3, 150.0), Block(0.4, 0.3, 100.0), STATUE)).system()
+    html = live_kernel(
+        {**BODIES, "measured": held, "slippery": slippery, "drums": drum}, [motion()]
+    )
+    assert [body["name"] for body in data_of(html)["bodies"]] == list(BODIES)
+    assert "and so not: measured, slippery, drums." in html
+    assert live_kernel({"measured": held}, [motion()]) == ""
+    assert isinstance(ENGINE, Engine)
 
 
 def test_the_outcomes_are_those_of_the_table_it_is_given():

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
+from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
+from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.worst_direction import worst_direction
 from rockfrag.system.blocks import Block
 
@@ -39,3 +41,24 @@ def test_a_body_that_stands_in_all_directions_has_no_worst_one():
 def test_no_direction_is_no_question():
     with pytest.raises(InputError, match="directions_deg is empty"):
         worst_direction(Block(0.3, 1.2, 100.0), *straight(0), 2.0, directions_deg=())
+
+
+def test_the_worst_direction_in_a_plane_is_no_bound_for_a_body_in_space():
+    t = np.arange(0, 6, 0.01)
+    rng = np.random.default_rng(0)
+
+    def component():
+        waves = zip(rng.uniform(0.4, 2, 3), rng.uniform(0, 6, 3), strict=True)
+        return Motion(
+            sum(np.sin(2 * np.pi * f * t + p) for f, p in waves) * np.sin(np.pi * t / 6) ** 2, 0.01
+        )
+
+    first, second = component(), component()
+    table = worst_direction(
+        Block(0.3, 1.2, 100.0), first, second, 2.0, directions_deg=range(0, 360, 30)
+    ).table
+    in_space = Block(0.3, 1.2, 100.0, round=True)
+    both = overturns(
+        in_space, GroundMotion(first, second), scales=[0.9 * table["first_overturning"].min()]
+    )
+    assert both.overturned.item()

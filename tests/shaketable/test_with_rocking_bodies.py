@@ -10,7 +10,6 @@ from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.shaketable.definitions import tests_from_ida as read_ida
-from rockfrag.shaketable.high_pass import filter_effect
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.shaker import Shaker, limits_g
 from rockfrag.shaketable.steps import GeometricSteps
@@ -70,20 +69,6 @@ def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
     censored = tests[tests["censored"] == "right"]
     assert censored[["object", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta"]]
     assert censored["lower_g"].iloc[0] == pytest.approx(0.40, abs=0.005)
-
-
-def test_a_mild_high_pass_is_harmless_and_one_of_1_hz_is_not(records):
-    found = filter_effect(
-        TOWERS, list(records.values()), [0, 0.4, 0.5, 1.0], amplitudes(0.15, 1.5, 0.01)
-    )
-    first = found.pivot_table(
-        index=["configuration", "motion"], columns="corner_hz", values="first_g"
-    )
-    ratio = np.exp(np.log(first.div(first[0.0], axis=0)).mean())
-    # a small change of anything scatters ln a by 0.10 a test, so a mean of twelve by 0.03
-    assert ratio[0.4] == pytest.approx(1, abs=0.06)
-    assert ratio[0.5] == pytest.approx(1, abs=0.06)
-    assert ratio[1.0] > 1.2
 
 
 @pytest.fixture

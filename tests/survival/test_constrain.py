@@ -145,7 +145,7 @@ def test_two_tables_give_two_measures_of_the_same_branches(tmp_path):
     table["pgv_cm_s"] *= 100
     table.to_csv(tmp_path / "pgv.csv", index=False)
     found = read_branches([tmp_path / "pga.csv", tmp_path / "pgv.csv"])
-    assert {m.name for m in found[0].curves} == {"PGA", "PGV"}
+    assert {m.imt for m in found[0].curves} == {"PGA", "PGV"}
     table["weight"] = 1 / 3
     table.to_csv(tmp_path / "pgv.csv", index=False)
     with pytest.raises(InputError, match="elsewhere"):

@@ -12,7 +12,7 @@ from scipy import special
 from rockfrag.assess.conversion import Conversion, find_conversion
 from rockfrag.assess.direction import Directions, find_directions
 from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.hazard.measure import PGA, PGV, Measure
+from rockfrag.assess.hazard.measure import PGA, PGV
 from rockfrag.assess.mitigations import Mitigation, compare, mitigations_of
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.moved import Moved
@@ -44,6 +44,8 @@ from rockfrag.assess.sources import SPACE
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
+from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.outcomes.limit_states import ROCKS
 from rockfrag.short_repr import short_repr
 
 RECORDS = "resources/records"
@@ -89,6 +91,9 @@ class Assessment:
         none; None if none was fitted, or the velocity of the site is known.
     conversion
         What hazard in another measure than PGV leaves open; None in PGV.
+    planar
+        What is estimated of the object in one plane, along one component at a time, beside the answer in space,
+        which counts; None where there is none in space.
     directions
         The worst direction; None where no record has two components.
     mitigations
@@ -116,6 +121,7 @@ class Assessment:
     by_arrangement: Mapping[str, float]
     curve: Fragility | None
     conversion: Conversion | None
+    planar: float | None
     directions: Directions | None
     mitigations: tuple[Mitigation, ...]
     effects: tuple[Moved[float], ...]
@@ -125,7 +131,7 @@ class Assessment:
     __repr__ = short_repr
 
     @property
-    def measure(self) -> Measure:
+    def measure(self) -> IntensityMeasure:
         """Measure of the levels."""
         return self.outcomes.intensity_levels.measure
 
@@ -169,6 +175,11 @@ class Plan:
     brief: bool
 
     @property
+    def compares_few(self) -> bool:
+        """Whether mitigations are compared by few motions: in one line of an inventory, and in space."""
+        return self.brief or self.motions.both
+
+    @property
     def asked(self) -> list[float]:
         """Levels that are wanted exactly."""
         return [self.level.value] if self.level else []
@@ -186,11 +197,14 @@ class Shaken:
         Outcomes with each property moved to both sides.
     before, changed
         Outcomes as it stands, and with each mitigation, under the same motions.
+    planar
+        Outcomes as it stands in one plane, along one component at a time; None where that is the answer.
     """
 
     arrangements: Mapping[str, ObjectOutcomes]
     moved: Sequence[Moved[ObjectOutcomes]]
     before: ObjectOutcomes
+    planar: ObjectOutcomes | None
     changed: Mapping[str, ObjectOutcomes]
 
 
@@ -248,14 +262,15 @@ def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
     brief
         Compare changes with few motions and levels.
     """
-    if request.objects.round:
-        motions = motions.in_worst_direction()
+    objects = request.objects
+    if objects.round or (objects.in_space and motions.pairs):
+        motions = motions.with_both_components()
     curves = _governing(request, motions)
     hazard = curves[0] if curves else None
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
     asked = [level.value] if level else []
-    few = brief or request.objects.many or request.objects.round
+    few = brief or objects.many or motions.both
     fewer = motions.thinned() if few else motions
     fewer = fewer.thinned() if brief else fewer
     return Plan(
@@ -288,7 +303,7 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     changes = [{"": item.body, **mitigations_of(item)} for item in objects]
     under = (
         (plan.fewer, plan.fewer_intensity_levels)
-        if plan.brief
+        if plan.compares_few
         else (plan.motions, plan.intensity_levels)
     )
     compared = outcomes_of_each(objects, changes, *under)
@@ -299,7 +314,11 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
         if item.pad_friction is not None:
             outcomes, slip = on_pad(item, item.pad_friction, *under)
             change[_pad_words(item.pad_friction, slip, plan, under[1])] = outcomes
-        found.append(Shaken(way, sides, before, change))
+        planar = None
+        if plan.motions.both and not plan.brief:
+            flat = item.in_plane()
+            planar = outcomes_of(flat, {"": item.body}, plan.motions, plan.intensity_levels)[""]
+        found.append(Shaken(way, sides, before, planar, change))
     return found
 
 
@@ -337,7 +356,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     measure = plan.intensity_levels.measure
     counted = next(iter(shaken.arrangements.values()))
     target = _target(level, hazard, request.years)
-    exact = _starts_by_statics(request, measure)
+    exact = _starts_by_statics(request, measure) and not motions.both
     conversion = None
     if level:
         conversion = find_conversion(
@@ -353,7 +372,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     arrangements, moved = shaken.arrangements, shaken.moved
     both_sides = {change.name: change.sides for change in moved}
     shifts = {"model": MODEL_ERRORS[objects.kind].beyond}
-    if not objects.round:
+    if not motions.both:
         shifts["space"] = SPACE
     if conversion:
         shifts["conversion"] = conversion.shift
@@ -369,7 +388,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         fixed = _of_quantiles(now, hazard)
         probability = estimated(risk_target(hazard, request.years), fixed)
     rocking, fraction = None, None
-    rocks_from = _rocks_from(request, counted)
+    rocks_from = _rocks_from(request, counted, exact=exact)
     if level:
         rocking = estimate_rocking(level.value, now, both_sides, exact=exact)
         fraction = _no_more_than(estimated(fraction_target(level.value)), rocking)
@@ -395,13 +414,14 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         curve=None if brief or now is not counted else fragility_of(now.outcomes()),
         conversion=conversion,
         directions=None
-        if brief or objects.round or objects.many
+        if brief or motions.both or objects.many
         else find_directions(
             objects, motions, make_intensity_levels(motions, measure, plan.asked, FEW_LEVELS), at
         ),
+        planar=None if shaken.planar is None else target.value(shaken.planar),
         mitigations=_mitigations(request, target, shaken),
         effects=tuple(change.turned(target.value) for change in moved),
-        rules=() if brief or objects.round else tuple(check_rules(objects, motions, counted)),
+        rules=() if brief or motions.both else tuple(check_rules(objects, motions, counted)),
         sliding_fraction=math.nan
         if brief or at is None or objects.friction is None
         else fraction_with_sliding(objects, motions, measure, at),
@@ -413,7 +433,7 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
     if conversion is None or conversion.known is None:
         return shaken
     few = conversion.of(plan.fewer)
-    compared = few if plan.brief else conversion
+    compared = few if plan.compares_few else conversion
     return Shaken(
         {
             name: conversion.at_site(arrangement)
@@ -421,7 +441,8 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
         },
         [change.turned(few.at_site) for change in shaken.moved],
         compared.at_site(shaken.before),
-        {name: compared.at_site(item) for name, item in shaken.changed.items()},
+        None if shaken.planar is None else conversion.at_site(shaken.planar),
+        {name: compared.at_site(changed) for name, changed in shaken.changed.items()},
     )
 
 
@@ -438,9 +459,9 @@ def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
     about.
     """
     asked = request.level.measure if request.level else None
-    curves = [item for item in request.hazard if item.measure == asked] or request.hazard
+    curves = [curve for curve in request.hazard if curve.measure == asked] or request.hazard
     others = [curve for curve in curves if curve.measure != PGV]
-    velocity = [item for item in request.hazard if item.measure == PGV]
+    velocity = [curve for curve in request.hazard if curve.measure == PGV]
     if not others:
         return tuple(velocity)
     if len(others) == 1:
@@ -462,23 +483,23 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
     if request.level is not None:
         if hazard is not None and request.level.measure != hazard.measure:
             raise InputError(
-                f"the level is in {request.level.measure.name} and the hazard in {hazard.measure.name}; give "
+                f"the level is in {request.level.measure.imt} and the hazard in {hazard.measure.imt}; give "
                 "both in one measure, or leave the level out."
             )
         return request.level
     return Level(hazard.measure, hazard.level(1 / 475)) if hazard else None
 
 
-def _starts_by_statics(request: Request, measure: Measure) -> bool:
+def _starts_by_statics(request: Request, measure: IntensityMeasure) -> bool:
     """Whether rocking starts where the measure passes a number: a peak acceleration of what it stands on."""
     return measure == PGA and (request.place.shakes_as_ground or request.records.on_floor)
 
 
-def _rocks_from(request: Request, now: ObjectOutcomes) -> float:
+def _rocks_from(request: Request, now: ObjectOutcomes, *, exact: bool) -> float:
     """Least level that makes the object rock: by statics where it decides, else the least that was tried."""
-    if _starts_by_statics(request, now.intensity_levels.measure):
+    if exact:
         return request.objects.least_uplift
-    rocked = np.flatnonzero(now.fractions(rocks=True) > 0)
+    rocked = np.flatnonzero(now.fractions(state=ROCKS) > 0)
     return float(now.intensity_levels.levels[rocked[0]]) if rocked.size else math.inf
 
 

@@ -28,7 +28,7 @@ def as_json(found: Assessment) -> str:
         "place": request.place.words,
         "floor": request.place.floor_name,
         "lines": five_lines(found),
-        "measure": found.measure.name,
+        "measure": found.measure.imt,
         "unit": found.measure.unit,
         "level": None if found.level is None else found.level.value,
         "years": request.years,
@@ -43,6 +43,8 @@ def as_json(found: Assessment) -> str:
         "probability": _estimate(found.probability),
         "amplitude_toppling": {f"{p:g}": _estimate(e) for p, e in found.amplitudes.items()},
         "arrangements": found.by_arrangement,
+        "in_space": found.motions.both,
+        "in_one_plane": found.planar,
         "directions": found.directions and vars(found.directions),
         "mitigations": [vars(mitigation) for mitigation in found.mitigations],
         "rules_of_thumb": [vars(rule) for rule in found.rules],
@@ -50,6 +52,9 @@ def as_json(found: Assessment) -> str:
         "fragility": {
             "levels": outcomes.intensity_levels.levels.tolist(),
             "fraction": outcomes.fractions().tolist(),
+            "other_states": {
+                name: outcomes.fractions(state=name).tolist() for name in outcomes.others
+            },
             **_curve(found),
         },
         "two_measures": _two_measures(found),
@@ -96,7 +101,7 @@ def _two_measures(found: Assessment) -> dict[str, Any] | None:
         "sd_between_earthquakes": about.known.spread,
     }
     return {
-        "measures": [f"{about.measure.name} [{about.measure.unit}]", "PGV over it [s]"],
+        "measures": [f"{about.measure.imt} [{about.measure.unit}]", "PGV over it [s]"],
         "coefficients": surface.coefficients,
         "covariance": surface.covariance,
         "weight": about.weight,

@@ -4,7 +4,7 @@ from rockfrag.assess.answer import Assessment
 from rockfrag.fragility.identifiers import identifiers
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.fragility.nrml import discrete_function, model_text
-from rockfrag.outcomes.limit_states import OVERTURNS
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 
 
 def as_nrml(found: Assessment) -> str:
@@ -19,17 +19,19 @@ def as_nrml(found: Assessment) -> str:
         The assessment.
     """
     name, outcomes = found.request.name, found.outcomes
+    reached = {*outcomes.others, OVERTURNS}
+    states = [state.name for state in limit_states() if state.name in reached]
     function = discrete_function(
         identifiers([name], "_:-")[name],
-        found.measure.name,
+        found.measure.imt,
         outcomes.intensity_levels.levels,
-        {OVERTURNS: outcomes.fractions()},
+        {state: outcomes.fractions(state=state) for state in states},
     )
     kind = found.request.objects.kind
     error = MODEL_ERRORS[kind]
     words = (
-        f"{name}, {found.request.place.words}: fraction of {found.motions.words} that topple it. "
-        f"What is not known of body, floor and model is not in it; of the model alone that is {error.beyond:g} "
-        f"of ln level ({kind}: {error.words})."
+        f"{name}, {found.request.place.words}: fractions of {found.motions.words}. What is not known of body, "
+        f"floor and model is not in them; of the model alone that is {error.beyond:g} of ln level ({kind}: "
+        f"{error.words})."
     )
-    return model_text(words, [OVERTURNS], [function])
+    return model_text(words, states, [function])

@@ -95,6 +95,13 @@ def _add_object(about: Any) -> None:
     ):
         metavar = "SIZE" if name != "mass" else "MASS"
         about.add_argument(f"--{name}", action=_Once, metavar=metavar, help=words)
+    about.add_argument(
+        "--facing",
+        action=_Once,
+        type=float,
+        metavar="DEGREES",
+        help="direction of the width, from the first component of each record; needs the depth",
+    )
     about.add_argument("--round", action="store_true", help="the base is round")
     about.add_argument(
         "--mesh", action=_Once, metavar="FILE", help="mesh of it (OBJ, PLY, STL, GLB) instead"
@@ -305,6 +312,7 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
     plain |= {
         "name": options.name,
         "round": options.round or None,
+        "facing_deg": options.facing,
         "restitution": options.restitution,
         "friction": options.friction,
         "pad_friction": options.pad_friction,

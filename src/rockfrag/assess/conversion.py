@@ -25,13 +25,14 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.hazard.measure import PGV, VELOCITY_PER_G, Measure
+from rockfrag.assess.hazard.measure import PGV, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.request import Level, Records
 from rockfrag.errors import InputError
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.fragility.vector import VectorFragility, fit_vector
+from rockfrag.motions.declared import IntensityMeasure
 
 Floats = NDArray[np.float64]
 
@@ -103,7 +104,7 @@ class Conversion:
         A sentence for the page.
     """
 
-    measure: Measure
+    measure: IntensityMeasure
     fragility: VectorFragility
     weight: float
     logs: Floats
@@ -171,19 +172,20 @@ class Conversion:
         inside = (moved >= x[0]) & (moved <= x[-1])
         overturned = outcomes.overturned[row, place]
         rocked = np.repeat(outcomes.rocked, count, axis=0)
-        # at a level where it does not rock a motion says nothing of one that makes it rock
-        says = outcomes.rocked[row, place] | ~rocked
         if self.by_statics:
             overturned &= rocked
+            # at a level where it does not rock a motion says nothing of one that makes it rock
+            inside &= outcomes.rocked[row, place] | ~rocked
         return replace(
             outcomes,
             intensity_levels=replace(
                 intensity_levels,
                 scales=intensity_levels.scales[row, place],
-                allowed=intensity_levels.allowed[row, place] & inside & says,
+                allowed=intensity_levels.allowed[row, place] & inside,
             ),
             overturned=overturned,
             rocked=rocked | overturned,
+            others={name: cases[row, place] for name, cases in outcomes.others.items()},
             earthquakes=np.repeat(outcomes.earthquakes, count),
         )
 
@@ -285,7 +287,7 @@ def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
 
 
 def _known(
-    measure: Measure,
+    measure: IntensityMeasure,
     motions: MotionSet,
     given: Records,
     level: Level | None,
@@ -425,12 +427,12 @@ def _number(about: Mapping[str, object], key: str) -> float:
     return float(value) if isinstance(value, int | float) and value > 0 else math.nan
 
 
-def _per_unit(log_ratio: float, measure: Measure) -> str:
+def _per_unit(log_ratio: float, measure: IntensityMeasure) -> str:
     return f"{VELOCITY_PER_G * math.exp(log_ratio):.3g} cm/s per {measure.unit}"
 
 
 def _words(
-    measure: Measure,
+    measure: IntensityMeasure,
     weight: float,
     logs: Floats,
     known: SiteVelocity | None,
@@ -442,7 +444,7 @@ def _words(
     of_set = _per_unit(float(np.median(logs)), measure)
     if known is None:
         return (
-            f"The hazard is in {measure.name}, while {governs} for this object (weight {weight:.2f}). The motions "
+            f"The hazard is in {measure.imt}, while {governs} for this object (weight {weight:.2f}). The motions "
             f"have a PGV of {of_set} on average; that of the site may differ by a factor of "
             f"{math.exp(spread):.2f} (standard deviation), which widens the interval."
         )
@@ -460,6 +462,6 @@ def _words(
         else "."
     )
     return (
-        f"Toppling is counted in two measures, {measure.name} and PGV over it; {governs} (weight {weight:.2f}). A "
+        f"Toppling is counted in two measures, {measure.imt} and PGV over it; {governs} (weight {weight:.2f}). A "
         f"PGV of {site} comes with that level at the site, {of_set} in the motions{counted}{rest}"
     )

@@ -42,7 +42,7 @@ def fractions_figure(found: Assessment) -> Figure:
             xscale="log",
             xlim=(0.8 * min(ends), 1.25 * max(ends)),
             ylim=(0, 100),
-            xlabel=f"{found.measure.name} of the ground [{found.measure.unit}]",
+            xlabel=f"{found.measure.imt} of the ground [{found.measure.unit}]",
             ylabel="Motions that topple it [%]",
         )
         plain_log(axes, "x")

@@ -39,7 +39,7 @@ def words_used(found: Assessment) -> list[tuple[str, str]]:
         The assessment.
     """
     words = dict(_ALWAYS)
-    kinds = {"PGV", "PGA", found.measure.kind}
+    kinds = {"PGV", "PGA", found.measure.openquake}
     words |= {kind: meaning for kind, meaning in _MEASURES.items() if kind in kinds}
     if found.request.place.building is not None:
         words |= _FLOOR

@@ -131,7 +131,8 @@ def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Asses
     """Assess objects, those in places that shake alike at once."""
     groups: dict[object, list[int]] = {}
     for i, request in enumerate(requests):
-        kind = request.place.key, request.objects.round, request.objects.many
+        about = request.objects
+        kind = request.place.key, about.round, about.in_space, about.many
         # of several curves the one that counts may differ from object to object
         alone = i if len(request.hazard) > 2 else -1
         groups.setdefault((*kind, alone), []).append(i)

@@ -69,15 +69,15 @@ def joint_risk(found: Sequence[Assessment], values: Mapping[str, float]) -> Join
     The :class:`JointRisk`; None without a hazard, or where objects are counted in different measures.
     """
     hazard = found[0].hazard
-    if hazard is None or any(item.measure != found[0].measure for item in found):
+    if hazard is None or any(assessment.measure != found[0].measure for assessment in found):
         return None
-    outcomes = [item.outcomes for item in found]
+    outcomes = [assessment.outcomes for assessment in found]
     # with the velocity of the site a motion stands for several; all objects have the same of them
     intensity_levels = outcomes[0].intensity_levels
     fell = np.array([outcome.overturned for outcome in outcomes])
     allowed = np.logical_and.reduce([outcome.intensity_levels.allowed for outcome in outcomes])
     together = replace(outcomes[0], intensity_levels=replace(intensity_levels, allowed=allowed))
-    worth = np.array([values[item.request.name] for item in found])
+    worth = np.array([values[assessment.request.name] for assessment in found])
     per_level = [
         toppling_rate(intensity_levels.levels, unit, hazard)
         for unit in np.eye(intensity_levels.levels.size)
@@ -88,7 +88,7 @@ def joint_risk(found: Sequence[Assessment], values: Mapping[str, float]) -> Join
             for outcome in outcomes
         ]
     )
-    names = [item.request.name for item in found]
+    names = [assessment.request.name for assessment in found]
     return JointRisk(
         _by_object(names, rates, worth),
         _numbers(found[0], together, fell.sum(axis=0)),

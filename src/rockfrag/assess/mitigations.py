@@ -137,7 +137,7 @@ def _fixed(objects: Objects) -> dict[str, Body]:
 def compare(
     target: Target, now: ObjectOutcomes, changed: Mapping[str, ObjectOutcomes]
 ) -> list[Mitigation]:
-    """Factors of changes on what is estimated, the most helpful first.
+    """Estimate again with each change of the object.
 
     Parameters
     ----------
@@ -146,7 +146,11 @@ def compare(
     now
         Outcomes of the object as it is.
     changed
-        Outcomes with each change.
+        Outcomes with each change, by its name.
+
+    Returns
+    -------
+    A :class:`Mitigation` for each change, the most helpful first.
     """
     found = [_mitigation(target, name, now, item) for name, item in changed.items()]
     found.sort(key=lambda mitigation: mitigation.value)

@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.assess.hazard.measure import PGV, VELOCITY_PER_G, Measure
+from rockfrag.assess.hazard.measure import PGV, VELOCITY_PER_G
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
 from rockfrag.errors import InputError
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.motions.rotation import rotate
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.catalogue import load_motion, load_motions
@@ -54,9 +55,9 @@ class MotionSet:
         Motions of floors that were needed before, by :attr:`Place.key`.
     halves
         Those of the thinned set.
-    worst
-        Whether each record comes from its worst direction: both of its components stand for the record, their
-        level is the geometric mean of theirs, and it topples an object if it does from any direction.
+    both
+        Whether both components of each record act at once: both stand for the record, and their level is the
+        geometric mean of theirs.
     library
         Motions of the set among which these were chosen; empty where all were taken.
     measured
@@ -70,16 +71,16 @@ class MotionSet:
     warnings: tuple[str, ...] = ()
     floors: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
     halves: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
-    worst: bool = False
+    both: bool = False
     library: tuple[Motion, ...] = ()
-    measured: dict[Measure, Floats] = field(default_factory=dict)
+    measured: dict[IntensityMeasure, Floats] = field(default_factory=dict)
 
     @property
     def about(self) -> list[Mapping[str, object]]:
         """What is known of the records among which the motions were chosen."""
         return [motion.metadata for motion in self.library or self.ground]
 
-    def log_ratios(self, measure: Measure, *, of_all: bool = False) -> Floats:
+    def log_ratios(self, measure: IntensityMeasure, *, of_all: bool = False) -> Floats:
         """Return ln (PGV over a measure [s]) of each ground motion.
 
         Parameters
@@ -92,7 +93,9 @@ class MotionSet:
         if not (of_all and self.library):
             return np.log(self.values(PGV) / self.values(measure) / VELOCITY_PER_G)
         if measure not in self.measured:
-            ratios = np.array([PGV.of(motion) / measure.of(motion) for motion in self.library])
+            ratios = np.array(
+                [PGV.of_motion(motion) / measure.of_motion(motion) for motion in self.library]
+            )
             self.measured[measure] = np.log(ratios / VELOCITY_PER_G)
         return self.measured[measure]
 
@@ -103,25 +106,25 @@ class MotionSet:
             [str(m.metadata.get("earthquake") or m.name) for m in self.ground], dtype=object
         )
 
-    def values(self, measure: Measure) -> Floats:
+    def values(self, measure: IntensityMeasure) -> Floats:
         """Value of each ground motion in a measure, in its unit, shape (n,)."""
         if measure not in self._values:
-            values = np.array([measure.of(motion) for motion in self.ground])
-            for pair in self.pairs if self.worst else ():
+            values = np.array([measure.of_motion(motion) for motion in self.ground])
+            for pair in self.pairs if self.both else ():
                 values[list(pair)] = np.sqrt(values[pair[0]] * values[pair[1]])
             self._values[measure] = values
         return self._values[measure]
 
-    def median(self, measure: Measure) -> float:
-        """Median of the components in a measure, the same for records in their worst direction."""
-        return float(np.median(replace(self, worst=False).values(measure)))
+    def median(self, measure: IntensityMeasure) -> float:
+        """Median of the components in a measure, the same where both act at once."""
+        return float(np.median(replace(self, both=False).values(measure)))
 
-    def in_worst_direction(self) -> "MotionSet":
-        """The same records, each from its worst direction; one without a second component as it is."""
+    def with_both_components(self) -> "MotionSet":
+        """The same records, both components of each at once; one without a second component as it is."""
         words = self.words
         if self.pairs:
             words += f", {len(self.pairs)} records each with both components"
-        return replace(self, worst=True, words=words)
+        return replace(self, both=True, words=words)
 
     def turned(self, step_deg: int) -> list[tuple[int, list[Motion]]]:
         """Records at the object's base turned through all directions, each with the place of its first component.
@@ -139,12 +142,12 @@ class MotionSet:
         return found + [(i, [m]) for i, m in enumerate(self.base) if i not in paired]
 
     @cached_property
-    def _values(self) -> dict[Measure, Floats]:
+    def _values(self) -> dict[IntensityMeasure, Floats]:
         return {}
 
     def thinned(self) -> "MotionSet":
         """Every second motion, one component of each record of the default set: enough to compare."""
-        if self.worst:
+        if self.both:
             return self._fewer_records()
         return replace(
             self, ground=self.ground[::2], base=self.base[::2], pairs=(), floors=self.halves

@@ -17,7 +17,13 @@ from rockfrag.rocking.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.mesh import Shape, read_shape
-from rockfrag.system.system import System, diagonal, round_inertia, uplift_ratios
+from rockfrag.system.system import (
+    System,
+    diagonal,
+    round_inertia,
+    turned_about_vertical,
+    uplift_ratios,
+)
 
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""
@@ -31,6 +37,9 @@ uniform from 0.7 to 1 (:mod:`rockfrag.campaign.standing`)."""
 
 ROLLING = 1.0
 """Restitution of a round base: its rim rolls from edge to edge and loses nothing."""
+
+HIGHER = 1.0 + 1e-9
+"""Height of a body that is another one than the object, over that of the object."""
 
 ALONE = "on the floor"
 """How an object stands without a pedestal."""
@@ -52,6 +61,10 @@ class Objects:
         Coefficient of friction of all contacts [-]; None if nothing slides.
     round
         Whether the base of the object is round: it then rolls on its rim in space and loses nothing.
+    depth
+        Side of a rectangular base across that plane [m]; None where it is not known, or not to be used.
+    facing_deg
+        Direction of that plane, from the first component of each record towards the second [degrees].
     scan
         The scan and the ways in which it may stand; None where dimensions were given.
     livelier
@@ -75,6 +88,8 @@ class Objects:
     tolerances: Mapping[str, float]
     plane: str
     round: bool = False
+    depth: float | None = None
+    facing_deg: float = 0.0
     scan: Scan | None = None
     livelier: float = 1.0
     assumed: tuple[Assumption, ...] = ()
@@ -145,8 +160,21 @@ class Objects:
         e = geometry.momentum_restitution(shape, pivot) if measured is None else measured
         return min(max(e, 0.0) * self.livelier, geometry.largest_restitution(shape, pivot))
 
-    def rolling(self, body: Body) -> System | None:
-        """The round object in space where it is free to roll in an arrangement; None where there is none.
+    @property
+    def in_space(self) -> bool:
+        """Whether it is simulated under both components of each record.
+
+        A rectangular base is if its depth is known, and its impacts take what conservation of momentum does.
+        """
+        plain = self.depth is not None and self.restitution is None and self.livelier == 1
+        return self.round or (plain and self.pad_friction is None)
+
+    def in_plane(self) -> "Objects":
+        """The object as it rocks in one plane, on edges."""
+        return replace(self, round=False, depth=None)
+
+    def solid(self, body: Body) -> System | None:
+        """The object in space where it is free to move in an arrangement; None where it is not known in space.
 
         Parameters
         ----------
@@ -154,11 +182,27 @@ class Objects:
             An arrangement of the object, with or without changes; under it a pedestal stays where it is.
         """
         top = body.blocks[-1]
-        if not self.round or top.height != self.statue.height:
+        whole = top.height > self.statue.height * HIGHER
+        if not self.in_space or (self.round and whole):
             return None
+        if self.round:
+            across = top.centroidal_inertia
+            along = top.mass * top.width**2 / 8
+            return replace(top, round=True, inertia=diagonal(across, across, along)).system()
+        return turned_about_vertical(self._box(top, whole=whole).system(), self.facing_deg)
+
+    def _box(self, top: Block, *, whole: bool) -> Block:
+        """The object on a rectangular base, or one with what it is fixed to, whose base is square or as deep."""
+        assert self.depth is not None
+        width, depth, mass = self.statue.width, self.depth, self.statue.mass
         across = top.centroidal_inertia
-        along = top.mass * top.width**2 / 8
-        return replace(top, round=True, inertia=diagonal(across, across, along)).system()
+        # moments of uniform boxes about x and y differ by what their sides do
+        aside = mass * (depth**2 - width**2) / 12
+        along = mass * (width**2 + depth**2) / 12
+        if whole:
+            along += (top.mass - mass) * top.width**2 / 6
+            depth = max(depth, top.width)
+        return replace(top, depth=depth, inertia=diagonal(across + aside, across, along))
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
@@ -166,7 +210,7 @@ class Objects:
             "width": partial(_wider, self),
             "cg_height": partial(_higher, self),
         }
-        if not self.round:
+        if not self.round:  # of a body in space that of the planar answer
             moves["restitution"] = partial(_livelier, self)
         if self.pedestals:
             moves["mass"] = partial(_heavier, self)
@@ -187,6 +231,7 @@ def _wider(objects: Objects, factor: float) -> Objects:
     """Move all edges: what carries is uncertain at the foot of a pedestal as at that of a statue."""
     return replace(
         objects,
+        depth=None if objects.depth is None else objects.depth * factor,
         statue=wider(objects.statue, factor),
         pedestals=tuple(wider(block, factor) for block in objects.pedestals),
     )
@@ -243,6 +288,7 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         scan, statue, plane = _from_mesh(settings, folder, assumed)
     else:
         statue, plane = _from_dimensions(settings, assumed, quality_flags)
+    depth, facing = _in_plan(settings)
     pedestals = _pedestals(settings, assumed)
     try:
         stacked((*pedestals, statue))
@@ -251,7 +297,7 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
     for block in (statue, *pedestals):
         if quality_flag := size_warning(block.width, block.height):
             quality_flags.append(quality_flag + ".")
-    first = [_of_the_base(is_round, "mesh" in settings)]
+    first = [_of_the_base(is_round, "mesh" in settings, depth is not None)]
     if not is_round and "restitution" not in settings:
         first.append(_ON_POINTS if scan else _RESTITUTION)
     on_points = scan is not None and not is_round and "restitution" not in settings
@@ -264,6 +310,8 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         livelier=ON_POINTS["livelier"] if on_points else 1.0,
         plane=plane,
         round=is_round,
+        depth=depth,
+        facing_deg=facing,
         scan=scan,
         assumed=(*first, *assumed),
         quality_flags=tuple(quality_flags),
@@ -291,7 +339,22 @@ _ON_POINTS = Assumption(
 )
 
 
-def _of_the_base(is_round: bool, is_mesh: bool) -> Assumption:
+def _in_plan(settings: Mapping[str, Any]) -> tuple[float | None, float]:
+    """Side of a rectangular base across the plane in which it rocks, and the direction of that plane [degrees]."""
+    width, depth = settings.get("width_m"), settings.get("depth_m")
+    facing = float(settings.get("facing_deg", 0.0))
+    if depth is None or settings.get("round"):
+        if "facing_deg" in settings:
+            raise InputError(
+                "key facing_deg: needs width and depth of a rectangular base; leave it out."
+            )
+        return None, 0.0
+    # the plane is across the narrower side
+    across = depth < width
+    return max(width, depth), facing + 90.0 * across
+
+
+def _of_the_base(is_round: bool, is_mesh: bool, is_box: bool) -> Assumption:
     if is_round:
         return Assumption(
             "the round base rolls on its rim in space and loses no energy",
@@ -305,9 +368,16 @@ def _of_the_base(is_round: bool, is_mesh: bool) -> Assumption:
             "It rocks in one plane; the planes of all directions and what carries in them are a source of the "
             "interval.",
         )
+    if is_box:
+        return Assumption(
+            "the base is rectangular",
+            "The base is taken as rectangular with sharp corners, and simulated in space under both components of "
+            "each record, where it turns and walks too; with a measured restitution or a pad it rocks in a plane.",
+        )
     return Assumption(
         "the base is rectangular",
-        "The base is taken as rectangular; a round one (round) falls at about half the shaking.",
+        "The base is taken as rectangular and rocks in one plane, as no depth was given; in space a square one "
+        "falls at seven eighths of the shaking, a round one (round) at about half.",
     )
 
 

@@ -2,18 +2,18 @@
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from rockfrag.assess.hazard.measure import Measure
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.fragility.observations import Observations
-from rockfrag.outcomes.limit_states import limit_state_named
+from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.ground_motion import GroundMotion
@@ -66,7 +66,7 @@ class IntensityLevels:
         (motions, levels).
     """
 
-    measure: Measure
+    measure: IntensityMeasure
     levels: Floats
     scales: Floats
     allowed: NDArray[np.bool_]
@@ -82,7 +82,7 @@ def believable_scales(base: Sequence[Motion]) -> Floats:
 
 
 def make_intensity_levels(
-    motions: MotionSet, measure: Measure, asked: Sequence[float] = (), count: int = LEVELS
+    motions: MotionSet, measure: IntensityMeasure, asked: Sequence[float] = (), count: int = LEVELS
 ) -> IntensityLevels:
     """Make the levels for a set of motions.
 
@@ -91,7 +91,7 @@ def make_intensity_levels(
     motions
         The motions.
     measure
-        Measure in which they are scaled.
+        Intensity measure in which they are scaled.
     asked
         Levels that are wanted exactly, in the measure's unit.
     count
@@ -121,6 +121,8 @@ class ObjectOutcomes:
         Earthquake of each motion, shape (motions,).
     light
         Whether a body that was simulated with it may have left the ground, which the model holds shut.
+    others
+        Which cases reached each other declared limit state, by its name, shape (motions, levels) each.
     """
 
     intensity_levels: IntensityLevels
@@ -128,24 +130,26 @@ class ObjectOutcomes:
     rocked: NDArray[np.bool_]
     earthquakes: NDArray[np.object_]
     light: bool = False
+    others: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
 
-    def fractions(self, weights: Floats | None = None, *, rocks: bool = False) -> Floats:
-        """Fraction of the motions that topple the body at each level, shape (levels,).
+    def fractions(self, weights: Floats | None = None, *, state: str = OVERTURNS) -> Floats:
+        """Fraction of the motions that bring the body into a limit state at each level, shape (levels,).
 
         A motion that cannot be scaled so far is left out of a level; where none can, the fraction of the nearest
-        level below is kept, and nothing topples below the lowest level.
+        level below is kept, and nothing happens below the lowest level.
 
         Parameters
         ----------
         weights
             Weight of each motion, shape (motions,); all alike if None.
-        rocks
-            Fraction of those that make it rock instead.
+        state
+            Name of the limit state.
         """
         w = np.ones(len(self.overturned)) if weights is None else weights
         allowed = self.intensity_levels.allowed
+        happened = {OVERTURNS: self.overturned, ROCKS: self.rocked, **self.others}[state]
         total = w @ allowed
-        fell = w @ (allowed & (self.rocked if rocks else self.overturned))
+        fell = w @ (allowed & happened)
         known = total > 0
         at = np.maximum.accumulate(np.where(known, np.arange(total.size), 0))
         fraction = np.divide(fell, total, out=np.zeros(total.size), where=known)
@@ -163,7 +167,7 @@ class ObjectOutcomes:
         half = z / (1 + z**2 / n) * np.sqrt(p * (1 - p) / n + z**2 / (4 * n**2))
         low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, 1.0)
         # what does not rock cannot topple
-        return np.where(p > 0, low, 0.0), np.where(self.fractions(rocks=True) > 0, high, 0.0)
+        return np.where(p > 0, low, 0.0), np.where(self.fractions(state=ROCKS) > 0, high, 0.0)
 
     def first(self) -> NDArray[np.intp]:
         """Place of the least level at which each motion topples the body, -1 where none does, shape (motions,).
@@ -190,6 +194,7 @@ class ObjectOutcomes:
             self,
             overturned=self.overturned | other.overturned,
             rocked=self.rocked | other.rocked,
+            others={name: cases | other.others[name] for name, cases in self.others.items()},
         )
 
     def outcomes(self) -> Observations:
@@ -201,7 +206,7 @@ class ObjectOutcomes:
             trials=np.ones(motion.size),
             motion=motion.astype(object),
             earthquake=self.earthquakes[motion],
-            name=self.intensity_levels.measure.name,
+            name=self.intensity_levels.measure.imt,
             unit=self.intensity_levels.measure.unit,
         )
 
@@ -269,44 +274,75 @@ def outcomes_of_each(
         (item, body) for item, named in zip(objects, bodies, strict=True) for body in named.values()
     ]
     systems = [item.system_of(body) for item, body in every]
-    rolling = [item.rolling(body) for item, body in every]
+    solids = [item.solid(body) for item, body in every]
+    worst = any(item.round for item in objects)
     most = max(1, MOST_TESTS // intensity_levels.scales.size)
     found: list[ObjectOutcomes] = []
     for i in range(0, len(systems), most):
-        found += _shaken(systems[i : i + most], rolling[i : i + most], motions, intensity_levels)
+        found += _shaken(
+            systems[i : i + most], solids[i : i + most], motions, intensity_levels, worst=worst
+        )
     each = iter(found)
     return [{name: next(each) for name in named} for named in bodies]
 
 
 def _shaken(
     systems: Sequence[System],
-    rolling: Sequence[System | None],
+    solids: Sequence[System | None],
     motions: MotionSet,
     intensity_levels: IntensityLevels,
+    *,
+    worst: bool,
 ) -> list[ObjectOutcomes]:
-    """Outcomes of planar bodies; round ones that are free to roll are shaken in space.
+    """Outcomes in space where both components act and a body is known in space, in a plane elsewhere.
 
-    On a pedestal that may lift both answers count: what falls in either falls.
+    On a pedestal that may lift both answers count: what falls in either falls. ``worst`` takes planar answers from
+    the worst direction of each record.
     """
-    if motions.worst:
-        planar = [i for i, item in enumerate(rolling) if item is None or systems[i].count > 1]
-        fallen = _shaken_from_all_sides([systems[i] for i in planar], motions, intensity_levels)
-        found = dict(zip(planar, fallen, strict=True))
-        for i, item in enumerate(rolling):
-            if item is not None:
-                rolled = _rolled(item, motions, intensity_levels)
-                found[i] = found[i].joined(rolled) if i in found else rolled
-        return [found[i] for i in range(len(systems))]
+    if not motions.both:
+        return _shaken_in_plane(systems, motions, intensity_levels)
+    planar = [i for i, item in enumerate(solids) if item is None or systems[i].count > 1]
+    shake = _shaken_from_all_sides if worst else _shaken_in_plane
+    fallen = shake([systems[i] for i in planar], motions, intensity_levels)
+    found = dict(zip(planar, fallen, strict=True))
+    for i, item in enumerate(solids):
+        if item is not None:
+            solid = _in_space(item, motions, intensity_levels)
+            found[i] = found[i].joined(solid) if i in found else solid
+    return [found[i] for i in range(len(systems))]
+
+
+def _shaken_in_plane(
+    systems: Sequence[System], motions: MotionSet, intensity_levels: IntensityLevels
+) -> list[ObjectOutcomes]:
+    """Outcomes of planar bodies, by components as recorded."""
+    if not systems:
+        return []
     scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)
     scales = np.minimum(scales, believable_scales(motions.base))
     result, light = simulated(systems, motions.base, scales)
-    rocked = limit_state_named("rocks").reached(result)
+    states = _reached(result)
     return [
-        ObjectOutcomes(
-            intensity_levels, result.overturned[i], rocked[i], motions.earthquakes, light
+        _object_outcomes(
+            {name: cases[i] for name, cases in states.items()}, motions, intensity_levels, light
         )
         for i in range(len(systems))
     ]
+
+
+def _reached(result: Outcomes) -> dict[str, NDArray[np.bool_]]:
+    """Which cases of bodies that cannot slide reached each limit state, shape (systems, motions, levels)."""
+    return {state.name: state.reached(result) for state in limit_states() if not state.slipping}
+
+
+def _object_outcomes(
+    states: dict[str, NDArray[np.bool_]],
+    motions: MotionSet,
+    intensity_levels: IntensityLevels,
+    light: bool = False,
+) -> ObjectOutcomes:
+    fell, rocked = states.pop(OVERTURNS), states.pop(ROCKS)
+    return ObjectOutcomes(intensity_levels, fell, rocked, motions.earthquakes, light, states)
 
 
 def simulated(
@@ -338,8 +374,10 @@ def simulated(
     return result, any(light)
 
 
-def _rolled(body: System, motions: MotionSet, intensity_levels: IntensityLevels) -> ObjectOutcomes:
-    """Outcomes of a round body in space under both components of each record, where it has two."""
+def _in_space(
+    body: System, motions: MotionSet, intensity_levels: IntensityLevels
+) -> ObjectOutcomes:
+    """Outcomes of a body in space under both components of each record, where it has two."""
     paired = {i for pair in motions.pairs for i in pair}
     shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]
     shaking += [GroundMotion(m) for i, m in enumerate(motions.base) if i not in paired]
@@ -348,13 +386,12 @@ def _rolled(body: System, motions: MotionSet, intensity_levels: IntensityLevels)
     scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)[first]
     scales = np.minimum(scales, believable_scales(motions.base)[first])
     result = run_in_space([body], shaking, scales, threads=checked_threads(None))
-    moves = limit_state_named("rocks").reached(result)
     place = np.zeros(len(motions.base), dtype=np.intp)
     place[first] = np.arange(len(first))
     for item, other in motions.pairs:
         place[other] = place[item]
-    fell, rocked = result.overturned[0][place], moves[0][place]
-    return ObjectOutcomes(intensity_levels, fell, rocked, motions.earthquakes)
+    states = {name: cases[0][place] for name, cases in _reached(result).items()}
+    return _object_outcomes(states, motions, intensity_levels)
 
 
 def _shaken_from_all_sides(
@@ -373,16 +410,21 @@ def _shaken_from_all_sides(
     place = np.arange(len(motions.base))
     for first, second in motions.pairs:
         place[second] = first
-    found = []
-    moves = limit_state_named("rocks").reached(result)
-    for i in range(len(systems)):
-        fell, rocked = (np.zeros(intensity_levels.scales.shape, dtype=bool) for _ in range(2))
-        np.logical_or.at(fell, of_row, result.overturned[i])
-        np.logical_or.at(rocked, of_row, moves[i])
-        found.append(
-            ObjectOutcomes(intensity_levels, fell[place], rocked[place], motions.earthquakes, light)
+    # what happens from one side happens
+    states = {}
+    for name, cases in _reached(result).items():
+        states[name] = np.zeros((len(systems), *intensity_levels.scales.shape), dtype=bool)
+        for i, found in enumerate(states[name]):
+            np.logical_or.at(found, of_row, cases[i])
+    return [
+        _object_outcomes(
+            {name: cases[i][place] for name, cases in states.items()},
+            motions,
+            intensity_levels,
+            light,
         )
-    return found
+        for i in range(len(systems))
+    ]
 
 
 def on_pad(
@@ -412,13 +454,13 @@ def on_pad(
     system = replace(system, contacts=(*below, pad))
     scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)
     result = overturns(system, motions.base, scales=scales)
-    rocked = limit_state_named("rocks").reached(result)[0]
-    outcomes = ObjectOutcomes(intensity_levels, result.overturned[0], rocked, motions.earthquakes)
+    states = {name: cases[0] for name, cases in _reached(result).items()}
+    outcomes = _object_outcomes(states, motions, intensity_levels)
     return outcomes, result.peak_slip[0, ..., -1]
 
 
 def fraction_with_sliding(
-    objects: Objects, motions: MotionSet, measure: Measure, level: float
+    objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float
 ) -> float:
     """Fraction of the motions at a level that topple the object as it stands if it may slide.
 
@@ -432,12 +474,20 @@ def fraction_with_sliding(
     motions
         The motions.
     measure
-        Measure of the level.
+        Intensity measure of the level.
     level
         The level, in the measure's unit.
     """
     scales = level / motions.values(measure)
     allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
+    solid = objects.solid(objects.body) if motions.both else None
+    if solid is not None and objects.friction is not None and not objects.pedestals:
+        friction = Friction(objects.friction, objects.friction)
+        slides = replace(solid, contacts=(replace(solid.contacts[0], friction=friction),))
+        one_level = IntensityLevels(
+            measure, np.array([level]), scales[:, np.newaxis], allowed[:, np.newaxis]
+        )
+        return float(_in_space(slides, motions, one_level).fractions()[0])
     fallen = overturns(
         objects.system_of(objects.body),
         motions.base,

@@ -37,6 +37,7 @@ from rockfrag.assess.words import (
     worst_direction,
 )
 from rockfrag.files import file_name, write_text
+from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.page import Column, Picture, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
@@ -104,8 +105,9 @@ def _live(found: Assessment) -> Markup:
     motions = carried([motion for motion in chosen if motion.pga > 0])
     if not motions:
         return Markup("")
-    bodies = found.request.objects.arrangements
-    return live_kernel({name: body.system() for name, body in bodies.items()}, motions)
+    objects = found.request.objects
+    bodies = {name: objects.system_of(body) for name, body in objects.arrangements.items()}
+    return live_kernel(bodies, motions)
 
 
 def _name_of(found: Assessment, i: int) -> str:
@@ -345,13 +347,20 @@ def _rules(found: Assessment) -> Section:
 def _levels(found: Assessment) -> Section:
     outcomes = found.outcomes
     fractions = outcomes.fractions()
-    rocks = outcomes.fractions(rocks=True)
+    rocks = outcomes.fractions(state=ROCKS)
+    others = [state for state in limit_states() if state.name in outcomes.others]
     shown = np.flatnonzero((rocks > 0) & (np.append(0, fractions[:-1]) < 0.99))[::4]
     low, high = outcomes.band()
     table = pd.DataFrame(
         {
             "level": outcomes.intensity_levels.levels[shown],
             "rocks": [f"{100 * value:.0f} %" for value in rocks[shown]],
+            **{
+                state.name: [
+                    f"{100 * value:.0f} %" for value in outcomes.fractions(state=state.name)[shown]
+                ]
+                for state in others
+            },
             "topples": [
                 f"{100 * fractions[i]:.0f} % ({100 * low[i]:.0f} to {100 * high[i]:.0f} %)"
                 for i in shown
@@ -359,8 +368,9 @@ def _levels(found: Assessment) -> Section:
         }
     )
     columns = [
-        Column("level", f"{found.measure.name} [{found.measure.unit}]", 3),
+        Column("level", f"{found.measure.imt} [{found.measure.unit}]", 3),
         Column("rocks", "Motions that make it rock", numeric=True),
+        *(Column(state.name, f"Motions: {state.label}", numeric=True) for state in others),
         Column("topples", "Motions that topple it (90 % interval)", numeric=True),
     ]
     if found.hazard is not None:
@@ -381,7 +391,7 @@ def _levels(found: Assessment) -> Section:
             *curve.warnings,
         ]
     starts = (
-        f"It starts to rock at {found.measure.name} {found.rocks_from:.2g} {found.measure.unit}."
+        f"It starts to rock at {found.measure.imt} {found.rocks_from:.2g} {found.measure.unit}."
         if np.isfinite(found.rocks_from)
         else "Nothing that was tried makes it rock."
     )

@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from rockfrag.assess.hazard.curve import HIGHEST, HazardCurve, curve_of_one_level
-from rockfrag.assess.hazard.measure import PGA, PGV, Measure, read_measure
+from rockfrag.assess.hazard.measure import PGA, PGV, read_measure
 from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
 from rockfrag.errors import InputError
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.schema import checked
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.yaml_file import read_yaml
@@ -39,7 +40,7 @@ class Level:
         Peak velocity that comes with it [cm/s]; NaN where it is not known, or the measure itself.
     """
 
-    measure: Measure
+    measure: IntensityMeasure
     value: float
     pgv: float = math.nan
 
@@ -47,7 +48,7 @@ class Level:
     def words(self) -> str:
         """Such as ``PGA 0.25 g``, or ``PGA 0.25 g and PGV 20 cm/s``."""
         more = "" if math.isnan(self.pgv) else f" and PGV {self.pgv:.3g} cm/s"
-        return f"{self.measure.name} {self.value:.3g} {self.measure.unit}{more}"
+        return f"{self.measure.imt} {self.value:.3g} {self.measure.unit}{more}"
 
 
 @dataclass(frozen=True)
@@ -203,10 +204,10 @@ def _of(key: str, given: str, unit: str) -> float:
 
 
 def _sensible(key: str, level: Level) -> Level:
-    if not 0 < level.value <= HIGHEST[level.measure.kind]:
+    if not 0 < level.value <= HIGHEST[level.measure.openquake]:
         raise InputError(
             f"key {key}: {level.words} is no shaking of an earthquake; expected more than 0 and at most "
-            f"{HIGHEST[level.measure.kind]:g} {level.measure.unit}."
+            f"{HIGHEST[level.measure.openquake]:g} {level.measure.unit}."
         )
     return level
 

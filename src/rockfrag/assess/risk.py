@@ -30,6 +30,7 @@ from scipy import special, stats
 
 from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.outcomes import ObjectOutcomes
+from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 Floats = NDArray[np.float64]
 
@@ -84,7 +85,7 @@ def _rate_weights(levels: bytes, hazard: HazardCurve, shift: float) -> Floats:
 
 
 def probability_in(rate: float, years: float) -> float:
-    """Probability of at least one earthquake of a Poisson process [-].
+    """Probability of at least one earthquake in a time, 1 - exp(-rate × time), if they are a Poisson process.
 
     Parameters
     ----------
@@ -131,8 +132,8 @@ class Target:
         Turns levels, shares and a shift of the levels into the number that is estimated.
     forward, back
         To the scale on which intervals are symmetric and back.
-    rocks
-        Whether the fractions are those of motions that make the object rock.
+    state
+        Name of the limit state whose fractions they are.
     added
         What is added of earthquakes for the widths of sources, see :meth:`on_scale`.
     certain
@@ -142,7 +143,7 @@ class Target:
     of: Callable[[Floats, Floats, float], float]
     forward: Callable[[float], float]
     back: Callable[[float], float]
-    rocks: bool = False
+    state: str = OVERTURNS
     added: float = 0.0
     certain: float = 1.0
 
@@ -168,10 +169,10 @@ class Target:
             Earthquakes that are added, of which one topples the object wherever it rocks and one does not: a
             part of each [-].
         """
-        fractions = outcomes.fractions(weights, rocks=self.rocks)
+        fractions = outcomes.fractions(weights, state=self.state)
         if added:
             count = len(set(outcomes.earthquakes)) - (weights is not None)
-            could = outcomes.fractions(weights, rocks=True) > 0
+            could = outcomes.fractions(weights, state=ROCKS) > 0
             fractions = (count * fractions + added * could) / (count + 2 * added)
         return self.forward(self.of(outcomes.intensity_levels.levels, fractions, shift))
 
@@ -217,15 +218,15 @@ def risk_target(hazard: HazardCurve, years: float) -> Target:
     )
 
 
-def fraction_target(level: float, *, rocks: bool = False) -> Target:
-    """The fraction of motions that topple the object at a level.
+def fraction_target(level: float, *, state: str = OVERTURNS) -> Target:
+    """The fraction of motions that bring the object into a limit state at a level.
 
     Parameters
     ----------
     level
         Level in the unit of the series of levels.
-    rocks
-        That of motions that make it rock instead.
+    state
+        Name of the limit state.
     """
     return Target(
         of=lambda levels, fractions, shift: float(
@@ -233,7 +234,7 @@ def fraction_target(level: float, *, rocks: bool = False) -> Target:
         ),
         forward=lambda fraction: float(special.logit(fraction)),
         back=lambda value: float(special.expit(value)),
-        rocks=rocks,
+        state=state,
         added=HALF,
     )
 
@@ -373,12 +374,12 @@ def _bounded(
     shift = _Z * math.sqrt(sum(spread**2 for spread in shifts.values()))
 
     def most(changed: ObjectOutcomes, shift: float = 0.0) -> float:
-        fractions = np.maximum(changed.fractions(rocks=target.rocks), hidden)
-        could = np.where(changed.fractions(rocks=True) > 0, fractions, 0.0)
+        fractions = np.maximum(changed.fractions(state=target.state), hidden)
+        could = np.where(changed.fractions(state=ROCKS) > 0, fractions, 0.0)
         return target.of(changed.intensity_levels.levels, could, -shift)
 
     def least(changed: ObjectOutcomes, shift: float = 0.0) -> float:
-        fractions = np.minimum(changed.fractions(rocks=target.rocks), 1 - hidden)
+        fractions = np.minimum(changed.fractions(state=target.state), 1 - hidden)
         return target.of(changed.intensity_levels.levels, fractions, shift)
 
     if math.isinf(target.certain):
@@ -433,7 +434,7 @@ def estimate_rocking(
         Whether the level alone decides, as a peak acceleration of what it stands on does; other earthquakes then
         say the same.
     """
-    target = fraction_target(level, rocks=True)
+    target = fraction_target(level, state=ROCKS)
     found = estimate(target, outcomes, moved, {}, {})
     if 0 < found.value < 1:
         return found

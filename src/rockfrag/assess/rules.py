@@ -54,6 +54,10 @@ def check_rules(objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes) 
         The motions, as they shake it.
     outcomes
         Its outcomes.
+
+    Returns
+    -------
+    A :class:`RuleCheck` for each rule that applies to the object.
     """
     simulated = first_scales(outcomes)
     found = []

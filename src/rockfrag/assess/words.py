@@ -119,7 +119,7 @@ def headline(found: Assessment) -> str:
         half = found.amplitudes[0.5].value
         if not math.isfinite(half):
             return f"{name}: no shaking that was tried topples it in half of the motions"
-        return f"{name}: half of the motions topple it at {found.measure.name} {half:.2g} {found.measure.unit}"
+        return f"{name}: half of the motions topple it at {found.measure.imt} {half:.2g} {found.measure.unit}"
     at = found.level.words
     if does_not_move(found):
         return f"{name} does not move at {at}"
@@ -164,18 +164,23 @@ def at_the_site(found: Assessment) -> str:
     if found.rocking.value == 0:
         return f"{who} {_at_rest(found, at)}"
     rocks = f"{_counted(found, ROCK)} it rock"
+    topples = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}"
     if found.fraction.value == 0:
-        return (
-            f"{who} is unlikely to topple {at}: none of {_total(found)} motions topples it (upper limit "
-            f"{fraction_words(found.fraction.upper)}); {rocks}."
+        topples = (
+            f"none of {_total(found)} motions topples it (upper limit "
+            f"{fraction_words(found.fraction.upper)})"
         )
-    said = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}; {rocks}."
+    said = f"{topples}; {rocks}."
     if not_decidable(found):
         whether = f"Whether {found.request.name} {_where(found)} topples {at}"
         return (
             f"{whether} is not decidable with what was given: {said} {_would_narrow(found)}".strip()
         )
-    may = "is likely to topple" if found.fraction.value >= MANY else "may topple"
+    may = "may topple"
+    if found.fraction.value >= MANY:
+        may = "is likely to topple"
+    elif found.fraction.value == 0:
+        may = "is unlikely to topple"
     return f"{who} {may} {at}: {said}"
 
 
@@ -198,7 +203,7 @@ def _at_rest(found: Assessment, at: str) -> str:
 def _starts(found: Assessment) -> str:
     if not math.isfinite(found.rocks_from):
         return "more than was tried"
-    return f"{found.measure.name} {found.rocks_from:.2g} {found.measure.unit}"
+    return f"{found.measure.imt} {found.rocks_from:.2g} {found.measure.unit}"
 
 
 def _total(found: Assessment) -> int:
@@ -239,7 +244,7 @@ def _narrowing(better: Narrowed) -> str:
 
 def _amplitudes(found: Assessment) -> str:
     tenth, half = (found.amplitudes[p] for p in (0.1, 0.5))
-    name, unit = found.measure.name, found.measure.unit
+    name, unit = found.measure.imt, found.measure.unit
     starts = f"it starts to rock at {_starts(found)}; "
     if not math.isfinite(tenth.value):
         return f"{starts}even the strongest shaking that was tried topples it in fewer than one in ten motions."
@@ -311,8 +316,8 @@ def safest(found: Assessment) -> str:
 
 def worst_direction(found: Assessment) -> str:
     """In which plane it rocks, and whether the worst direction is counted."""
-    if found.request.objects.round:
-        return "The base is round; it rolls in space under both components of each record, and falls anywhere."
+    if found.motions.both:
+        return _in_space(found)
     plane = f"It rocks {found.request.objects.plane}."
     directions = found.directions
     if directions is None or not math.isfinite(directions.factor):
@@ -323,17 +328,32 @@ def worst_direction(found: Assessment) -> str:
     )
 
 
+def _in_space(found: Assessment) -> str:
+    """That it is simulated in space, and what one plane would say beside it."""
+    is_round = found.request.objects.round
+    words = "The base is round; it rolls" if is_round else "It rocks, turns and walks"
+    words += " in space under both components of each record"
+    if found.planar is None:
+        return f"{words}."
+    return (
+        f"{words}, which counts; in one plane, along one component, it would be "
+        f"{_position_value(found, found.planar)}."
+    )
+
+
 def helps(found: Assessment) -> str:
     """Changes that help, most helpful first."""
     if not found.mitigations:
         return "Nothing was tried."
     target = found.main
     if target.value == 0:
+        if not_decidable(found):
+            return "None of the motions topples it as it stands, so none can show what a change is worth."
         return "No change is needed for this: none of the motions topples it as it stands."
     best = [mitigation for mitigation in found.mitigations if mitigation.helps][:3]
     if not best:
         return "None of the changes that were tried helps."
-    return _capital("; ".join(mitigation_words(found, item) for item in best)) + "."
+    return _capital("; ".join(mitigation_words(found, mitigation) for mitigation in best)) + "."
 
 
 def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
@@ -357,7 +377,7 @@ def _limits(mitigation: Mitigation, sign: int) -> str:
     """Limits of a reduction (1) or a gain (-1) in per cent."""
     if not math.isfinite(mitigation.lower):
         return ""
-    low, high = sorted(sign * 100 * (1 - item) for item in (mitigation.lower, mitigation.upper))
+    low, high = sorted(sign * 100 * (1 - limit) for limit in (mitigation.lower, mitigation.upper))
     return f" ({low:.0f} to {high:.0f} %)".replace("-", "−")
 
 
@@ -385,7 +405,9 @@ def uncertainty(found: Assessment) -> list[str]:
 
 def main_assumptions(found: Assessment) -> list[str]:
     """What was assumed that matters most, a sentence each."""
-    return [item.words for item in all_assumed(found) if item.short][:MOST_ASSUMPTIONS]
+    return [assumption.words for assumption in all_assumed(found) if assumption.short][
+        :MOST_ASSUMPTIONS
+    ]
 
 
 def _listed(words: list[str]) -> str:
@@ -402,7 +424,7 @@ def _assumed(found: Assessment) -> list[str]:
 
 def _main_assumptions(found: Assessment) -> tuple[list[str], int]:
     """What matters most, in a few words each, and how many more there are."""
-    lines = [item for item in all_assumed(found) if item.short]
+    lines = [assumption for assumption in all_assumed(found) if assumption.short]
     return [line.short for line in lines[:MOST_ASSUMPTIONS]], max(0, len(lines) - MOST_ASSUMPTIONS)
 
 
@@ -420,12 +442,13 @@ def all_assumed(found: Assessment) -> list[Assumption]:
 def assumptions(found: Assessment) -> list[str]:
     """Sentences of all that was assumed and of all that a reader must know."""
     request = found.request
-    lines = [item.words for item in all_assumed(found)]
+    lines = [assumption.words for assumption in all_assumed(found)]
     if request.place.building is not None:
         lines.append(
             "The building stays elastic; one that cracks shakes its floors less strongly and more slowly."
         )
-    lines.append("It rocks in one plane on sharp rigid edges.")
+    if not found.motions.both:
+        lines.append("It rocks in one plane on sharp rigid edges.")
     if found.directions is not None and math.isfinite(found.directions.factor):
         lines.append(
             "Motions come in the direction in which they were recorded, at random. The worst direction is not "
@@ -445,7 +468,7 @@ def assumptions(found: Assessment) -> list[str]:
     if found.conversion:
         lines.append(found.conversion.words)
     if found.hazard:
-        lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.name}.")
+        lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.imt}.")
     factor = found.counted.intensity_levels.allowed.mean()
     lines.append(
         f"Motions are scaled by {1 / LARGEST_FACTOR:g} to {LARGEST_FACTOR:g} at most, which admits "
@@ -469,24 +492,25 @@ def quality_flags(found: Assessment) -> list[str]:
     if found.hazard is not None:
         strong = float(found.hazard.level(1 / 475))
         least, most = {"PGA": (0.01, 2.0), "SA": (0.01, 6.0), "PGV": (0.5, 250.0)}[
-            found.measure.kind
+            found.measure.openquake
         ]
         if not least <= strong <= most:
             lines.append(
                 f"The hazard's level of 475 years, {strong:.2g} {found.measure.unit}, is unusual; check its unit."
             )
-    if found.request.objects.round and not found.motions.pairs:
+    if found.request.objects.in_space and not found.motions.pairs:
         lines.append(
-            "No record has two components; the round base was shaken by one, which may understate what it feels."
+            "No record has two components; it was shaken by one, which may understate what it feels."
         )
     if found.outcomes.light:
         lines.append(
-            "Under the strongest shaking that was tried a squat body may leave the ground, which this model "
-            "does not let it."
+            f"Under the strongest shaking that was tried, {found.measure.imt} "
+            f"{found.outcomes.intensity_levels.levels[-1]:.2g} {found.measure.unit}, a body may leave the ground, "
+            "which this model does not let it."
         )
     for earthquake, fraction in _influential(found):
         lines.append(
-            f"{fraction:.0%} of the motions that topple it at that level are of {earthquake}."
+            f"{100 * fraction:.0f} % of the motions that topple it at that level are of {earthquake}."
         )
     return lines
 

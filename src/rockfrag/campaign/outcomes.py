@@ -7,11 +7,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.campaign.trials import Trials
+from rockfrag.engines.spatial import run_in_space
+from rockfrag.outcomes.outcomes import Outcomes
+from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
+from rockfrag.rocking.inputs import checked_threads
+from rockfrag.system.system import System
 
 BATCH = 50
 """Motions simulated between two reports of progress."""
+
+
+def shaken(systems: Sequence[System], motions: Sequence[Motion], threads: int | None) -> Outcomes:
+    """Return outcomes of planar bodies, or of bodies in space, under one component each."""
+    if systems[0].planar:
+        return overturns(systems, motions, threads=threads)
+    shaking = [GroundMotion(motion) for motion in motions]
+    return run_in_space(systems, shaking, threads=checked_threads(threads))
 
 
 def simulate_tests(
@@ -43,7 +56,7 @@ def simulate_tests(
         with warnings.catch_warnings():
             # a guess may be squat where the object is not
             warnings.simplefilter("ignore", LightBodies)
-            result = overturns(trials.systems, batch, threads=threads)
+            result = shaken(trials.systems, batch, threads)
         overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
         rocked[:, first : first + len(batch)] = result.peak_rotation[:, :, 0, 0] > 0
         done(first + len(batch))

@@ -19,13 +19,14 @@ from rockfrag.rocking.measured_restitution import largest_restitution
 from rockfrag.rocking.options import system_of
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
+from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.mesh import Shape
 from rockfrag.system.system import System
 
-UNKNOWNS = ("direction_deg", "contact_tolerance_mm", "edge_retreat_mm", "restitution")
+UNKNOWNS = ("direction_deg", "contact_tolerance_mm", "edge_retreat_mm", "restitution", "friction")
 """What may be given as a range: direction of shaking from the mesh's x axis, height above the lowest point up
-to which points carry, distance by which edges lie further in, and ratio of angular velocities in an impact
-(values above the one that conserves momentum stand for that)."""
+to which points carry, distance by which edges lie further in, and in the plane the ratio of angular velocities in
+an impact (values above the one that conserves momentum stand for that), in space the coefficient of friction."""
 
 _LOGARITHMIC = ("contact_tolerance_mm",)
 
@@ -62,7 +63,8 @@ def sample_trials(
     thing
         The object: a shape, or the planar block itself where its edges were measured.
     ranges
-        Lowest and highest value of each of :data:`UNKNOWNS`; for a block without direction and tolerance.
+        Lowest and highest value of each of :data:`UNKNOWNS`; for a block without direction and tolerance. A shape
+        with ``friction`` instead of ``restitution`` is a body in space.
     count
         Number of guesses; a power of two fills the ranges most evenly.
     seed
@@ -84,11 +86,9 @@ def sample_trials(
         guess = {name: _value(name, ranges[name], u) for name, u in zip(names, point, strict=True)}
         try:
             block = block_of(thing, guess)
+            systems.append(_standing(thing, block, guess))
         except InputError:
             continue
-        systems.append(
-            system_of(block, restitution=possible_restitution(block, guess["restitution"]))
-        )
         angle = min(block.critical_angle(+1), block.critical_angle(-1))
         rows.append(
             {
@@ -104,6 +104,15 @@ def sample_trials(
             "or lower edge_retreat_mm."
         )
     return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows))
+
+
+def _standing(thing: Shape | Block, block: Block, guess: Mapping[str, float]) -> System:
+    """What stands on the table: a planar block, or the shape in space on the points that carry."""
+    if isinstance(thing, Shape) and "friction" in guess:
+        tolerance, retreat = guess["contact_tolerance_mm"] / 1e3, guess["edge_retreat_mm"] / 1e3
+        body = thing.body(guess["direction_deg"], tolerance, retreat)
+        return System((body,), (Contact(friction=Friction(guess["friction"], guess["friction"])),))
+    return system_of(block, restitution=possible_restitution(block, guess["restitution"]))
 
 
 OUTER, CROWDED = 0.1, 0.25
@@ -174,7 +183,7 @@ def _value(name: str, limits: tuple[float, float], fraction: float) -> float:
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:
-    """Restitution above the value that conserves momentum is that value, None.
+    """Return a restitution that gains no energy: as given, or None, which conserves momentum, where it would.
 
     Parameters
     ----------

@@ -287,7 +287,7 @@ def run_cases(cases: Cases) -> Outcomes:
     chosen = [_engine_of(cases, system) for system in cases.systems]
     parts = []
     for engine in dict.fromkeys(chosen):
-        rows = [i for i, item in enumerate(chosen) if item is engine]
+        rows = [i for i, choice in enumerate(chosen) if choice is engine]
         some = replace(cases, systems=tuple(cases.systems[i] for i in rows))
         parts.append((rows, engine.run(some)))
     if len(parts) == 1:

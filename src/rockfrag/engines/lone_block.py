@@ -27,12 +27,13 @@ class LoneBlock:
         from rockfrag.engines.kernels.lanes import block
         from rockfrag.engines.kernels.lanes.case import OUTCOME, Ensemble
         from rockfrag.engines.lanes import integrate, sampled, write_lanes
+        from rockfrag.engines.records import body_record
 
         g = cases.request.g
         motions, rows, intervals = sampled(cases, 1.0)
         pivots = np.empty((*intervals.shape, 2), block.PIVOT)
         for i, system in enumerate(cases.systems):
-            pivots[i] = _pivots(system, g, block.PIVOT)
+            pivots[i] = _pivots(body_record(system, g=g), block.PIVOT)
         pivots["swing"] *= intervals[:, :, np.newaxis] ** 2
         pivots["per_swing"] /= intervals[:, :, np.newaxis] ** 2
         count = len(cases.systems) * cases.scales.size
@@ -57,13 +58,14 @@ class LoneBlock:
         raise NotImplementedError
 
 
-def _pivots(system: System, g: float, dtype: np.dtype[np.void]) -> NDArray[np.void]:
-    """Constants of a body's right and left pivot, with p² where p² dt² belongs."""
+def _pivots(body: np.void, dtype: np.dtype[np.void]) -> NDArray[np.void]:
+    """Constants of a body's right and left pivot from its record, with p² where p² dt² belongs."""
     pivots = np.empty(2, dtype)
-    shape, law = system.shapes[0], system.contacts[0].law
-    for at, pivot in ((0, +1), (1, -1)):
+    shape = geometry.Shape(*(float(body[name]) for name in ("b2", "m2", "i2", "c2x", "c2y")))
+    # of the impact that ends rocking on a pivot and comes down on the other
+    for at, pivot, after in ((0, +1, body["after2l"]), (1, -1, body["after2r"])):
         alpha, arm = geometry.critical_angle(shape, pivot), geometry.arm(shape, pivot)
-        frequency = geometry.frequency(shape, pivot, g)
+        frequency = geometry.frequency(shape, pivot, float(body["gravity"]))
         swing, aside, radius = (
             frequency * frequency,
             -pivot * arm[0],
@@ -73,10 +75,8 @@ def _pivots(system: System, g: float, dtype: np.dtype[np.void]) -> NDArray[np.vo
             raise InputError(
                 "body: lengths, mass and inertia are too far apart; check their units."
             )
-        # of the impact that ends rocking on this pivot and comes down on the other
-        e = geometry.momentum_restitution(shape, -pivot)
-        if law.name != "momentum":
-            e = law.left if pivot > 0 else law.right
+        by_momentum = geometry.momentum_restitution(shape, -pivot)
+        e = float(after["value"]) if body["measured"] else by_momentum
         pivots[at] = (
             alpha, aside / arm[1], aside / radius, arm[1] / radius, swing, e, 1 / alpha,
             1 / (swing * alpha * alpha),

@@ -4,10 +4,6 @@ from .censored import (
     brackets_from_table as brackets_from_table,
     fit_brackets as fit_brackets,
 )
-from .discrete_hazard import (
-    StepHazard as StepHazard,
-    fit_step_hazard as fit_step_hazard,
-)
 from .empirical import (
     local_fraction as local_fraction,
     fraction_in_bins as fraction_in_bins,
@@ -46,15 +42,7 @@ from .observations import (
     Observations as Observations,
     observations_from_table as observations_from_table,
 )
-from .seismic_hazard import (
-    OverturningRate as OverturningRate,
-    overturning_rate as overturning_rate,
-)
 from .simcenter import write_simcenter as write_simcenter
-from .states import (
-    ThreeStates as ThreeStates,
-    fit_three_states as fit_three_states,
-)
 from .surface import (
     FragilitySurface as FragilitySurface,
     fit_surface as fit_surface,
@@ -70,10 +58,6 @@ from .tests_file import read_tests as read_tests
 from .user_table import (
     UserFragility as UserFragility,
     fit_user_table as fit_user_table,
-)
-from .variance import (
-    VarianceSplit as VarianceSplit,
-    split_variance as split_variance,
 )
 from .vector import (
     Interaction as Interaction,

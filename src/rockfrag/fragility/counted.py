@@ -87,7 +87,7 @@ class CountedObservations(Observations):
         return Observations(values, fell, trials, labels, labels, self.name, self.unit)
 
     def group_weights(self, weights: Floats) -> Floats:
-        """Weights of the blocks from those of motions or earthquakes, which are equal within a block."""
+        """Weights of the blocks of motions, all of whose motions or earthquakes must weigh the same."""
         assert self.block is not None
         first = np.unique(self.block, return_index=True)[1]
         found = weights[:, first]

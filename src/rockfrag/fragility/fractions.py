@@ -45,7 +45,7 @@ class Fractions:
     im
         Values of the measure, rising, shape (n,).
     fraction
-        Share at each of them, never falling, shape (n,).
+        Fraction at each of them, never falling, shape (n,).
     lower, upper
         Pointwise limits, shape (n,); NaN where there is but one group.
     theta, theta_limits

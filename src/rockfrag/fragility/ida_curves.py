@@ -28,7 +28,7 @@ def scale_power(measure: str) -> int:
     """
     found = measure_of(measure)
     if found is None:
-        known = ", ".join(dict.fromkeys(item.name for item in declared()))
+        known = ", ".join(dict.fromkeys(measure.name for measure in declared()))
         raise InputError(
             f"measure {measure!r}: it is not known how it grows with the amplitude of a scaled motion; choose "
             f"one of {known}, with a unit behind it."

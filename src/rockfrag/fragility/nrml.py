@@ -44,7 +44,11 @@ def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
     """
     measure = measure_labelled(name)
     if measure is None or not measure.openquake or name == measure.floor_label:
-        known = ", ".join(dict.fromkeys(item.openquake for item in declared() if item.openquake))
+        known = ", ".join(
+            dict.fromkeys(
+                each_measure.openquake for each_measure in declared() if each_measure.openquake
+            )
+        )
         raise InputError(
             f"NRML: {name} is no intensity measure of ground motion in OpenQuake; export curves in one of {known}."
         )
@@ -53,8 +57,7 @@ def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
         raise InputError(
             f"NRML: {name} in {unit or 'no unit'} cannot be converted; use {' or '.join(factors)}."
         )
-    period = "" if measure.period is None else f"({measure.period:g})"
-    return measure.openquake + period, factors[unit]
+    return measure.imt, factors[unit]
 
 
 def lognormal_moments(theta: float, beta: float) -> tuple[float, float]:
@@ -165,9 +168,9 @@ def model_text(
 def said_once(notes: Sequence[str]) -> list[str]:
     """Sentences of several warnings, each once, without what is said of a single rejected curve."""
     sentences = [
-        item
+        sentence
         for note in notes
-        for item in re.split(r"(?<=\.)\s+(?=[A-Z])", REJECTION.sub("", note).strip())
+        for sentence in re.split(r"(?<=\.)\s+(?=[A-Z])", REJECTION.sub("", note).strip())
     ]
     return [sentence for sentence in dict.fromkeys(sentences) if sentence]
 

@@ -114,7 +114,7 @@ class Observations(Grouped):
         return self
 
     def group_weights(self, weights: Floats) -> Floats:
-        """Weights of the groups that rows are labelled with from those of motions or earthquakes."""
+        """Weights of the groups of rows: those of the motions or earthquakes, as each group is one."""
         return weights
 
     def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:

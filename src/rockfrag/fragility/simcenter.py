@@ -27,11 +27,11 @@ BEYOND = 2.0
 
 def _demands() -> dict[str, tuple[str, dict[str, str]]]:
     """Name and units of each demand, by what curves call the measure at the ground and on a floor."""
-    known = [item for item in declared() if item.demand]
+    known = [measure for measure in declared() if measure.demand]
     return {
-        label: (f"Peak {place} {item.demand}", _UNITS[item.unit])
-        for item in known
-        for label, place in ((item.label, "Ground"), (item.floor_label, "Floor"))
+        label: (f"Peak {place} {measure.demand}", _UNITS[measure.unit])
+        for measure in known
+        for label, place in ((measure.label, "Ground"), (measure.floor_label, "Floor"))
         if label
     }
 

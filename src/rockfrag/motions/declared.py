@@ -98,8 +98,29 @@ class IntensityMeasure:
         name, label = f"{self.name}_{digits}s", f"{self.label}({period:g}s)"
         return replace(self, name=name, label=label, period=period)
 
+    @property
+    def imt(self) -> str:
+        """Name in hazard models, as OpenQuake writes it: ``PGA``, ``SA(0.3)``."""
+        return self.openquake if self.period is None else f"{self.openquake}({self.period:g})"
+
+    def of_motion(self, motion: Motion, damping: float = 0.05) -> float:
+        """Return its value of a motion, in its unit.
+
+        Parameters
+        ----------
+        motion
+            What to measure.
+        damping
+            Damping of what is spectral [-].
+        """
+        if self.period is not None:
+            from rockfrag.motions.spectra import response_spectrum
+
+            return float(self.of(response_spectrum(motion, [self.period], damping))[0])
+        return float(self.of(motion if self.shared is None else self.shared(motion, damping)))
+
     def of(self, subject: Any) -> Any:
-        """Return its value of a motion, or of what measures fraction of it, in its unit."""
+        """Return its value of a motion, or of what several measures share of it, in its unit."""
         value = self.value(subject)
         if self.unit == "g":
             return value / GRAVITY
@@ -162,14 +183,14 @@ def intensity_measures(
 ) -> tuple[IntensityMeasure, ...]:
     """Return the measures that a table of motions has, in its order, spectral ones at these periods [s]."""
     found: list[IntensityMeasure] = []
-    spectral = [item for item in declared() if item.spectral]
-    for item in declared():
-        if item.of_block or item in spectral[1:]:
+    spectral = [measure for measure in declared() if measure.spectral]
+    for measure in declared():
+        if measure.of_block or measure in spectral[1:]:
             continue
         found += (
             [each.at(period) for period in periods for each in spectral]
-            if item.spectral
-            else [item]
+            if measure.spectral
+            else [measure]
         )
     return tuple(found)
 
@@ -214,9 +235,9 @@ def measure_of(column: str) -> IntensityMeasure | None:
 def measure_labelled(label: str) -> IntensityMeasure | None:
     """Return the measure of a label: ``PGA``, ``SA(0.3s)`` or, of a floor, ``PFA``; None if there is none."""
     kind, _, rest = label.partition("(")
-    for item in declared():
-        if label in (item.label, item.floor_label):
-            return item
-        if item.spectral and kind == item.label and rest.endswith("s)"):
-            return item.at(float(rest.removesuffix("s)")))
+    for measure in declared():
+        if label in (measure.label, measure.floor_label):
+            return measure
+        if measure.spectral and kind == measure.label and rest.endswith("s)"):
+            return measure.at(float(rest.removesuffix("s)")))
     return None

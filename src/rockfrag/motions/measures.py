@@ -192,7 +192,11 @@ def measure_pair(
     def all_measures(motion: Motion) -> dict[str, float]:
         spectral = _spectral(motion, periods, damping)
         return {
-            **{item.column: item.of(motion) for item in declared() if item.name in ("pga", "pgv")},
+            **{
+                measure.column: measure.of(motion)
+                for measure in declared()
+                if measure.name in ("pga", "pgv")
+            },
             **{name: value for name, value in spectral.items() if name.startswith("sa_")},
         }
 
@@ -208,7 +212,7 @@ def _spectral(motion: Motion, periods: Sequence[float], damping: float) -> dict[
     if not periods:
         return {}
     spectrum = response_spectrum(motion, periods, damping)
-    families = [item for item in declared() if item.spectral]
+    families = [measure for measure in declared() if measure.spectral]
     return {
         family.at(period).column: float(family.of(spectrum)[i])
         for i, period in enumerate(spectrum.period.tolist())

@@ -19,6 +19,9 @@ Predicate = Callable[[Outcomes], NDArray[np.bool_]]
 OVERTURNS = "overturns"
 """Name of the limit state that every IDA curve counts."""
 
+ROCKS = "rocks"
+"""Name of the limit state that begins at an exactly known acceleration."""
+
 VISIBLE = 0.001
 """Slip above which a body counts as having slid [m]: a displacement that one sees."""
 
@@ -125,7 +128,7 @@ def forget_limit_state(name: str) -> None:
 
 
 @limit_state(
-    "rocks",
+    ROCKS,
     order=10,
     label="rocking",
     damage="Rocks and may be displaced",

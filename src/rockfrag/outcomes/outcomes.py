@@ -183,14 +183,14 @@ class Outcomes:
             ``peak_slip_contact_1_m``.
         """
         found = {}
-        for item in (each for each in columns() if each.name in columns_of):
-            values = getattr(self, item.name)[system]
-            if item.table == "cases":
-                found[item.title] = values.ravel()
+        for known in (each for each in columns() if each.name in columns_of):
+            values = getattr(self, known.name)[system]
+            if known.table == "cases":
+                found[known.title] = values.ravel()
                 continue
-            part = "body" if item.table == "bodies" else "contact"
+            part = "body" if known.table == "bodies" else "contact"
             for k in range(self.counts[system]):
-                name = f"{item.name}_{part}_{k + 1}{SUFFIXES[item.unit]}"
+                name = f"{known.name}_{part}_{k + 1}{SUFFIXES[known.unit]}"
                 found[name] = values[..., k].ravel()
         return found
 
@@ -213,13 +213,15 @@ class Outcomes:
         under body k) and ``name`` of that body, and the columns of :func:`columns`, with their units in the names;
         of cases ``engine`` too.
         """
-        chosen = [item for item in columns(which) if columns_of is None or item.name in columns_of]
+        chosen = [
+            known for known in columns(which) if columns_of is None or known.name in columns_of
+        ]
         shape = self.shape
         system = np.arange(shape[0])[:, np.newaxis, np.newaxis]
         motion = np.arange(shape[1])[:, np.newaxis]
         made: dict[str, Any] = {"system": system, "motion": motion, "scale": self.scales}
         if which == "cases":
-            made |= {item.title: getattr(self, item.name) for item in chosen}
+            made |= {known.title: getattr(self, known.name) for known in chosen}
             made["engine"] = np.array(self.engines, dtype=object)[self.engine]
             return pd.DataFrame(
                 {name: np.broadcast_to(values, shape).ravel() for name, values in made.items()}
@@ -230,7 +232,7 @@ class Outcomes:
         made["body" if which == "bodies" else "contact"] = np.arange(1, most + 1)
         padded = [[*names, *[""] * (most - len(names))] for names in self.names]
         made["name"] = np.array(padded, dtype=object)[:, np.newaxis, np.newaxis, :]
-        made |= {item.title: getattr(self, item.name) for item in chosen}
+        made |= {known.title: getattr(self, known.name) for known in chosen}
         there = np.arange(most) < np.array(self.counts)[:, np.newaxis, np.newaxis, np.newaxis]
         rows = np.broadcast_to(there, full).ravel()
         return pd.DataFrame(
@@ -265,10 +267,10 @@ def empty_outcomes(
     shape = (len(names), *scales.shape)
     most = max((len(each) for each in names), default=0)
     arrays = {
-        item.name: np.full(
-            shape if item.table == "cases" else (*shape, most), item.empty, item.dtype
+        known.name: np.full(
+            shape if known.table == "cases" else (*shape, most), known.empty, known.dtype
         )
-        for item in columns()
+        for known in columns()
     }
     return Outcomes(
         names=tuple(tuple(each) for each in names),
@@ -294,9 +296,9 @@ def merge_outcomes(into: Outcomes, rows: Sequence[int], found: Outcomes) -> None
     place = np.asarray(rows, dtype=np.intp)
     numbers = np.array([into.engines.index(name) for name in found.engines], dtype=np.int8)
     into.engine[place] = numbers[found.engine]
-    for item in columns():
-        values = getattr(found, item.name)
-        if item.table == "cases":
-            getattr(into, item.name)[place] = values
+    for known in columns():
+        values = getattr(found, known.name)
+        if known.table == "cases":
+            getattr(into, known.name)[place] = values
         else:
-            getattr(into, item.name)[place, ..., : values.shape[-1]] = values
+            getattr(into, known.name)[place, ..., : values.shape[-1]] = values

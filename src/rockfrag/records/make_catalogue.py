@@ -204,12 +204,12 @@ def _without_copies(
 
     def worth(number: int) -> tuple[int, bool, int]:
         group = groups[number]
-        return -len(_horizontal(group)), any(item.container for item in group), number
+        return -len(_horizontal(group)), any(component.container for component in group), number
 
     kept = []
     for number in sorted(range(len(groups)), key=worth):
         told = _horizontal(groups[number]) or groups[number]
-        if all(item.digest in seen for item in told):
+        if all(component.digest in seen for component in told):
             for first in groups[number]:
                 other = seen.get(first.digest, "")
                 draft.note(first.file, f"the same record as {other or told[0].file}; left out")
@@ -221,7 +221,7 @@ def _without_copies(
 
 
 def _horizontal(group: Sequence[Component]) -> list[Component]:
-    return [item for item in group if not item.is_vertical]
+    return [component for component in group if not component.is_vertical]
 
 
 def _note_names_of_one_day(rows: Sequence[dict[str, Any]], draft: CatalogueDraft) -> None:
@@ -355,8 +355,8 @@ def _peer_rows(
 
     horizontal = [component(listed.first), component(listed.second)]
     vertical = component(listed.vertical)
-    for name, item in zip((listed.first, listed.second), horizontal, strict=True):
-        if name and item is None:
+    for name, side in zip((listed.first, listed.second), horizontal, strict=True):
+        if name and side is None:
             draft.note(f"RSN{listed.number}", f"{name} is listed but not among the files")
     facts = {
         "earthquake": f"{listed.earthquake} {listed.year}".strip(),
@@ -366,12 +366,12 @@ def _peer_rows(
         "distance_km": listed.distance_km,
         "scale_factor": listed.scale_factor if listed.scale_factor != 1 else None,
     }
-    there = [item for item in horizontal if item is not None]
-    used.update(item.file for item in (*there, *([vertical] if vertical else [])))
+    there = [component for component in horizontal if component is not None]
+    used.update(component.file for component in (*there, *([vertical] if vertical else [])))
     return [
-        _row(item, next((o for o in there if o is not item), None), vertical, draft)
+        _row(component, next((o for o in there if o is not component), None), vertical, draft)
         | {key: value for key, value in facts.items() if value not in ("", None)}
-        for item in there
+        for component in there
     ]
 
 
@@ -399,24 +399,26 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
     left = list(components)
     for key in (in_file, in_name, in_time):
         by_key: dict[object, list[Component]] = {}
-        for item in left:
-            named = key(item)
+        for component in left:
+            named = key(component)
             if named is not None:
-                by_key.setdefault(named, []).append(item)
+                by_key.setdefault(named, []).append(component)
         for several in by_key.values():
-            group = list({item.digest: item for item in reversed(several)}.values())[::-1]
+            group = list({component.digest: component for component in reversed(several)}.values())[
+                ::-1
+            ]
             if _is_record(group):
                 groups.append(group)
-                left = [item for item in left if item not in group]
-    groups += [[item] for item in left]
+                left = [component for component in left if component not in group]
+    groups += [[component] for component in left]
     order = {component.file: number for number, component in enumerate(components)}
     return sorted(groups, key=lambda group: order[group[0].file])
 
 
 def _is_record(group: Sequence[Component]) -> bool:
     """Tell whether components are two horizontals at a right angle and at most one vertical."""
-    flat = [item for item in group if not item.is_vertical]
-    if len(flat) == 3 and sorted(item.suffix for item in flat) == ["1", "2", "3"]:
+    flat = [component for component in group if not component.is_vertical]
+    if len(flat) == 3 and sorted(component.suffix for component in flat) == ["1", "2", "3"]:
         return False
     if len(flat) != 2 or len(group) > 3 or abs(flat[0].dt - flat[1].dt) > 1e-9:
         return False
@@ -428,14 +430,15 @@ def _is_record(group: Sequence[Component]) -> bool:
 
 
 def _rows_of(group: Sequence[Component], draft: CatalogueDraft) -> list[dict[str, Any]]:
-    flat = [item for item in group if not item.is_vertical]
-    upright = next((item for item in group if item.is_vertical), None)
+    flat = [component for component in group if not component.is_vertical]
+    upright = next((component for component in group if component.is_vertical), None)
     if not flat and upright is not None:
         draft.note(upright.file, "a vertical component of no record here; left out")
     if len(flat) == 1:
         draft.note(flat[0].file, "its other horizontal component was not found")
     return [
-        _row(item, next((o for o in flat if o is not item), None), upright, draft) for item in flat
+        _row(component, next((o for o in flat if o is not component), None), upright, draft)
+        for component in flat
     ]
 
 

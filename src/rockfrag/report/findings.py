@@ -202,7 +202,7 @@ def _fallen(tests: pd.DataFrame) -> list[str]:
 
 
 def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> list[Finding]:
-    """Say whether more slender objects overturn earlier, where there are two of them or more."""
+    """Say whether more slender objects overturn at lower amplitudes, where there are two of them or more."""
     rows = means[(means["by"] == "configuration") & means["mean_g"].notna()]
     parts, falling, most = [], [], 0
     for side, words in (("NP", "alone"), ("P", "on a pedestal")):
@@ -223,7 +223,7 @@ def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> l
     if not parts:
         return []
     headline = (
-        "More slender objects overturn earlier"
+        "More slender objects overturn at lower amplitudes"
         if all(falling)
         else "The overturning amplitude does not simply follow slenderness"
     )

@@ -33,12 +33,12 @@ def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
     goodness = [
         {
             "measure": measure,
-            "deviance": item.deviance,
-            "p_value": item.p_value,
-            "brier": item.brier,
-            "finding": item.words,
+            "deviance": goodness.deviance,
+            "p_value": goodness.p_value,
+            "brier": goodness.brier,
+            "finding": goodness.words,
         }
-        for measure, item in found.goodness.items()
+        for measure, goodness in found.goodness.items()
     ]
     columns = ["measure", "deviance", "p_value", "brier", "finding"]
     return {
@@ -140,8 +140,8 @@ def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, Figu
         )
     doubtful = [
         found.fits[measure].fit.im
-        for measure, item in found.goodness.items()
-        if item.p_value < 0.05
+        for measure, goodness in found.goodness.items()
+        if goodness.p_value < 0.05
     ]
     if found.goodness:
         sentences.append(

@@ -7,11 +7,12 @@ from importlib.metadata import version
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import Motion
-from rockfrag.report.live import AMPLITUDES_G, MOST_BODIES, live_kernel, swept
+from rockfrag.report.live import AMPLITUDES_G, live_kernel, swept
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding
 from rockfrag.report.wording import counted, number, sentence
 from rockfrag.rocking import simulate
+from rockfrag.rocking.browser import in_page
 from rockfrag.system.blocks import SystemLike, as_system
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
@@ -40,7 +41,7 @@ def write_play_page(body: SystemLike, motion: Motion, path: str | os.PathLike[st
         If the record is too long, or zero throughout, or there are more than two blocks.
     """
     system = as_system(body)
-    if system.count > MOST_BODIES:
+    if not in_page(system):
         raise InputError(
             "--pedestal: a page simulates two bodies on each other at most; rockfrag simulate takes more."
         )

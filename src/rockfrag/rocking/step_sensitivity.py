@@ -129,7 +129,7 @@ def find_step_size_sensitive(
 
 def _doubled(motion: GroundMotion) -> GroundMotion:
     """Sample a ground motion, which is zero one sample after its last, twice as densely."""
-    y, z = (None if item is None else _dense(item) for item in (motion.y, motion.z))
+    y, z = (None if component is None else _dense(component) for component in (motion.y, motion.z))
     return GroundMotion(_dense(motion.x), y, z)
 
 

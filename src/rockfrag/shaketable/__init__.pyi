@@ -1,4 +1,3 @@
-from .high_pass import filter_effect as filter_effect
 from .instruments import (
     Accelerometer as Accelerometer,
     Exact as Exact,

@@ -27,7 +27,9 @@ def floor_measures(level: int) -> tuple[str, ...]:
     They are those that other programs read: of the ground OpenQuake's, of a floor demands.
     """
     known = intensity_measures()
-    return tuple(item.column for item in known if (item.demand if level else item.openquake))
+    return tuple(
+        measure.column for measure in known if (measure.demand if level else measure.openquake)
+    )
 
 
 def floor_curves(

@@ -168,5 +168,9 @@ def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:
     """Name peaks for what they are where motions of several floors share a curve: of the base."""
     if not several_floors:
         return table
-    words = {item.label: f"peak base {item.demand.lower()}" for item in declared() if item.demand}
+    words = {
+        measure.label: f"peak base {measure.demand.lower()}"
+        for measure in declared()
+        if measure.demand
+    }
     return table.assign(im=table["im"].replace(words))

@@ -63,8 +63,8 @@ def _used() -> tuple[float, float]:
 
     both = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     unit = 2**20 if sys.platform == "darwin" else 2**10
-    seconds = sum(item.ru_utime + item.ru_stime for item in both)
-    return seconds, max(item.ru_maxrss for item in both) / unit
+    seconds = sum(usage.ru_utime + usage.ru_stime for usage in both)
+    return seconds, max(usage.ru_maxrss for usage in both) / unit
 
 
 def _log_to(path: str, log: logging.Logger) -> None:
@@ -92,7 +92,7 @@ def in_words(error: Exception) -> str:
     # PyArrow and others put the number of the system's error into their message
     number = getattr(error, "errno", None)
     text = " ".join(str(error).split())
-    if number in _FULL or any(os.strerror(item) in text for item in _FULL):
+    if number in _FULL or any(os.strerror(code) in text for code in _FULL):
         return (
             f"the disk is full or a limit of it is reached; free space, and run it again ({text})."
         )

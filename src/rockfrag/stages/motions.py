@@ -25,13 +25,13 @@ def run(job: Job[Study]) -> Results:
 
     study = job.study
     rows, felt, left_out = _felt(job)
-    records = [item.record for item in felt]
+    records = [record.record for record in felt]
     yield "motions/records", records
-    yield "motions/ground", [item.ground for item in felt]
-    floors = [floor for item in felt for floor in item.floors]
+    yield "motions/ground", [record.ground for record in felt]
+    floors = [floor for record in felt for floor in record.floors]
     yield "motions/floors", floors
     if study.vertical:
-        yield "motions/vertical", [floor for item in felt for floor in item.vertical]
+        yield "motions/vertical", [floor for record in felt for floor in record.vertical]
     if study.keep_going:
         yield LEFT_OUT, pd.DataFrame(left_out, columns=["motion", "reason"], dtype=str)
     if study.write_motions is not None:

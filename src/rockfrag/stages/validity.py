@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.records.motion import Motion
 from rockfrag.system.system import System
 
@@ -95,48 +96,39 @@ def _forces(
     threads: int,
 ) -> pd.DataFrame:
     """Forces of a configuration under motions as they are, a row each."""
-    if system.loose or system.count > 2:
-        return _forces_in_contact(system, motions, vertical)
     from rockfrag.rocking import overturns
 
-    found = overturns(
-        system,
-        motions,
-        vertical=vertical,
-        forces=True,
-        threads=threads,
-    )
+    if system.loose or system.count > 2:
+        found = _in_contact(system, motions, vertical)
+    else:
+        found = overturns(system, motions, vertical=vertical, forces=True, threads=threads)
     return pd.DataFrame(
         {
             "friction_demand": found.of_any("friction_demand")[0, :, 0],
             "least_normal_force_n": found.of_any("least_normal_force")[0, :, 0],
-            **found.wide(0, ("unstable_distance",)),
+            "peak_slip_m": found.of_any("peak_slip")[0, :, 0],
+            **found.wide(0, ("unstable_distance", "flights")),
         }
     )
 
 
-def _forces_in_contact(
+def _in_contact(
     system: System, motions: list[Motion], vertical: list[NDArray[np.float64]] | None
-) -> pd.DataFrame:
+) -> Outcomes:
+    """Outcomes with forces of what may slide, which histories alone tell."""
     from rockfrag.rocking import simulate
 
-    rows = []
+    found = empty_outcomes([system.names], np.ones((len(motions), 1)))
     for place, motion in enumerate(motions):
-        response = simulate(
-            system,
-            motion,
-            vertical=None if vertical is None else vertical[place],
-        )
-        rows.append(
-            {
-                "friction_demand": float(np.max(response.friction_demand)),
-                "least_normal_force_n": float(np.min(response.least_normal_force)),
-                "unstable_distance": response.unstable_distance,
-                "peak_slip_m": float(np.abs(response.slip).max()),
-                "flights": int((response.contact_events["kind"] == "flight").sum()),
-            }
-        )
-    return pd.DataFrame(rows)
+        up = None if vertical is None else vertical[place]
+        response = simulate(system, motion, vertical=up)
+        at = (0, place, 0)
+        found.friction_demand[at] = response.friction_demand
+        found.least_normal_force[at] = response.least_normal_force
+        found.peak_slip[at] = np.abs(response.slip).max(axis=0)
+        found.unstable_distance[at] = response.unstable_distance
+        found.flights[at] = (response.contact_events["kind"] == "flight").sum()
+    return found
 
 
 def sliding_table(files: Iterable[Path]) -> pd.DataFrame:

@@ -96,7 +96,7 @@ class CampaignStudy:
         named = (self.tests, self.other_codes, self.mesh)
         paths = [path for path in named if path is not None]
         paths += [Path(self.motions)] if self.motions.endswith(".npz") else []
-        fetched = {item.path for item in self.fetch}
+        fetched = {source.path for source in self.fetch}
         return [str(path) for path in paths if path not in fetched]
 
 
@@ -117,10 +117,10 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     content = checked(content, "campaign", str(source))
     campaign, thing = content[CAMPAIGN_KEY], content["object"]
     fetch = tuple(
-        PublicFile(item["url"], item["sha256"], _kept(source, i, item["file"]))
-        for i, item in enumerate(content.get("fetch", ()))
+        PublicFile(source["url"], source["sha256"], _kept(source, i, source["file"]))
+        for i, source in enumerate(content.get("fetch", ()))
     )
-    fetched = {item.path for item in fetch}
+    fetched = {source.path for source in fetch}
     _check_object(source, thing, content["unknowns"])
     _check_columns(source, campaign["columns"], isinstance(campaign["motions"], Mapping))
     conditioning = checked_steps(source, "conditioning", content.get("conditioning", ()))
@@ -208,6 +208,12 @@ _OF_A_MESH = ("direction_deg", "contact_tolerance_mm")
 
 def _check_object(source: Path, thing: Mapping[str, Any], unknowns: Mapping[str, Any]) -> None:
     where = f"{source}: key object"
+    of_space = "friction" in unknowns
+    if ("restitution" in unknowns) == of_space or (of_space and "mesh" not in thing):
+        raise InputError(
+            f"{source}: key unknowns: expected the range of restitution, of a planar body, or that of "
+            "friction, of a mesh in space."
+        )
     if "mesh" in thing:
         strange = [key for key in _BY_HAND if key in thing and key != "mass_kg"]
         if strange:

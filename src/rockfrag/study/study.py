@@ -157,9 +157,10 @@ class Study:
 
     @property
     def simulated_in_page(self) -> bool:
-        """Whether the simulation in a page has its outcomes: horizontal rocking alone, of one or two bodies."""
-        few = any(configuration.count < 3 for configuration in self.configurations)
-        return few and not (self.slides or self.vertical)
+        """Whether the simulation in a page has the outcomes of any of its configurations."""
+        from rockfrag.rocking.browser import in_page
+
+        return not self.vertical and any(map(in_page, self.configurations))
 
     @property
     def floors(self) -> dict[str, int]:

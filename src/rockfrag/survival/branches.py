@@ -16,9 +16,9 @@ from pathlib import Path
 
 from rockfrag.assess.hazard import openquake_csv
 from rockfrag.assess.hazard.curve import HazardCurve, make_curve
-from rockfrag.assess.hazard.measure import Measure
 from rockfrag.assess.hazard.table import annual_rates, level_column, measure_of
 from rockfrag.errors import InputError
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.plain_text import read_text
 from rockfrag.tabular import read_cells, read_rows
 
@@ -48,7 +48,7 @@ class Branch:
 
     name: str
     weight: float
-    curves: Mapping[Measure, HazardCurve] = field(default_factory=dict)
+    curves: Mapping[IntensityMeasure, HazardCurve] = field(default_factory=dict)
 
 
 def read_branches(
@@ -108,13 +108,13 @@ def _check(branches: Sequence[Branch], where: str) -> None:
 
 
 def _names(branch: Branch) -> str:
-    return " and ".join(sorted(measure.name for measure in branch.curves)) or "nothing"
+    return " and ".join(sorted(measure.imt for measure in branch.curves)) or "nothing"
 
 
 def _of_tables(paths: Sequence[str | os.PathLike[str]]) -> list[Branch]:
     """Branches of plain tables."""
     weights: dict[str, float] = {}
-    curves: dict[str, dict[Measure, HazardCurve]] = {}
+    curves: dict[str, dict[IntensityMeasure, HazardCurve]] = {}
     for path in paths:
         for name, (weight, curve) in _table(path).items():
             if weights.setdefault(name, weight) != weight:
@@ -124,7 +124,7 @@ def _of_tables(paths: Sequence[str | os.PathLike[str]]) -> list[Branch]:
             of_branch = curves.setdefault(name, {})
             if curve.measure in of_branch:
                 raise InputError(
-                    f"{path}: {curve.measure.name} of branch {name[:60]} is given twice."
+                    f"{path}: {curve.measure.imt} of branch {name[:60]} is given twice."
                 )
             of_branch[curve.measure] = curve
     return [Branch(name, weight, curves[name]) for name, weight in weights.items()]
@@ -172,16 +172,14 @@ def _of_openquake(
         if number in weights:
             raise InputError(f"{realizations}: realization {number} is given twice.")
         weights[number], names[number] = row
-    curves: dict[int, dict[Measure, HazardCurve]] = {number: {} for number in weights}
+    curves: dict[int, dict[IntensityMeasure, HazardCurve]] = {number: {} for number in weights}
     for path in paths:
         number = _realization_of(path)
         if number not in weights:
             raise InputError(f"{path}: realization {number} is not in {realizations}.")
         curve = openquake_csv.read_curve(read_text(path, LARGEST_FILE), str(path))
         if curve.measure in curves[number]:
-            raise InputError(
-                f"{path}: {curve.measure.name} of realization {number} is given twice."
-            )
+            raise InputError(f"{path}: {curve.measure.imt} of realization {number} is given twice.")
         curves[number][curve.measure] = curve
     return [Branch(names[number], weights[number], curves[number]) for number in weights]
 

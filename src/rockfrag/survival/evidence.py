@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special, stats
 
-from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G, Measure
+from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.survival.rates import ShakingRates
 
 Floats = NDArray[np.float64]
@@ -61,7 +62,7 @@ class StandingObject:
     name
         What it is called.
     measure
-        Measure of c1.
+        Intensity measure of c1.
     coefficients
         (c0, c1) or (c0, c1, c2).
     sd_ln
@@ -71,13 +72,13 @@ class StandingObject:
     """
 
     name: str
-    measure: Measure
+    measure: IntensityMeasure
     coefficients: tuple[float, ...]
     sd_ln: float
     age: Age
 
     @property
-    def measures(self) -> set[Measure]:
+    def measures(self) -> set[IntensityMeasure]:
         """Measures that its fragility needs."""
         return {PGA, PGV} if len(self.coefficients) == 3 else {self.measure}
 

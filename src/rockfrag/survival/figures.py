@@ -52,7 +52,7 @@ def curves_figure(found: Constrained) -> Figure:
             xscale="log",
             yscale="log",
             ylim=(max(rates[-1].min(), 1e-6), min(rates[0].max() * 1.5, 10.0)),
-            xlabel=f"{measure.name} of the ground [{measure.unit}]",
+            xlabel=f"{measure.imt} of the ground [{measure.unit}]",
             ylabel="Annual rate of exceedance [1/year]",
         )
         for which in "xy":

@@ -70,7 +70,7 @@ def json_of(found: Constrained) -> str:
     }
     content = {
         "site": found.site.name,
-        "measure": found.site.measure.name,
+        "measure": found.site.measure.imt,
         "unit": found.site.measure.unit,
         "information_bit": found.result.information,
         "ruled_out": found.ruled_out,
@@ -103,7 +103,7 @@ def _level_sentence(found: Constrained) -> str:
     change = row["level_ratio"] - 1
     direction = "lower" if change < 0 else "higher"
     return (
-        f"The mean {measure.name} at 1e-4 a year is {row['level_after']:.3g} {measure.unit} after "
+        f"The mean {measure.imt} at 1e-4 a year is {row['level_after']:.3g} {measure.unit} after "
         f"{row['level_before']:.3g} {measure.unit} before, {abs(change):.0%} {direction}."
     )
 

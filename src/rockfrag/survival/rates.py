@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G, Measure
+from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
 from rockfrag.errors import InputError
+from rockfrag.motions.declared import IntensityMeasure
 
 Floats = NDArray[np.float64]
 
@@ -48,7 +49,7 @@ class ShakingRates:
         how often that level is exceeded.
     """
 
-    values: Mapping[Measure, Floats]
+    values: Mapping[IntensityMeasure, Floats]
     rates: Floats
 
 
@@ -81,8 +82,8 @@ def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
 
 
 def shaking_rates(
-    branches: Sequence[Mapping[Measure, HazardCurve]],
-    wanted: set[Measure],
+    branches: Sequence[Mapping[IntensityMeasure, HazardCurve]],
+    wanted: set[IntensityMeasure],
     velocity: VelocityRelation | None,
     reach: tuple[float, float],
 ) -> ShakingRates:
@@ -117,10 +118,10 @@ def shaking_rates(
     if wanted <= {PGA, PGV} and PGA in measures and velocity is not None:
         levels, rates = _on_grid([curves[PGA] for curves in branches], reach)
         return _with_velocity(levels, rates, velocity)
-    missing = sorted(measure.name for measure in wanted - measures) or ["PGV that comes with PGA"]
+    missing = sorted(measure.imt for measure in wanted - measures) or ["PGV that comes with PGA"]
     raise InputError(
         f"hazard: an object's fragility needs {' and '.join(missing)}, but the branches give "
-        f"{', '.join(sorted(measure.name for measure in measures))}; give velocity: {{median_s: …, sd_ln: …}}, "
+        f"{', '.join(sorted(measure.imt for measure in measures))}; give velocity: {{median_s: …, sd_ln: …}}, "
         f"the "
         "PGV/PGA of the site, or a fragility in that measure."
     )

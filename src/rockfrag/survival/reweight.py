@@ -18,8 +18,8 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import special
 
-from rockfrag.assess.hazard.measure import Measure
 from rockfrag.errors import InputError
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.survival.branches import Branch
 from rockfrag.survival.evidence import StandingObject, draw_errors
 from rockfrag.survival.rates import (
@@ -81,7 +81,7 @@ class Reweighted:
             }
         )
 
-    def curves(self, measure: Measure) -> pd.DataFrame:
+    def curves(self, measure: IntensityMeasure) -> pd.DataFrame:
         """Mean and fractile curves before and after.
 
         Parameters
@@ -104,7 +104,7 @@ class Reweighted:
                 columns[f"fractile_{q:g}_{when}"] = values
         return pd.DataFrame(columns)
 
-    def ratios(self, measure: Measure) -> pd.DataFrame:
+    def ratios(self, measure: IntensityMeasure) -> pd.DataFrame:
         """Mean hazard before and after at annual rates of 1e-2 to 1e-5.
 
         Returns
@@ -132,7 +132,7 @@ class Reweighted:
         )
 
 
-def common_levels(branches: Sequence[Branch], measure: Measure) -> Floats:
+def common_levels(branches: Sequence[Branch], measure: IntensityMeasure) -> Floats:
     """Levels of a measure that any branch states."""
     return np.unique(np.concatenate([branch.curves[measure].levels for branch in branches]))
 

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from rockfrag.assess.answer import Assessment, assess_with
-from rockfrag.assess.hazard.measure import Measure
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import Level, make_request
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import fragility_of
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.yaml_file import read_yaml
 
 ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}
@@ -40,7 +40,7 @@ class Simulated:
 def simulate_object(
     given: str | Mapping[str, Any],
     folder: Path,
-    measure: Measure,
+    measure: IntensityMeasure,
     records: Path,
     *,
     with_velocity: bool,
@@ -54,7 +54,7 @@ def simulate_object(
     folder
         Folder from which paths are read.
     measure
-        Measure of its fragility.
+        Intensity measure of its fragility.
     records
         Folder of fetched records.
     with_velocity
@@ -81,7 +81,7 @@ def simulate_object(
             "leave it out."
         )
     request = make_request(settings, where, folder)
-    request = replace(request, level=Level(measure, ANY_LEVEL[measure.kind]))
+    request = replace(request, level=Level(measure, ANY_LEVEL[measure.openquake]))
     motions = motion_set(request.records, request.place, records)
     found = assess_with(request, motions, brief=True)
     coefficients = _in_two(found) if with_velocity else _in_one(found)

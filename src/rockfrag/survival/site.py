@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.hazard.measure import PGA, Measure, read_measure
+from rockfrag.assess.hazard.measure import PGA, read_measure
 from rockfrag.errors import InputError
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.schema import checked
 from rockfrag.survival.branches import Branch, read_branches
 from rockfrag.survival.evidence import Age, StandingObject, lognormal_coefficients
@@ -48,7 +49,7 @@ class Site:
     velocity: VelocityRelation | None
 
     @property
-    def measure(self) -> Measure:
+    def measure(self) -> IntensityMeasure:
         """Measure in which curves are compared: PGA where the branches give it."""
         measures = list(self.branches[0].curves)
         return PGA if PGA in measures else measures[0]
@@ -172,9 +173,9 @@ def _object(name: str, settings: Mapping[str, Any]) -> StandingObject:
     )
 
 
-def _median(text: str, measure: Measure) -> float:
+def _median(text: str, measure: IntensityMeasure) -> float:
     """Median of a fragility in the measure's unit."""
-    velocity = measure.kind == "PGV"
+    velocity = measure.openquake == "PGV"
     value = quantity(text, "m_s" if velocity else "m_s2", None)
     value = value * CENTIMETRES_PER_METRE if velocity else value / GRAVITY
     if not value > 0:

@@ -21,6 +21,7 @@ from rockfrag.errors import InputError
 from rockfrag.plausibility import LARGEST_SIZE, MEAN_DENSITIES
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
+from rockfrag.system.body import Polygon, RigidBody
 
 MESH_ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf")
 
@@ -198,6 +199,44 @@ class Shape:
             inertia=self.inertia_about(direction_deg),
         )
 
+    def body(self, direction_deg: float, tolerance: float, retreat: float = 0.0) -> RigidBody:
+        """Return the body in space on the polygon that carries, turned so that a direction is its x axis.
+
+        Parameters
+        ----------
+        direction_deg, tolerance
+            As in :meth:`edges`.
+        retreat
+            Distance by which the edges lie further in than the polygon [m].
+
+        Returns
+        -------
+        A body with the full tensor of inertia; its origin lies below its centre of gravity.
+
+        Raises
+        ------
+        InputError
+            If the centre of gravity is not above what is left of the base.
+        """
+        angle = -math.radians(direction_deg)
+        c, s = math.cos(angle), math.sin(angle)
+        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        corners = _retreated(self.contact_polygon(tolerance) @ turn[:2, :2].T, retreat)
+        if corners is None:
+            raise InputError(
+                f"{self.name}: its centre of gravity is not above what is left of its base, so it cannot stand; "
+                "give a larger tolerance or less retreat."
+            )
+        inertia = turn @ self.inertia @ turn.T
+        return RigidBody(
+            self.mass,
+            (inertia + inertia.T) / 2,
+            (0.0, 0.0, self.cg_height),
+            Polygon(tuple((float(x), float(y)) for x, y in corners)),
+            self.height,
+            name="body",
+        )
+
     def worst_direction(self, tolerance: float, step_deg: float = 1.0) -> tuple[float, float]:
         """Return the direction towards which the body leans over its edge at the least angle.
 
@@ -218,6 +257,23 @@ class Shape:
         reach = (polygon @ np.array([np.cos(angle), np.sin(angle)])).max(axis=0)
         least = int(reach.argmin())
         return float(directions[least]), float(math.atan2(reach[least], self.cg_height))
+
+
+def _retreated(corners: Array, distance: float) -> Array | None:
+    """Move the edges of a convex polygon about the origin inwards; None where the origin is left outside."""
+    edges = np.roll(corners, -1, axis=0) - corners
+    outward = np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, np.newaxis]
+    reach = np.einsum("ni,ni->n", outward, corners) - distance
+    if not (reach > 0).all():
+        return None
+    # corners of the polygon are the dual of the hull of its edges' poles
+    poles = outward / reach[:, np.newaxis]
+    kept = ConvexHull(poles).vertices
+    ahead = np.roll(kept, -1)
+    cross = outward[kept, 0] * outward[ahead, 1] - outward[kept, 1] * outward[ahead, 0]
+    x = (reach[kept] * outward[ahead, 1] - reach[ahead] * outward[kept, 1]) / cross
+    y = (outward[kept, 0] * reach[ahead] - outward[ahead, 0] * reach[kept]) / cross
+    return np.column_stack([x, y])
 
 
 def read_shape(

@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from rockfrag.errors import InputError
 from rockfrag.input_checks import shown
 from rockfrag.system import geometry
@@ -291,6 +293,27 @@ def diagonal(*moments: float) -> Any:
     for k, moment in enumerate(moments):
         rows[k][k] = moment
     return tuple(tuple(row) for row in rows)
+
+
+def turned_about_vertical(system: System, angle_deg: float) -> System:
+    """Return one body in space on a polygon, turned about the vertical [degrees]."""
+    if not angle_deg % 360:
+        return system
+    (body,) = system.bodies
+    angle = math.radians(angle_deg)
+    c, s = math.cos(angle), math.sin(angle)
+    rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    assert isinstance(body.base, Polygon)
+    base = Polygon(tuple((c * x - s * y, s * x + c * y) for x, y in body.base.vertices))
+    centre = rotation @ np.array(body.centre)
+    turned = replace(
+        body,
+        inertia=rotation @ body.tensor @ rotation.T,
+        centre=(float(centre[0]), float(centre[1]), float(centre[2])),
+        base=base,
+        face=None,
+    )
+    return replace(system, bodies=(turned,))
 
 
 def stands(system: System) -> bool:

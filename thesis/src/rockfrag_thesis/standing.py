@@ -69,9 +69,8 @@ def standing_definitions(
         copies = [[_copy(configuration, size, rng) for _ in range(COPIES)] for size in SIZES]
         fell = overturns(
             configuration,
-            [motion.acceleration for motion in motions],
-            [motion.dt for motion in motions],
-            scales,
+            motions,
+            scales=scales,
             threads=threads,
         ).overturned[0]
         found = [_definitions(amplitudes_g, flags, protocol) for flags in fell]

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.assess.hazard.measure import Measure
 from rockfrag.errors import InputError
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
@@ -49,7 +49,7 @@ class HazardCurve:
         Whether it was read; False where one level was continued with an assumed slope.
     """
 
-    measure: Measure
+    measure: IntensityMeasure
     levels: Floats
     rates: Floats
     source: str
@@ -96,7 +96,11 @@ class HazardCurve:
 
 
 def make_curve(
-    measure: Measure, levels: Sequence[float], rates: Sequence[float], where: str, source: str = ""
+    measure: IntensityMeasure,
+    levels: Sequence[float],
+    rates: Sequence[float],
+    where: str,
+    source: str = "",
 ) -> HazardCurve:
     """Make a curve of what a file says, or say in one sentence what is wrong with it.
 
@@ -146,10 +150,11 @@ def make_curve(
             f"{where}: the hazard curve has {x.size} usable point(s); at least two levels with different rates "
             "above 0 are needed."
         )
-    if x[-1] > HIGHEST[measure.kind] or x[-1] < DAMAGING[measure.kind]:
+    least, most = DAMAGING[measure.openquake], HIGHEST[measure.openquake]
+    if x[-1] > most or x[-1] < least:
         raise InputError(
-            f"{where}: {measure.name} up to {x[-1]:g} {measure.unit} is not the shaking that a hazard curve "
-            f"reaches ({DAMAGING[measure.kind]:g} to {HIGHEST[measure.kind]:g} {measure.unit}); check the unit."
+            f"{where}: {measure.imt} up to {x[-1]:g} {measure.unit} is not the shaking that a hazard curve "
+            f"reaches ({least:g} to {most:g} {measure.unit}); check the unit."
         )
     return HazardCurve(measure, x, y, source or where)
 
@@ -182,7 +187,7 @@ def rates_of(poes: Sequence[float], years: float, where: str) -> Floats:
 
 
 def curve_of_one_level(
-    measure: Measure, level: float, years: float, slope: float = EC8_SLOPE
+    measure: IntensityMeasure, level: float, years: float, slope: float = EC8_SLOPE
 ) -> HazardCurve:
     """Continue one level with its return period as a power law.
 
@@ -204,7 +209,7 @@ def curve_of_one_level(
         return HazardCurve(measure, level * factors, rates, source, is_read=False)
 
     source = (
-        f"{measure.name} of {level:.3g} {measure.unit} every {years:g} years, continued with the exponent "
+        f"{measure.imt} of {level:.3g} {measure.unit} every {years:g} years, continued with the exponent "
         f"{slope:g} of EN 1998-1"
     )
     flanks = {0.16: slope + EC8_SLOPE_SD, 0.84: slope - EC8_SLOPE_SD}

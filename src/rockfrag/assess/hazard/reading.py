@@ -39,27 +39,27 @@ def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
         If a file cannot be read, holds no hazard curve or those of several sites, or two files give the
         same curve.
     """
-    found = [item for path in paths for item in _read_file(Path(path))]
+    found = [part for path in paths for part in _read_file(Path(path))]
     curves = []
-    for measure in dict.fromkeys(item.curve.measure for item in found):
-        mine = [item for item in found if item.curve.measure == measure]
-        curves.append(_assembled(measure.name, mine))
+    for measure in dict.fromkeys(part.curve.measure for part in found):
+        mine = [part for part in found if part.curve.measure == measure]
+        curves.append(_assembled(measure.imt, mine))
     return curves
 
 
 def _assembled(name: str, found: Sequence[Found]) -> HazardCurve:
     """Put the quantiles of one measure to its mean; the median stands in for a mean that is not there."""
     named: dict[str, Found] = {}
-    for item in found:
-        if item.statistic in named:
+    for part in found:
+        if part.statistic in named:
             raise InputError(
-                f"{item.curve.source}: {name} ({item.statistic}) is given twice, in "
-                f"{named[item.statistic].curve.source} too; leave one out."
+                f"{part.curve.source}: {name} ({part.statistic}) is given twice, in "
+                f"{named[part.statistic].curve.source} too; leave one out."
             )
-        named[item.statistic] = item
+        named[part.statistic] = part
     quantiles = {
-        float(statistic.removeprefix("quantile-")): item.curve
-        for statistic, item in named.items()
+        float(statistic.removeprefix("quantile-")): part.curve
+        for statistic, part in named.items()
         if statistic.startswith("quantile-")
     }
     main = named["mean"].curve if "mean" in named else quantiles.get(0.5)

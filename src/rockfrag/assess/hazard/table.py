@@ -8,8 +8,9 @@ import re
 
 from rockfrag.assess.hazard.curve import make_curve, rates_of
 from rockfrag.assess.hazard.found import Found
-from rockfrag.assess.hazard.measure import PGA, PGV, Measure, read_measure
+from rockfrag.assess.hazard.measure import PGA, PGV, read_measure
 from rockfrag.errors import InputError
+from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.tabular import cells_of
 from rockfrag.units import GRAVITY
 
@@ -65,7 +66,7 @@ def level_column(title: str) -> bool:
     return _LEVEL.fullmatch(title) is not None
 
 
-def measure_of(title: str, path: str) -> tuple[Measure, float]:
+def measure_of(title: str, path: str) -> tuple[IntensityMeasure, float]:
     """Return measure and factor to its unit of a title such as ``pga_cm_s2``."""
     found = _LEVEL.fullmatch(title)
     assert found is not None

@@ -225,20 +225,20 @@ def turn_between(body, state):
 
 
 @kernel
-def metric(body, lanes_of_one, other, turn):
+def metric(body, first, other, turn):
     """Kinetic-metric products K11, K12, K21, K22 of the velocity fields about two pairs of points.
 
     Parameters
     ----------
-    one, other : (σ1, σ2), the points on ground and interface that the fields turn about
+    first, other : (σ1, σ2), the points on ground and interface that the fields turn about
     turn : cosine and sine of θ2 - θ1
     """
     c, s = turn
-    ax, ay = arm1(body, lanes_of_one[0])
+    ax, ay = arm1(body, first[0])
     bx, by = arm1(body, other[0])
-    dax, day = reach(body, lanes_of_one[0], lanes_of_one[1])
+    dax, day = reach(body, first[0], first[1])
     dbx, dby = reach(body, other[0], other[1])
-    rax, ray = arm2(body, lanes_of_one[1])
+    rax, ray = arm2(body, first[1])
     rbx, rby = arm2(body, other[1])
     m1 = body.m1
     m2 = body.m2
@@ -247,11 +247,11 @@ def metric(body, lanes_of_one, other, turn):
     k12 = m2 * (dax * (rbx * c + rby * s) + day * (rby * c - rbx * s))
     k21 = m2 * (dbx * (rax * c + ray * s) + dby * (ray * c - rax * s))
     if body.linear == 2:
-        k22 = inertia2(body, lanes_of_one[1])
-        if lanes_of_one[1] != other[1]:
+        k22 = inertia2(body, first[1])
+        if first[1] != other[1]:
             x, y = body.c2x, body.c2y
             b = body.b2
-            k22 = body.i2 + m2 * ((x - lanes_of_one[1] * b) * (x - other[1] * b) + y * y)
+            k22 = body.i2 + m2 * ((x - first[1] * b) * (x - other[1] * b) + y * y)
     else:
         k22 = body.i2 + m2 * (rax * rbx + ray * rby)
     return k11, k12, k21, k22

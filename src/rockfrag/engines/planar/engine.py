@@ -124,8 +124,10 @@ def scaled(motion: GroundMotion, factor: float) -> GroundMotion:
     if factor == 1.0:
         return motion
     each = [
-        None if item is None else replace(item, acceleration=factor * item.acceleration)
-        for item in (motion.x, motion.y, motion.z)
+        None
+        if component is None
+        else replace(component, acceleration=factor * component.acceleration)
+        for component in (motion.x, motion.y, motion.z)
     ]
     assert each[0] is not None
     return GroundMotion(each[0], each[1], each[2])

@@ -247,7 +247,7 @@ def mode_number(p, closed, slides):
 
 @kernel
 def take_number(p, w, number):
-    """Set the mode of ``w`` to a numbered one."""
+    """Set the contact modes in the working memory ``w`` to those of a number, a digit a contact."""
     for k in range(p.count):
         digit = (number >> (4 * k)) & 15
         w.closed[k, 0] = digit & 1

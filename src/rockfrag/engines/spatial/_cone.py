@@ -9,8 +9,10 @@ slide and where to.
 
 import math
 
+import numpy as np
+
 from rockfrag.engines.kernels.jit import kernel
-from rockfrag.engines.spatial._algebra import factor, substitute
+from rockfrag.engines.spatial._algebra import factor, solve_symmetric, substitute
 from rockfrag.engines.spatial._forces import MOST
 
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
@@ -23,6 +25,18 @@ CLOSE_ENOUGH = 1e-13
 """Residual, relative to what is to be stopped, at which Newton's method ends [-]."""
 
 NEWTON_STEPS = 60
+
+MOST_STUCK = 4
+"""Steps of Newton's method that may leave the residual as large as it was; then there is no solution nearby."""
+
+RAYS = np.array(
+    [(4.0, y) for y in range(-4, 4)]
+    + [(-x, 4.0) for x in range(-4, 4)]
+    + [(-4.0, -y) for y in range(-4, 4)]
+    + [(x, -4.0) for x in range(-4, 4)]
+)
+RAYS /= np.sqrt((RAYS * RAYS).sum(axis=1, keepdims=True))
+"""Directions between which that of a slip is looked for, the same bits everywhere."""
 
 
 @kernel
@@ -217,6 +231,7 @@ def newton(s, n, mask, pace, small):
     """Improve s.impulse until the residuals vanish; return whether they do."""
     x = s.impulse
     worst = residuals(s, n, mask, x, pace, s.right)
+    stuck = 0
     for _ in range(NEWTON_STEPS):
         if worst <= small:
             return True
@@ -236,6 +251,9 @@ def newton(s, n, mask, pace, small):
             step *= 0.5
         for i in range(3 * n):
             x[i] = s.trial[i]
+        stuck += least >= worst
+        if stuck > MOST_STUCK:
+            return False
         worst = least
     return worst <= 100 * small
 
@@ -267,11 +285,15 @@ def start_sliding(s, n, mask, turned):
 @kernel
 def others_open(s, n, mask, small):
     """Whether contacts outside of a set do not approach."""
-    product(s, n, s.impulse, s.after)
-    approaching = 0
     for i in range(n):
-        approaching += not in_set(mask, i) and s.after[3 * i + 2] < -small
-    return approaching == 0
+        if in_set(mask, i):
+            continue
+        leaving = s.free[3 * i + 2]
+        for j in range(3 * n):
+            leaving += s.delassus[3 * i + 2, j] * s.impulse[j]
+        if leaving < -small:
+            return False
+    return True
 
 
 @kernel
@@ -294,26 +316,51 @@ def bits(mask):
 
 
 @kernel
-def stick_set(s, n, mask, scale):
+def stick_set(s, n, mask, scale, largest):
     """Solve for one set that sticks; return whether all of it pushes and nothing else approaches."""
     small = 1e-11 * scale
-    if mask == 0:
-        for i in range(3 * n):
-            s.impulse[i] = 0.0
-        return others_open(s, n, mask, small)
-    largest = compliance(s, n)
-    if not stick_together(s, n, mask, SOFT * largest):
-        return False
-    if bits(mask) == 2:
-        fraction_in_set(s, n, mask)
+    size = bits(mask)
+    for i in range(3 * n):
+        s.impulse[i] = 0.0
+    if size == 1:
+        stick_alone(s, n, mask)
+    elif size > 1:
+        if not stick_together(s, n, mask, SOFT * largest):
+            return False
+        if size == 2:
+            fraction_in_set(s, n, mask)
     return cones_hold(s, n, mask, small / largest) and others_open(s, n, mask, small)
 
 
 @kernel
-def slide_set(s, n, mask, scale):
+def stick_alone(s, n, mask):
+    """Solve for the impulse at which the one contact of a set sticks (or slides the given way)."""
+    for i in range(n):
+        if in_set(mask, i):
+            a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
+            w = s.delassus
+            if s.given[i]:
+                way = (-s.friction[i] * s.way[i, 0], -s.friction[i] * s.way[i, 1])
+                normal = -s.free[c] / (w[c, c] + w[c, a] * way[0] + w[c, b] * way[1])
+                s.impulse[a], s.impulse[b] = way[0] * normal, way[1] * normal
+                s.impulse[c] = normal
+            else:
+                s.impulse[a], s.impulse[b], s.impulse[c] = solve_symmetric(
+                    w[a, a], w[a, b], w[a, c], w[b, b], w[b, c], w[c, c],
+                    (-s.free[a], -s.free[b], -s.free[c]),
+                )  # fmt: skip
+
+
+@kernel
+def slide_set(s, n, mask, scale, largest):
     """Solve for one set of which some slides; return whether all of it pushes and nothing else approaches."""
-    largest = compliance(s, n)
     small, pace = 1e-11 * scale, 1.0 / largest
+    if bits(mask) == 1:
+        return (
+            slide_alone(s, n, mask)
+            and cones_hold(s, n, mask, small / largest)
+            and others_open(s, n, mask, small)
+        )
     if mask == 0 or not stick_together(s, n, mask, SOFT * largest):
         return False
     clip_to_cones(s, n, mask)
@@ -324,6 +371,87 @@ def slide_set(s, n, mask, scale):
         start_sliding(s, n, mask, 1.5707963267948966 * k)
         found = newton(s, n, mask, pace, CLOSE_ENOUGH * scale)
     return found and cones_hold(s, n, mask, small / largest) and others_open(s, n, mask, small)
+
+
+@kernel
+def off_direction(s, i, e, f):
+    """How far contact i, if it slides towards (e, f), would be driven off that direction; and its impulse.
+
+    Both the slip across (e, f) and the denominator of the impulse are linear in (e, f), so that their product has
+    at most four zeros around the circle.
+    """
+    a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
+    w, m = s.delassus, s.friction[i]
+    gives = w[c, c] - m * (w[c, a] * e + w[c, b] * f)
+    x = s.free[a] * gives - s.free[c] * (w[a, c] - m * (w[a, a] * e + w[a, b] * f))
+    y = s.free[b] * gives - s.free[c] * (w[b, c] - m * (w[b, a] * e + w[b, b] * f))
+    return e * y - f * x, gives, e * x + f * y
+
+
+@kernel
+def slide_alone(s, n, mask):
+    """Solve for the impulse at which the one contact of a set slides, with the least energy left, if it can."""
+    for j in range(3 * n):
+        s.impulse[j] = 0.0
+    i = 0
+    while not in_set(mask, i):
+        i += 1
+    if s.given[i]:
+        return False
+    a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
+    found, least = False, 0.0
+    p, q = RAYS[-1, 0], RAYS[-1, 1]
+    before = off_direction(s, i, p, q)[0]
+    for k in range(RAYS.shape[0]):
+        u, v = RAYS[k, 0], RAYS[k, 1]
+        after = off_direction(s, i, u, v)[0]
+        if (before > 0) != (after > 0):
+            e, f = direction_between(s, i, p, q, u, v, before, after)
+            _, gives, slip = off_direction(s, i, e, f)
+            normal = -s.free[c] / gives if gives != 0.0 else -1.0
+            # the slip is over the denominator of the impulse
+            if normal > 0 and slip * gives > 0:
+                left = normal * (s.free[c] - s.friction[i] * (s.free[a] * e + s.free[b] * f))
+                left -= normal * s.friction[i] * slip / gives
+                if not found or left < least:
+                    found, least = True, left
+                    s.impulse[a] = -s.friction[i] * normal * e
+                    s.impulse[b] = -s.friction[i] * normal * f
+                    s.impulse[c] = normal
+        p, q, before = u, v, after
+    return found
+
+
+@kernel
+def direction_between(s, i, p, q, u, v, before, after):
+    """Find the direction between two at which a sliding contact stays on it, by false position (Illinois)."""
+    low, high, side = 0.0, 1.0, 0
+    e, f = p, q
+    for _ in range(60):
+        part = (low * after - high * before) / (after - before)
+        e, f = p + part * (u - p), q + part * (v - q)
+        size = math.hypot(e, f)
+        e, f = e / size, f / size
+        value = off_direction(s, i, e, f)[0]
+        if (value > 0) == (before > 0):
+            low, before = part, value
+            after *= 0.5 if side > 0 else 1.0
+            side = 1
+        else:
+            high, after = part, value
+            before *= 0.5 if side < 0 else 1.0
+            side = -1
+        if value == 0.0 or high - low < 1e-15:
+            break
+    return e, f
+
+
+@kernel
+def solve_set(s, n, mask, scale, largest, slide):
+    """Solve for one set that sticks, or of which some slide; return whether that is a solution."""
+    if slide:
+        return slide_set(s, n, mask, scale, largest)
+    return stick_set(s, n, mask, scale, largest)
 
 
 @kernel
@@ -390,15 +518,16 @@ def solve_cones(s, n, least):
 @kernel
 def fewest(s, n, least, slide):
     """Find the smallest set that sticks (or slides), with the least energy left, and how many are as small."""
-    scale = scale_of(s, n)
+    scale, largest = scale_of(s, n), compliance(s, n)
     chosen, ways, size_found, lowest = -1, 0, 99, 0.0
     for k in range(1 << MOST):
         mask = ORDER[k]
         size = bits(mask)
         if mask >= (1 << n) or size < least or size > size_found:
             continue
-        if slide_set(s, n, mask, scale) if slide else stick_set(s, n, mask, scale):
+        if solve_set(s, n, mask, scale, largest, slide):
             ways += 1
+            product(s, n, s.impulse, s.after)
             change = energy_left(s, n)
             if chosen < 0 or change < lowest - 1e-12 * scale * scale:
                 chosen, lowest, size_found = mask, change, size

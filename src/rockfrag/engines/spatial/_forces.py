@@ -50,6 +50,7 @@ CASE = np.dtype(
         ("count", np.int64),
         ("rests", np.int64),
         ("jammed", np.int64),  # nothing holds but what sticks; cones are not looked at
+        ("goes_on", np.int64),  # the rates at the end of the last step are still right
         ("closed", np.int64, (MOST,)),
         ("slides", np.int64, (MOST,)),
         ("direction", np.float64, (MOST, 2)),
@@ -375,7 +376,7 @@ def fill_rates(y, omega, alpha, acceleration, dy):
 
 @kernel
 def push_at(body, y, rows, i, impulse):
-    """Change the velocities by an impulse (world) at contact i."""
+    """Change the velocities in ``y`` by an impulse [N s], in axes of the ground, at contact i."""
     p = arm(body, rows[2], i)
     turned = times(body.inverse, cross(p, to_body(rows, impulse)))
     for k in range(3):

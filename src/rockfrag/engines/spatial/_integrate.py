@@ -17,13 +17,25 @@ from rockfrag.engines.spatial._body import (
     WORK,
     arm,
     energy,
+    first_candidate,
+    last_candidate,
     omega_of,
     point_velocity,
     position_of_base,
     rim_contact,
     rim_direction,
 )
-from rockfrag.engines.spatial._forces import REST, SLIDES, STICKS, kind_of, rates
+from rockfrag.engines.spatial._forces import (
+    FLIGHT,
+    HINGE,
+    PIVOT,
+    REST,
+    SLIDES,
+    STAGES,
+    STICKS,
+    kind_of,
+    rates,
+)
 from rockfrag.engines.spatial._modes import (
     AT_REST,
     CLOSE,
@@ -57,6 +69,7 @@ from rockfrag.engines.spatial._step import (
     attempt,
     begin_slips,
     dips,
+    is_closed,
     margin,
     pressure_centre,
 )
@@ -268,6 +281,41 @@ def rise(body, y, u, rate, s):
 
 
 @kernel
+def lowest_open(body, y, s):
+    """Number of the lowest open point."""
+    up = rotation(y)[2]
+    lowest, found = 1e300, 0
+    for i in range(first_candidate(body), last_candidate(body)):
+        if not is_closed(s, i):
+            height = gap(body, y, up, i)
+            if height < lowest:
+                lowest, found = height, i
+    return found
+
+
+@kernel
+def rising(body, y, i):
+    """Velocity upwards of point i."""
+    rows = rotation(y)
+    return point_velocity(y, rows, arm(body, rows[2], i))[2]
+
+
+@kernel
+def guess_landing(body, h, y, below, s):
+    """When in a step the point that is lowest after it lands, by the cubic through gaps and velocities."""
+    i = lowest_open(body, s.new, s)
+    above, fall = gap(body, y, rotation(y)[2], i), h * rising(body, y, i)
+    end = h * rising(body, s.new, i)
+    square = 3.0 * (below - above) - 2.0 * fall - end
+    cube = 2.0 * (above - below) + fall + end
+    part = above / (above - below)
+    for _ in range(3):
+        value = above + part * (fall + part * (square + part * cube))
+        part -= value / (fall + part * (2.0 * square + part * 3.0 * cube))
+    return h * part
+
+
+@kernel
 def locate(body, tau, h, y, s):
     """Find the first instant in a step at which a margin vanishes; leave the state there in s.new.
 
@@ -275,6 +323,7 @@ def locate(body, tau, h, y, s):
     """
     low, high = 0.0, h
     below, what = margin(body, s.new, s)
+    middle = guess_landing(body, h, y, below, s) if what == LANDS else 0.0
     rates(body, tau, y, s.slopes[0], s)
     above, at_once = margin(body, y, s)
     if above <= 0:
@@ -283,21 +332,23 @@ def locate(body, tau, h, y, s):
         return 0.0, at_once
     side = 0
     for _ in range(80):
-        middle = (low * below - high * above) / (below - above)
+        if not low < middle < high:
+            middle = (low * below - high * above) / (below - above)
         if not low < middle < high:
             middle = 0.5 * (low + high)
         attempt(body, tau, middle, y, s)
         value, what = margin(body, s.new, s)
+        at, middle = middle, 0.0
         if value >= 0:
-            low, above = middle, value
+            low, above = at, value
             below *= 0.5 if side > 0 else 1.0
             side = 1
         else:
-            high, below = middle, value
+            high, below = at, value
             above *= 0.5 if side < 0 else 1.0
             side = -1
         if abs(value) < 1e-12:
-            return middle, what
+            return at, what
         if high - low < 1e-14:
             break
     attempt(body, tau, high, y, s)
@@ -366,7 +417,7 @@ def slides_any(s):
 
 @kernel
 def happen(body, what, tau, y, cut, stuck, s):
-    """Let what ended a step change the velocities and the mode."""
+    """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J]."""
     g = s.field[6]
     before = energy(body, y, g)
     if what == LANDS:
@@ -522,7 +573,12 @@ def wobble_energy(body, y, rows, g):
 def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     """Take one step of an interval, up to its end or to what happens first; return the time and the next step."""
     g = s.field[6]
-    rates(body, tau, y, s.slopes[0], s)
+    if s.goes_on:
+        for i in range(SIZE):
+            s.slopes[0, i] = s.slopes[STAGES - 1, i]
+    else:
+        rates(body, tau, y, s.slopes[0], s)
+    s.goes_on = 0
     begin_slips(body, y, s)
     h = min(next_step, dt - tau)
     while True:
@@ -553,6 +609,9 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     note_loss(before - energy(body, y, g), out)
     if body.rim > 0:
         ahead = look_after_rim(body, y, tau + h, cut, ahead, s, out)
+    elif kind_of(s) in (FLIGHT, PIVOT, HINGE):
+        # the rates at the end of a step are those at the beginning of the next
+        s.goes_on = 1
     return tau + h, ahead, h
 
 
@@ -616,7 +675,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     started = energy(body, y, g)
     start = position_of_base(y, rotation(y), (0.0, 0.0, -body.height))
     before = heading(y)
-    s.count = s.rests = s.jammed = 0
+    s.count = s.rests = s.jammed = s.goes_on = 0
     for i in range(COUNTERS):
         s.counters[i] = 0
     choose_mode(body, 0.0, y, s)
@@ -643,6 +702,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
                     break
                 if out[FIRST_MOTION] < 0:
                     out[FIRST_MOTION] = k * dt + tau
+                s.goes_on = 0
                 standing = energy(body, y, g)
                 leave_rest(body, y, tau, s)
                 note_loss(standing - energy(body, y, g), out)
@@ -657,6 +717,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
                 s.counters[UNSOLVED] += 1
                 break
             if many % GIVE_UP == 0:
+                s.goes_on = 0
                 note_loss(give_up(body, tau, y, s), out)
                 lost_track += 1
                 if many > 2 * GIVE_UP:
@@ -700,6 +761,7 @@ def give_up(body, tau, y, s):
 def force_step(body, tau, dt, y, s):
     """Take a short step whatever the margins say."""
     h = min(1e-6, dt - tau)
+    s.goes_on = 0
     rates(body, tau, y, s.slopes[0], s)
     while attempt(body, tau, h, y, s) > COARSE * 1e-3 and h > SHORTEST:
         h *= 0.25

@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import normalise, rotation
 from rockfrag.engines.spatial._body import (
@@ -14,7 +12,7 @@ from rockfrag.engines.spatial._body import (
     last_candidate,
     point_velocity,
 )
-from rockfrag.engines.spatial._forces import SLIDES, STAGES, rates
+from rockfrag.engines.spatial._forces import SLIDES, rates
 from rockfrag.engines.spatial._modes import (
     AT_REST,
     LANDS,
@@ -23,22 +21,6 @@ from rockfrag.engines.spatial._modes import (
     OPENS,
     SLIP_ENDS,
     TOUCH,
-)
-
-NODES = np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0])
-WEIGHTS = np.array(
-    [
-        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [3 / 40, 9 / 40, 0.0, 0.0, 0.0, 0.0],
-        [44 / 45, -56 / 15, 32 / 9, 0.0, 0.0, 0.0],
-        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0.0, 0.0],
-        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0.0],
-        [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
-    ]
-)
-ERROR = np.array(
-    [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40],
 )
 
 BACKWARD = 1e-8
@@ -57,22 +39,48 @@ def attempt(body, tau, h, y, s):
 
     Afterwards s.slopes[6] and s.lam are the rates and forces at the end.
     """
-    slopes, new = s.slopes, s.new
-    for stage in range(1, STAGES):
-        for i in range(SIZE):
-            total = 0.0
-            for j in range(stage):
-                total += WEIGHTS[stage, j] * slopes[j, i]
-            new[i] = y[i] + h * total
-        if stage == STAGES - 1:
-            normalise(new)
-        rates(body, tau + NODES[stage] * h, new, slopes[stage], s)
-    worst = 0.0
-    weight = attitude_weight(body, y)
+    k, new = s.slopes, s.new
+    for i in range(SIZE):
+        new[i] = y[i] + h * (0.2 * k[0, i])
+    rates(body, tau + 0.2 * h, new, k[1], s)
+    for i in range(SIZE):
+        new[i] = y[i] + h * (3 / 40 * k[0, i] + 9 / 40 * k[1, i])
+    rates(body, tau + 0.3 * h, new, k[2], s)
+    for i in range(SIZE):
+        new[i] = y[i] + h * (44 / 45 * k[0, i] - 56 / 15 * k[1, i] + 32 / 9 * k[2, i])
+    rates(body, tau + 0.8 * h, new, k[3], s)
+    for i in range(SIZE):
+        new[i] = y[i] + h * (
+            19372 / 6561 * k[0, i] - 25360 / 2187 * k[1, i] + 64448 / 6561 * k[2, i]
+            - 212 / 729 * k[3, i]
+        )  # fmt: skip
+    rates(body, tau + 8 / 9 * h, new, k[4], s)
+    for i in range(SIZE):
+        new[i] = y[i] + h * (
+            9017 / 3168 * k[0, i] - 355 / 33 * k[1, i] + 46732 / 5247 * k[2, i]
+            + 49 / 176 * k[3, i] - 5103 / 18656 * k[4, i]
+        )  # fmt: skip
+    rates(body, tau + h, new, k[5], s)
+    for i in range(SIZE):
+        new[i] = y[i] + h * (
+            35 / 384 * k[0, i] + 500 / 1113 * k[2, i] + 125 / 192 * k[3, i]
+            - 2187 / 6784 * k[4, i] + 11 / 84 * k[5, i]
+        )  # fmt: skip
+    normalise(new)
+    rates(body, tau + h, new, k[6], s)
+    return error_of(body, h, y, s)
+
+
+@kernel
+def error_of(body, h, y, s):
+    """Largest component of the difference to the step of order 4, over its size."""
+    k = s.slopes
+    worst, weight = 0.0, attitude_weight(body, y)
     for i in range(13):
-        total = 0.0
-        for stage in range(STAGES):
-            total += ERROR[stage] * slopes[stage, i]
+        total = (
+            71 / 57600 * k[0, i] - 71 / 16695 * k[2, i] + 71 / 1920 * k[3, i]
+            - 17253 / 339200 * k[4, i] + 22 / 525 * k[5, i] - 1 / 40 * k[6, i]
+        )  # fmt: skip
         scale = weight if 3 <= i < 7 else 1.0 + abs(y[i])
         worst = max(worst, abs(h * total) / scale)
     return worst

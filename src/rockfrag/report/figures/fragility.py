@@ -131,7 +131,7 @@ def measures_figure(
     curves: Mapping[str, "Fragility"], outcomes: Mapping[str, Observations], *, bins: int = 10
 ) -> Figure:
     """Draw the curve of each measure in a panel of its own, with AIC and β, to compare measures."""
-    labels = [label for label, item in curves.items() if np.isfinite(item.fit.theta)]
+    labels = [label for label, curve in curves.items() if np.isfinite(curve.fit.theta)]
     if not labels:
         raise InputError("measures figure: none of the measures has a curve.")
     columns = min(len(labels), 2)
@@ -142,15 +142,15 @@ def measures_figure(
         for axes in grid_of_axes.flat[len(labels) :]:
             axes.set_visible(False)
         for axes, label in zip(grid_of_axes.flat, labels, strict=False):
-            item, data = curves[label], outcomes[label]
-            grid = _grid([item], [data])
+            curve, data = curves[label], outcomes[label]
+            grid = _grid([curve], [data])
             _outcomes(axes, data, grid, BLACK, bins)
-            _curve(axes, item, grid, BLUE, "")
+            _curve(axes, curve, grid, BLUE, "")
             _probability_axis(axes, grid)
             axes.set_title(
-                f"{item.fit.im}: AIC {item.fit.aic:.1f}, β = {item.fit.beta:.2f}", loc="left"
+                f"{curve.fit.im}: AIC {curve.fit.aic:.1f}, β = {curve.fit.beta:.2f}", loc="left"
             )
-            axes.set_xlabel(_axis_label(item.fit.im, item.fit.unit))
+            axes.set_xlabel(_axis_label(curve.fit.im, curve.fit.unit))
         for axes in grid_of_axes[:, 0]:
             axes.set_ylabel("Probability of overturning")
         letter_panels(grid_of_axes.flat[: len(labels)])
@@ -191,13 +191,13 @@ def calibration_figure(judged: Mapping[str, "GoodnessOfFit"]) -> Figure:
         return figure
 
 
-def _curve(axes: Axes, item: "Fragility", grid: Floats, colour: str, label: str) -> None:
-    lower, upper = item.interval.band(grid)
+def _curve(axes: Axes, curve: "Fragility", grid: Floats, colour: str, label: str) -> None:
+    lower, upper = curve.interval.band(grid)
     if np.isfinite(lower).any():
         axes.fill_between(grid, lower, upper, color=colour, alpha=0.18, linewidth=0)
     words = f"{label}: " if label else ""
-    theta = f"{words}θ = {item.fit.theta:.3g} {item.fit.unit}, β = {item.fit.beta:.2f}"
-    axes.plot(grid, item.fit.probability(grid), color=colour, label=theta)
+    theta = f"{words}θ = {curve.fit.theta:.3g} {curve.fit.unit}, β = {curve.fit.beta:.2f}"
+    axes.plot(grid, curve.fit.probability(grid), color=colour, label=theta)
 
 
 def _outcomes(axes: Axes, data: Observations, grid: Floats, colour: str, bins: int) -> None:
@@ -209,12 +209,12 @@ def _outcomes(axes: Axes, data: Observations, grid: Floats, colour: str, bins: i
 
 def _grid(curves: Sequence["Fragility"], data: Sequence[Observations]) -> Floats:
     """Values from where the lowest curve leaves zero to where the highest reaches one."""
-    low = min(item.fit.theta * np.exp(-2.6 * item.fit.beta) for item in curves)
-    high = max(item.fit.theta * np.exp(2.6 * item.fit.beta) for item in curves)
+    low = min(curve.fit.theta * np.exp(-2.6 * curve.fit.beta) for curve in curves)
+    high = max(curve.fit.theta * np.exp(2.6 * curve.fit.beta) for curve in curves)
     if data:
         # neither a nearly flat curve nor amplitudes far above all curves may stretch the axis
-        low = max(low, 0.8 * min(float(item.im.min()) for item in data))
-        high = min(high, 1.25 * max(float(item.im.max()) for item in data))
+        low = max(low, 0.8 * min(float(observed.im.min()) for observed in data))
+        high = min(high, 1.25 * max(float(observed.im.max()) for observed in data))
     return np.asarray(np.geomspace(low, high, 400))
 
 

@@ -20,7 +20,7 @@ from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.report.live.frames import frames_svg
 from rockfrag.rocking import overturns
-from rockfrag.rocking.browser import driver_text, module_bytes
+from rockfrag.rocking.browser import driver_text, in_page, module_bytes
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.system import geometry
 from rockfrag.system.body import RigidBody
@@ -30,9 +30,6 @@ from rockfrag.units import GRAVITY
 
 MOST_SAMPLES = 70_000
 """Samples of all motions that a page carries: three quarters of a megabyte."""
-
-MOST_BODIES = 2
-"""Bodies on each other that the page simulates."""
 
 AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 150).tolist())
 """Amplitudes [g] of a body that no study has swept."""
@@ -57,7 +54,8 @@ def live_kernel(
     Parameters
     ----------
     bodies
-        What may be chosen, by the name that a reader sees; of more than two blocks only the name is shown.
+        What may be chosen, by the name that a reader sees; only the names of those that the page's kernel
+        does not know are shown.
     motions
         Motions that may be chosen; no more than carry ``MOST_SAMPLES`` samples are taken, the first ones.
     outcomes
@@ -71,7 +69,7 @@ def live_kernel(
     Markup
         Needs the style of :func:`rockfrag.report.page.render`, and loads nothing; empty if no body is left.
     """
-    known = {name: system for name, system in bodies.items() if system.count <= MOST_BODIES}
+    known = {name: system for name, system in bodies.items() if in_page(system)}
     if not known:
         return Markup()
     with warnings.catch_warnings():
@@ -144,9 +142,8 @@ def swept(bodies: Mapping[str, System], motions: Sequence[Motion]) -> pd.DataFra
     values = np.array(AMPLITUDES_G)
     fell = overturns(
         list(bodies.values()),
-        [motion.acceleration for motion in motions],
-        [motion.dt for motion in motions],
-        np.array([factors_to_pga(motion, values) for motion in motions]),
+        motions,
+        scales=np.array([factors_to_pga(motion, values) for motion in motions]),
     ).overturned
     index = pd.MultiIndex.from_product(
         [list(bodies), [motion.name for motion in motions], values],

@@ -54,8 +54,8 @@ def _message(fallen: pd.DataFrame) -> str:
         return "No floor has a curve of overturning: too few objects overturned on a single one."
     weakest = min(fallen.to_dict("records"), key=lambda item: float(item["theta"]))
     return (
-        f"{weakest['configuration']} on {weakest['floor']} is the most fragile: it overturns at a median of "
-        f"{weakest['theta_text']} g."
+        f"{weakest['configuration']} on {weakest['floor']} is the most fragile: the median of its lognormal "
+        f"curve is {weakest['theta_text']} g."
     )
 
 

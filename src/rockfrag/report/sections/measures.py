@@ -49,7 +49,8 @@ def _message(choice: pd.DataFrame, asked: Sequence[str]) -> str:
     others = choice.loc[
         choice["recommended"].astype(bool) & ~choice["measure"].isin(list(asked)), "im"
     ]
-    words = f"Best of the measures asked for: {listed(named)}."
+    is_best = "is" if len(named) == 1 else "are"
+    words = f"{listed(named)} {is_best} the best of the measures asked for."
     if len(others):
         better = list(dict.fromkeys(others))
         verb = "predicts" if len(better) == 1 else "predict"

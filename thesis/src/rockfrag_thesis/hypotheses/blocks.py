@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rockfrag.motions.scaling import factors_to_pga
+from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, overturns, simulate
 from rockfrag.rocking.restitution import (
     RestitutionFit,
@@ -205,7 +206,9 @@ def _least_half_sine(block: Block, linear: bool) -> float:
     shape = np.sin(np.linspace(0, math.pi, 101))
     unit = block.alpha * GRAVITY
     return bisect(
-        lambda x: simulate(block, x * unit * shape, duration / 100, linear=linear).overturned,
+        lambda x: (
+            simulate(block, Motion(x * unit * shape, duration / 100), linear=linear).overturned
+        ),
         1.0,
         8.0,
         1e-3,
@@ -265,9 +268,8 @@ def least_overturning_amplitudes(
     motions = setting.sample
     found = overturns(
         bodies,
-        [motion.acceleration for motion in motions],
-        [motion.dt for motion in motions],
-        np.array([factors_to_pga(motion, AMPLITUDES_G) for motion in motions]),
+        motions,
+        scales=np.array([factors_to_pga(motion, AMPLITUDES_G) for motion in motions]),
         restitution=restitution,
         threads=setting.threads,
     )

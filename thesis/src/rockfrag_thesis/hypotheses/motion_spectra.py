@@ -63,9 +63,8 @@ class MotionSpectra:
             blocks = [uniform_block(a * factor, T) for a in self.alpha for T in SIZES]
             found = overturns(
                 blocks,
-                [motion.acceleration for motion in self.motions],
-                [motion.dt for motion in self.motions],
-                [1.0],
+                self.motions,
+                scales=[1.0],
                 threads=self.threads,
             )
             shape = (self.alpha.size, SIZES.size, len(self.motions))

@@ -99,7 +99,7 @@ class Setting:
     def histories(self) -> list[Response]:
         """Every stack under every motion of the sample at each amplitude of `PEAKS_G`."""
         return [
-            simulate(stack, scale_to_pga(item, peak).acceleration, item.dt)
+            simulate(stack, scale_to_pga(item, peak))
             for stack in self.assemblies.values()
             for item in self.sample
             for peak in PEAKS_G
@@ -192,7 +192,7 @@ def bisect(happens: Callable[[float], bool], low: float, high: float, tolerance:
 
 def jump(body: Body, acceleration: float) -> Response:
     """Response to a ground acceleration [m/s²] that is there at once and ends after 0.15 s."""
-    return simulate(body, np.full(3, acceleration), 0.05)
+    return simulate(body, Motion(np.full(3, acceleration), 0.05))
 
 
 def moves(body: Body, acceleration: float) -> bool:

@@ -294,9 +294,8 @@ def c19(setting: Setting) -> Result:
     peak = np.array([motion.pga for motion in motions])
     found = overturns(
         blocks,
-        [motion.acceleration for motion in motions],
-        [motion.dt for motion in motions],
-        AMPLITUDES_G * GRAVITY / peak[:, np.newaxis],
+        motions,
+        scales=AMPLITUDES_G * GRAVITY / peak[:, np.newaxis],
         threads=setting.threads,
     ).overturned
     falls = found.any(axis=2)

@@ -283,9 +283,8 @@ def level_amplitudes(
             break
         found = overturns(
             [systems[i] for i in here.tolist()],
-            [motions[j].acceleration for j in under.tolist()],
-            [motions[j].dt for j in under.tolist()],
-            scales[np.ix_(under, levels)],
+            [motions[j] for j in under.tolist()],
+            scales=scales[np.ix_(under, levels)],
             threads=threads,
         ).overturned
         # a pair that has fallen already has its first fall below
