@@ -201,6 +201,17 @@ def test_without_a_motion_a_column_rests_for_ever() -> None:
         assert len(found.contact_events) <= 1
 
 
+def test_contact_events_on_the_spot_do_not_stop_a_body_that_falls() -> None:
+    # rough contacts: no mode is consistent shortly before the statue lies, and an impulse does not help
+    statue = Block(0.42, 1.65, 410.0, cg_height=0.75, inertia=99.04575)
+    column = Column((Block(0.8, 0.3, 480.0), Block(0.6, 0.9, 700.0), statue))
+    time = np.arange(0, 6, DT)
+    motion = 48 * np.sin(2 * np.pi * 5.72 * time) * np.sin(np.pi * time / 6) ** 2
+    found = run(column.system(), motion)
+    assert found.fallen == 3
+    assert len(found.contact_events) < 1000
+
+
 def test_a_column_tilted_as_one_falls_as_one_until_a_joint_opens() -> None:
     drums = Column(tuple(Block(1.0, 0.8, 900.0) for _ in range(6)))
     whole = Block(1.0, 4.8, 5400.0)

@@ -163,7 +163,9 @@ class Plan:
     intensity_levels, fewer_intensity_levels
         Levels of both sets.
     brief
-        Whether directions are left out, and changes compared with few motions and levels.
+        Whether directions, and ways to stand other than its own, are left out.
+    compares_few
+        Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space.
     """
 
     motions: MotionSet
@@ -173,11 +175,7 @@ class Plan:
     intensity_levels: IntensityLevels
     fewer_intensity_levels: IntensityLevels
     brief: bool
-
-    @property
-    def compares_few(self) -> bool:
-        """Whether mitigations are compared by few motions: in one line of an inventory, and in space."""
-        return self.brief or self.motions.both
+    compares_few: bool
 
     @property
     def asked(self) -> list[float]:
@@ -270,17 +268,19 @@ def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
     asked = [level.value] if level else []
-    few = brief or objects.many or motions.both
+    coarse = brief or objects.many
+    few = coarse or motions.both
     fewer = motions.thinned() if few else motions
-    fewer = fewer.thinned() if brief else fewer
+    fewer = fewer.thinned() if coarse else fewer
     return Plan(
         motions,
         fewer,
         curves,
         level,
         make_intensity_levels(motions, measure, asked, FEW_LEVELS if few else LEVELS),
-        make_intensity_levels(fewer, measure, asked, FEWEST_LEVELS if brief else FEW_LEVELS),
+        make_intensity_levels(fewer, measure, asked, FEWEST_LEVELS if coarse else FEW_LEVELS),
         brief,
+        compares_few=few,
     )
 
 
@@ -299,18 +299,17 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     if plan.brief:
         ways = [dict(list(bodies.items())[:1]) for bodies in ways]
     arrangements = outcomes_of_each(objects, ways, plan.motions, plan.intensity_levels)
-    # of few motions the object as it stands comes first, then with each mitigation
-    changes = [{"": item.body, **mitigations_of(item)} for item in objects]
-    under = (
-        (plan.fewer, plan.fewer_intensity_levels)
-        if plan.compares_few
-        else (plan.motions, plan.intensity_levels)
-    )
+    under = (plan.motions, plan.intensity_levels)
+    changes = [mitigations_of(item) for item in objects]
+    if plan.compares_few:
+        # of few motions the object as it stands comes first, then with each mitigation
+        under = (plan.fewer, plan.fewer_intensity_levels)
+        changes = [{"": item.body, **each} for item, each in zip(objects, changes, strict=True)]
     compared = outcomes_of_each(objects, changes, *under)
     moved = _moved(requests, plan)
     found = []
     for item, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
-        before = change.pop("")
+        before = change.pop("") if plan.compares_few else next(iter(way.values()))
         if item.pad_friction is not None:
             outcomes, slip = on_pad(item, item.pad_friction, *under)
             change[_pad_words(item.pad_friction, slip, plan, under[1])] = outcomes
