@@ -71,7 +71,8 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
     page = render(
         title=study.title,
         lead=f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, "
-        f"{int(tests['overturned'].sum())} of them overturned; each is simulated with the motion {_said(study)} of the table.",
+        f"{int(tests['overturned'].sum())} of them overturned; each is simulated with the motion "
+        f"{_said(study)} of the table.",
         answer=answer,
         sections=sections,
         pictures=pictures,
