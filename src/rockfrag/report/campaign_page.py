@@ -72,7 +72,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         title=study.title,
         lead=f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, "
         f"{int(tests['overturned'].sum())} of them overturned; each is simulated with the motion "
-        f"{_said(study)} of the table.",
+        f"{_said(study)} the table.",
         answer=answer,
         sections=sections,
         pictures=pictures,
@@ -118,7 +118,7 @@ def _answer(
         figure=next((spec for spec in specs if spec.name == "tests"), specs[0]),
         rests_on=[
             f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, each "
-            f"simulated with the motion {_said(study)} of the table; intervals resample input motions.",
+            f"simulated with the motion {_said(study)} the table; intervals resample input motions.",
             "Unmeasured properties of the object are fitted on some motions and judged on the others.",
         ],
         could_change=[
@@ -130,8 +130,8 @@ def _answer(
 
 
 def _said(study: CampaignStudy) -> str:
-    """Whether the table's motions were measured, or follow from what it was told."""
-    return "commanded" if study.pulse_cycles else "measured"
+    """Say whether the motions were measured on the table, or follow from what it was told."""
+    return "commanded of" if study.pulse_cycles else "measured on"
 
 
 def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
