@@ -165,7 +165,7 @@ def test_the_tutorial_works_as_it_stands_there(at_home, capsys):
             exec(compile(text, "tutorial.md", "exec"), {})
     assert ran >= 8
     shown = capsys.readouterr().out
-    assert "Venus, on level 2 of 4" in shown
+    assert "Venus on level 2 of 4" in shown
     assert "10 own motions" in shown
     assert "3 objects, the one most at risk first" in shown
     assert (at_home / "assessment" / "Venus.html").is_file()
