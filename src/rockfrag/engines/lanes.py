@@ -38,8 +38,13 @@ def integrate(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: 
     def work(_: int) -> None:
         kernel(ensemble, *others[:-1], worker(), others[-1])
 
-    with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(work, range(threads)))
+    needed = min(threads, int(ensemble.count))
+    if needed <= 1:
+        # starting a thread takes longer than a single short case
+        work(0)
+        return
+    with ThreadPoolExecutor(needed) as pool:
+        list(pool.map(work, range(needed)))
 
 
 def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64], Array]:
