@@ -91,6 +91,14 @@ def test_a_statue_on_its_pedestal_is_drawn(
     assert picture.read_text().startswith("<?xml")
 
 
+def test_a_vertical_component_shakes_too(record: Path, capsys: pytest.CaptureFixture[str]):
+    case = ["simulate", str(record), "--unit", "g", "--body", "0.2", "0.8", "60", "--pga", "0.3"]
+    assert main(case) == 0
+    alone = capsys.readouterr().out
+    assert main([*case, "--vertical", str(record), "--friction", "0.6"]) == 0
+    assert capsys.readouterr().out != alone
+
+
 def test_a_column_is_given_from_above(record: Path, capsys: pytest.CaptureFixture[str]):
     below = ["--pedestal", "0.2", "0.1", "9", "--pedestal", "0.3", "0.1", "20"]
     body = ["--body", "0.124", "0.372", "2.172", *below]

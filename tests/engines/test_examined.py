@@ -1,4 +1,4 @@
-"""What an examination of the mechanics found, each as the case in which it was seen."""
+"""Cases of mechanics that once were answered wrongly, each as it was seen."""
 
 import numpy as np
 import pytest
@@ -165,3 +165,18 @@ def test_a_mass_without_a_depth_is_doubted_only_where_no_depth_explains_it():
         Block(0.2, 0.8, 50.0, inertia=1e9)
     # a wall of 50 t: a planar block does not say how deep it is
     assert Block(0.2, 0.8, 50_000.0).mass == 50_000.0
+
+
+def test_an_interval_that_no_instrument_has_is_doubted_at_every_door():
+    with pytest.warns(UnitWarning, match="too short for strong motion"):
+        overturns(B, SHAKE, 1e-9)
+    with (
+        pytest.warns(UnitWarning, match="too short for strong motion"),
+        pytest.raises(InputError, match="samples, more than"),
+    ):
+        simulate(B, SHAKE, 1e-9)
+
+
+def test_a_centre_of_gravity_above_the_top_is_refused():
+    with pytest.raises(InputError, match="above the top"):
+        Block(0.2, 0.8, 50.0, cg_height=1.5)
