@@ -167,13 +167,11 @@ def test_a_mass_without_a_depth_is_doubted_only_where_no_depth_explains_it():
     assert Block(0.2, 0.8, 50_000.0).mass == 50_000.0
 
 
-def test_an_interval_that_no_instrument_has_is_doubted_at_every_door():
+def test_an_interval_that_no_instrument_has_is_doubted_or_refused():
     with pytest.warns(UnitWarning, match="too short for strong motion"):
         overturns(B, SHAKE, 1e-9)
-    with (
-        pytest.warns(UnitWarning, match="too short for strong motion"),
-        pytest.raises(InputError, match="samples, more than"),
-    ):
+    # a history of free rocking would have too many samples
+    with pytest.raises(InputError, match="samples, more than"):
         simulate(B, SHAKE, 1e-9)
 
 
