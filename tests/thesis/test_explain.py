@@ -61,3 +61,8 @@ def test_sensitivity_analysis_needs_one_reference_and_positive_ratios():
         explain(table.assign(ratio=0.0))
     with pytest.raises(InputError, match="floor missing"):
         explain(table.drop(columns="floor"))
+
+
+def test_where_nothing_overturns_no_level_is_judged():
+    table = sensitivity_analysis_table().assign(ratio=np.nan)
+    assert explain(table).empty

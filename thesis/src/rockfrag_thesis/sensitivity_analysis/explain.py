@@ -68,7 +68,8 @@ def explain(table: pd.DataFrame) -> pd.DataFrame:
     if "motion" not in work:
         work["motion"] = work["earthquake"].astype(str) + "/" + work["floor"].astype(str)
     parts = [_explain_factor(str(name), rows) for name, rows in work.groupby("factor", sort=True)]
-    result = pd.concat(parts, ignore_index=True)
+    # a table without rows has columns without types, which those of numbers would take over
+    result = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
     result["p_bh"] = benjamini_hochberg(result["p"])
     choices = [result["p_bh"] < 0.05, result["p_equivalence"] < 0.05, result["p_bh"].isna()]
     result["judgement"] = np.select(choices, [CHANGES, SAME, ""], OPEN)
@@ -91,6 +92,12 @@ def where_laws_agree(effects: pd.DataFrame, laws: Mapping[str, tuple[str, str]])
     judgement = effects["judgement"].copy()
     judgement.loc[kinds.index[kinds > 1]] = OPEN
     return effects.assign(judgement=judgement)
+
+
+_COLUMNS = [
+    *("factor", "level", "floor", "ratio", "ratio_lower", "ratio_upper"),
+    *("effect", "effect_lower", "effect_upper", "p", "pairs", "earthquakes", "left_out", "p_equivalence"),
+]  # fmt: skip
 
 
 def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
@@ -142,6 +149,7 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
                 "p_equivalence": equivalence(effect) if level != marked[0] else np.nan,
             }
         )
-    result = pd.DataFrame(found)
+    # nothing is known of a factor whose tests never overturned
+    result = pd.DataFrame(found, columns=_COLUMNS)
     result["p_holm"] = holm(result["p"])
     return result
