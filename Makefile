@@ -39,8 +39,8 @@ smoke: run
 report-pdf: .venv/installed
 	@$(RUN) rockfrag.report.pdf "$(STUDY)"
 
-# each of pytest's workers has a processor to itself, so threads of its linear algebra would only wait for each other
-test validate coverage: export OPENBLAS_NUM_THREADS = 1
+# each process has a processor to itself, so threads of its linear algebra would only wait for each other
+test validate coverage fuzz: export OPENBLAS_NUM_THREADS = 1
 
 test: .venv/installed
 	@$(RUN) pytest -n auto --dist worksteal -m "not slow"
@@ -80,6 +80,7 @@ bench: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[peers]" || \
 		echo "Not all other programs can be had here: rows of those that are absent are left out"
 	@.venv/bin/python benchmarks/run.py
+	@.venv/bin/python benchmarks/space.py || echo "MuJoCo cannot be had here: bodies in space are not compared"
 	@.venv/bin/python benchmarks/latency.py
 
 .venv/installed: pyproject.toml thesis/pyproject.toml constraints.txt $(wildcard hashes/*.txt)

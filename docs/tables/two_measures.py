@@ -12,11 +12,12 @@ import yaml
 
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import HazardCurve, make_curve
-from rockfrag.assess.hazard.measure import PGA, PGV, Measure
+from rockfrag.assess.hazard.measure import PGA, PGV
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import make_request
 from rockfrag.assess.risk import Estimate
 from rockfrag.assess.words import estimate_words
+from rockfrag.motions.declared import IntensityMeasure
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "assess.md"
@@ -27,7 +28,7 @@ FACTORS, PERIODS = (0.1, 0.4, 1.0, 2.2, 5.0), (7.0, 90.0, 475.0, 3600.0, 50000.0
 """Levels over that of 475 years and their return periods: curves of about the bend that such curves have."""
 
 
-def curve(measure: Measure, level: float) -> HazardCurve:
+def curve(measure: IntensityMeasure, level: float) -> HazardCurve:
     """A made hazard curve through a level of 475 years."""
     levels = [factor * level for factor in FACTORS]
     return make_curve(measure, levels, [1 / period for period in PERIODS], "made")

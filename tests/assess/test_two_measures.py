@@ -9,6 +9,7 @@ import pytest
 from scipy import stats
 
 from rockfrag.assess.answer import assess_with
+from rockfrag.assess.as_nrml import as_nrml
 from rockfrag.assess.conversion import Conversion, OfTwoCurves, SiteVelocity
 from rockfrag.assess.hazard.curve import make_curve
 from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
@@ -18,6 +19,7 @@ from rockfrag.assess.request import make_request
 from rockfrag.assess.risk import toppling_rate
 from rockfrag.assess.words import five_lines, quality_flags
 from rockfrag.errors import InputError
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 
 K, K0 = 2.5, 1e-4
 TABLE = Path(__file__).parents[2] / "docs" / "tables" / "two_measures.py"
@@ -131,6 +133,12 @@ def test_the_level_is_given_in_both(motions):
     assert any("PGV of 66.7 cm/s per g" in quality_flag for quality_flag in quality_flags(found))
     with pytest.raises(InputError, match="key pga and key sa"):
         asked(pga="0.6 g", sa=["0.3 s", "0.6 g"])
+
+
+def test_the_export_says_which_errors_are_not_in_it(found):
+    text = as_nrml(found["slow"])
+    assert f"{MODEL_ERRORS[CUT].beyond:g} of ln level ({CUT}: " in text
+    assert "no campaign of a cut block" in text
 
 
 @pytest.mark.slow

@@ -4,10 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.campaign.repeats import majority_of_repeats
+from rockfrag.campaign.repeats import REPEATS, majority_of_repeats
 from rockfrag.campaign.tests import read_campaign
 from rockfrag.errors import InputError
 from rockfrag.motions import commanded_cosine
+from rockfrag.report.campaign_page import _against_rivals
 from rockfrag.study.loading import load_any
 
 STUDY = """
@@ -100,3 +101,12 @@ def test_what_a_pulse_does_not_follow_from_is_said(study, old, new, sentence):
     study.write_text(STUDY.replace(old, new))
     with pytest.raises(InputError, match=sentence):
         load_any(study)
+
+
+def test_the_ceiling_is_no_rival():
+    row = {"right": 0.9, "better": 0.1, "better_lower": 0.02, "better_upper": 0.2, "p": 0.001}
+    row |= {"lower": 0.8, "upper": 0.95, "tests": 60}
+    rivals = [row | {"who": "threshold on PGV"}, row | {"who": REPEATS, "right": 1.0}]
+    (found,) = _against_rivals(rivals)
+    assert "threshold on PGV, the best of 1 alternative" in found.headline
+    assert _against_rivals(rivals[1:]) == []

@@ -43,7 +43,7 @@ from rockfrag.assess.rules import RuleCheck, check_rules
 from rockfrag.assess.sources import SPACE
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import Fragility, fragility_of
-from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
+from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.outcomes.limit_states import ROCKS
 from rockfrag.short_repr import short_repr
@@ -370,7 +370,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     shaken = _at_site(shaken, plan, conversion)
     arrangements, moved = shaken.arrangements, shaken.moved
     both_sides = {change.name: change.sides for change in moved}
-    shifts = {"model": MODEL_ERRORS[SCAN if objects.scan else CUT].beyond}
+    shifts = {"model": MODEL_ERRORS[objects.kind].beyond}
     if not motions.both:
         shifts["space"] = SPACE
     if conversion:

@@ -2,6 +2,7 @@
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.fragility.identifiers import identifiers
+from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.fragility.nrml import discrete_function, model_text
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 
@@ -26,5 +27,11 @@ def as_nrml(found: Assessment) -> str:
         outcomes.intensity_levels.levels,
         {state: outcomes.fractions(state=state) for state in states},
     )
-    words = f"{name}, {found.request.place.words}: fractions of {found.motions.words}."
+    kind = found.request.objects.kind
+    error = MODEL_ERRORS[kind]
+    words = (
+        f"{name}, {found.request.place.words}: fractions of {found.motions.words}. What is not known of body, "
+        f"floor and model is not in them; of the model alone that is {error.beyond:g} of ln level ({kind}: "
+        f"{error.words})."
+    )
     return model_text(words, states, [function])

@@ -53,6 +53,10 @@ ours."""
 NODES = 11
 """Values of equal probability that stand for the spread of ln PGV/IM."""
 
+OF_DISPLACEMENT = 2.0
+"""Largest weight of ln PGV/IM [-]: a motion stretched in time by r at a given PGA has a PGV larger by r and a
+displacement larger by r²."""
+
 MOST_LEVELS = 8
 """Levels of a motion that are fitted; tests under one motion depend on each other."""
 
@@ -85,7 +89,7 @@ class Conversion:
         P(topples | measure, PGV over the measure), columns ``im`` and ``ratio_s``.
     weight
         Effect of ln ratio over that of ln measure: 0 where PGV says nothing beside the measure, 1 where it says
-        all [-].
+        all, up to 2 where displacement does [-].
     logs
         ln (PGV over the measure [s]) of each motion, shape (motions,).
     known
@@ -170,6 +174,8 @@ class Conversion:
         rocked = np.repeat(outcomes.rocked, count, axis=0)
         if self.by_statics:
             overturned &= rocked
+            # at a level where it does not rock a motion says nothing of one that makes it rock
+            inside &= outcomes.rocked[row, place] | ~rocked
         return replace(
             outcomes,
             intensity_levels=replace(
@@ -265,7 +271,7 @@ def _fitted(outcomes: ObjectOutcomes, logs: Floats, brief: bool) -> VectorFragil
 
 
 def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
-    """Effect of ln ratio over that of ln measure at half toppling, from 0 to 1, and its standard error."""
+    """Effect of ln ratio over that of ln measure at half toppling, within its bounds, and its standard error."""
 
     def weight(c: Floats, log_level: float) -> Floats:
         more = c[:, 3] if c.shape[1] > 3 else 0.0
@@ -277,7 +283,7 @@ def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
     error = 0.0
     if len(fit.replicates) > 1:
         error = float(jackknife_error(weight(fit.replicates, log_level)))
-    return float(np.clip(own, 0.0, 1.0)), error if math.isfinite(error) else 0.0
+    return float(np.clip(own, 0.0, OF_DISPLACEMENT)), error if math.isfinite(error) else 0.0
 
 
 def _known(

@@ -11,6 +11,7 @@ from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.assess.scan import Scan, make_scan
 from rockfrag.errors import InputError
+from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
 from rockfrag.rocking.options import system_of
 from rockfrag.system import geometry
@@ -99,6 +100,11 @@ class Objects:
     def body(self) -> Body:
         """The object as it stands."""
         return stacked((*self.pedestals, self.statue))
+
+    @property
+    def kind(self) -> str:
+        """Kind of body whose model error counts: of a round base that of a cut block, as no campaign has one."""
+        return SCAN if self.scan else CUT
 
     @property
     def many(self) -> bool:

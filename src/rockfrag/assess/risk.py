@@ -307,10 +307,31 @@ def estimate(
         sources[name] = _half_width(low, high, near(outcomes))
     sources |= fixed
     total = math.sqrt(sum(value**2 for value in sources.values()))
-    half = _quantile(sources["motions"], total, len(left_out)) * total
+    quantile = _quantile(sources["motions"], total, len(left_out))
     # what was added must not make an interval narrower than that of motions which all agree
     low, high = sorted((middle, near(outcomes)))
-    return Estimate(target.back(middle), target.back(low - half), target.back(high + half), sources)
+    down, up = _shifted(target, outcomes, middle, quantile * math.hypot(*shifts.values()))
+    others = quantile * math.hypot(
+        *(value for name, value in sources.items() if name not in shifts)
+    )
+    return Estimate(
+        target.back(middle),
+        target.back(low - math.hypot(others, down)),
+        target.back(high + math.hypot(others, up)),
+        sources,
+    )
+
+
+def _shifted(
+    target: Target, outcomes: ObjectOutcomes, middle: float, shift: float
+) -> tuple[float, float]:
+    """How far below and above the middle the value lies with all levels shifted to either end of the interval.
+
+    The fraction that topples falls to nothing within less than the error of the level, which no multiple of its
+    slope says.
+    """
+    ends = sorted(target.on_scale(outcomes, shift=sign * shift) for sign in (-1, 1))
+    return max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
 
 
 def _jackknife(left_out: Floats, middle: float) -> float:

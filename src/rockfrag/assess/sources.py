@@ -109,7 +109,8 @@ SOURCES: Mapping[str, Source] = {
         + "; ".join(
             f"{kind}: {error.beyond:g} of ln level, {error.words}"
             for kind, error in MODEL_ERRORS.items()
-        ),
+        )
+        + "; no campaign of a round base or of a body in space is at hand, and that of cut blocks stands for them",
     ),
     "space": Source(
         "both horizontal components at once",

@@ -16,6 +16,9 @@ from rockfrag.fragility.observations import Floats
 
 Link = Literal["probit", "logit"]
 
+MOST_STEPS = 100
+"""Steps after which a regression that has not converged is left as it is."""
+
 _LARGEST_PREDICTOR = 30.0
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
 
@@ -71,7 +74,6 @@ def fit_batch(
     penalised: bool = False,
     start: Floats | None = None,
     tolerance: float = 1e-9,
-    most_steps: int = 100,
 ) -> BatchFit:
     """Fit ``batch`` binomial regressions that share their predictors.
 
@@ -102,7 +104,7 @@ def fit_batch(
     step = np.zeros((batch, columns))
     outer = design[:, :, None] * design[:, None, :]
     flat_outer = outer.reshape(len(design), -1)
-    for _ in range(most_steps):
+    for _ in range(MOST_STEPS):
         if active.size == 0:
             break
         trial = coefficients[active] + step[active]

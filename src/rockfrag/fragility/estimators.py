@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from rockfrag.fragility.batch_glm import Link
 from rockfrag.fragility.censored import (
     Brackets,
     bracket_interval,
@@ -88,7 +87,6 @@ class IncrementalFragility:
 def fragility_of(
     outcomes: Observations,
     *,
-    link: Link = "probit",
     level: float = 0.90,
     seed: int = 0,
     dependence: Literal["tests", "motions"] | None = None,
@@ -99,8 +97,6 @@ def fragility_of(
     ----------
     outcomes
         Outcomes with their measure, see :class:`Observations`.
-    link
-        ``probit`` (lognormal curve) or ``logit``.
     level
         Of the confidence limits [-], 0 to 1.
     seed, dependence
@@ -110,8 +106,8 @@ def fragility_of(
     -------
     The :class:`Fragility`.
     """
-    fit = fit_lognormal(outcomes, link=link)
-    limits = interval_over_motions(outcomes, level=level, link=link)
+    fit = fit_lognormal(outcomes)
+    limits = interval_over_motions(outcomes, level=level)
     return Fragility(fit, limits, checks_of_outcomes(outcomes, fit, limits, dependence, seed))
 
 

@@ -60,7 +60,6 @@ def goodness_of_fit(
     fit: FragilityFit,
     *,
     dependence: Literal["tests", "motions"] | None = None,
-    bins: int = 10,
     replicates: int = 200,
     seed: int = 0,
 ) -> GoodnessOfFit:
@@ -74,8 +73,6 @@ def goodness_of_fit(
         ``tests`` simulates each outcome by itself; ``motions`` gives each motion one capacity from
         the curve, so that its outcomes hang together as in an incremental dynamic analysis. None takes
         ``motions`` where motions have more than one row.
-    bins
-        Most bins of the measure.
     replicates
         Number of simulated data sets.
     seed
@@ -94,7 +91,7 @@ def goodness_of_fit(
         raise InputError(f"goodness of fit: there is no curve to judge ({fit.method}).")
     if dependence is None:
         dependence = "motions" if outcomes.is_swept else "tests"
-    code = np.unique(bin_codes(outcomes, bins), return_inverse=True)[1]
+    code = np.unique(bin_codes(outcomes), return_inverse=True)[1]
     probability = fit.probability(outcomes.im)
 
     def by_bin(values: Floats) -> Floats:

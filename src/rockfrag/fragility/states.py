@@ -15,8 +15,6 @@ def fit_uplift(
     motions: pd.DataFrame,
     im: str,
     *,
-    motion: str = "motion",
-    earthquake: str | None = "earthquake",
     level: float = 0.90,
 ) -> Fragility:
     """Curve of P(rock | IM) from motions scaled to the peak acceleration at which rocking starts.
@@ -27,13 +25,13 @@ def fit_uplift(
     Parameters
     ----------
     motions
-        One row per motion, scaled to the threshold.
+        One row per motion, scaled to the threshold: ``motion``, ``earthquake`` and measures.
     im
         Column of the measure at that scale.
-    motion, earthquake, level
+    level
         As of :func:`rockfrag.fragility.estimators.fit_step_tests`.
     """
     at = positive(motions, im)
-    names = labels(motions, motion, "table")
-    earthquakes = names if earthquake is None else labels(motions, earthquake, "table")
+    names = labels(motions, "motion", "table")
+    earthquakes = labels(motions, "earthquake", "table")
     return fragility_of_brackets(Brackets(at, at, names, earthquakes, *name_and_unit(im)), level)

@@ -20,16 +20,14 @@ def rank_probabilities(
     cluster: str,
     seed: int,
     *,
-    value: str = "d",
     within: bool = False,
-    draws: int = DRAWS,
 ) -> pd.DataFrame:
     """How often each level has the largest and the smallest mean in resampled data.
 
     Parameters
     ----------
     table
-        Rows with the columns ``factor``, ``cluster``, ``value``.
+        Rows with the columns ``factor``, ``cluster``, ``d``.
     factor
         Levels that are ranked: object, floor or earthquake.
     cluster
@@ -52,35 +50,35 @@ def rank_probabilities(
     elif within:
         drawn = np.column_stack(
             [
-                _resampled(rows.groupby(cluster)[value].mean().to_numpy(), rng, draws)
+                _resampled(rows.groupby(cluster)["d"].mean().to_numpy(), rng)
                 for _, rows in table.groupby(factor)
             ]
         )
     else:
-        cells = table.pivot_table(index=cluster, columns=factor, values=value, aggfunc="mean")
+        cells = table.pivot_table(index=cluster, columns=factor, values="d", aggfunc="mean")
         grid = cells[levels].dropna().to_numpy()
-        samples = _samples(rng, len(grid), draws)
+        samples = _samples(rng, len(grid))
         drawn = np.concatenate([grid[chosen].mean(axis=1) for chosen in samples])
     return pd.DataFrame(
         {
             "level": levels,
-            "mean": table.groupby(factor)[value].mean()[levels].to_numpy(),
+            "mean": table.groupby(factor)["d"].mean()[levels].to_numpy(),
             "p_largest": _fraction_of(drawn == drawn.max(axis=1, keepdims=True)),
             "p_smallest": _fraction_of(drawn == drawn.min(axis=1, keepdims=True)),
         }
     )
 
 
-def _resampled(means: Array, rng: np.random.Generator, draws: int) -> Array:
-    samples = _samples(rng, len(means), draws)
+def _resampled(means: Array, rng: np.random.Generator) -> Array:
+    samples = _samples(rng, len(means))
     return np.concatenate([means[chosen].mean(axis=1) for chosen in samples])
 
 
-def _samples(rng: np.random.Generator, n: int, draws: int) -> Iterator[npt.NDArray[np.int64]]:
-    """Draw ``draws`` samples of n out of n with replacement, some at a time so that memory stays small."""
+def _samples(rng: np.random.Generator, n: int) -> Iterator[npt.NDArray[np.int64]]:
+    """Draw ``DRAWS`` samples of n out of n with replacement, some at a time so that memory stays small."""
     at_once = max(1, DRAWN_AT_ONCE // max(n, 1))
-    for begin in range(0, draws, at_once):
-        yield rng.integers(0, n, size=(min(at_once, draws - begin), n))
+    for begin in range(0, DRAWS, at_once):
+        yield rng.integers(0, n, size=(min(at_once, DRAWS - begin), n))
 
 
 def _fraction_of(extreme: npt.NDArray[np.bool_]) -> Array:

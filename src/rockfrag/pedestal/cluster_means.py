@@ -192,13 +192,13 @@ def _resolution_of(table: pd.DataFrame) -> Array:
     return table["resolution"].to_numpy(dtype=float)
 
 
-def unit_means(table: pd.DataFrame, unit: str, value: str = "d") -> pd.Series:
-    """Means of ``value`` by sampled unit: over the pairs of a motion, then over motions.
+def unit_means(table: pd.DataFrame, unit: str) -> pd.Series:
+    """Means of d by sampled unit: over the pairs of a motion, then over motions.
 
     Parameters
     ----------
     table
-        Pairs with the columns ``unit``, motion and ``value``.
+        Pairs with the columns ``unit``, motion and d.
     unit
         ``earthquake`` or ``motion``.
 
@@ -208,7 +208,7 @@ def unit_means(table: pd.DataFrame, unit: str, value: str = "d") -> pd.Series:
         One value per unit, indexed and sorted by its name.
     """
     by = ["motion"] if unit == "motion" else [unit, "motion"]
-    means = table.groupby(by)[value].mean()
+    means = table.groupby(by)["d"].mean()
     return means if unit == "motion" else means.groupby(level=unit).mean()
 
 
@@ -217,26 +217,24 @@ def sampled_unit(table: pd.DataFrame) -> str:
     return "earthquake" if len(set(table["earthquake"])) > 1 else "motion"
 
 
-def mean_effect(table: pd.DataFrame, confidence: float = CONFIDENCE) -> Estimate:
+def mean_effect(table: pd.DataFrame) -> Estimate:
     """Mean of d with interval and p value that hold in the crossed design.
 
     The units are the earthquakes; within a single earthquake they are its motions. A column ``resolution``,
     the half-width to which each d is known, widens the interval where pairs agree.
     """
-    return next(iter(mean_effects(table.assign(whole=""), "whole", confidence).values()))
+    return next(iter(mean_effects(table.assign(whole=""), "whole").values()))
 
 
-def mean_effects(
-    table: pd.DataFrame, by: str, confidence: float = CONFIDENCE
-) -> dict[Hashable, Estimate]:
+def mean_effects(table: pd.DataFrame, by: str) -> dict[Hashable, Estimate]:
     """`mean_effect` of every group of rows with the same value of a column, all at once."""
     units = sampled_units(table, by)
-    return {name: effect_of(some, confidence) for name, some in units.items()}
+    return {name: effect_of(some) for name, some in units.items()}
 
 
-def effect_of(units: "Units", confidence: float = CONFIDENCE) -> Estimate:
+def effect_of(units: "Units") -> Estimate:
     """Mean of sampled units with interval and p value."""
-    return t_estimate(units.d, confidence, float(units.hidden.mean()))
+    return t_estimate(units.d, resolution=float(units.hidden.mean()))
 
 
 class Units(NamedTuple):
@@ -278,9 +276,7 @@ def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
     return found
 
 
-def slope_effect(
-    table: pd.DataFrame, x: str = "s_c", value: str = "d", confidence: float = CONFIDENCE
-) -> Estimate:
+def slope_effect(table: pd.DataFrame, x: str = "s_c", value: str = "d") -> Estimate:
     """Slope of ``value`` on ``x``: least squares inside each earthquake, then t over the earthquakes.
 
     Only differences between the objects of one motion (and one side, if there is a column side) enter.
@@ -294,7 +290,7 @@ def slope_effect(
     by_earthquake = sums.groupby(table["earthquake"]).sum()
     by_earthquake = by_earthquake[by_earthquake["xx"] > 0]
     resolution = (by_earthquake["hidden"] / by_earthquake["xx"]).mean()
-    return t_estimate(by_earthquake["xy"] / by_earthquake["xx"], confidence, float(resolution))
+    return t_estimate(by_earthquake["xy"] / by_earthquake["xx"], resolution=float(resolution))
 
 
 def contrast(
@@ -304,7 +300,6 @@ def contrast(
     other: str,
     block: str = "earthquake",
     value: str = "d",
-    confidence: float = CONFIDENCE,
 ) -> Estimate:
     """Difference of the mean of ``value`` between two levels of a factor, block by block.
 
@@ -312,8 +307,8 @@ def contrast(
 
     Parameters
     ----------
-    factor, one, other
-        Column and its two levels; the estimate is ``one`` minus ``other``.
+    factor, word, other
+        Column and its two levels; the estimate is ``word`` minus ``other``.
     block
         Column within which the levels are compared: the earthquakes for floors and objects, the floors
         for a comparison of two earthquakes.
@@ -331,4 +326,4 @@ def contrast(
     known = (cells["known", word] + cells["known", other]).reindex(difference.index)
     hidden = pd.Series(tied_resolution(difference, known), index=difference.index)
     resolution = float(hidden.groupby(level=block).mean().mean())
-    return t_estimate(difference.groupby(level=block).mean(), confidence, resolution)
+    return t_estimate(difference.groupby(level=block).mean(), resolution=resolution)

@@ -12,7 +12,7 @@ LEVEL = 0.05
 MOST_UNITS = 100_000
 
 
-def power_of_t(ratio: float, sd: float, n: int, level: float = LEVEL) -> float:
+def power_of_t(ratio: float, sd: float, n: int) -> float:
     """Power of the two-sided one-sample t test on n values of ln ratio.
 
     Parameters
@@ -30,12 +30,12 @@ def power_of_t(ratio: float, sd: float, n: int, level: float = LEVEL) -> float:
         raise ValueError("power needs two values and a positive standard deviation")
     size = abs(math.log(ratio)) / sd
     # the two-sided power less the chance to reject on the wrong side, which underflows to NaN
-    found = TTestPower().power(effect_size=size, nobs=n, alpha=level / 2, alternative="larger")
+    found = TTestPower().power(effect_size=size, nobs=n, alpha=LEVEL / 2, alternative="larger")
     return float(found)
 
 
-def detectable_ratio(effect: Estimate, power: float = POWER) -> float:
-    """Smallest ratio above one that as many units, with their scatter, show with the given power [-].
+def detectable_ratio(effect: Estimate) -> float:
+    """Smallest ratio above one that as many units, with their scatter, show with 80 % power [-].
 
     The test is t over the units, and a difference within the estimate's resolution is none; so what
     can be seen exceeds the resolution by what normal scatter takes away with this power. Infinite for
@@ -45,23 +45,23 @@ def detectable_ratio(effect: Estimate, power: float = POWER) -> float:
         return math.inf
     if not effect.se > 0:
         return math.nan
-    beyond = effect.resolution + float(special.ndtri(power)) * effect.se
-    size = _detectable_size(effect.units, power)
+    beyond = effect.resolution + float(special.ndtri(POWER)) * effect.se
+    size = _detectable_size(effect.units)
     return math.exp(max(size * effect.sd, beyond if effect.resolution > 0 else 0.0))
 
 
 @lru_cache
-def _detectable_size(units: int, power: float) -> float:
-    """Effect over the standard deviation of a unit that so many units show with a power [-]."""
+def _detectable_size(units: int) -> float:
+    """Effect over the standard deviation of a unit that so many units show with 80 % power [-]."""
     from statsmodels.stats.power import TTestPower
 
     return float(
-        TTestPower().solve_power(nobs=units, alpha=LEVEL / 2, power=power, alternative="larger")
+        TTestPower().solve_power(nobs=units, alpha=LEVEL / 2, power=POWER, alternative="larger")
     )
 
 
-def units_needed(effect: Estimate, power: float = POWER) -> float:
-    """How many units like those at hand would show the observed mean with the given power.
+def units_needed(effect: Estimate) -> float:
+    """How many units like those at hand would show the observed mean with 80 % power.
 
     Infinite if the observed mean lies within the resolution or needs more than `MOST_UNITS`, NaN if
     there is no scatter to judge by.
@@ -72,12 +72,12 @@ def units_needed(effect: Estimate, power: float = POWER) -> float:
         return math.inf
     from statsmodels.stats.power import TTestPower
 
-    if power_of_t(effect.ratio, effect.sd, MOST_UNITS) < power:
+    if power_of_t(effect.ratio, effect.sd, MOST_UNITS) < POWER:
         return math.inf
-    if power_of_t(effect.ratio, effect.sd, 2) >= power:
+    if power_of_t(effect.ratio, effect.sd, 2) >= POWER:
         return 2.0
     found = TTestPower().solve_power(
-        abs(effect.mean) / effect.sd, alpha=LEVEL / 2, power=power, alternative="larger"
+        abs(effect.mean) / effect.sd, alpha=LEVEL / 2, power=POWER, alternative="larger"
     )
     return float(math.ceil(found))
 

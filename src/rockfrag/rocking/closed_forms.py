@@ -80,11 +80,11 @@ def _root(function: Callable[[float], float]) -> float:
     return float(brentq(function, 1.0, upper, xtol=1e-14, rtol=1e-14))
 
 
-def housner_velocity(alpha: float, p: float, g: float = GRAVITY) -> float:
+def housner_velocity(alpha: float, p: float) -> float:
     """Ground velocity of a sudden step that just overturns a slender block, θc g / p [m/s].
 
     Housner (1963): θc = v √(m R / (g I_O)), by equating energies; with v the velocity spectrum's
     ordinate he gave it as the earthquake that overturns half of such blocks.
     """
-    _positive(alpha=alpha, p=p, g=g)
-    return alpha * g / p
+    _positive(alpha=alpha, p=p)
+    return alpha * GRAVITY / p

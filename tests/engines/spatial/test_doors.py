@@ -59,6 +59,17 @@ def test_history_ends_as_the_outcome_says():
     assert abs(response.outcome.residual) < 1e-6
 
 
+@pytest.mark.parametrize(("peak_g", "said"), [(0.2, "Does not fall"), (0.6, "Falls over")])
+def test_a_response_draws_the_path_of_its_axis_and_its_plan(peak_g, said):
+    response = simulate(BOX, ground_motion(2, peak_g))
+    axis, plan = response.plot("A box").axes
+    assert axis.get_title(loc="left").startswith(said)
+    path = axis.get_lines()[0].get_xydata()
+    np.testing.assert_allclose(np.hypot(*path.T), response.history.tilt_rad, atol=1e-12)
+    stood = plan.get_lines()[0].get_xydata()
+    assert np.ptp(stood, axis=0) == pytest.approx([0.35, 0.35])
+
+
 def test_flip_rate_counts_cases_that_end_otherwise():
     falls, rate = flip_rate(BOX, ground_motion(1, 0.05), repeats=3)
     assert (falls, rate) == (False, 0.0)

@@ -161,6 +161,29 @@ def test_energy_about_a_fixed_vertex_and_its_vertical_angular_momentum_are_kept(
     assert abs(outcome.residual) < 1e-8
 
 
+def test_a_polygon_tends_to_the_circle_and_its_loss_per_vertex_to_none_as_one_over_their_square():
+    # from a wobble of the circle with its centre at rest
+    radius, height, tilt = 0.3, 1.4, 0.2
+    circle = cylinder(radius, height)
+    s, c, h = math.sin(tilt), math.cos(tilt), height / 2
+    across, along = circle["inertia"][0, 0], circle["inertia"][2, 2]
+    rate = math.sqrt(GRAVITY * (radius * c - h * s) / (s * (across * c - along * h / radius * s)))
+    arm, up, axis = np.array([radius, 0.0, -h]), np.array([-s, 0.0, c]), np.array([0.0, 0.0, 1.0])
+    spin = arm * (rate * np.cross(up, axis)[1] / np.cross(arm, axis)[1])
+    changes, losses = [], []
+    for sides in (12, 24, 48):
+        body = cylinder(radius, height, sides=sides)
+        start = tilted_on_rim(circle, tilt, spin)
+        # half a turn of the contact
+        outcome, history = run_case(body, ground_at_rest(3.1 / rate), DT, start=start, samples=60)
+        losses.append(outcome.dissipated[0] / outcome.impacts)
+        tilts = history_table(history, DT, h).tilt_rad
+        changes.append(float(np.abs(tilts - tilt).max()))
+    assert changes[0] > changes[1] > changes[2]
+    assert changes[2] < 0.01
+    assert losses[1] / losses[2] == pytest.approx(4.0, rel=0.2)
+
+
 def planar_case(rng):
     width = rng.uniform(0.15, 0.8)
     height = width * rng.uniform(2.5, 6)
@@ -169,7 +192,7 @@ def planar_case(rng):
 
 
 def compare_with_plane(rng, count):
-    """Number of equal outcomes, and each case's largest difference of angles in the first second of rocking."""
+    """Number of equal outcomes, and each case's largest difference of angles up to the third impact."""
     same, worst = 0, []
     for _ in range(count):
         width, depth, height, motion = planar_case(rng)
@@ -182,7 +205,10 @@ def compare_with_plane(rng, count):
         same += outcome.overturned == planar.overturned
         tilt = history_table(history, DT, height / 2).tilt_rad.to_numpy()
         theta = np.abs(planar.theta[:, 0])
-        n = min(len(tilt), len(theta), int((theta > 0).argmax()) + 100)
+        events = planar.contact_events
+        impacts = events.loc[events["kind"] == "impact", "time"].to_numpy()
+        third = int(impacts[2] / DT) if len(impacts) > 2 else len(theta)
+        n = min(len(tilt), len(theta), max(third, 1))
         worst.append(float(np.abs(tilt[:n] - theta[:n]).max()))
         assert abs(outcome.residual) < 1e-7
         assert outcome.dissipated[0] >= 0
@@ -194,16 +220,15 @@ def compare_with_plane(rng, count):
 def test_two_hundred_boxes_in_a_plane_of_symmetry_are_the_planar_block():
     same, worst = compare_with_plane(np.random.default_rng(12), 200)
     assert same == 200
-    # rattling at the cut-off energy before a block rocks in earnest differs by more
-    assert np.median(worst) < 1e-7
-    assert np.quantile(worst, 0.9) < 1e-6
+    # later impacts multiply differences: where a block rattles, by a few tens of impacts a second
+    assert max(worst) < 1e-7
 
 
 @pytest.mark.filterwarnings("ignore:the peak")
 def test_in_a_plane_of_symmetry_it_is_the_planar_block():
     same, worst = compare_with_plane(np.random.default_rng(11), 8)
     assert same == 8
-    assert max(worst) < 1e-5
+    assert max(worst) < 1e-7
 
 
 def test_a_turned_and_a_mirrored_case_are_the_same_case():

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -19,6 +20,9 @@ from rockfrag.system.blocks import Block, as_system
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 
 @dataclass(frozen=True)
 class SpatialResponse:
@@ -30,15 +34,30 @@ class SpatialResponse:
         What became of the body.
     history
         Table of :func:`rockfrag.engines.spatial.outcome.history_table`.
+    outline
+        Outline of the base as it stands at first, from below the centre of mass, shape (n, 2) [m].
     """
 
     outcome: SpatialOutcome
     history: pd.DataFrame
+    outline: NDArray[np.float64]
 
     @property
     def overturned(self) -> bool:
         """Whether the body fell."""
         return self.outcome.overturned
+
+    def plot(self, title: str = "") -> "Figure":
+        """Draw the path of the axis, and the base in the plan.
+
+        Parameters
+        ----------
+        title
+            Its heading.
+        """
+        from rockfrag.engines.spatial.response_figure import spatial_figure
+
+        return spatial_figure(self.outcome, self.history, self.outline, title)
 
     @property
     def lost_contact(self) -> float:
@@ -94,7 +113,9 @@ class SpatialEngine:
         ground = case.motion.accelerations
         samples = len(ground) + math.ceil(AFTER / case.motion.dt) + 2
         found, history = run_case(body, ground, case.motion.dt, case.scale, g=g, samples=samples)
-        return SpatialResponse(found, history_table(history, case.motion.dt, float(body["height"])))
+        table = history_table(history, case.motion.dt, float(body["height"]))
+        outline = np.array(body["points"][: body["count"], :2])
+        return SpatialResponse(found, table, outline)
 
 
 ENGINE = SpatialEngine()

@@ -38,7 +38,7 @@ def agreement_figure(agreement: pd.DataFrame) -> Figure:
                 100 * row["right"], place, "o", color=colour, mfc=colour if filled else "white"
             )
         axes.set_yticks(range(len(rows)), [label(name) for name in rows["who"]])
-        axes.set_xlabel("Outcomes predicted right [%]")
+        axes.set_xlabel("Outcomes right [%]")
         axes.grid(axis="x")
         return figure
 

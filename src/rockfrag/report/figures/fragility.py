@@ -128,7 +128,7 @@ def _fractions(axes: Axes, bins: pd.DataFrame, colour: str, shift: float) -> Non
 
 
 def measures_figure(
-    curves: Mapping[str, "Fragility"], outcomes: Mapping[str, Observations], *, bins: int = 10
+    curves: Mapping[str, "Fragility"], outcomes: Mapping[str, Observations]
 ) -> Figure:
     """Draw the curve of each measure in a panel of its own, with AIC and β, to compare measures."""
     labels = [label for label, curve in curves.items() if np.isfinite(curve.fit.theta)]
@@ -144,7 +144,7 @@ def measures_figure(
         for axes, label in zip(grid_of_axes.flat, labels, strict=False):
             curve, data = curves[label], outcomes[label]
             grid = _grid([curve], [data])
-            _outcomes(axes, data, grid, BLACK, bins)
+            _outcomes(axes, data, grid, BLACK)
             _curve(axes, curve, grid, BLUE, "")
             _probability_axis(axes, grid)
             axes.set_title(
@@ -200,8 +200,8 @@ def _curve(axes: Axes, curve: "Fragility", grid: Floats, colour: str, label: str
     axes.plot(grid, curve.fit.probability(grid), color=colour, label=theta)
 
 
-def _outcomes(axes: Axes, data: Observations, grid: Floats, colour: str, bins: int) -> None:
-    _fractions(axes, fraction_in_bins(data, bins).rename(columns={"im": "x"}), colour, 1.0)
+def _outcomes(axes: Axes, data: Observations, grid: Floats, colour: str) -> None:
+    _fractions(axes, fraction_in_bins(data).rename(columns={"im": "x"}), colour, 1.0)
     inside = grid[(grid >= data.im.min()) & (grid <= data.im.max())]
     if inside.size and np.ptp(data.log_im) > 0:
         axes.plot(inside, local_fraction(data, inside), "--", color=colour, linewidth=0.8)
