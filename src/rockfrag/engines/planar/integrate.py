@@ -37,7 +37,7 @@ MOST_IDLE = 30
 """Contact events on the spot after which a step is taken without looking for more."""
 
 MOST_JOLTS = 60
-"""Impulses on the spot after which a step is taken in any case, so that time goes on; fewer would lose energy where
+"""Impulses on the spot after which a step is taken in any case, so that time goes on; fewer lose energy where
 ever coarser impacts (``MOST_CONTACT_EVENTS``) end what repeats."""
 
 LARGEST_FAILURE = 1e-3
