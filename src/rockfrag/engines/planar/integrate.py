@@ -36,6 +36,10 @@ MOST_CONTACT_EVENTS = 300
 MOST_IDLE = 30
 """Contact events on the spot after which a step is taken without looking for more."""
 
+MOST_JOLTS = 60
+"""Impulses on the spot after which a step is taken in any case, so that time goes on; fewer lose energy where
+ever coarser impacts (``MOST_CONTACT_EVENTS``) end what repeats."""
+
 LARGEST_FAILURE = 1e-3
 """Margin of a step after contact events on the spot beyond which it is no small one [-]."""
 
@@ -208,7 +212,7 @@ def integrate(p, shaking, start, closing, book, w):
     done = 1
     fall = math.nan
     idle = 0
-    jolted = False
+    jolts = 0
     for i in range(n - 1 + shaking.free_samples):
         late = _now(shaking, i + 1)
         sample = Stretch(dt, now.ah, now.av, late.ah - now.ah, late.av - now.av)
@@ -267,13 +271,13 @@ def integrate(p, shaking, start, closing, book, w):
                 when = _contact_event_in_step(p, w, at_end, stretch)
             if idle > MOST_IDLE:
                 # contact events that do not let time go on: leave them behind, or end them by an impulse
-                # where a step would not be a small one; if that does not help, the step is taken all the same
+                # where a step would not be a small one; if many do not help, the step is taken all the same
                 idle = 0
                 w.forced += 1
-                if jolted:
+                if jolts == MOST_JOLTS:
                     when = 2.0
                 if when <= 1.0:
-                    jolted = True
+                    jolts += 1
                     count = _jolt(
                         p, w, Instant((i + tau) * dt, ah, av), closing, book.contact_events, count
                     )
@@ -285,7 +289,7 @@ def integrate(p, shaking, start, closing, book, w):
                     w.v[d] = w.v1[d]
                     w.a[d] = w.a1[d]
                 fresh = False
-                jolted = False
+                jolts = 0
                 project(p, w)
                 tau += step
                 if 1.0 - tau < 1e-12:
@@ -306,7 +310,7 @@ def integrate(p, shaking, start, closing, book, w):
                 project(p, w)
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
-                jolted = jolted and idle > 0
+                jolts = jolts if idle > 0 else 0
                 w.met += 1
                 coarser = closing * 10.0 ** (w.met // MOST_CONTACT_EVENTS)
                 if w.met >= MOST_CONTACT_EVENTS:
