@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
@@ -18,6 +18,8 @@ SIZES = st.floats(0.05, 3.0)
 
 @given(SIZES, SIZES, st.floats(-0.2, 0.2), st.floats(-0.02, 0.02), st.floats(-0.2, 0.2))
 def test_a_system_has_the_same_bits_as_the_blocks_that_wrote_it(width, height, aside, lean, offset):
+    # a high block that leans may have nothing under its centre of gravity
+    assume(abs(aside) * width + abs(lean) * height < 0.45 * width)
     block = Block(width, height, 40.0, cg_offset=aside * width, lean=lean)
     assert block.system().shapes == (block.shape,)
     stack = Stack(Block(2 * width, 2 * width, 90.0, lean=-lean), block, offset * width)

@@ -114,7 +114,7 @@ def test_perturbed_copies_follow_from_the_seed_and_differ_on_the_two_sides():
 def test_a_level_that_cannot_be_is_named(levels, words):
     with pytest.raises(InputError) as caught:
         factor_cases("T2", STACK, levels)
-    for word in ("explanation.", "T2", *words):
+    for word in ("sensitivity_analysis.", "T2", *words):
         assert word in str(caught.value)
 
 

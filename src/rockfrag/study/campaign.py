@@ -117,8 +117,8 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     content = checked(content, "campaign", str(source))
     campaign, thing = content[CAMPAIGN_KEY], content["object"]
     fetch = tuple(
-        PublicFile(source["url"], source["sha256"], _kept(source, i, source["file"]))
-        for i, source in enumerate(content.get("fetch", ()))
+        PublicFile(wanted["url"], wanted["sha256"], _kept(source, i, wanted["file"]))
+        for i, wanted in enumerate(content.get("fetch", ()))
     )
     fetched = {source.path for source in fetch}
     _check_object(source, thing, content["unknowns"])
