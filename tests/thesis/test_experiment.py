@@ -175,7 +175,7 @@ def test_exceptions_on_the_upper_floors_are_counted_beyond_their_steps(made):
     assert "24 decrease and 0 increase" in result(50, tests).remark
     # two thirds fall a little, one third rises much: no "few exceptions"
     mixed = made(lambda o, e, f: 0.06 if o == "T1" else -0.2, step=0.05)
-    assert result(50, mixed).remark.startswith("of 24 pairs 16 decrease and 8 increase")
+    assert result(50, mixed).remark.startswith("pairs: 24, of which 16 decrease and 8 increase")
 
 
 def test_noise_alone_leaves_directions_and_ranks_open(made):

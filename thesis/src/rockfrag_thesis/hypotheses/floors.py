@@ -248,7 +248,7 @@ def c50(tests: Evidence) -> Result:
     down, up = int((rows["d"] < -steps).sum()), int((rows["d"] > steps).sum())
     found = order(
         {"NP/P on F3 and F5": Part(mean_effect(rows).times(-1))},
-        more=f"of {len(rows)} pairs {down} decrease and {up} increase by more than their steps",
+        more=f"pairs: {len(rows)}, of which {down} decrease and {up} increase by more than their steps",
     )
     if found.finding is Finding.FOR and down <= up:
         return replace(found, finding=Finding.OPEN)

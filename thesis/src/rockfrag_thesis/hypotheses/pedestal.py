@@ -24,7 +24,7 @@ def _changed(tests: Evidence) -> str:
     table = tests.table
     steps = table.get("resolution", 0.0)
     return (
-        f"of {len(table)} pairs {int((table['d'] > steps).sum())} gain and "
+        f"pairs: {len(table)}, of which {int((table['d'] > steps).sum())} gain and "
         f"{int((table['d'] < -steps).sum())} lose by more than their steps"
     )
 

@@ -40,7 +40,7 @@ def c55(tests: Evidence) -> Result:
     as_told = bool((counts == MOTIONS).all())
     return Result(
         Finding.FOR if as_told else Finding.OPEN,
-        f"{counts.min()} to {counts.max()} motions for {len(counts)} configurations; {close}",
+        f"motions: {counts.min()} to {counts.max()}; configurations: {len(counts)}; {close}",
         float(counts.min()),
         float(counts.min()),
         float(counts.max()),

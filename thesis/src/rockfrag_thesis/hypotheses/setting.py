@@ -89,11 +89,11 @@ class Setting:
     @property
     def where(self) -> str:
         """Which histories were looked at, in words."""
-        several = f"{len(self.sample)} motions"
+        several = f"{len(self.sample)}"
         if len(self.sample) < len(self.motions):
-            several = f"{len(self.sample)} of {len(self.motions)} motions"
+            several += f" of {len(self.motions)}"
         peaks = ", ".join(f"{peak:g}" for peak in PEAKS_G)
-        return f"{len(self.assemblies)} stacks under {several} scaled to {peaks} g"
+        return f"stacks: {len(self.assemblies)}; motions: {several}, scaled to {peaks} g"
 
     @cached_property
     def histories(self) -> list[Response]:

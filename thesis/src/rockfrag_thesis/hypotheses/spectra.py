@@ -340,5 +340,5 @@ def c19(setting: Setting) -> Result:
         decisive.ratio_lower,
         decisive.ratio_upper,
         remark=f"{len(motions)} motions of {len(set(groups))} earthquakes; mean over "
-        f"{len(blocks)} blocks, each over the motions that overturned it",
+        f"blocks ({len(blocks)} of them), each over the motions that overturned it",
     )
