@@ -306,7 +306,7 @@ def c8(setting: Setting) -> Result:
     more = int(np.sum(np.array(ratio) > 1))
     return Result(
         most(more, len(ratio)),
-        f"{more} of {len(ratio)} blocks and motions scatter more; standard deviation of ln a "
+        f"blocks and motions that scatter more: {more} of {len(ratio)}; standard deviation of ln a "
         f"{np.median(spread):.3f} (median; {min(spread):.3f} to {max(spread):.3f}), "
         f"{np.median(ratio):.1f} times that of ln(b/h)",
         float(np.median(ratio)),

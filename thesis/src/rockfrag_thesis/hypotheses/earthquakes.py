@@ -191,7 +191,7 @@ def c52(tests: Evidence) -> Result:
     item = found[strongest]
     return Result(
         finding,
-        f"{n} motions of {joined['earthquake'].nunique()} earthquakes: "
+        f"motions: {n}; earthquakes: {joined['earthquake'].nunique()}; "
         + ", ".join(
             f"{name} ρ = {math.tanh(each.mean):.2f} [{math.tanh(each.lower):.2f}, "
             f"{math.tanh(each.upper):.2f}]"

@@ -127,8 +127,8 @@ def c57(tests: Evidence) -> Result:
     return Result(
         finding,
         f"friction needed: median {demand.median():.2f}, largest {demand.max():.2f}; "
-        f"{int((demand > SMOOTH).sum())} of {len(need)} tests need more than {SMOOTH}, {opened} open a "
-        "contact",
+        f"tests that need more than {SMOOTH}: {int((demand > SMOOTH).sum())} of {len(need)}; tests in which a "
+        f"contact opens: {opened}",
         float(demand.max()),
         float(demand.min()),
         float(demand.max()),

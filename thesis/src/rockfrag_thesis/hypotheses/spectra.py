@@ -131,7 +131,7 @@ def c16(setting: Setting) -> Result:
     shown = ", ".join(f"{name} {a:.2g} to {b:.2g} s" for name, (a, b) in list(wide.items())[:4])
     return Result(
         Finding.FOR if wide else Finding.OPEN,
-        f"{len(wide)} of {len(bands)} motions have such a range" + (f": {shown}" if wide else ""),
+        f"motions with such a range: {len(wide)} of {len(bands)}" + (f": {shown}" if wide else ""),
         float(inside.mean()),
         float(inside.mean(axis=1).min()),
         float(inside.mean(axis=1).max()),
@@ -168,7 +168,7 @@ def c17(setting: Setting) -> Result:
     damping = setting.spectra.displacement(0.05 * (1 + CHANGE)) / setting.spectra.displacement(0.05)
     return Result(
         most(more, ratio.size),
-        f"{more} of {ratio.size} motions: rotation changes {np.median(ratio):.1f} times as much as "
+        f"motions: {more} of {ratio.size}; rotation changes {np.median(ratio):.1f} times as much as "
         f"slenderness (median; {ratio.min():.1f} to {ratio.max():.1f}), {np.mean(flips):.1%} of the outcomes "
         f"flip; Sd changes {np.median(np.abs(np.log(damping))) / CHANGE:.2f} times as much as damping",
         float(np.median(ratio)),
@@ -339,6 +339,6 @@ def c19(setting: Setting) -> Result:
         decisive.ratio,
         decisive.ratio_lower,
         decisive.ratio_upper,
-        remark=f"{len(motions)} motions of {len(set(groups))} earthquakes; mean over "
+        remark=f"motions: {len(motions)} of {len(set(groups))} earthquakes; mean over "
         f"blocks ({len(blocks)} of them), each over the motions that overturned it",
     )
