@@ -159,13 +159,8 @@ LARGEST_GRAVITY = 100.0
 """Largest acceleration of gravity that is no mistake of unit [m/s²]."""
 
 
-SHORTEST_STEP = 1e-6
-"""Sampling interval below which no instrument records strong motion [s]."""
-
-
 def interval_warning(dt: float) -> str:
-    """Say that a sampling interval [s] is too long or too short for strong motion, or return an empty text."""
-    if SHORTEST_STEP <= dt <= LONGEST_STEP:
+    """Say that a sampling interval [s] is too long for strong motion, or return an empty text."""
+    if dt <= LONGEST_STEP:
         return ""
-    fault = "long" if dt > LONGEST_STEP else "short"
-    return f"a sampling interval of {dt:g} s is too {fault} for strong motion; check its unit"
+    return f"a sampling interval of {dt:g} s is too long for strong motion; check its unit"

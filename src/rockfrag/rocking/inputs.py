@@ -371,11 +371,6 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
         # what is far too long is refused before it is doubted
         for system in cases.systems:
             step_count(system, longest, g, STEP)
-    shortest = min(motion.dt for motion in cases.motions)
-    for quality_flag in (
-        peak_warning(peak, least),
-        gravity_warning(g),
-        interval_warning(longest) or interval_warning(shortest),
-    ):
+    for quality_flag in (peak_warning(peak, least), gravity_warning(g), interval_warning(longest)):
         if quality_flag:
             warnings.warn(quality_flag, UnitWarning, stacklevel=stacklevel)
