@@ -136,6 +136,10 @@ def test_below_uplift_it_says_from_which_level_it_rocks(motions):
     assert found.fraction.upper == 0
 
 
+def test_limits_at_both_ends_are_narrowed_by_nothing():
+    assert narrowed(Estimate(0.5, 0.0, 1.0, {"cg_height": 1.9, "model": 2.6})) is None
+
+
 def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(on_pedestal):
     wide = Estimate(0.05, 0.001, 0.74, {"conversion": 1.6, "period": 1.2, "model": 0.5})
     better = narrowed(wide)

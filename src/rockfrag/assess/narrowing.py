@@ -58,6 +58,9 @@ def narrowed(estimate: Estimate) -> Narrowed | None:
     total = sum(variances.values())
     if not (0 < estimate.value < 1 and math.isfinite(total) and total > 0):
         return None
+    if estimate.lower <= 0 and estimate.upper >= 1:
+        # limits that are at the ends whatever is known
+        return None
     gains = {
         name: variances.get(name, 0.0) * (1 - measurement.left**2) / total
         for name, measurement in MEASUREMENTS.items()
