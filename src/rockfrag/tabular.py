@@ -1,4 +1,4 @@
-"""Reading small CSV tables with errors that name the row and the column."""
+"""Small tables: reading CSV with errors that name the row and the column, and joining rows."""
 
 import csv
 import math
@@ -6,11 +6,15 @@ import os
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from rockfrag.errors import InputError
 from rockfrag.plain_text import read_text
 from rockfrag.renamed_keys import check_names
 from rockfrag.units import other_names, quantity, split_name
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DELIMITERS = (",", ";", "\t")
 
@@ -212,3 +216,21 @@ def cells_of(text: str, path: str | os.PathLike[str]) -> list[tuple[int, list[st
         ]
     except csv.Error as error:
         raise InputError(f"{path}: is not a readable CSV file ({error}).") from error
+
+
+def join_rows(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
+    """Put the rows of tables with the same columns below each other.
+
+    Parameters
+    ----------
+    tables
+        At least one table. One without rows has columns without types, which columns of numbers would take over;
+        it counts only if none has any.
+
+    Returns
+    -------
+    A table with all rows, numbered anew.
+    """
+    import pandas as pd
+
+    return pd.concat([table for table in tables if len(table)] or tables, ignore_index=True)

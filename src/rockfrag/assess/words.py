@@ -164,13 +164,7 @@ def at_the_site(found: Assessment) -> str:
     if found.rocking.value == 0:
         return f"{who} {_at_rest(found, at)}"
     rocks = f"{_counted(found, ROCK)} it rock"
-    topples = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}"
-    if found.fraction.value == 0:
-        topples = (
-            f"none of {_total(found)} motions topples it (upper limit "
-            f"{fraction_words(found.fraction.upper)})"
-        )
-    said = f"{topples}; {rocks}."
+    said = f"{_counted(found, TOPPLE)} it{_interval(found.fraction)}; {rocks}."
     if not_decidable(found):
         whether = f"Whether {found.request.name} {_where(found)} topples {at}"
         return (
@@ -197,7 +191,7 @@ def _at_rest(found: Assessment, at: str) -> str:
             "lower "
             f"({limit})."
         )
-    return f"is not expected to move {at}: none of {_total(found)} motions makes it rock ({limit})."
+    return f"is not expected to move {at}: {_counted(found, ROCK)} it rock ({limit})."
 
 
 def _starts(found: Assessment) -> str:
@@ -213,9 +207,11 @@ def _total(found: Assessment) -> int:
 def _counted(found: Assessment, what: int) -> str:
     """How many motions do it, such as ``1 of 100 motions topples``."""
     item, many = {ROCK: ("makes", "make"), TOPPLE: ("topples", "topple")}[what]
+    fraction = found.rocking if what == ROCK else found.fraction
+    assert fraction is not None
+    if fraction.value == 0:
+        return f"none of {_total(found)} motions {item}"
     if found.counts is None:
-        fraction = found.rocking if what == ROCK else found.fraction
-        assert fraction is not None
         return f"{fraction_words(fraction.value)} of the motions {many}"
     number, total = found.counts[what], found.counts[0]
     if number == total:
@@ -226,6 +222,8 @@ def _counted(found: Assessment, what: int) -> str:
 def _interval(estimate: Estimate) -> str:
     if estimate.value == 1:
         return f" (lower limit {fraction_words(estimate.lower)})"
+    if estimate.value == 0:
+        return f" (upper limit {fraction_words(estimate.upper)})"
     if not _has_interval(estimate):
         return " (no interval can be given)"
     return f" ({100 * LEVEL:.0f} % interval {_range(estimate)})"

@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from rockfrag.files import whole_file
-from rockfrag.outcomes.limit_states import limit_states
+from rockfrag.outcomes.limit_states import ROCKS, limit_state_named, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.swept import fallen_names, labels_of
@@ -263,7 +263,7 @@ def as_recorded(
             "earthquake": [motion.metadata.get("earthquake") or motion.name for motion in motions],
             "floor": [motion.metadata["floor"] for motion in motions],
             "pga_g": [motion.pga / GRAVITY for motion in motions],
-            "rocked": (result.peak_rotation[0, :, itself] > 0).any(axis=-1),
+            "rocked": limit_state_named(ROCKS).reached(result)[0, :, itself],
             "overturned": result.overturned[0, :, itself],
             "overturned_body": np.take(
                 fallen_names(configuration), result.overturned_body[0, :, itself]

@@ -7,6 +7,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
+from rockfrag.tabular import join_rows
 
 PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_earthquake", "ranks", "notes")
 """Tables of :func:`pedestal_tables`, each written under ``pedestal/``."""
@@ -73,8 +74,4 @@ def pedestal_tables(
             parts[name].append(labelled)
     if not parts["pairs"]:
         raise InputError("tests: no reading has tests with and without a pedestal.")
-    return {
-        # a table without rows has columns without types, which those of numbers would take over
-        name: pd.concat([table for table in tables if len(table)] or tables, ignore_index=True)
-        for name, tables in parts.items()
-    }
+    return {name: join_rows(tables) for name, tables in parts.items()}

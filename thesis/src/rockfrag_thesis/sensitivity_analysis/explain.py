@@ -15,6 +15,7 @@ from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import mean_effects
 from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
+from rockfrag.tabular import join_rows
 
 COLUMNS = ("factor", "level", "reference", "object", "earthquake", "floor", "ratio")
 ALL = "all"
@@ -68,8 +69,7 @@ def explain(table: pd.DataFrame) -> pd.DataFrame:
     if "motion" not in work:
         work["motion"] = work["earthquake"].astype(str) + "/" + work["floor"].astype(str)
     parts = [_explain_factor(str(name), rows) for name, rows in work.groupby("factor", sort=True)]
-    # a table without rows has columns without types, which those of numbers would take over
-    result = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
+    result = join_rows(parts)
     result["p_bh"] = benjamini_hochberg(result["p"])
     choices = [result["p_bh"] < 0.05, result["p_equivalence"] < 0.05, result["p_bh"].isna()]
     result["judgement"] = np.select(choices, [CHANGES, SAME, ""], OPEN)
