@@ -202,3 +202,21 @@ def test_a_simulated_object_says_what_has_no_effect(own_records, tmp_path, capsy
     site = simulated_site(tmp_path, own_records / "catalogue.csv", ", width: 0 cm")
     status, said = run(site, capsys)
     assert status == 2 and said.err.count("\n") == 1
+
+
+def test_curves_that_end_before_the_level_decided_on_give_no_number_that_is_none(tmp_path, capsys):
+    # velocities that are exceeded oftener than once in ten thousand years, whatever the branch
+    rows = [
+        f"{branch},0.5,{level},{rate * factor}"
+        for branch, factor in (("a", 1), ("b", 4))
+        for level, rate in ((5, 0.02), (20, 0.002), (80, 0.0003))
+    ]
+    (tmp_path / "b.csv").write_text("\n".join(["branch,weight,pgv_cm_s,annual_rate", *rows]))
+    standing = "measure: PGV, beta: 0.4, median_sd_ln: 0.3, age_years: 600"
+    objects = f"[{{name: pinnacle, median: 45 cm/s, {standing}}}, {{name: urn, median: 60 cm/s, {standing}}}]"
+    site = tmp_path / "site.yaml"
+    site.write_text(f"name: Chapel\nhazard: {{curves: [b.csv]}}\nobjects: {objects}\n")
+    assert main(["constrain", str(site), "--output", str(tmp_path / "out")]) == 0
+    shown = capsys.readouterr().out
+    assert not re.search(r"\bnan\b", shown + (tmp_path / "out" / "Chapel.html").read_text())
+    assert "lies beyond the curves" in shown and "pinnacle tells most" in shown

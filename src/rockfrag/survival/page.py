@@ -112,14 +112,20 @@ def _object_sentence(objects: pd.DataFrame) -> str:
     first = objects.iloc[0]
     if len(objects) == 1:
         return f"{first['object']} is the only object; one object is weak evidence."
+    most = f"{first['object']} tells most ({first['information_bit']:.2f} bit alone)"
+    if not first["level_ratio_without"] > 0:
+        return f"{most}."
     return (
-        f"{first['object']} tells most ({first['information_bit']:.2f} bit alone); without it the mean hazard at "
-        f"1e-4 a year is {first['level_ratio_without']:.2f} times that before."
+        f"{most}; without it the mean hazard at 1e-4 a year is {first['level_ratio_without']:.2f} times that "
+        "before."
     )
 
 
 def _sensitivity_sentence(found: Constrained) -> str:
     table = found.sensitivity.iloc[1:]
+    table = table[table["level_ratio"] > 0]
+    if table.empty or not found.level_ratio > 0:
+        return "No assumption can be named, as the level at 1e-4 a year lies beyond the curves."
     away = (table["level_ratio"] / found.level_ratio).map(abs).map(lambda r: max(r, 1 / r))
     row = table.iloc[int(away.to_numpy().argmax())]
     return (
