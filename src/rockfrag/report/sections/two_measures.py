@@ -11,6 +11,7 @@ from rockfrag.fragility.vector_tables import VectorTables, describe_pair
 from rockfrag.report.figures.two_measures import two_measures_figure
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.wording import agree, of_all, sentence
 from rockfrag.study.study import Study
 
 _COLUMNS = (
@@ -88,9 +89,9 @@ def _message(found: pd.DataFrame, rejected: pd.DataFrame) -> str:
     if rejected.empty:
         return f"Every fit in {pairs} describes its tests."
     return (
-        f"Of {len(found)} fits in {pairs}, {len(rejected)} do not describe their tests; use the observed "
-        f"probabilities "
-        "by cell there."
+        f"{sentence(of_all(len(rejected), len(found), 'fit'))} in {pairs} "
+        f"{agree(len(rejected), len(found), 'does', 'do')} not describe the tests; use the observed "
+        "probabilities by cell there."
     )
 
 
