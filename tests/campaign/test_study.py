@@ -194,7 +194,7 @@ def test_the_headline_of_the_fragility_has_median_and_dispersion_by_majority_and
     page = (tmp_path / "report.html").read_text()
     assert re.search(
         r"Simulated over measured PGA of overturning: median \d.*, dispersion \d"
-        r".*</strong> Fitted to the fraction of plausible trials .*: median \d.*, dispersion \d",
+        r".*</strong> Fitted to fractions of plausible trials, .*: median \d.*, dispersion \d",
         page,
     )
     # votes that are split leave a wider curve than their majority

@@ -220,7 +220,9 @@ def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
         row["who"]: _ratios(row) for row in rows[rows["measure"] == measure].to_dict("records")
     }
     theta, beta = found[OURS]
-    by_votes = "Fitted to the fraction of plausible trials that topple in place of their majority: median {}, dispersion {}."
+    by_votes = (
+        "Fitted to fractions of plausible trials, not to majorities: median {}, dispersion {}."
+    )
     return [
         Finding(
             f"Simulated over measured {name_and_unit(measure)[0]} of overturning: median {theta}, "
