@@ -512,8 +512,7 @@ def _from_mesh(
             Assumption(
                 "its convex hull stands for it",
                 "Its convex hull stands for it, which fills hollows and undercuts; the centre of gravity moves "
-                "with "
-                "them.",
+                "with them.",
                 ("cg_height",),
             )
         )

@@ -122,8 +122,7 @@ def push_storey(building: ShearBuilding, storey: int, displacements: Sequence[fl
     """
     if not 1 <= storey <= building.storeys:
         raise InputError(
-            f"{building.name}: storey {storey} does not exist; storeys run from 1 to "
-            f"{building.storeys}."
+            f"{building.name}: storey {storey} does not exist; storeys run from 1 to {building.storeys}."
         )
     displacement, force = storey_envelopes(building)
     path = np.asarray(displacements, dtype=np.float64)

@@ -87,8 +87,7 @@ def lines_of(found: Constrained) -> list[str]:
     return [
         f"Hazard    {_level_sentence(found)}",
         f"Branches  {ruled} of {len(found.result.branches)} keep less than {RULED_OUT:.0%} of their weight; the "
-        f"weights "
-        f"moved by {found.result.information:.2f} bit.",
+        f"weights moved by {found.result.information:.2f} bit.",
         f"Evidence  {_object_sentence(objects)}",
         f"Hangs on  {_sensitivity_sentence(found)}",
         f"Limits    {' '.join(LIMITS)}",
@@ -130,8 +129,7 @@ def _sensitivity_sentence(found: Constrained) -> str:
     row = table.iloc[int(away.to_numpy().argmax())]
     return (
         f"With {row['assumption']} the level would be {row['level_ratio']:.2f} times that before, with all as "
-        f"stated "
-        f"{found.level_ratio:.2f} times."
+        f"stated {found.level_ratio:.2f} times."
     )
 
 
@@ -146,9 +144,8 @@ def page_of(found: Constrained) -> str:
     curves = FigureSpec(
         "curves",
         f"Mean hazard before and after survival. {_level_sentence(found)}",
-        "Mean hazard before (dashed) and after survival (solid); shaded from the 16th to the 84th percentile of "
-        "the "
-        "branches.",
+        "Mean hazard before (dashed) and after survival (solid); shaded from the 16th to the 84th percentile "
+        "of the branches.",
         lambda: curves_figure(found),
     )
     weights = FigureSpec(

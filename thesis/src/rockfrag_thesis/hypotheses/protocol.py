@@ -126,9 +126,8 @@ def c57(tests: Evidence) -> Result:
         finding = Finding.FOR
     return Result(
         finding,
-        f"friction needed: median {demand.median():.2f}, largest {demand.max():.2f}; "
-        f"tests that need more than {SMOOTH}: {int((demand > SMOOTH).sum())} of {len(need)}; tests in which a "
-        f"contact opens: {opened}",
+        f"friction needed: median {demand.median():.2f}, largest {demand.max():.2f}; tests that need more than "
+        f"{SMOOTH}: {int((demand > SMOOTH).sum())} of {len(need)}; tests in which a contact opens: {opened}",
         float(demand.max()),
         float(demand.min()),
         float(demand.max()),

@@ -153,8 +153,7 @@ def c28(tests: Evidence) -> Result:
     means = ", ".join(f"{floor} {math.exp(-fall):.3f}" for floor, fall in table.mean().items())
     return Result(
         finding,
-        f"mean of the most slender tower over that of the squattest: {means}; decrease on {widest} "
-        f"{pair.text()}",
+        f"mean of the most slender tower over that of the squattest: {means}; decrease on {widest} {pair.text()}",
         pair.ratio,
         pair.ratio_lower,
         pair.ratio_upper,
