@@ -65,10 +65,8 @@ def _pivots(body: np.void, dtype: np.dtype[np.void]) -> NDArray[np.void]:
     g = float(body["gravity"])
     # of the impact that ends rocking on a pivot and comes down on the other
     for at, pivot, after in ((0, +1, body["after2l"]), (1, -1, body["after2r"])):
-        if (
-            not (geometry.frequency(shape, pivot, g) * geometry.critical_angle(shape, pivot)) ** 2
-            > 0
-        ):
+        p, alpha = geometry.frequency(shape, pivot, g), geometry.critical_angle(shape, pivot)
+        if not p * p * alpha * alpha > 0:
             raise InputError(
                 "body: lengths, mass and inertia are too far apart; check their units."
             )

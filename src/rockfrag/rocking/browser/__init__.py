@@ -1,8 +1,8 @@
 """The simulator in a page: the kernels as WebAssembly, and the scripts that call them.
 
-``integrate.wasm`` and ``ensemble.wasm`` are made from the kernels (``build``) and kept with the package; ``module.js``
-with ``integrate.js`` or ``ensemble.js`` is what a page, or Node, talks to them with.  Nothing of this is needed to
-compute in Python.
+``integrate.wasm`` and ``ensemble.wasm`` are made from the kernels (``build``) and kept with the package;
+``module.js`` with ``integrate.js`` or ``ensemble.js`` is what a page, or Node, talks to them with.  Nothing of
+this is needed to compute in Python.
 """
 
 from pathlib import Path

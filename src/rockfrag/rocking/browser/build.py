@@ -1,7 +1,7 @@
 """Make the WebAssembly modules from the kernels: ``python -m rockfrag.rocking.browser.build``.
 
-``integrate.wasm`` has the kernel of one history, ``ensemble.wasm`` the lanes that count outcomes.  What ``simulate``
-and ``overturns`` call is compiled by numba to LLVM's language as always, and from there on for
+``integrate.wasm`` has the kernel of one history, ``ensemble.wasm`` the lanes that count outcomes.  What
+``simulate`` and ``overturns`` call is compiled by numba to LLVM's language as always, and from there on for
 WebAssembly instead of this processor.  The linker is that of the package ``ziglang`` (``pip install
 'rockfrag[browser]'``), which nothing else needs.  The same versions make the same bytes on every machine.
 """
