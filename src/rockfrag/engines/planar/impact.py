@@ -2,7 +2,7 @@
 
 from rockfrag.engines.kernels.laws import moves_impulse, scales_momentum
 from rockfrag.engines.kernels.laws import rate as lawful_rate
-from rockfrag.engines.planar.compile import kernel
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.planar.modes import (
     approach,
     kinetic_energy,
