@@ -302,8 +302,7 @@ def _check_config(options: argparse.Namespace) -> int:
     if options.quiet:
         return 0
     print(
-        f"{options.file} is right: study {study.name}, {study.summary}; its report will be "
-        f"{folder}/report.html."
+        f"{options.file} is right: study {study.name}, {study.summary}; its report will be {folder}/report.html."
     )
     return 0
 

@@ -141,10 +141,8 @@ def peak_warning(peak: float, least_uplift: float | None = None) -> str:
     )
     if 0 < peak < LEAST_PEAK or doubtful:
         short = f", less than the {least_uplift:.3g} m/s² that start rocking" if doubtful else ""
-        return (
-            f"the peak acceleration is {peak:.3g} m/s²{short}; if the motion is in g, multiply it by "
-            f"{GRAVITY:g}"
-        )
+        found = f"the peak acceleration is {peak:.3g} m/s²{short}"
+        return f"{found}; if the motion is in g, multiply it by {GRAVITY:g}"
     return ""
 
 

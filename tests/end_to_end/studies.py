@@ -13,8 +13,8 @@ from rockfrag.study.loading import load_any
 from .. import stages_in_process
 
 CATALOGUE = (
-    "name,earthquake,date,station,component,magnitude,distance_km,source,file,vertical,sha256,unit,"
-    "licence\n"
+    "name,earthquake,date,station,component,magnitude,distance_km,"
+    "source,file,vertical,sha256,unit,licence\n"
 )
 STEP, SAMPLES = 0.02, 250
 

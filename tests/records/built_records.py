@@ -97,10 +97,8 @@ def at2_dt_first(folder: Path) -> Built:
 
 def at2_nga(folder: Path) -> Built:
     header = (
-        "PEER NGA STRONG MOTION DATABASE RECORD\n"
-        "Loma Prieta, 10/18/1989, GILROY ARRAY #3, 090\n"
-        "ACCELERATION TIME SERIES IN UNITS OF G\n"
-        f"NPTS=     {N}, DT=   .0050 SEC,                                    \n"
+        "PEER NGA STRONG MOTION DATABASE RECORD\nLoma Prieta, 10/18/1989, GILROY ARRAY #3, 090\nACCELERATION "
+        f"TIME SERIES IN UNITS OF G\nNPTS=     {N}, DT=   .0050 SEC,                                    \n"
     )
     return at2(folder / "nga.AT2", header, wave(4, 0.3, 5))
 
@@ -593,8 +591,7 @@ def bhrc(folder: Path) -> Built:
             name,
             "",
             f"COMP {name}1",
-            "Avin                      Station   37.734 N 47.801 E   Altitude 2026m   "
-            "Azimuth L 50    T 140",
+            "Avin                      Station   37.734 N 47.801 E   Altitude 2026m   Azimuth L 50    T 140",
             "Epicenter 38.520 N 46.860 E   FD 12 Km mb      Ms      Mw6.1   M        ML   (BHRC)",
             "INSTR PERIOD =  .020 SEC   DAMPING =  .640",
             f"NO. OF POINTS =   {N}      DURATION =  {N * 0.005:.3f}",
@@ -702,11 +699,10 @@ def agram(folder: Path) -> Built:
         values = wave(seed, 200.0, 2) - 2000.0
         kept.append(values)
         text += (
-            " WHITTIER, 7215 BRIGHT AVE, 10TH FLOOR\n 090 DEGREES\n"
-            " EARTHQUAKE OF OCTOBER 1, 1987 1442 GMT\n BUTTERWORTH AT .25 HZ, ORDER 4\n"
-            " YEAR=1987 JULIAN DAY=274 HOUR=14 MINUTE=42 SECOND= 0 COMPONENT=  90\n"
-            " SAMPLES/SEC=200 FILTER TYPE=BUTTERWORTH  CORNER= 0.25 ORDER=4 "
-            f"DATA TYPE={kind}\n NO OF POINTS=  {N}, UNITS=CM/SEC**2, CM/SEC, AND CM\n"
+            " WHITTIER, 7215 BRIGHT AVE, 10TH FLOOR\n 090 DEGREES\n EARTHQUAKE OF OCTOBER 1, 1987 1442 GMT\n "
+            "BUTTERWORTH AT .25 HZ, ORDER 4\n YEAR=1987 JULIAN DAY=274 HOUR=14 MINUTE=42 SECOND= 0 COMPONENT=  "
+            f"90\n SAMPLES/SEC=200 FILTER TYPE=BUTTERWORTH  CORNER= 0.25 ORDER=4 DATA TYPE={kind}\n NO OF "
+            f"POINTS=  {N}, UNITS=CM/SEC**2, CM/SEC, AND CM\n"
         )
         text += rows(values, 10, fixed(8, 2))
     path.write_text(text)
@@ -830,13 +826,9 @@ def plain_in_words(folder: Path) -> Built:
     """SIGMA's header and Fortran's fields that touch."""
     path, values = folder / "16833_H1.cor.acc", wave(63, 3.0, 5)
     text = (
-        "Orientation                   : NS\n"
-        "Filter Cut-off Frequency (Hz) : 0.100 - 50.000\n"
-        "Time Increment (s)            : 0.005\n"
-        f"Number of Data                : {N}\n"
-        "PGA (m/s/s)                   : 5.0693293E+00\n"
-        "Accel"
-        "aration time series in m/s/s\n"
+        "Orientation                   : NS\nFilter Cut-off Frequency (Hz) : 0.100 - 50.000\nTime Increment "
+        f"(s)            : 0.005\nNumber of Data                : {N}\nPGA (m/s/s)                   : "
+        "5.0693293E+00\nAccelaration time series in m/s/s\n"
     )
     path.write_text(text + rows(values, 5, lambda v: f"{v:14.7E}"))
     return Built(path, "PLAINTEXT", values[None, :], 0.005, "m/s2", components=("NS",))
@@ -939,11 +931,10 @@ def search_results(count: int) -> str:
         "Target Spectrum,No Scaling",
         "",
         " -- Summary of Metadata of Selected Records --",
-        "Result ID, Spectral Ordinate, Record Sequence Number, MSE, Scale Factor, Tp(s),"
-        " 5-75% Duration(sec), 5-95% Duration (sec), Arias Intensity (m/sec), Earthquake Name, Year,"
-        " Station Name, Magnitude, Mechanism, Rjb (km), Rrup (km), Vs30 (m/sec),"
-        " Lowest Useable Frequency (Hz), Horizontal-1 Acc. Filename, Horizontal-2 Acc. Filename,"
-        " Vertical Acc. Filename",
+        "Result ID, Spectral Ordinate, Record Sequence Number, MSE, Scale Factor, Tp(s), 5-75% Duration(sec), "
+        "5-95% Duration (sec), Arias Intensity (m/sec), Earthquake Name, Year, Station Name, Magnitude, "
+        "Mechanism, Rjb (km), Rrup (km), Vs30 (m/sec), Lowest Useable Frequency (Hz), Horizontal-1 Acc. "
+        "Filename, Horizontal-2 Acc. Filename, Vertical Acc. Filename",
     ]
     for i in range(count):
         number = 700 + i
@@ -972,9 +963,8 @@ def peer_download(folder: Path, count: int) -> Path:
             for ending, words in (("AT2", "ACCELERATION TIME SERIES IN UNITS OF G"),
                                   ("VT2", "VELOCITY TIME SERIES IN UNITS OF CM/S")):  # fmt: skip
                 header = (
-                    "PEER NGA STRONG MOTION DATABASE RECORD\n"
-                    f"Loma Prieta, 10/18/1989, Station {i}, {name}\n{words}\n"
-                    f"NPTS=     {N}, DT=   .0050 SEC,\n"
+                    f"PEER NGA STRONG MOTION DATABASE RECORD\nLoma Prieta, 10/18/1989, Station {i}, "
+                    f"{name}\n{words}\nNPTS=     {N}, DT=   .0050 SEC,\n"
                 )
                 values = wave(100 * i + number, 0.3, 5)
                 text = header + rows(values, 5, fortran_e(15, 7))

@@ -272,15 +272,10 @@ class TestLayouts:
             "".join(f"{v:14.7E}" for v in WAVE[i : i + 5]) + "\n" for i in range(0, N, 5)
         )
         text = (
-            "Earthquake Date & Time             : 2009-04-06 01:32:39\n"
-            "Station Code / Name           : 2987 / Somewhere, Italy\n"
-            "Orientation                   : NS\n"
-            "Filter Cut-off Frequency (Hz) : 0.100 - 50.000\n"
-            "Time Increment (s)            : 0.005\n"
-            f"Number of Data                : {N}\n"
-            "PGA (m/s/s)                   : 5.0693293E+00\n"
-            "Accel"
-            "aration time series in m/s/s\n"
+            "Earthquake Date & Time             : 2009-04-06 01:32:39\nStation Code / Name           : 2987 / "
+            "Somewhere, Italy\nOrientation                   : NS\nFilter Cut-off Frequency (Hz) : 0.100 - "
+            f"50.000\nTime Increment (s)            : 0.005\nNumber of Data                : {N}\nPGA (m/s/s)   "
+            "                : 5.0693293E+00\nAccelaration time series in m/s/s\n"
         )
         motion = read_motion(write(text + rows, "16833_H1.cor.acc"))
         np.testing.assert_allclose(motion.acceleration, WAVE, rtol=1e-6)

@@ -187,8 +187,7 @@ def test_friction_counts_the_tests_that_need_more_than_a_usual_surface_has():
 def test_what_friction_says_of_the_pedestal_is_said_where_both_sides_were_tested():
     (found,) = model_allowed(validity([0.2, 0.3, 0.7, 1.4], [5, 5, 5, 5], "NNPP"))
     assert found.headline == (
-        "All 2 tests with the pedestal require a friction coefficient above 0.6, and none of 2 tests "
-        "without"
+        "All 2 tests with the pedestal require a friction coefficient above 0.6, and none of 2 tests without"
     )
     assert "with the pedestal 0.70 to 1.40" in found.numbers
     assert "without 0.20 to 0.30" in found.numbers

@@ -173,10 +173,8 @@ def simulated_site(folder, catalogue, more="", velocity=""):
     write_branches(folder / "branches.csv")
     path = folder / "site.yaml"
     path.write_text(
-        f"hazard: {{curves: [branches.csv]{velocity}}}\n"
-        "objects:\n"
-        f"  - {{name: stele, age_years: 800, statue: {{width: 30 cm, height: 1.5 m, "
-        f"records: {{paths: ['{catalogue}']}}{more}}}}}\n"
+        f"hazard: {{curves: [branches.csv]{velocity}}}\nobjects:\n  - {{name: stele, age_years: 800, statue: "
+        f"{{width: 30 cm, height: 1.5 m, records: {{paths: ['{catalogue}']}}{more}}}}}\n"
     )
     return path
 

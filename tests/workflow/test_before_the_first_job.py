@@ -279,11 +279,8 @@ def test_a_failed_job_is_one_sentence_and_the_path_of_its_log(
 
 def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
     program = (
-        "import importlib.util as util, sys\n"
-        "find = util.find_spec\n"
-        "util.find_spec = lambda name, *rest: None if name == 'rockfrag' else find(name, *rest)\n"
-        "from snakemake.cli import main\n"
-        "main()\n"
+        "import importlib.util as util, sys\nfind = util.find_spec\nutil.find_spec = lambda name, *rest: None "
+        "if name == 'rockfrag' else find(name, *rest)\nfrom snakemake.cli import main\nmain()\n"
     )
     done = subprocess.run(
         [
@@ -366,8 +363,7 @@ def test_motions_stay_apart_on_every_floor(study_folder: Path, capsys: pytest.Ca
     text = table.read_text().replace("motion 0", "A").replace("motion 1", "A_1")
     table.write_text(text)
     (study_folder / "building.yaml").write_text(
-        "storey_heights_m: [3, 3]\nmasses_kg: [1000, 1000]\nfirst_period_s: 0.2\n"
-        "floors: {g: 0, 1_2: 1, 2: 2}\n"
+        "storey_heights_m: [3, 3]\nmasses_kg: [1000, 1000]\nfirst_period_s: 0.2\nfloors: {g: 0, 1_2: 1, 2: 2}\n"
     )
     path = write_study(study_folder, {**study_content(), "building": "building.yaml"})
     assert "A_1 and A become one" in said(capsys, path)

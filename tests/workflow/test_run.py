@@ -100,10 +100,9 @@ def test_a_finished_study_has_nothing_to_do_even_where_nothing_may_be_written(ra
     before = {path: path.stat().st_mtime_ns for path in (ran / "results").rglob("*")}
     # permissions do not bind everybody who runs the tests
     program = (
-        "import os, runpy, sys; access = os.access; os.access = lambda path, mode, **more: "
-        "'results' not in str(path) and access(path, mode, **more); "
-        "sys.argv = ['run.py', 'study.yaml', '--cores', '2', '--logger', 'rockfrag']; "
-        f"runpy.run_path({str(ROOT / 'workflow' / 'run.py')!r}, run_name='__main__')"
+        "import os, runpy, sys; access = os.access; os.access = lambda path, mode, **more: 'results' not in "
+        "str(path) and access(path, mode, **more); sys.argv = ['run.py', 'study.yaml', '--cores', '2', "
+        f"'--logger', 'rockfrag']; runpy.run_path({str(ROOT / 'workflow' / 'run.py')!r}, run_name='__main__')"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=ran, capture_output=True, text=True, check=False

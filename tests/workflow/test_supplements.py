@@ -30,11 +30,10 @@ SENSITIVITY_ANALYSIS = {
 }
 
 SYNTHETIC_TESTS = (
-    "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark\n"
-    "synthetic 1,T1,NP,First,GF,0.5,0.55,none,statue,1,synthetic\n"
-    "synthetic 2,T1,P,First,GF,0.45,0.5,none,statue,1,synthetic\n"
-    "synthetic 3,T1,NP,Second,GF,0.6,0.65,none,statue,1,synthetic\n"
-    "synthetic 4,T1,P,Second,GF,0.65,,right,,1,synthetic\n"
+    "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark\nsynthetic "
+    "1,T1,NP,First,GF,0.5,0.55,none,statue,1,synthetic\nsynthetic "
+    "2,T1,P,First,GF,0.45,0.5,none,statue,1,synthetic\nsynthetic "
+    "3,T1,NP,Second,GF,0.6,0.65,none,statue,1,synthetic\nsynthetic 4,T1,P,Second,GF,0.65,,right,,1,synthetic\n"
 )
 
 

@@ -300,8 +300,7 @@ def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:
             if key in given:
                 raise InputError(
                     f"key {key}: give it in {options.file}, which says the rest of it and from whose folder "
-                    "paths are "
-                    "read."
+                    "paths are read."
                 )
     return make_request(settings | given, options.file or "rockfrag assess", folder)
 

@@ -259,8 +259,7 @@ def _own(records: Records, folder: Path) -> MotionSet:
             if records.unit is not None or records.dt is not None:
                 raise InputError(
                     f"key records.{'unit' if records.unit is not None else 'dt'}: {path} is a catalogue, which "
-                    "states units "
-                    "and intervals itself; leave it out."
+                    "states units and intervals itself; leave it out."
                 )
             motions += load_motions(path, folder)
             continue

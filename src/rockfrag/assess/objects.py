@@ -157,8 +157,8 @@ class Objects:
 
     def _ratio(self, shape: geometry.Shape, pivot: int, rolls: bool) -> float:
         measured = ROLLING if rolls else self.restitution
-        e = geometry.momentum_restitution(shape, pivot) if measured is None else measured
-        return min(max(e, 0.0) * self.livelier, geometry.largest_restitution(shape, pivot))
+        e = math.nan if measured is None else measured
+        return geometry.scaled_restitution(shape, pivot, e, self.livelier)
 
     @property
     def in_space(self) -> bool:
@@ -512,8 +512,7 @@ def _from_mesh(
             Assumption(
                 "its convex hull stands for it",
                 "Its convex hull stands for it, which fills hollows and undercuts; the centre of gravity moves "
-                "with "
-                "them.",
+                "with them.",
                 ("cg_height",),
             )
         )

@@ -136,9 +136,8 @@ def _answer(found: Assessment) -> Answer:
         figure=FigureSpec(
             "fractions",
             f"Motions that topple the object by the level of shaking. {at_the_site(found)}",
-            "Motions that topple it when they are scaled to a level of shaking; the band is what another choice "
-            "of "
-            "as many earthquakes could show (90 %).",
+            "Motions that topple it when they are scaled to a level of shaking; the band is what another "
+            "choice of as many earthquakes could show (90 %).",
             lambda: fractions_figure(found),
         ),
         rests_on=[f"{found.motions.words}.", *main_assumptions(found)],
@@ -213,8 +212,7 @@ def _arrangements(found: Assessment) -> Section:
     if directions and np.isfinite(directions.factor):
         words.append(
             f"{directions.records} records with two components were turned through all directions. If each came "
-            "from "
-            f"its worst one, {100 * directions.factor:.0f} % of the shaking would topple the object"
+            f"from its worst one, {100 * directions.factor:.0f} % of the shaking would topple the object"
             + (
                 f", and {100 * directions.worst_fraction:.0f} % instead of "
                 f"{100 * directions.fraction:.0f} % of the records at the site's level."

@@ -207,8 +207,7 @@ def _described(
     if building.model != "elastic":
         raise InputError(
             f"key building: {where} is not elastic, and one object is assessed with an elastic building; set "
-            "model: "
-            "elastic, or run a study with this one."
+            "model: elastic, or run a study with this one."
         )
     if floor is None:
         raise InputError(
@@ -293,8 +292,7 @@ def _level(floor: str) -> tuple[int, int]:
     if not found:
         raise InputError(
             f"key floor: expected a level over the number of storeys such as 2/4, found {floor[:40]!r}; level 0 "
-            "is "
-            "the ground, level 2 what Europe calls the second floor and America the third."
+            "is the ground, level 2 what Europe calls the second floor and America the third."
         )
     # no number of storeys has more digits
     level, storeys = (
@@ -303,8 +301,7 @@ def _level(floor: str) -> tuple[int, int]:
     if not (level <= storeys and 1 <= storeys <= HIGHEST_BUILDING):
         raise InputError(
             f"key floor: {floor[:40]} does not exist; levels run from 0, the ground, to the number of storeys, "
-            "which "
-            f"is at most {HIGHEST_BUILDING}."
+            f"which is at most {HIGHEST_BUILDING}."
         )
     return level, storeys
 

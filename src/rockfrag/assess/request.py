@@ -233,8 +233,7 @@ def _return_period(settings: Mapping[str, Any]) -> float | None:
     if not 0 < years <= LONGEST_PERIOD:
         raise InputError(
             f"key return_period: expected more than 0 and at most {LONGEST_PERIOD:g} years such as 475 years, "
-            "found "
-            f"{given!r:.40}."
+            f"found {given!r:.40}."
         )
     return years
 

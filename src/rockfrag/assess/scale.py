@@ -42,8 +42,7 @@ STEPS = (
 
 SCALE_WORDS = (
     "low below 0.1 % in 50 years, moderate to 1 %, high to 10 %, then very high; ASCE 7 accepts 1 % for the "
-    "collapse "
-    "of a new building"
+    "collapse of a new building"
 )
 """The scale in words."""
 

@@ -115,8 +115,7 @@ SOURCES: Mapping[str, Source] = {
     "space": Source(
         "both horizontal components at once",
         f"{SPACE:g} of ln level: a square box in space has 0.88 of the median of one component; not counted for "
-        "round "
-        "bases",
+        "round bases",
     ),
     "conversion": Source(
         "the ground velocity, which the given measure does not fix",

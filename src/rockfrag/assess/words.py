@@ -188,8 +188,7 @@ def _at_rest(found: Assessment, at: str) -> str:
     if found.rocks_from > found.level.value:
         return (
             f"is not expected to move {at}: it starts to rock at {starts}, which what is not known of it could "
-            "lower "
-            f"({limit})."
+            f"lower ({limit})."
         )
     return f"is not expected to move {at}: {_counted(found, ROCK)} it rock ({limit})."
 
@@ -262,8 +261,7 @@ def risk(found: Assessment) -> str:
     if found.probability is None:
         return (
             "It is not computed without a hazard; add a hazard curve (--hazard FILE) or the return period of "
-            "the level "
-            "(--return-period 475)."
+            "the level (--return-period 475)."
         )
     years = found.request.years
     step = classes(found.probability, years)
@@ -456,10 +454,8 @@ def assumptions(found: Assessment) -> list[str]:
     if math.isfinite(found.sliding_fraction) and found.fraction is not None:
         lines.append(
             f"With a friction of {request.objects.friction:g} it may slide, and "
-            f"{fraction_words(found.sliding_fraction)} of "
-            f"the motions at that level topple it instead of {fraction_words(found.fraction.value)}; all other "
-            "numbers are "
-            "without sliding."
+            f"{fraction_words(found.sliding_fraction)} of the motions at that level topple it instead of "
+            f"{fraction_words(found.fraction.value)}; all other numbers are without sliding."
         )
     else:
         lines.append("It does not slide; that needs enough friction (--friction tries it).")
@@ -470,8 +466,7 @@ def assumptions(found: Assessment) -> list[str]:
     factor = found.counted.intensity_levels.allowed.mean()
     lines.append(
         f"Motions are scaled by {1 / LARGEST_FACTOR:g} to {LARGEST_FACTOR:g} at most, which admits "
-        f"{100 * factor:.0f} % "
-        "of all pairs of motion and level."
+        f"{100 * factor:.0f} % of all pairs of motion and level."
     )
     return lines
 

@@ -224,8 +224,7 @@ def check_positive(owner: str, what: str, unit: str, values: Sequence[float]) ->
     """
     if not 1 <= len(values) <= MOST_STOREYS:
         raise InputError(
-            f"{owner}: {what} has {len(values)} entries, but a building has 1 to {MOST_STOREYS} "
-            "storeys."
+            f"{owner}: {what} has {len(values)} entries, but a building has 1 to {MOST_STOREYS} storeys."
         )
     for number, value in enumerate(values, start=1):
         if not _LEAST <= value <= _MOST:

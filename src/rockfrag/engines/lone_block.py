@@ -62,25 +62,17 @@ def _pivots(body: np.void, dtype: np.dtype[np.void]) -> NDArray[np.void]:
     """Constants of a body's right and left pivot from its record, with p² where p² dt² belongs."""
     pivots = np.empty(2, dtype)
     shape = geometry.Shape(*(float(body[name]) for name in ("b2", "m2", "i2", "c2x", "c2y")))
+    g = float(body["gravity"])
     # of the impact that ends rocking on a pivot and comes down on the other
     for at, pivot, after in ((0, +1, body["after2l"]), (1, -1, body["after2r"])):
-        alpha, arm = geometry.critical_angle(shape, pivot), geometry.arm(shape, pivot)
-        frequency = geometry.frequency(shape, pivot, float(body["gravity"]))
-        swing, aside, radius = (
-            frequency * frequency,
-            -pivot * arm[0],
-            geometry.radius(shape, pivot),
-        )
-        if not swing * alpha * alpha > 0:
+        p, alpha = geometry.frequency(shape, pivot, g), geometry.critical_angle(shape, pivot)
+        if not p * p * alpha * alpha > 0:
             raise InputError(
                 "body: lengths, mass and inertia are too far apart; check their units."
             )
         by_momentum = geometry.momentum_restitution(shape, -pivot)
         e = float(after["value"]) if body["measured"] else by_momentum
-        pivots[at] = (
-            alpha, aside / arm[1], aside / radius, arm[1] / radius, swing, e, 1 / alpha,
-            1 / (swing * alpha * alpha),
-        )  # fmt: skip
+        pivots[at] = geometry.pivot_constants(shape, pivot, e, g)
     return pivots
 
 

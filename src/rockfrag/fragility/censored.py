@@ -119,9 +119,8 @@ def brackets_from_table(
     if bad.size:
         row = bad[0]
         raise InputError(
-            f"{source}, row {row + 1}, columns {lower!r} and {upper!r}: {low[row]:g} to "
-            f"{high[row]:g} is no bracket of an amplitude; give 0 ≤ lower ≤ upper and leave upper "
-            "empty if it never overturned."
+            f"{source}, row {row + 1}, columns {lower!r} and {upper!r}: {low[row]:g} to {high[row]:g} is no "
+            "bracket of an amplitude; give 0 ≤ lower ≤ upper and leave upper empty if it never overturned."
         )
     motions = labels(table, motion, source)
     earthquakes = motions if earthquake is None else labels(table, earthquake, source)

@@ -246,8 +246,7 @@ def _notes(outcomes: Observations) -> tuple[str, ...]:
     notes = []
     if outcomes.n_motions == 1:
         notes.append(
-            "All tests share one motion: the curve describes this motion and gives no interval for "
-            "others."
+            "All tests share one motion: the curve describes this motion and gives no interval for others."
         )
     if outcomes.n_repeated:
         notes.append(
@@ -279,10 +278,9 @@ def _all_agree(outcomes: Observations) -> str:
         )
     least = outcomes.im.min()
     return (
-        f"All {outcomes.n} tests overturned down to {outcomes.name} {least:g} {outcomes.unit}: "
-        f"with {outcomes.n_motions} independent motions P(overturn) there is above "
-        f"{1.0 - bound:.3f} at 90 % confidence if all were tried there; θ is below and not "
-        "estimated."
+        f"All {outcomes.n} tests overturned down to {outcomes.name} {least:g} {outcomes.unit}: with "
+        f"{outcomes.n_motions} independent motions P(overturn) there is above {1.0 - bound:.3f} at 90 % "
+        "confidence if all were tried there; θ is below and not estimated."
     )
 
 

@@ -346,8 +346,7 @@ def _notes(surface: FragilitySurface, replicates: Floats, groups: int) -> tuple[
         if surface.coefficients[1 + at] <= 0:
             notes.append(
                 f"The probability does not rise with {name_and_unit(column)[0]} at given other measure; there "
-                f"is no "
-                "contour in it."
+                "is no contour in it."
             )
         elif len(slopes) and (slopes <= 0).any():
             notes.append(

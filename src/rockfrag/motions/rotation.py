@@ -210,9 +210,8 @@ def _check_pair(first: Motion, second: Motion) -> None:
     sizes = first.acceleration.size, second.acceleration.size
     if abs(first.dt - second.dt) > 1e-9 * first.dt or sizes[0] != sizes[1]:
         raise InputError(
-            f"components {first.name!r} and {second.name!r} have {sizes[0]} and {sizes[1]} samples "
-            f"of {first.dt:g} and {second.dt:g} s; bring them to one sampling and length first "
-            "(common_time)."
+            f"components {first.name!r} and {second.name!r} have {sizes[0]} and {sizes[1]} samples of "
+            f"{first.dt:g} and {second.dt:g} s; bring them to one sampling and length first (common_time)."
         )
     for motion in (first, second):
         if is_vertical(str(motion.metadata.get("component") or "")):

@@ -192,7 +192,6 @@ def compress_time(motion: Motion, factor: float) -> Motion:
 def _factor(step: str, motion: Motion, target: float, actual: float) -> float:
     if actual <= 0:
         raise InputError(
-            f"step {step}: motion {motion.name!r} is zero throughout and cannot be scaled; "
-            "leave it out."
+            f"step {step}: motion {motion.name!r} is zero throughout and cannot be scaled; leave it out."
         )
     return target / actual

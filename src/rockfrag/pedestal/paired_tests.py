@@ -125,8 +125,7 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     missing = [name for name in _NEEDED if name not in tests.columns]
     if missing:
         raise InputError(
-            f"Table of tests: column(s) {', '.join(missing)} missing; "
-            f"it needs {', '.join(_NEEDED)}."
+            f"Table of tests: column(s) {', '.join(missing)} missing; it needs {', '.join(_NEEDED)}."
         )
     if tests.empty:
         raise InputError("Table of tests: it has no rows; give at least one test per line.")
@@ -170,8 +169,7 @@ def _check_amplitudes(clean: pd.DataFrame) -> None:
         bad = clean.index[numbers.isna() & clean[name].notna()]
         if len(bad):
             raise InputError(
-                f"Table of tests, row {bad[0] + 1}: {name} is {clean.loc[bad[0], name]!r}, "
-                "not a number of g."
+                f"Table of tests, row {bad[0] + 1}: {name} is {clean.loc[bad[0], name]!r}, not a number of g."
             )
         clean[name] = numbers.astype(float)
     at_once = clean["amplitude_g"].isna() & (clean["lower_g"] == 0) & (clean["upper_g"] > 0)
@@ -184,9 +182,8 @@ def _check_amplitudes(clean: pd.DataFrame) -> None:
     for row in clean.index[~(np.isfinite(known) & (known > 0))]:
         name = "lower_g" if right[row] else "upper_g" if left[row] else "amplitude_g"
         raise InputError(
-            f"Table of tests, row {row + 1}: {name} is {known[row]}; give the positive number of g "
-            "at which the test overturned, or censored = right with the largest amplitude survived "
-            "as lower_g."
+            f"Table of tests, row {row + 1}: {name} is {known[row]}; give the positive number of g at which the "
+            "test overturned, or censored = right with the largest amplitude survived as lower_g."
         )
     for row in clean.index[~right & ~(clean["lower_g"] <= clean["upper_g"])]:
         raise InputError(

@@ -336,8 +336,7 @@ def _check_digest(path: Path, digest: str) -> None:
         raise InputError(f"{path}: there is no such file.")
     if digest and sha256_of(path) != digest:
         raise InputError(
-            f"{path}: its SHA-256 is not the catalogue's; the file has changed, "
-            "or the catalogue means another."
+            f"{path}: its SHA-256 is not the catalogue's; the file has changed, or the catalogue means another."
         )
 
 

@@ -2,10 +2,7 @@
 
 import re
 
-_GSE = (
-    "a GSE file, which is not read here; convert it with ObsPy: "
-    "obspy.read(file).write('record.mseed', 'MSEED')"
-)
+_GSE = "a GSE file, which is not read here; convert it with ObsPy: obspy.read(file).write('record.mseed', 'MSEED')"
 _MAGIC: tuple[tuple[bytes, str], ...] = (
     (b"\xff\xfe", "UTF-16 text; save it as UTF-8"),
     (b"\xfe\xff", "UTF-16 text; save it as UTF-8"),

@@ -58,8 +58,7 @@ class Motion:
         acceleration = _own(self.acceleration)
         if acceleration.ndim != 1 or acceleration.size == 0:
             raise InputError(
-                f"motion {self.name!r}: acceleration needs shape (n,) with n ≥ 1, "
-                f"got {acceleration.shape}."
+                f"motion {self.name!r}: acceleration needs shape (n,) with n ≥ 1, got {acceleration.shape}."
             )
         if not np.isfinite(acceleration).all():
             first = int(np.flatnonzero(~np.isfinite(acceleration))[0])

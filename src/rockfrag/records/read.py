@@ -216,8 +216,7 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
         if len(channels) == 1:
             return channels[0]
         raise InputError(
-            f"{record.name}: the file has several channels, {_listed(record)}; "
-            "choose one with channel=."
+            f"{record.name}: the file has several channels, {_listed(record)}; choose one with channel=."
         )
     for answers in (_same_name, _same_orientation, _same_ending):
         found = [channel for channel in channels if answers(channel, wanted)]
@@ -346,8 +345,7 @@ def _settled_unit(
             )
         if asked is not None and asked != channel.unit:
             raise InputError(
-                f"{record.name}: the file states its unit as {channel.unit}, not {unit}; "
-                "leave unit= out."
+                f"{record.name}: the file states its unit as {channel.unit}, not {unit}; leave unit= out."
             )
         return channel.unit
     if asked is not None:

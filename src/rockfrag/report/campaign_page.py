@@ -220,13 +220,14 @@ def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
         row["who"]: _ratios(row) for row in rows[rows["measure"] == measure].to_dict("records")
     }
     theta, beta = found[OURS]
+    by_votes = (
+        "Fitted to fractions of plausible trials, not to majorities: median {}, dispersion {}."
+    )
     return [
         Finding(
             f"Simulated over measured {name_and_unit(measure)[0]} of overturning: median {theta}, "
             f"dispersion {beta}",
-            "",
-            "So by the majority of votes in each test; with the fraction of votes in its place median "
-            "{}, dispersion {}.".format(*found[VOTES]),
+            by_votes.format(*found[VOTES]),
         )
     ]
 

@@ -262,10 +262,8 @@ def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Fin
     if with_resurrections == 0:
         return Finding("Every motion stronger than the first that overturned also overturns")
     fraction = of_all(with_resurrections, len(fallen), "analysis", "analyses")
-    headline = (
-        f"Non-monotone response: in {fraction} the object survives a stronger motion than one that "
-        "overturned it"
-    )
+    survived = "the object survives a stronger motion than one that overturned it"
+    headline = f"Non-monotone response: in {fraction} {survived}"
     text = "The overturning amplitude therefore depends on how the motion is raised."
     wide = tests.pivot_table(index="test", columns="definition", values="amplitude_g")
     if not {"first_overturning", "always_overturning"} <= set(wide.columns):

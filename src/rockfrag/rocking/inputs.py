@@ -276,8 +276,7 @@ def checked_scales(scales: ArrayLike, motions: Sequence[GroundMotion]) -> NDArra
         factors = np.broadcast_to(factors, (count, factors.size))
     if factors.ndim != 2 or factors.shape[0] != count or not np.isfinite(factors).all():
         raise InputError(
-            f"scales: expected finite numbers of shape (scales,) or ({count}, scales), "
-            f"got {shown(scales)}."
+            f"scales: expected finite numbers of shape (scales,) or ({count}, scales), got {shown(scales)}."
         )
     check_case_count(factors.size)
     for i, motion in enumerate(motions):

@@ -244,15 +244,13 @@ def _check_pulses(source: Path, campaign: Mapping[str, Any]) -> None:
     if missing:
         raise InputError(
             f"{source}: key campaign.measures: {missing[0]} is missing; a pulse follows from "
-            f"{PULSE_MEASURES[0]} and "
-            f"{PULSE_MEASURES[1]} of each test."
+            f"{PULSE_MEASURES[0]} and {PULSE_MEASURES[1]} of each test."
         )
     needless = [key for key in ("unit", "dt_s", "channel", "without_motion") if key in campaign]
     if needless:
         raise InputError(
             f"{source}: key campaign.{needless[0]}: is of measured motions, and the motions here are pulses; "
-            f"leave it "
-            "out."
+            "leave it out."
         )
 
 
@@ -260,8 +258,7 @@ def _check_columns(source: Path, columns: Mapping[str, str], pulses: bool) -> No
     if not pulses and "motion" not in columns:
         raise InputError(
             f"{source}: key campaign.columns.motion is missing; expected the column with the key or file name "
-            f"of the "
-            "table's motion."
+            "of the table's motion."
         )
     brackets = ("lower_g" in columns, "upper_g" in columns)
     if any(brackets) and not all(brackets):

@@ -167,8 +167,7 @@ def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.
     for i, name in enumerate(names):
         if name not in known:
             raise InputError(
-                f"{source}: key motions.use[{i}]: expected one of the motions {', '.join(known)}, "
-                f"found {name}."
+                f"{source}: key motions.use[{i}]: expected one of the motions {', '.join(known)}, found {name}."
             )
     return table.set_index("name", drop=False).loc[list(names)].reset_index(drop=True)
 
@@ -276,6 +275,5 @@ def _check_measured_tests(study: Study, path: Path) -> None:
     for name in dict.fromkeys(read_measured(path)["object"]):
         if name not in known:
             raise InputError(
-                f"{path}: column object: expected one of the specimens {', '.join(known)}, "
-                f"found {name}."
+                f"{path}: column object: expected one of the specimens {', '.join(known)}, found {name}."
             )

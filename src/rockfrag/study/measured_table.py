@@ -115,6 +115,5 @@ def _check_columns(source: Path, table: Path, content: Mapping[str, Any]) -> Non
     for key, name in wanted.items():
         if name not in header:
             raise InputError(
-                f"{source}: key {key}: expected a column of {table}, one of {', '.join(header)}, "
-                f"found {name}."
+                f"{source}: key {key}: expected a column of {table}, one of {', '.join(header)}, found {name}."
             )

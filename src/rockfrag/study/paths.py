@@ -41,6 +41,5 @@ def check_file(path: Path, where: str) -> None:
         raise InputError(f"{where}: expected an existing file, found no {path}.")
     if set("{}") & set(str(path)):
         raise InputError(
-            f"{where}: {path} has curly brackets in its name, which the workflow takes for "
-            "wildcards; rename it."
+            f"{where}: {path} has curly brackets in its name, which the workflow takes for wildcards; rename it."
         )

@@ -26,11 +26,9 @@ IN_SPACE = 0.84
 
 LIMITS = (
     "Survival tells how strong shaking at the site has been since the objects stand, not how strong it will be "
-    "in the "
-    "next 50 years if rates change.",
+    "in the next 50 years if rates change.",
     "The fragility is that of today; an object that was broader or lower, buried or supported was less fragile "
-    "then, "
-    "and counts for less: state since when with fragile_for_years.",
+    "then, and counts for less: state since when with fragile_for_years.",
     "The branches are reweighted, not validated: if none of them is right, none of the new weights is.",
 )
 """What a reader of reweighted hazard must know."""
@@ -93,8 +91,7 @@ def constrain(site: Site) -> Constrained:
         raise InputError(
             "objects: in no branch of the hazard do all of them stand with a probability above "
             f"{LEAST_SURVIVAL:g}; {_most_at_odds(site)} is most at odds with the branches: check its fragility, "
-            f"its "
-            "age and the units of the hazard."
+            "its age and the units of the hazard."
         )
     return Constrained(site, result, _by_object(site), _sensitivity(site))
 
@@ -150,7 +147,7 @@ def _sensitivity(site: Site) -> pd.DataFrame:
         ("objects withstand 25 % more", scaled(objects, capacity=1.25), None),
         ("objects withstand 25 % less", scaled(objects, capacity=0.75), None),
         (
-            f"boxes under two components instead of one plane (withstand {1 - IN_SPACE:.0%} less)",
+            f"boxes under two components instead of one plane (withstand {100 * (1 - IN_SPACE):.0f} % less)",
             scaled(objects, capacity=IN_SPACE),
             None,
         ),

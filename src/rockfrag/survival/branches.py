@@ -95,15 +95,13 @@ def _check(branches: Sequence[Branch], where: str) -> None:
     if abs(total - 1.0) > WEIGHT_ERROR:
         raise InputError(
             f"{where}: the weights of the {len(branches)} branches sum to {total:.6g} and not to 1; give every "
-            f"end "
-            "branch once."
+            "end branch once."
         )
     for branch in branches[1:]:
         if set(branch.curves) != set(branches[0].curves):
             raise InputError(
                 f"{where}: branch {branch.name[:60]} has curves of {_names(branch)}, branch "
-                f"{branches[0].name[:60]} "
-                f"of {_names(branches[0])}; give the same measures for all."
+                f"{branches[0].name[:60]} of {_names(branches[0])}; give the same measures for all."
             )
 
 
@@ -215,7 +213,6 @@ def _realization_of(path: str | os.PathLike[str]) -> int:
     if found is None:
         raise InputError(
             f"{path}: neither its first line nor its name says which realization it is of (such as rlz-003); "
-            f"export "
-            "with individual_rlzs = true."
+            "export with individual_rlzs = true."
         )
     return int(found[1])

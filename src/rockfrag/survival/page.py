@@ -86,9 +86,9 @@ def lines_of(found: Constrained) -> list[str]:
     ruled = len(found.ruled_out)
     return [
         f"Hazard    {_level_sentence(found)}",
-        f"Branches  {ruled} of {len(found.result.branches)} keep less than {RULED_OUT:.0%} of their weight; the "
-        f"weights "
-        f"moved by {found.result.information:.2f} bit.",
+        f"Branches  {ruled} of {len(found.result.branches)} keep less than {100 * RULED_OUT:.0f} % of their "
+        f"weight; the "
+        f"weights moved by {found.result.information:.2f} bit.",
         f"Evidence  {_object_sentence(objects)}",
         f"Hangs on  {_sensitivity_sentence(found)}",
         f"Limits    {' '.join(LIMITS)}",
@@ -104,7 +104,7 @@ def _level_sentence(found: Constrained) -> str:
     direction = "lower" if change < 0 else "higher"
     return (
         f"The mean {measure.imt} at 1e-4 a year is {row['level_after']:.3g} {measure.unit} after "
-        f"{row['level_before']:.3g} {measure.unit} before, {abs(change):.0%} {direction}."
+        f"{row['level_before']:.3g} {measure.unit} before, {100 * abs(change):.0f} % {direction}."
     )
 
 
@@ -130,8 +130,7 @@ def _sensitivity_sentence(found: Constrained) -> str:
     row = table.iloc[int(away.to_numpy().argmax())]
     return (
         f"With {row['assumption']} the level would be {row['level_ratio']:.2f} times that before, with all as "
-        f"stated "
-        f"{found.level_ratio:.2f} times."
+        f"stated {found.level_ratio:.2f} times."
     )
 
 
@@ -146,9 +145,8 @@ def page_of(found: Constrained) -> str:
     curves = FigureSpec(
         "curves",
         f"Mean hazard before and after survival. {_level_sentence(found)}",
-        "Mean hazard before (dashed) and after survival (solid); shaded from the 16th to the 84th percentile of "
-        "the "
-        "branches.",
+        "Mean hazard before (dashed) and after survival (solid); shaded from the 16th to the 84th percentile "
+        "of the branches.",
         lambda: curves_figure(found),
     )
     weights = FigureSpec(
@@ -210,7 +208,8 @@ def _branches(found: Constrained, weights: FigureSpec) -> Section:
     return Section(
         "branches",
         "Branches",
-        f"{ruled} of {len(found.result.branches)} branches keep less than {RULED_OUT:.0%} of their weight.",
+        f"{ruled} of {len(found.result.branches)} branches keep less than {100 * RULED_OUT:.0f} % of their "
+        "weight.",
         (),
         [
             weights,

@@ -122,8 +122,7 @@ def shaking_rates(
     raise InputError(
         f"hazard: an object's fragility needs {' and '.join(missing)}, but the branches give "
         f"{', '.join(sorted(measure.imt for measure in measures))}; give velocity: {{median_s: …, sd_ln: …}}, "
-        f"the "
-        "PGV/PGA of the site, or a fragility in that measure."
+        "the PGV/PGA of the site, or a fragility in that measure."
     )
 
 

@@ -130,6 +130,15 @@ def largest_restitution(shape: Shape, pivot: int) -> float:
     return math.sqrt(pivot_inertia(shape, -pivot) / pivot_inertia(shape, pivot))
 
 
+def scaled_restitution(shape: Shape, pivot: int, measured: float, factor: float) -> float:
+    """Ratio of an impact on this pivot, measured or, where that is NaN, of momentum, times a factor [-].
+
+    No impact gains energy.
+    """
+    e = momentum_restitution(shape, pivot) if math.isnan(measured) else measured
+    return min(max(e, 0.0) * factor, largest_restitution(shape, pivot))
+
+
 def impulse_position(shape: Shape, restitution: float, pivot: int) -> float:
     """Where the impulse acts if the block comes off with this ratio, from the middle (0) to the new pivot (1)."""
     old, new = arm(shape, -pivot)[0], arm(shape, pivot)[0]
@@ -234,6 +243,19 @@ def fill_block(body: Any, block: Shape) -> None:
     body.m2, body.i2, body.b2 = block.mass, block.inertia, block.b
     body.c2x, body.c2y = block.x, block.y
     body.fixed = True
+
+
+def pivot_constants(
+    shape: Shape, pivot: int, restitution: float, g: float
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """What lanes know of a block on a pivot (``kernels.lanes.block.PIVOT``), with p² where p² dt² belongs.
+
+    ``restitution`` is that of the impact that ends rocking on this pivot and comes down on the other.
+    """
+    alpha, (x, y), p = critical_angle(shape, pivot), arm(shape, pivot), frequency(shape, pivot, g)
+    aside, length, swing = -pivot * x, radius(shape, pivot), p * p
+    ends = 1 / alpha, 1 / (swing * alpha * alpha)
+    return alpha, aside / y, aside / length, y / length, swing, restitution, ends[0], ends[1]
 
 
 def fill_pile(body: Any, pile: Pile) -> None:

@@ -381,8 +381,7 @@ def _closed_mesh(path: Path, hull: bool) -> Any:
     if len(faces) == 0:
         raise InputError(
             f"{path}: is a cloud of {len(vertices)} points without triangles; make a closed mesh of it, or take "
-            "its "
-            "convex hull (hull=True)."
+            "its convex hull (hull=True)."
         )
     if not mesh.is_watertight:
         # triangles of an STL file do not know their neighbours, and seams of a texture part vertices

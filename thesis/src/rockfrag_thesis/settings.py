@@ -126,8 +126,7 @@ def _check_mechanics(study: Study, settings: Settings) -> None:
     if (study.slides or study.vertical) and settings.sensitivity_analysis is not None:
         raise InputError(
             f"{where}: the perturbed parameters of the key sensitivity_analysis rock without sliding under "
-            "horizontal motion; "
-            "leave one of the two out (sensitivity_analysis.friction tries coefficients)."
+            "horizontal motion; leave one of the two out (sensitivity_analysis.friction tries coefficients)."
         )
     if (study.slides or study.vertical) and settings.compares:
         raise InputError(

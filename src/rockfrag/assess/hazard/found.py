@@ -44,9 +44,8 @@ def read_statistic(text: str, where: str) -> str:
     if quantile:
         return f"quantile-{float(quantile[1]):g}"
     raise InputError(
-        f"{where}: the curve is of the kind {text[:40]!r}; give the mean and the quantiles of the hazard "
-        f"model, not "
-        "single branches or deviations."
+        f"{where}: the curve is of the kind {text[:40]!r}; give the mean and the quantiles of the hazard model, "
+        "not single branches or deviations."
     )
 
 

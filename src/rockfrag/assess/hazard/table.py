@@ -15,9 +15,8 @@ from rockfrag.tabular import cells_of
 from rockfrag.units import GRAVITY
 
 _EXPECTED = (
-    "a column of levels (pga_g, pgv_cm_s or such as sa_0_3s_g) and one of annual_rate, return_period_years "
-    "or such "
-    "as poe_50_years"
+    "a column of levels (pga_g, pgv_cm_s or such as sa_0_3s_g) and one of annual_rate, return_period_years or "
+    "such as poe_50_years"
 )
 _POE = re.compile(r"poe_(\d+(?:\.\d+)?)_?y(?:ears)?")
 _RETURN_PERIOD = re.compile(r"(?:tr|return_period)(?:_(?:years?|yrs?|a|anni))?")

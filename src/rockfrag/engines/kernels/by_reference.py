@@ -11,6 +11,7 @@ from numba.core import cgutils
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import (
     NativeValue,
+    intrinsic,
     lower_getattr_generic,
     models,
     register_model,
@@ -61,6 +62,16 @@ class _Fields(AttributeTemplate):  # type: ignore[misc]
 def _field(context: Any, builder: Any, reference: Reference, pointer: Any, name: str) -> Any:
     at = reference.tuple_type.fields.index(name)
     return builder.load(cgutils.gep_inbounds(builder, pointer, 0, at))
+
+
+@intrinsic
+def referred(typing_context, values):  # type: ignore[no-untyped-def]
+    """Return a reference to a named tuple that a kernel has made itself, for as long as that kernel runs."""
+
+    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        return cgutils.alloca_once_value(builder, arguments[0])
+
+    return Reference(values)(values), generate
 
 
 @unbox(Reference)  # type: ignore[untyped-decorator]

@@ -75,8 +75,7 @@ def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Chann
         raise problem(f"{path}: this is {kind}.")
     if len(head) > MAX_LINE and b"\x00" not in head and b"\n" not in head and b"\r" not in head:
         raise InputError(
-            f"{path}, line 1: the line is longer than {MAX_LINE} characters, "
-            "which no record format has."
+            f"{path}, line 1: the line is longer than {MAX_LINE} characters, which no record format has."
         )
     check_unpacked(path)
     with _unpacked(path) as plain:
@@ -178,8 +177,7 @@ def _check_whole_records(plain: Path, path: Path, cut_short: bool) -> None:
     size = os.path.getsize(plain)
     if length and size % length and not cut_short:
         raise InputError(
-            f"{path}: {size} bytes are no whole number of MiniSEED records of {length}; "
-            "the file is cut short."
+            f"{path}: {size} bytes are no whole number of MiniSEED records of {length}; the file is cut short."
         )
 
 

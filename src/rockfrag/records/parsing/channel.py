@@ -85,9 +85,8 @@ class Channel:
             raise InputError(f"{name}: the header promises {self.npts} samples.")
         if not SHORTEST_STEP <= self.dt <= LONGEST_STEP:
             raise InputError(
-                f"{name}: a sampling interval of {self.dt:g} s is none of a strong-motion record "
-                f"(from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s); mend the header, or give the "
-                "true one with dt=."
+                f"{name}: a sampling interval of {self.dt:g} s is none of a strong-motion record (from "
+                f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} s); mend the header, or give the true one with dt=."
             )
 
     @property

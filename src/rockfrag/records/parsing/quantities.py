@@ -88,7 +88,6 @@ def asked_unit(unit: str) -> str:
     found = canonical_unit(unit)
     if found not in {canonical_unit(known) for known in ASKED_UNITS}:
         raise InputError(
-            f"unit {unit!r} is not a unit of acceleration known here; "
-            f"give one of {', '.join(ASKED_UNITS)}."
+            f"unit {unit!r} is not a unit of acceleration known here; give one of {', '.join(ASKED_UNITS)}."
         )
     return found

@@ -248,8 +248,7 @@ class TextFile:
         if wrong.size:
             first = int(wrong[0])
             self.fail(
-                f"{widths[first]} columns here, {columns} in the rows above; "
-                "the file is cut short or damaged",
+                f"{widths[first]} columns here, {columns} in the rows above; the file is cut short or damaged",
                 start + first,
             )
         return values.reshape(-1, columns)
@@ -393,8 +392,7 @@ def check_file(path: str | os.PathLike[str]) -> None:
         raise InputError(f"{path}: the file is empty.")
     if size > MAX_BYTES:
         raise InputError(
-            f"{path}: {size / 2**20:.0f} MiB are too many for a record "
-            f"(at most {MAX_BYTES // 2**20})."
+            f"{path}: {size / 2**20:.0f} MiB are too many for a record (at most {MAX_BYTES // 2**20})."
         )
 
 

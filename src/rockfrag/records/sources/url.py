@@ -60,8 +60,7 @@ def fetch_url(url: str, sha256: str, path: str | os.PathLike[str]) -> None:
             raise
         reason = getattr(error, "reason", None) or getattr(error, "strerror", None) or error
         raise InputError(
-            f"{url}: could not be fetched ({' '.join(str(reason).split())}); put the file at {file} "
-            "by hand."
+            f"{url}: could not be fetched ({' '.join(str(reason).split())}); put the file at {file} by hand."
         ) from error
 
 

@@ -102,11 +102,10 @@ def _section(results: Results) -> Section:
         [
             *opened(found[0]),
             *(item.said for item in found[1:]),
-            f"The ratio is the overturning a{about.divided[1:]}, paired by "
-            "object and motion. Motions of one earthquake are not independent, so intervals are over "
-            "earthquakes where there are several. “Detectable” is the smallest ratio found with 80 % power. "
-            "There is neither interval nor test where all amplitudes agree to the steps tested. p values are "
-            "adjusted within each scope (Holm).",
+            f"The ratio is the overturning a{about.divided[1:]}, paired by object and motion. Motions of one "
+            "earthquake are not independent, so intervals are over earthquakes where there are several. "
+            "“Detectable” is the smallest ratio found with 80 % power. There is neither interval nor test "
+            "where all amplitudes agree to the steps tested. p values are adjusted within each scope (Holm).",
             *dict.fromkeys(_plain(note) for note in notes["note"]),
         ],
         parts,

@@ -11,6 +11,7 @@ from rockfrag.fragility.vector_tables import VectorTables, describe_pair
 from rockfrag.report.figures.two_measures import two_measures_figure
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.wording import agree, of_all, sentence
 from rockfrag.study.study import Study
 
 _COLUMNS = (
@@ -59,12 +60,11 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
         _message(found, rejected),
         [
             "The probability of overturning is Φ(b₀ + b₁ ln IM₁ + b₂ ln IM₂ + b₁₂ ln IM₁ ln IM₂). The product "
-            "stands "
-            f"in it where a score test over earthquakes rejects its absence at {INTERACTION_LEVEL:.0%} and it "
-            f"improves the "
-            f"prediction of held-out earthquakes; b₁₂ is 0 otherwise. Bands are {level} intervals over "
-            f"earthquakes "
-            "(jackknife). The p of the fit is from simulated tests in which each motion has one capacity.",
+            f"stands in it where a score test over earthquakes rejects its absence at "
+            f"{100 * INTERACTION_LEVEL:.0f} % "
+            f"and it improves the prediction of held-out earthquakes; b₁₂ is 0 otherwise. Bands are {level} "
+            "intervals over earthquakes (jackknife). The p of the fit is from simulated tests in which each "
+            "motion has one capacity.",
             *dict.fromkeys(note for note in fits["warnings"] if note),
         ],
         [
@@ -88,9 +88,9 @@ def _message(found: pd.DataFrame, rejected: pd.DataFrame) -> str:
     if rejected.empty:
         return f"Every fit in {pairs} describes its tests."
     return (
-        f"Of {len(found)} fits in {pairs}, {len(rejected)} do not describe their tests; use the observed "
-        f"probabilities "
-        "by cell there."
+        f"{sentence(of_all(len(rejected), len(found), 'fit'))} in {pairs} "
+        f"{agree(len(rejected), len(found), 'does', 'do')} not describe the tests; use the observed "
+        "probabilities by cell there."
     )
 
 

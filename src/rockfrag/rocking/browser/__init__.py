@@ -1,7 +1,8 @@
-"""The simulator in a page: the kernel of one history as WebAssembly, and the script that calls it.
+"""The simulator in a page: the kernels as WebAssembly, and the scripts that call them.
 
-``integrate.wasm`` is made from the kernels (``build``) and kept with the package; ``integrate.js`` is what a
-page, or Node, talks to it with.  Nothing of this is needed to compute in Python.
+``integrate.wasm`` and ``ensemble.wasm`` are made from the kernels (``build``) and kept with the package;
+``module.js`` with ``integrate.js`` or ``ensemble.js`` is what a page, or Node, talks to them with.  Nothing of
+this is needed to compute in Python.
 """
 
 from pathlib import Path
@@ -19,14 +20,19 @@ from rockfrag.system.system import System
 _FOLDER = Path(__file__).parent
 
 
-def module_bytes() -> bytes:
-    """Return the bytes of the module."""
-    return (_FOLDER / "integrate.wasm").read_bytes()
+def module_bytes(name: str = "integrate") -> bytes:
+    """Return the bytes of a module: of one history (``integrate``), or of outcomes (``ensemble``)."""
+    return (_FOLDER / f"{name}.wasm").read_bytes()
 
 
-def driver_text() -> str:
-    """Return the script: plain text that defines ``async function rockfragKernel(bytes)``."""
-    return (_FOLDER / "integrate.js").read_text(encoding="utf-8")
+def driver_text(name: str = "integrate") -> str:
+    """Return the scripts of a module: plain text that defines ``async function rockfragKernel(bytes)``.
+
+    That of ``ensemble`` is ``rockfragEnsemble(bytes)``.
+    """
+    return "\n".join(
+        (_FOLDER / f"{part}.js").read_text(encoding="utf-8") for part in ("module", name)
+    )
 
 
 class InPage:

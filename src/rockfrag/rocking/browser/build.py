@@ -1,6 +1,7 @@
-"""Make the WebAssembly module from the kernels: ``python -m rockfrag.rocking.browser.build``.
+"""Make the WebAssembly modules from the kernels: ``python -m rockfrag.rocking.browser.build``.
 
-The kernel that ``simulate`` calls is compiled by numba to LLVM's language as always, and from there on for
+``integrate.wasm`` has the kernel of one history, ``ensemble.wasm`` the lanes that count outcomes.  What
+``simulate`` and ``overturns`` call is compiled by numba to LLVM's language as always, and from there on for
 WebAssembly instead of this processor.  The linker is that of the package ``ziglang`` (``pip install
 'rockfrag[browser]'``), which nothing else needs.  The same versions make the same bytes on every machine.
 """
@@ -18,13 +19,20 @@ import numba
 import numpy as np
 
 from rockfrag.engines.kernels._numba import whole_ir
+from rockfrag.engines.kernels.equations import BODY
 from rockfrag.engines.kernels.jit import KNOWN, TESTED_NUMBA
+from rockfrag.engines.kernels.lanes.block import PIVOT
+from rockfrag.engines.kernels.lanes.case import BLOCK, OUTCOME
 from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
-from rockfrag.engines.steps import FREE_TIME, STEP
+from rockfrag.engines.steps import FREE_TIME, STACK_STEP, STEP
+from rockfrag.rocking.browser.ensemble import (
+    SHAKEN,
+    count_blocks,
+    count_stacks,
+    describe_shaken,
+)
 from rockfrag.rocking.browser.entry import CALL, describe, integrate_call
 from rockfrag.units import GRAVITY
-
-MODULE = Path(__file__).with_name("integrate.wasm")
 
 TRIPLE = "wasm32-unknown-unknown"
 FEATURES = "+bulk-memory,+sign-ext,+nontrapping-fptoint"
@@ -32,23 +40,47 @@ MEMORY_PAGES = 2
 """Pages of 64 KiB that the module starts with; the page asks for more as histories need them."""
 
 
-def build() -> bytes:
-    """Return the bytes of the module, with the layout of its records in a section of their own."""
+Entries = dict[str, tuple[Any, tuple[Any, ...]]]
+
+
+def build_integrate() -> bytes:
+    """Return the bytes of the module of one history."""
+    call = np.zeros(1, CALL)[0]
+    history = (call, np.zeros(1), np.zeros(1), np.zeros(1, SAMPLE), np.zeros(1, CONTACT_EVENT))
+    entries: Entries = {"describe": (describe, (call,)), "integrate": (integrate_call, history)}
+    constants = {"gravity": GRAVITY, "step": STEP, "free_time": FREE_TIME}
+    return _module(
+        entries, {"call": CALL, "sample": SAMPLE, "event": CONTACT_EVENT}, constants, wide=False
+    )
+
+
+def build_ensemble() -> bytes:
+    """Return the bytes of the module that counts outcomes."""
+    call, table, whole = np.zeros(1, SHAKEN)[0], np.zeros((1, 1)), np.zeros((1, 1), np.int64)
+    motions = table, whole, table, whole, np.zeros(1), table, whole, np.zeros(1, OUTCOME)
+    entries: Entries = {
+        "describe": (describe_shaken, (call,)),
+        "countBlocks": (count_blocks, (call, np.zeros((1, 1, 2), PIVOT), *motions)),
+        "countStacks": (count_stacks, (call, table, *motions)),
+    }
+    constants = {
+        "gravity": GRAVITY, "step": STEP, "stack_step": STACK_STEP, "free_time": FREE_TIME, "block": BLOCK,
+    }  # fmt: skip
+    records = {"call": SHAKEN, "body": BODY, "pivot": PIVOT, "outcome": OUTCOME}
+    return _module(entries, records, constants, wide=True)
+
+
+def _module(
+    entries: Entries, records: dict[str, np.dtype[Any]], constants: dict[str, float], *, wide: bool
+) -> bytes:
+    """Compile and link entries, with the layout of records in a section of their own."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
-    call = np.zeros(1, CALL)[0]
-    entries = {
-        "describe": (describe, (call,)),
-        "integrate": (
-            integrate_call,
-            (call, np.zeros(1), np.zeros(1), np.zeros(1, SAMPLE), np.zeros(1, CONTACT_EVENT)),
-        ),
-    }
-    objects = [_object(name, *entry) for name, entry in entries.items()]
-    return _with_section(_linked(objects, list(entries)), "layout", _layout())
+    objects = [_object(name, *entry, wide) for name, entry in entries.items()]
+    return _with_section(_linked(objects, list(entries)), "layout", _layout(records, constants))
 
 
-def _object(name: str, function: Any, arguments: tuple[Any, ...]) -> bytes:
+def _object(name: str, function: Any, arguments: tuple[Any, ...], wide: bool) -> bytes:
     """Compile a function and all that it needs; it gets this name, and all others none."""
     text, entry = whole_ir(function, tuple(map(numba.typeof, arguments)))
     text = text.replace(f"@{entry}", f"@{name}").replace(f'@"{entry}"', f"@{name}")
@@ -56,11 +88,13 @@ def _object(name: str, function: Any, arguments: tuple[Any, ...]) -> bytes:
     # a square root is an instruction, not a function of a library
     text = re.sub(r"^declare double @sqrt\(double\).*$", "", text, flags=re.MULTILINE)
     text = text.replace("@sqrt(", "@llvm.sqrt.f64(")
+    # no processor of WebAssembly has multiply-adds: these round twice
+    text = text.replace("@llvm.fma.f64", "@llvm.fmuladd.f64")
     # WebAssembly has no symbols that several objects may define
     text = text.replace("= common ", "= internal ")
     module = llvm.parse_assembly(text)
     machine = llvm.Target.from_triple(TRIPLE).create_target_machine(
-        cpu="", features=FEATURES, opt=3, reloc="static", codemodel="default"
+        cpu="", features=FEATURES + ",+simd128" * wide, opt=3, reloc="static", codemodel="default"
     )
     module.triple, module.data_layout = TRIPLE, str(machine.target_data)
     for item in [*module.functions, *module.global_variables]:
@@ -68,7 +102,7 @@ def _object(name: str, function: Any, arguments: tuple[Any, ...]) -> bytes:
             item.linkage = "internal"
     module.verify()
     options = llvm.create_pipeline_tuning_options(speed_level=3)
-    options.loop_vectorization = options.slp_vectorization = False
+    options.loop_vectorization = options.slp_vectorization = wide
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
     made: bytes = machine.emit_object(module)
@@ -93,10 +127,9 @@ def _linked(objects: list[bytes], exports: list[str]) -> bytes:
 # --------------------------------------------------------------------------- the layout of records, and constants
 
 
-def _layout() -> bytes:
-    records = {"call": CALL, "sample": SAMPLE, "event": CONTACT_EVENT}
+def _layout(records: dict[str, np.dtype[Any]], constants: dict[str, float]) -> bytes:
     layout: dict[str, Any] = {name: _described(dtype) for name, dtype in records.items()}
-    layout["constants"] = {"gravity": GRAVITY, "step": STEP, "free_time": FREE_TIME}
+    layout["constants"] = constants
     return json.dumps(layout, separators=(",", ":")).encode()
 
 
@@ -109,6 +142,8 @@ def _described(dtype: np.dtype[Any]) -> dict[str, Any]:
             fields[name] = {"at": offset, **_described(kind)}
         elif kind.subdtype is None:
             fields[name] = [offset, kind.kind + str(kind.itemsize)]
+        elif dtype is SHAKEN:
+            fields[name] = [offset]  # of an array the place, which is all that is asked for
     return {"size": dtype.itemsize, "fields": fields}
 
 
@@ -134,5 +169,7 @@ if __name__ == "__main__":
         raise SystemExit(
             f"numba: the module is made with version {TESTED_NUMBA[0]}x; install that."
         )
-    MODULE.write_bytes(build())
-    print(f"{MODULE}: {MODULE.stat().st_size} bytes")
+    for name, build in (("integrate", build_integrate), ("ensemble", build_ensemble)):
+        path = Path(__file__).with_name(f"{name}.wasm")
+        path.write_bytes(build())
+        print(f"{path}: {path.stat().st_size} bytes")

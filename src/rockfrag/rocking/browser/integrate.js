@@ -1,4 +1,5 @@
 /* The simulator of rockfrag in a page: plain script, no library, no network; works from a file, and in Node.
+ * Needs module.js before it.
  *
  *   const kernel = await rockfragKernel(bytes);            // of integrate.wasm, a Uint8Array
  *   const body = kernel.bodyOf({statue: {width: 0.3, height: 1.2, mass: 200}});
@@ -9,77 +10,16 @@
  */
 async function rockfragKernel(bytes) {
   "use strict";
-  const { module, instance } = await WebAssembly.instantiate(bytes, {});
-  const { memory, describe, integrate, __heap_base } = instance.exports;
-  const layout = JSON.parse(
-    new TextDecoder().decode(WebAssembly.Module.customSections(module, "layout")[0]),
-  );
+  const { memory, layout, call, arrays, reserve, read, write, array, run } = await rockfragModule(bytes);
   const { gravity, step, free_time: freeTime } = layout.constants;
   const KINDS = ["opening", "impact", "chatter", "lift-off"];
-  const FAULTS = [
-    "",
-    "A centre of gravity is not above its base, so the block cannot stand.",
-    "The statue's base does not lie on the pedestal.",
-    "The statue's centre of gravity is not above the part of its base that lies on the pedestal.",
-    "A centre of gravity is not above its base once the pedestal's lean is counted.",
-    "The statue could touch the ground beside its pedestal before anything has fallen.",
-    "restitution: it would gain energy or is no ratio.",
-  ];
-
-  // ---- memory: what a function returns, a call, and arrays after it, all aligned to eight bytes
-
-  const result = (__heap_base.value + 15) & ~15;
-  const call = result + 16;
-  const arrays = (call + layout.call.size + 15) & ~15;
-  let view = new DataView(memory.buffer);
-
-  function reserve(end) {
-    const missing = end - memory.buffer.byteLength;
-    if (missing > 0) memory.grow(Math.ceil(missing / 65536));
-    if (view.buffer !== memory.buffer) view = new DataView(memory.buffer);
-  }
-
-  // ---- records, by the names of their fields
-
-  function read(record, at) {
-    const found = {};
-    for (const [name, place] of Object.entries(record.fields)) {
-      found[name] = Array.isArray(place) ? number(place[1], at + place[0]) : read(place, at + place.at);
-    }
-    return found;
-  }
-
-  function number(kind, at) {
-    if (kind === "f8") return view.getFloat64(at, true);
-    if (kind === "i8") return Number(view.getBigInt64(at, true));
-    return view.getUint8(at) !== 0;
-  }
-
-  function write(record, at, values) {
-    for (const [name, value] of Object.entries(values)) {
-      const place = record.fields[name];
-      if (!Array.isArray(place)) write(place, at + place.at, value);
-      else if (place[1] === "f8") view.setFloat64(at + place[0], value, true);
-      else if (place[1] === "i8") view.setBigInt64(at + place[0], BigInt(value), true);
-      else view.setUint8(at + place[0], value ? 1 : 0);
-    }
-  }
-
   const fields = layout.call.fields;
   const bodyAt = call + fields.body.at;
 
   // ---- bodies
 
   function given(block, name) {
-    const numbers = {
-      width: block.width,
-      height: block.height,
-      mass: block.mass,
-      inertia: block.inertia ?? NaN,
-      cg_height: block.cgHeight ?? NaN,
-      cg_offset: block.cgOffset ?? 0,
-      lean: block.lean ?? 0,
-    };
+    const numbers = rockfragBlock(block);
     for (const [key, value] of Object.entries(numbers)) {
       const free = key === "cg_offset" || key === "lean";
       const left = key === "inertia" || key === "cg_height";
@@ -108,9 +48,9 @@ async function rockfragKernel(bytes) {
       },
     });
     if (pedestal) write(layout.call, call, { pedestal: given(pedestal, "pedestal") });
-    describe(result, result + 8, call);
+    run("describe");
     const { fault, fastest, slowest } = read(layout.call, call);
-    if (fault !== 0) throw new Error(FAULTS[fault]);
+    if (fault !== 0) throw new Error(ROCKFRAG_FAULTS[fault]);
     return {
       record: new Uint8Array(memory.buffer.slice(bodyAt, bodyAt + fields.body.size)),
       fields: read(fields.body, bodyAt),
@@ -128,11 +68,6 @@ async function rockfragKernel(bytes) {
   }
 
   // ---- histories
-
-  // an array as the kernels take one: owner and parent, count and size of items, place, shape and strides
-  function array(at, count, size) {
-    return [0, 0, BigInt(count), BigInt(size), at, BigInt(count), BigInt(size)];
-  }
 
   let room = 256; // events
 
@@ -160,12 +95,12 @@ async function rockfragKernel(bytes) {
       substeps: substeps ?? steps.substeps,
       free_samples: free,
     });
-    integrate(
-      result, result + 8, call,
-      ...array(samplesAt, samples.length, 8),
-      ...array(verticalAt, vertical.length, 8),
-      ...array(historyAt, rows, layout.sample.size),
-      ...array(eventsAt, places, layout.event.size),
+    run(
+      "integrate",
+      ...array(samplesAt, [samples.length], 8),
+      ...array(verticalAt, [vertical.length], 8),
+      ...array(historyAt, [rows], layout.sample.size),
+      ...array(eventsAt, [places], layout.event.size),
     );
     const { summary, done } = read(layout.call, call);
     if (history && summary.contact_events > room) {
@@ -183,6 +118,7 @@ async function rockfragKernel(bytes) {
   }
 
   function columns(at, done) {
+    const view = new DataView(memory.buffer);
     const found = {};
     for (const [name, [offset, kind]] of Object.entries(layout.sample.fields)) {
       const values = kind === "f8" ? new Float64Array(done) : new Int8Array(done);

@@ -193,8 +193,7 @@ def c52(tests: Evidence) -> Result:
         finding,
         f"motions: {n}; earthquakes: {joined['earthquake'].nunique()}; "
         + ", ".join(
-            f"{name} ρ = {math.tanh(each.mean):.2f} [{math.tanh(each.lower):.2f}, "
-            f"{math.tanh(each.upper):.2f}]"
+            f"{name} ρ = {math.tanh(each.mean):.2f} [{math.tanh(each.lower):.2f}, {math.tanh(each.upper):.2f}]"
             for name, each in found.items()
         ),
         math.tanh(item.mean),

@@ -392,8 +392,7 @@ def c21(setting: Setting) -> Result:
     other_3, other_4 = uplift_accelerations(SQUAT_ON_SLENDER)
     return Result(
         Finding.SPECIMENS_ONLY if max(ratio.values()) < 1 < other_4 / other_3 else Finding.AGAINST,
-        f"pattern 4 over pattern 3: {listed(ratio)}; squat statue on a slender pedestal "
-        f"{other_4 / other_3:.1f}",
+        f"pattern 4 over pattern 3: {listed(ratio)}; squat statue on a slender pedestal {other_4 / other_3:.1f}",
         max(ratio.values()),
     )
 

@@ -27,10 +27,9 @@ def _section(results: Results) -> Section:
         _message(results),
         [
             *_differing(results),
-            "Computed values are rounded to the digits printed in the thesis, with g = 9.81 m/s². "
-            "GF is the ground motion itself; F3 and F5 are floors of an assumed building, which the "
-            "thesis does not describe. The printed value is below each computed one, with ✓ where they agree "
-            "to its digits.",
+            "Computed values are rounded to the digits printed in the thesis, with g = 9.81 m/s². GF is the "
+            "ground motion itself; F3 and F5 are floors of an assumed building, which the thesis does not "
+            "describe. The printed value is below each computed one, with ✓ where they agree to its digits.",
         ],
         [comparison_html(results.table(name), caption) for name, caption in _CAPTIONS.items()],
     )

@@ -235,8 +235,7 @@ def adjusted_words(simulated: pd.DataFrame, level: float = 0.05) -> str:
     )
     return (
         f"{sentence(of_all(outside, tests, 'simulated perturbation'))} {has} 1. Chance alone produces some of "
-        f"these: "
-        f"after the Benjamini–Hochberg adjustment for {counted(tests, 'test')}, {left or 'none'} "
+        f"these: after the Benjamini–Hochberg adjustment for {counted(tests, 'test')}, {left or 'none'} "
         f"{agree(left, tests, 'differs', 'differ')} from 1 at the {100 * level:g} % level."
     )
 

@@ -54,8 +54,7 @@ def explain(table: pd.DataFrame) -> pd.DataFrame:
     missing = [name for name in COLUMNS if name not in table.columns]
     if missing:
         raise InputError(
-            f"Explanation study: column(s) {', '.join(missing)} missing; it needs "
-            f"{', '.join(COLUMNS)}."
+            f"Explanation study: column(s) {', '.join(missing)} missing; it needs {', '.join(COLUMNS)}."
         )
     bad = np.flatnonzero((table["ratio"] <= 0) | np.isinf(table["ratio"].astype(float)))
     if bad.size:

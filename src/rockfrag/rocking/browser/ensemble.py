@@ -1,0 +1,176 @@
+"""The functions of the module that shakes a body by many motions at many levels, as ``overturns`` does.
+
+They are compiled to WebAssembly alone (``build``), around the lanes that everything else is counted with.
+"""
+
+import math
+
+import numpy as np
+
+from rockfrag.engines.kernels.by_reference import referred
+from rockfrag.engines.kernels.chatter import RESTORING
+from rockfrag.engines.kernels.equations import BODY, STATE
+from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.kernels.lanes import block, stack_case, stack_one, stack_two
+from rockfrag.engines.kernels.lanes.case import LANES, OUTCOME, Ensemble, Motions
+from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
+from rockfrag.engines.kernels.lanes.stack_constants import IMPACT, ONE, TWO
+from rockfrag.engines.kernels.taylor import SERIES
+from rockfrag.laws import momentum, position
+from rockfrag.rocking.browser.entry import BLOCK
+from rockfrag.system import geometry
+
+_F, _I = np.float64, np.int64
+_SLOTS = stack_case.SLOTS
+
+SHAKEN = np.dtype(
+    [
+        # what describe reads: the measured restitution, NaN where momentum is conserved, and the factor on each
+        ("statue", BLOCK), ("pedestal", BLOCK), ("stacked", _I), ("measured", _F), ("livelier", _F),
+        # what it leaves; the least acceleration at which a contact opens [g], and constants of the right and left
+        # pivot of a lone block
+        ("fault", _I), ("fastest", _F), ("slowest", _F), ("uplift", _F), ("largest", _F), ("centre", _F, 3),
+        ("body", BODY, 1), ("pivots", block.PIVOT, 2),
+        # what count reads
+        ("counter", _I, 1), ("cases", _I),
+        # what it works in
+        ("lane", block.LANE), ("tallies", OUTCOME, block.LANES),
+        ("one", stack_one.LANE), ("two", stack_two.LANE), ("slots", stack_case.CASE, _SLOTS),
+        ("waiting", _I, (2, _SLOTS)), ("waits", _I, 2), ("busy", _I, 2),
+        ("ones", ONE, (_SLOTS, 9)), ("twos", TWO, (_SLOTS, 9)), ("impacts", IMPACT, (_SLOTS, 9)),
+        ("restoring", RESTORING, _SLOTS), ("series", SERIES, LANES), ("state", STATE),
+    ],
+    align=True,
+)  # fmt: skip
+"""What a page and the module hand to each other."""
+
+# as parts of what is compiled here, and not as the entries that Python calls
+_integrate_blocks = kernel(block.integrate_blocks.py_func)
+_integrate_stacks = kernel(integrate_stacks.py_func)
+
+
+@kernel
+def describe_shaken(call):
+    """Describe a block, or one on a pedestal, to the lanes; gravity stands in its record already."""
+    body, g = call.body[0], call.body[0].gravity
+    upper, lower = _shape(call.statue), _shape(call.pedestal)
+    scaled = not (math.isnan(call.measured) and call.livelier == 1.0)
+    body.measured = scaled
+    call.fault = geometry.STANDS if geometry.can_stand(upper) else geometry.FALLS_ALONE
+    call.uplift, call.largest = np.inf, np.inf
+    if call.stacked == 0:
+        geometry.fill_block(body, upper)
+        call.centre[0], call.centre[1], call.centre[2] = upper.x, upper.y, upper.inertia
+        after_left = _ratio(call, upper, -1) if scaled else geometry.momentum_restitution(upper, -1)
+        after_right = _ratio(call, upper, 1) if scaled else geometry.momentum_restitution(upper, 1)
+        _fill_pivot(call.pivots[0], geometry.pivot_constants(upper, 1, after_left, g))
+        _fill_pivot(call.pivots[1], geometry.pivot_constants(upper, -1, after_right, g))
+        call.fastest = max(geometry.frequency(upper, 1, g), geometry.frequency(upper, -1, g))
+        call.slowest = min(geometry.frequency(upper, 1, g), geometry.frequency(upper, -1, g))
+        for pivot in (1, -1):
+            _note_uplift(call, geometry.arm(upper, pivot))
+            call.largest = min(call.largest, geometry.largest_restitution(upper, pivot))
+        return
+    pile = geometry.pile_of(lower, upper, call.pedestal.height, call.pedestal.lean, 0.0)
+    if not geometry.can_stand(lower):
+        call.fault = geometry.FALLS_ALONE
+    if call.fault == geometry.STANDS:
+        call.fault = geometry.failed_stability_check(pile)
+    geometry.fill_pile(body, pile)
+    whole = geometry.joined(pile)
+    call.centre[0], call.centre[1], call.centre[2] = whole.x, whole.y, whole.inertia
+    _fill_law(call, body.after1r, lower, 1, scaled)
+    _fill_law(call, body.after1l, lower, -1, scaled)
+    _fill_law(call, body.after2r, pile.upper, 1, scaled)
+    _fill_law(call, body.after2l, pile.upper, -1, scaled)
+    call.fastest, call.slowest = 0.0, np.inf
+    for pivot in (1, -1):
+        own = geometry.frequency(lower, pivot, g), geometry.frequency(pile.upper, pivot, g)
+        call.fastest = max(call.fastest, max(own[0], own[1]))
+        call.slowest = min(call.slowest, min(own[1], geometry.frequency(whole, pivot, g)))
+        _note_uplift(call, geometry.common_arm(pile, pivot))
+        _note_uplift(call, geometry.upper_arm(pile, pivot))
+        call.largest = min(call.largest, geometry.largest_restitution(lower, pivot))
+        call.largest = min(call.largest, geometry.largest_restitution(pile.upper, pivot))
+
+
+@kernel
+def _shape(given):
+    return geometry.shape_of(
+        given.width, given.height, given.mass, given.inertia, given.cg_height, given.cg_offset, given.lean
+    )  # fmt: skip
+
+
+@kernel
+def _ratio(call, shape, pivot):
+    return geometry.scaled_restitution(shape, pivot, call.measured, call.livelier)
+
+
+@kernel
+def _fill_law(call, after, shape, pivot, scaled):
+    after.law, after.value = momentum.NUMBER, 1.0
+    if scaled:
+        after.law, after.value = position.tell(shape, _ratio(call, shape, pivot), pivot)
+
+
+@kernel
+def _fill_pivot(pivot, constants):
+    (
+        pivot.alpha, pivot.tan, pivot.sine, pivot.cosine, pivot.swing, pivot.restitution,
+        pivot.per_alpha, pivot.per_swing,
+    ) = constants  # fmt: skip
+
+
+@kernel
+def _note_uplift(call, arm):
+    x, y = arm
+    if y > 0:
+        call.uplift = min(call.uplift, abs(x) / y)
+
+
+@kernel
+def count_blocks(
+    call, pivots, factors, rows, intervals, free, samples, extremes, places, outcomes
+):  # fmt: skip
+    """Integrate a lone block through motions at scales; see ``lanes.block.integrate_blocks``.
+
+    ``extremes`` are the four tables of ``Motions`` in rows, and ``places`` its offsets and last samples.
+    """
+    ensemble = referred(
+        Ensemble(call.counter, call.cases, pivots, factors, rows, intervals, intervals, free)
+    )
+    worker = referred(block.Worker(call.lane, call.tallies))
+    _integrate_blocks(ensemble, referred(_motions(samples, extremes, places)), worker, outcomes)
+
+
+@kernel
+def count_stacks(
+    call, parts, factors, rows, intervals, free, samples, extremes, places, outcomes
+):  # fmt: skip
+    """Integrate a block on a pedestal likewise; see ``lanes.scheduler.integrate_stacks``."""
+    for i in range(LANES):
+        call.one.slot[i] = call.two.slot[i] = -1
+        call.one.was_weight[i] = call.one.before_weight[i] = call.two.was_weight[i] = 1.0
+    for slot in range(_SLOTS):
+        case = call.slots[slot]
+        case.number, case.body, case.slot = -1, -1, slot
+    for kind in range(2):
+        call.waits[kind] = call.busy[kind] = 0
+    ensemble = referred(
+        Ensemble(call.counter, call.cases, call.body, factors, rows, intervals, parts, free)
+    )
+    worker = referred(
+        stack_case.Worker(
+            call.one, call.two, call.slots, call.waiting, call.waits, call.busy,
+            call.ones, call.twos, call.impacts, call.restoring, call.series, call.state,
+        )
+    )  # fmt: skip
+    _integrate_stacks(ensemble, referred(_motions(samples, extremes, places)), worker, outcomes)
+
+
+@kernel
+def _motions(samples, extremes, places):
+    return Motions(
+        samples, samples[:0], extremes[0], extremes[1], extremes[2], extremes[3],
+        samples[:0], samples[:0], places[0], places[1],
+    )  # fmt: skip

@@ -1,0 +1,80 @@
+/* A WebAssembly module made from the kernels, and its records by the names of their fields; works in Node too. */
+async function rockfragModule(bytes) {
+  "use strict";
+  const { module, instance } = await WebAssembly.instantiate(bytes, {});
+  const { memory, __heap_base: heap, ...functions } = instance.exports;
+  const layout = JSON.parse(
+    new TextDecoder().decode(WebAssembly.Module.customSections(module, "layout")[0]),
+  );
+
+  // memory: what a function returns, a call, and arrays after it, all aligned to eight bytes
+  const result = (heap.value + 15) & ~15;
+  const call = result + 16;
+  const arrays = (call + layout.call.size + 15) & ~15;
+  let view = new DataView(memory.buffer);
+
+  function reserve(end) {
+    const missing = end - memory.buffer.byteLength;
+    if (missing > 0) memory.grow(Math.ceil(missing / 65536));
+    if (view.buffer !== memory.buffer) view = new DataView(memory.buffer);
+    return view;
+  }
+
+  function read(record, at) {
+    const found = {};
+    for (const [name, place] of Object.entries(record.fields)) {
+      found[name] = Array.isArray(place) ? number(place[1], at + place[0]) : read(place, at + place.at);
+    }
+    return found;
+  }
+
+  function number(kind, at) {
+    if (kind === "f8") return view.getFloat64(at, true);
+    if (kind === "i8") return Number(view.getBigInt64(at, true));
+    return view.getUint8(at) !== 0;
+  }
+
+  function write(record, at, values) {
+    for (const [name, value] of Object.entries(values)) {
+      const place = record.fields[name];
+      if (!Array.isArray(place)) write(place, at + place.at, value);
+      else if (place[1] === "f8") view.setFloat64(at + place[0], value, true);
+      else if (place[1] === "i8") view.setBigInt64(at + place[0], BigInt(value), true);
+      else view.setUint8(at + place[0], value ? 1 : 0);
+    }
+  }
+
+  // an array as the kernels take one: owner and parent, count and size of items, place, shape and strides
+  function array(at, shape, size) {
+    const strides = shape.map((_, axis) => shape.slice(axis + 1).reduce((a, b) => a * b, size));
+    const count = shape.reduce((a, b) => a * b, 1);
+    return [0, 0, BigInt(count), BigInt(size), at, ...shape.map(BigInt), ...strides.map(BigInt)];
+  }
+
+  const run = (name, ...parameters) => functions[name](result, result + 8, call, ...parameters);
+  return { memory, layout, call, arrays, reserve, read, write, array, run };
+}
+
+// numbers of a block that are not given as the kernels know them
+function rockfragBlock(block) {
+  return {
+    width: block.width,
+    height: block.height,
+    mass: block.mass,
+    inertia: block.inertia ?? NaN,
+    cg_height: block.cgHeight ?? NaN,
+    cg_offset: block.cgOffset ?? 0,
+    lean: block.lean ?? 0,
+  };
+}
+
+// why a body cannot stand, by the fault that its description leaves
+const ROCKFRAG_FAULTS = [
+  "",
+  "A centre of gravity is not above its base, so the block cannot stand.",
+  "The statue's base does not lie on the pedestal.",
+  "The statue's centre of gravity is not above the part of its base that lies on the pedestal.",
+  "A centre of gravity is not above its base once the pedestal's lean is counted.",
+  "The statue could touch the ground beside its pedestal before anything has fallen.",
+  "restitution: it would gain energy or is no ratio.",
+];
