@@ -1,15 +1,17 @@
 """The whole assessment as one page, ``rockfrag app``: what it computes with, and what it is made of."""
 
 import math
+from collections.abc import Sequence
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy import special, stats
 
-from rockfrag.assess import mitigations, narrowing, objects, place, risk, sources
+from rockfrag.assess import mitigations, narrowing, objects, place, risk, sources, words
 from rockfrag.assess.conversion import MOST_LEVELS, OF_DISPLACEMENT, VelocityRelation
-from rockfrag.assess.hazard.curve import DAMAGING, EC8_SLOPE, EC8_SLOPE_SD, HIGHEST, HazardCurve
+from rockfrag.assess.hazard.curve import DAMAGING, EC8_SLOPE, EC8_SLOPE_SD, HIGHEST
 from rockfrag.assess.hazard.measure import PGA, PGV
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import (
@@ -20,11 +22,14 @@ from rockfrag.assess.outcomes import (
     make_intensity_levels,
 )
 from rockfrag.assess.request import LONGEST_PERIOD, Records
-from rockfrag.building.model import ModalDamping
+from rockfrag.assess.scale import STEPS
+from rockfrag.building.model import ModalDamping, ShearBuilding
+from rockfrag.building.modes import find_modes
 from rockfrag.fragility.held_out import FOLDS, WORST_SCORE
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.fragility.vector import INTERACTION_LEVEL
 from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.spectra import oscillator_matrix
 from rockfrag.plausibility import (
     DENSITIES,
     DEPTHS,
@@ -41,6 +46,10 @@ SCRIPTS = ("statistics", "risk", "conversion", "building", "objects", "answer")
 
 _FLANK = 0.84
 """Quantile of a level that is continued with the upper exponent (:func:`curve_of_one_level`)."""
+
+
+TABLED_STOREYS = 8
+"""Storeys up to which floors of the usual building have the bits of the package: their modes stand in the page."""
 
 
 def script(name: str) -> str:
@@ -72,6 +81,8 @@ def data_of(motions: MotionSet, *, on_floor: bool = False) -> dict[str, Any]:
         "measures": {measure.imt: _measure(motions, measure) for measure in (PGA, PGV)},
         "measurements": {name: item.left for name, item in narrowing.MEASUREMENTS.items()},
         "constants": _constants(),
+        "floors": _floors(sorted({motion.dt for motion in motions.ground})),
+        "steps": [{"name": step.name, "below": _finite(step.below)} for step in STEPS],
         "limits": {"storey": STOREY_HEIGHTS, "period": FIRST_PERIODS},
         "units": {
             "dimensions": DIMENSIONS,
@@ -104,6 +115,42 @@ def _measure(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any]:
         "highest": HIGHEST[measure.openquake],
         "damaging": DAMAGING[measure.openquake],
     }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _floors(intervals: Sequence[float]) -> dict[int, Any]:
+    """Modes of buildings of which only the storeys are known, as they are and with each property moved."""
+    found = {}
+    for storeys in range(1, TABLED_STOREYS + 1):
+        usual = place.make_place({"floor": f"1/{storeys}"}, Path())
+        each = {"": usual}
+        for moved in usual.variants():
+            each |= {f"{moved.name}{sign}": at for sign, at in zip("-+", moved.sides, strict=True)}
+        found[storeys] = {name: _modes(at.building, intervals) for name, at in each.items()}
+    return found
+
+
+def _modes(model: ShearBuilding | None, intervals: Sequence[float]) -> list[dict[str, Any]]:
+    """What :func:`rockfrag.building.response.respond_elastically` does with each mode, by sampling interval."""
+    assert model is not None
+    modes, found = find_modes(model), []
+    fractions = (modes.participation * modes.shape).T
+    for period, damping, fraction in zip(
+        modes.period.tolist(), modes.damping.tolist(), fractions.tolist(), strict=True
+    ):
+        omega = 2 * math.pi / period
+        found.append(
+            {
+                "fractions": fraction,
+                "damper": 2 * damping * omega,
+                "spring": omega**2,
+                "steps": {dt: oscillator_matrix(omega, damping, dt).tolist() for dt in intervals},
+            }
+        )
+    return found
 
 
 def _constants() -> dict[str, Any]:
@@ -143,22 +190,14 @@ def _constants() -> dict[str, Any]:
             name: getattr(place, name)
             for name in ("PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING")
         },
+        "MANY": words.MANY,
+        "FEW": words.FEW,
+        "LEAST_PART": words.LEAST_PART,
+        "MOST_SOURCES": words.MOST_SOURCES,
+        "MOST_ASSUMPTIONS": words.MOST_ASSUMPTIONS,
         "DAMPING": ModalDamping().ratio,
         "TOLERANCES": objects.TOLERANCES,
         "PLACE_TOLERANCES": place.TOLERANCES,
         "KNOWN_PERIOD": place.TOLERANCE_OF_KNOWN_PERIOD,
         "LONGEST_PERIOD": LONGEST_PERIOD,
-    }
-
-
-def curve_data(curve: HazardCurve) -> dict[str, Any]:
-    """Return a hazard curve as the page knows it."""
-    return {
-        "levels": curve.levels.tolist(),
-        "rates": curve.rates.tolist(),
-        "quantiles": [
-            {"z": float(special.ndtri(q)), **curve_data(each)}
-            for q, each in curve.quantiles.items()
-            if 0 < q < 1 and not math.isnan(q)
-        ],
     }

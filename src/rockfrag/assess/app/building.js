@@ -49,14 +49,16 @@ const building = (() => {
     return free.map((row, i) => [...row, ...[0, 1].map((j) => after[i][j] - (row[0] * before[0][j] + row[1] * before[1][j]))]);
   }
 
-  // acceleration of a floor under that of the ground
-  function floorMotion({ masses, stiffnesses, damping, level }, { samples, dt }, modes = modesOf(masses, stiffnesses)) {
+  // acceleration of a floor under that of the ground; `modes` as the package has them, or those of masses and stiffnesses
+  function floorMotion({ modes, masses, stiffnesses, damping, level }, { samples, dt }) {
     const found = new Float64Array(samples.length);
-    for (const { omega, fractions } of modes) {
-      const [[a, b, c, d], [e, f, g, h]] = propagator(omega, damping, dt), part = fractions[level - 1];
+    const each = modes ?? modesOf(masses, stiffnesses).map(({ omega, fractions }) => (
+      { fractions, damper: 2 * damping * omega, spring: omega ** 2, steps: { [dt]: propagator(omega, damping, dt) } }));
+    for (const { fractions, damper, spring, steps } of each) {
+      const [[a, b, c, d], [e, f, g, h]] = steps[dt], part = fractions[level - 1];
       let u = 0, v = 0;
       for (let i = 0; i < samples.length; i++) {
-        found[i] += part * -(2 * damping * omega * v + omega * omega * u);
+        found[i] += part * -(damper * v + spring * u);
         const here = samples[i], s = (samples[i + 1] - here) / dt;
         [u, v] = [a * u + b * v + c * here + d * s, e * u + f * v + g * here + h * s];
       }

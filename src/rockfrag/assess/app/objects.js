@@ -41,7 +41,7 @@ const objects = (data) => {
   }
   function number(field, text, id, low, high) {
     if (!text?.trim()) return null;
-    const found = NUMBER.exec(text), value = found && !/[^\w\s.]/.test(found[2]) ? Number(found[1].replace(",", ".")) : NaN;
+    const found = NUMBER.exec(text), value = found && /^[a-z]*$/i.test(found[2]) ? Number(found[1].replace(",", ".")) : NaN;
     if (!(value > low && value <= high)) refuse(field, id, { text: short(text), low, high });
     return value;
   }
@@ -129,6 +129,11 @@ const objects = (data) => {
     const material = PERIOD_FACTORS[form.material] ? form.material : "masonry";
     const period = given ?? PERIOD_FACTORS[material] * total ** 0.75;
     if (!(period >= data.limits.period[0] && period <= data.limits.period[1])) refuse("period", "period");
+    const known = each === null && given === null && material === "masonry" ? data.floors?.[storeys] : null;
+    if (known && level) {
+      const floors = Object.fromEntries(Object.entries(known).map(([name, modes]) => [name, { modes, level }]));
+      return { ground: false, level, storeys, floors, key: `${level}/${storeys}`, assumed: "building", total, period };
+    }
     const masses = heights.map(() => STOREY_MASS), stiffnesses = building.stiffnessesFor(masses, heights, period);
     const at = { masses, stiffnesses, damping: DAMPING, level };
     const slower = (factor) => ({ ...at, stiffnesses: stiffnesses.map((k) => k / factor ** 2) });
@@ -137,7 +142,7 @@ const objects = (data) => {
       "": at, "period-": slower(1 - spread.period), "period+": slower(1 + spread.period),
       "damping-": { ...at, damping: DAMPING * (1 - spread.damping) }, "damping+": { ...at, damping: DAMPING * (1 + spread.damping) },
     };
-    return { ground: level === 0, level, storeys, floors, key: JSON.stringify(at), assumed: "building", total, period };
+    return { ground: level === 0, level, storeys, floors, key: JSON.stringify(at), assumed: "building", total, period, computed: level > 0 };
   }
 
   // ---- bodies
@@ -189,13 +194,18 @@ const objects = (data) => {
     }
     return runs;
   }
-  function withBallast(block) {
-    const added = BALLAST * block.mass, mass = block.mass + added, at = BALLAST_AT * block.height, h = heightOf(block);
+  function withBallast(block, part = BALLAST) {
+    const added = part * block.mass, mass = block.mass + added, at = BALLAST_AT * block.height, h = heightOf(block);
     const cgHeight = (block.mass * h + added * at) / mass, cgOffset = (block.mass * block.cgOffset) / mass;
     const own = block.mass * ((h - cgHeight) ** 2 + (block.cgOffset - cgOffset) ** 2);
     const inertia = inertiaOf(block) + own + added * ((at - cgHeight) ** 2 + cgOffset ** 2);
     return { ...block, mass, cgHeight, cgOffset, inertia };
   }
-  return { requestOf, planOf, Refusal };
+  // the object with a wider foot, a lower centre of gravity and ballast of a part of its mass in its foot
+  function changed(statue, { wider: foot, lower, ballast }) {
+    const heavier = ballast ? withBallast(statue, ballast) : statue;
+    return higher(wider(heavier, foot), lower);
+  }
+  return { requestOf, planOf, changed };
 };
 if (typeof module !== "undefined") module.exports = objects;

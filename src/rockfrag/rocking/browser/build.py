@@ -86,7 +86,11 @@ MODULES: Mapping[str, Callable[[], bytes]] = {
 
 
 def _module(
-    entries: Entries, records: dict[str, np.dtype[Any]], constants: dict[str, float], *, fused: bool | None
+    entries: Entries,
+    records: dict[str, np.dtype[Any]],
+    constants: dict[str, float],
+    *,
+    fused: bool | None,
 ) -> bytes:
     """Compile and link entries, with the layout of records in a section of their own."""
     llvm.initialize_all_targets()

@@ -5,7 +5,7 @@
  *   const found = ensemble.count(body, motions, scales);               // of one motion after another
  *
  * The lanes are those of the package. Multiply-adds of `ensemble-fused.wasm` are instructions that some browsers do not
- * know and some processors do not fuse (`roundsOnce`); those of `ensemble.wasm` take five times as long.
+ * know and some processors do not fuse (`roundsOnce`); those of `ensemble.wasm` take six times as long.
  */
 async function rockfragEnsemble(bytes) {
   "use strict";
