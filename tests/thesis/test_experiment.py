@@ -332,7 +332,7 @@ def test_force_over_mass_is_checked_where_recorded(made):
     assert finding(56, right) is FOR
     assert finding(56, right.assign(moved_mass_kg=mass * 1.1)) is AGAINST
     without = result(56, tests)
-    assert without.finding is OPEN and "17% to 19%" in without.figure
+    assert without.finding is OPEN and "17 % to 19 %" in without.figure
 
 
 def test_sliding_is_compared_where_given(made):

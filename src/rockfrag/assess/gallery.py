@@ -157,7 +157,7 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
     top = joint.objects.iloc[0]
     message = f"{top['name']} adds most"
     if math.isfinite(top["contribution"]):
-        message += f", {top['contribution']:.0%} of the mean {mean}"
+        message += f", {100 * top['contribution']:.0f} % of the mean {mean}"
     caption = (
         "The objects, the one that adds most first; each change is simulated as a body of its own."
     )

@@ -311,7 +311,8 @@ def joint_lines(inventory: Inventory) -> list[str]:
     if math.isfinite(first.request.value):
         total = joint.objects["annual_loss"].sum()
         lines.append(
-            f"The mean loss a year is {total:.3g} in the unit of the values, {top['contribution']:.0%} of it of "
+            f"The mean loss a year is {total:.3g} in the unit of the values, {100 * top['contribution']:.0f} % "
+            f"of it of "
             f"{top['name']}."
         )
     best = best_change(first)

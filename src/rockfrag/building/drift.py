@@ -65,7 +65,7 @@ def _judge_elastic(building: ShearBuilding, response: BuildingResponse) -> Drift
     worst = int(np.argmax(fractions))
     fraction, drift = float(fractions[worst]), float(response.peak_drift[worst])
     begin = (
-        f"{building.name}, elastic: storey {worst + 1} drifts {drift:.2%} of its height and carries "
+        f"{building.name}, elastic: storey {worst + 1} drifts {100 * drift:.2f} % of its height and carries "
         f"{fraction:.2f} of its shear strength"
     )
     if fraction <= law.cracking:
@@ -84,20 +84,25 @@ def _judge_hysteretic(building: ShearBuilding, response: BuildingResponse) -> Dr
     drift = float(response.peak_drift[worst])
     elastic = float(building.stiffnesses[worst] * building.heights[worst] * drift)
     fraction = min(1.0, elastic / float(shear_strengths(building)[worst]))
-    begin = f"{building.name}, hysteretic: storey {worst + 1} drifts {drift:.2%} of its height"
+    begin = (
+        f"{building.name}, hysteretic: storey {worst + 1} drifts {100 * drift:.2f} % of its height"
+    )
     if fraction <= law.cracking:
         state, end = "uncracked", "below cracking"
     elif drift <= law.yield_drift:
-        state, end = "cracked", f"cracked but below yield ({law.yield_drift:.2%})"
+        state, end = "cracked", f"cracked but below yield ({100 * law.yield_drift:.2f} %)"
     elif drift <= law.shear_drift:
-        state, end = "beyond yield", f"between yield and the shear limit ({law.shear_drift:.2%})"
+        state, end = (
+            "beyond yield",
+            f"between yield and the shear limit ({100 * law.shear_drift:.2f} %)",
+        )
     elif drift <= law.rocking_drift:
         state = "beyond the shear limit"
-        end = f"between the shear and the rocking limit ({law.rocking_drift:.2%})"
+        end = f"between the shear and the rocking limit ({100 * law.rocking_drift:.2f} %)"
     else:
         state = "beyond the rocking limit"
         end = (
-            f"beyond the rocking limit ({law.rocking_drift:.2%}), where walls fall and floor motions "
+            f"beyond the rocking limit ({100 * law.rocking_drift:.2f} %), where walls fall and floor motions "
             "mean nothing"
         )
     credible = drift <= law.rocking_drift

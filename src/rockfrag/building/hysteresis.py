@@ -79,7 +79,7 @@ def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
         drift = strength[storey] / stiffnesses[storey] / heights[storey]
         raise InputError(
             f"{building.name}: storey {storey + 1} reaches its shear strength at a drift of "
-            f"{drift:.3%} elastically, beyond the yield drift {law.yield_drift:.3%}; give the "
+            f"{100 * drift:.3f} % elastically, beyond the yield drift {100 * law.yield_drift:.3f} %; give the "
             "period of the uncracked building or a lower base_shear."
         )
     return displacement, force

@@ -195,7 +195,7 @@ def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
     sure = 1.0 - 2.0 ** (1 - nothing.groups)
     note = (
         f"All {nothing.groups} {nothing.over}s overturn in one step of the amplitude or in two that touch: "
-        f"θ lies within them (with {sure:.0%} confidence), and β below {beta:.3f} is not resolved."
+        f"θ lies within them (with {100 * sure:.0f} % confidence), and β below {beta:.3f} is not resolved."
     )
     return replace(
         nothing,

@@ -147,7 +147,7 @@ def _sensitivity(site: Site) -> pd.DataFrame:
         ("objects withstand 25 % more", scaled(objects, capacity=1.25), None),
         ("objects withstand 25 % less", scaled(objects, capacity=0.75), None),
         (
-            f"boxes under two components instead of one plane (withstand {1 - IN_SPACE:.0%} less)",
+            f"boxes under two components instead of one plane (withstand {100 * (1 - IN_SPACE):.0f} % less)",
             scaled(objects, capacity=IN_SPACE),
             None,
         ),

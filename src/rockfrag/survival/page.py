@@ -86,7 +86,8 @@ def lines_of(found: Constrained) -> list[str]:
     ruled = len(found.ruled_out)
     return [
         f"Hazard    {_level_sentence(found)}",
-        f"Branches  {ruled} of {len(found.result.branches)} keep less than {RULED_OUT:.0%} of their weight; the "
+        f"Branches  {ruled} of {len(found.result.branches)} keep less than {100 * RULED_OUT:.0f} % of their "
+        f"weight; the "
         f"weights moved by {found.result.information:.2f} bit.",
         f"Evidence  {_object_sentence(objects)}",
         f"Hangs on  {_sensitivity_sentence(found)}",
@@ -103,7 +104,7 @@ def _level_sentence(found: Constrained) -> str:
     direction = "lower" if change < 0 else "higher"
     return (
         f"The mean {measure.imt} at 1e-4 a year is {row['level_after']:.3g} {measure.unit} after "
-        f"{row['level_before']:.3g} {measure.unit} before, {abs(change):.0%} {direction}."
+        f"{row['level_before']:.3g} {measure.unit} before, {100 * abs(change):.0f} % {direction}."
     )
 
 
@@ -207,7 +208,8 @@ def _branches(found: Constrained, weights: FigureSpec) -> Section:
     return Section(
         "branches",
         "Branches",
-        f"{ruled} of {len(found.result.branches)} branches keep less than {RULED_OUT:.0%} of their weight.",
+        f"{ruled} of {len(found.result.branches)} branches keep less than {100 * RULED_OUT:.0f} % of their "
+        "weight.",
         (),
         [
             weights,

@@ -60,7 +60,7 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
                 *((value, at) if across else (at, value)),
                 color=BLUE,
                 linestyle=line,
-                label=f"{probability:.0%}",
+                label=f"{100 * probability:.0f} %",
             )
             if probability == MEDIAN:
                 lower, upper = (part[side].clip(*within) for side in ("lower", "upper"))
@@ -75,7 +75,9 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
         )
         plain_log(axes, "x")
         plain_log(axes, "y")
-        bar = figure.colorbar(shown, ax=axes, format=PercentFormatter(1.0, decimals=0), pad=0.02)
+        bar = figure.colorbar(
+            shown, ax=axes, format=PercentFormatter(1.0, decimals=0, symbol=" %"), pad=0.02
+        )
         bar.set_label("Observed, rising in both measures")
         figure.legend(
             loc="outside upper center", ncols=3, title="Fitted probability of overturning"

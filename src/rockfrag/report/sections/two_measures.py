@@ -60,7 +60,8 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
         _message(found, rejected),
         [
             "The probability of overturning is Φ(b₀ + b₁ ln IM₁ + b₂ ln IM₂ + b₁₂ ln IM₁ ln IM₂). The product "
-            f"stands in it where a score test over earthquakes rejects its absence at {INTERACTION_LEVEL:.0%} "
+            f"stands in it where a score test over earthquakes rejects its absence at "
+            f"{100 * INTERACTION_LEVEL:.0f} % "
             f"and it improves the prediction of held-out earthquakes; b₁₂ is 0 otherwise. Bands are {level} "
             "intervals over earthquakes (jackknife). The p of the fit is from simulated tests in which each "
             "motion has one capacity.",

@@ -59,7 +59,7 @@ def floor_order(means: pd.DataFrame, margins: pd.DataFrame, definition: str) -> 
         axes.set_ylabel("Mean overturning amplitude,\nlone objects [g]")
         handles, labels = axes.get_legend_handles_labels()
         handles += [Patch(color="#bbbbbb"), Patch(color="#e8e8e8")]
-        labels += ["the thesis's order", f"by less than {MEANINGFUL:.0%}"]
+        labels += ["the thesis's order", f"by less than {100 * MEANINGFUL:.0f} %"]
         figure.legend(handles, labels, loc="outside upper center", ncols=2)
         return figure
 

@@ -222,7 +222,7 @@ def _least_half_sine(block: Block, linear: bool) -> float:
     Kind.PROPERTY,
     evidence="simulations with the linearised and the nonlinear equation: time to the first impact from "
     "half the critical angle, and least overturning half-sine pulse of ωp = 3 p",
-    rule=f"both change by less than {SEEN:.0%}, the least change that the experiment could show",
+    rule=f"both change by less than {100 * SEEN:.0f} %, the least change that the experiment could show",
     error_rate=NO_ERROR,
 )
 def c7(setting: Setting) -> Result:

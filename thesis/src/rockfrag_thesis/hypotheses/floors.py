@@ -33,7 +33,7 @@ TOWERS = ("T1", "T2", "T3")
     "the increase is noticeable on the ground floor only",
     "4.3, Fig. 4.6",
     Kind.DESCRIPTION,
-    rule=f"an increase on GF; increases of {SEEN:.0%} or more excluded on F3 and F5",
+    rule=f"an increase on GF; increases of {100 * SEEN:.0f} % or more excluded on F3 and F5",
     several=True,
 )
 def c34(tests: Evidence) -> Parts:

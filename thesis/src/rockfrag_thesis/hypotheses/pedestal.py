@@ -60,7 +60,7 @@ def c49(tests: Evidence) -> Parts:
     "4.3, Fig. 4.4",
     Kind.DESCRIPTION,
     evidence=PAIRS,
-    rule=f"slope of ln P/NP on H/B inside each earthquake: over the range of H/B within ±{SEEN:.0%}",
+    rule=f"slope of ln P/NP on H/B inside each earthquake: over the range of H/B within ±{100 * SEEN:.0f} %",
     error_rate=ONE_INTERVAL,
 )
 def c31(tests: Evidence) -> Result:

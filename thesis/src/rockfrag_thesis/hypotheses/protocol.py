@@ -72,7 +72,7 @@ def c56(tests: Evidence) -> Result:
         raise Undecidable("there is no pedestal, or nothing else, among the specimens")
     meaning = (
         f"on a table of {UNCOUNTED:.0f} kg a pedestal that is moved but not counted changes P/NP "
-        f"by {min(bias):.0%} to {max(bias):.0%}"
+        f"by {100 * min(bias):.0f} % to {100 * max(bias):.0f} %"
     )
     if not {"force_n", "moved_mass_kg"} <= set(clean.columns):
         return Result(
@@ -91,7 +91,7 @@ def c56(tests: Evidence) -> Result:
     error = t_estimate(errors.groupby("earthquake")["error"].mean())
     return same(
         error,
-        f"force over mass over reported {error.text()}; one step is {step:.1%}",
+        f"force over mass over reported {error.text()}; one step is {100 * step:.1f} %",
         bound=step,
         more=meaning,
     )

@@ -53,7 +53,7 @@ def _earthquake_means(tests: Evidence) -> pd.DataFrame:
     "4.2, Fig. 4.1",
     Kind.DESCRIPTION,
     evidence=AMPLITUDES,
-    rule=f"ln a falls with H/B; mean of T2 within ±{SEEN:.0%} of the middle between T1 and T3",
+    rule=f"ln a falls with H/B; mean of T2 within ±{100 * SEEN:.0f} % of the middle between T1 and T3",
     error_rate=SEVERAL_INTERVALS,
 )
 def c25(tests: Evidence) -> Result:
@@ -99,7 +99,7 @@ def c26(tests: Evidence) -> Parts:
     "4.2",
     Kind.DESCRIPTION,
     evidence=PAIRS,
-    rule=f"decrease from T1 to T3 with P over that without, earthquake by earthquake, within ±{SEEN:.0%}",
+    rule=f"decrease from T1 to T3 with P over that without, earthquake by earthquake, within ±{100 * SEEN:.0f} %",
     error_rate=ONE_INTERVAL,
 )
 def c27(tests: Evidence) -> Result:
@@ -115,7 +115,7 @@ def c27(tests: Evidence) -> Result:
     Kind.DESCRIPTION,
     evidence=AMPLITUDES,
     rule="decrease from the squattest to the most slender tower of one floor over that of another, earthquake "
-    f"by earthquake: true if any pair of floors differs, false if all are within ±{SEEN:.0%}",
+    f"by earthquake: true if any pair of floors differs, false if all are within ±{100 * SEEN:.0f} %",
     error_rate="at most 2.5 % to be true (Bonferroni over the pairs of floors) or to be false",
 )
 def c28(tests: Evidence) -> Result:
@@ -241,7 +241,7 @@ def c53(tests: Evidence) -> Parts:
     Kind.INFERENCE,
     evidence=AMPLITUDES,
     rule="the trends a on H/B (the thesis's), ln a on H/B and a on B/H through T1 and T2 prolonged to T3: "
-    f"true if all miss its mean, false if the thesis's own is within ±{SEEN:.0%}",
+    f"true if all miss its mean, false if the thesis's own is within ±{100 * SEEN:.0f} %",
     error_rate=SEVERAL_INTERVALS,
 )
 def c54(tests: Evidence) -> Result:

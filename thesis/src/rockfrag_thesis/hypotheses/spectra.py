@@ -52,7 +52,7 @@ def c14(setting: Setting) -> Result:
     return Result(
         most(falling, len(correlations)),
         f"{falling} of {len(correlations)} spectra nearly fall: ρ {np.median(correlations):.3f} (median; "
-        f"{min(correlations):.3f} to {max(correlations):.3f}); {np.mean(rises):.0%} of the steps rise",
+        f"{min(correlations):.3f} to {max(correlations):.3f}); {100 * np.mean(rises):.0f} % of the steps rise",
         float(np.median(correlations)),
         min(correlations),
         max(correlations),
@@ -114,10 +114,10 @@ def _longest_band(inside: NDArray[np.bool_]) -> tuple[float, float]:
     "there are period ranges where the displacement hardly depends on damping",
     "2.3",
     Kind.PROPERTY,
-    evidence=f"Sd at {DAMPINGS[0]:.0%} and {DAMPINGS[1]:.0%} damping from {PERIODS[0]:g} to "
+    evidence=f"Sd at {100 * DAMPINGS[0]:.0f} % and {100 * DAMPINGS[1]:.0f} % damping from {PERIODS[0]:g} to "
     f"{PERIODS[-1]:g} s",
     rule=f"true if one motion has a range of a third of an octave or more in which the two are within "
-    f"{SEEN:.0%}; that others have none does not make it false",
+    f"{100 * SEEN:.0f} %; that others have none does not make it false",
     error_rate=NO_ERROR,
 )
 def c16(setting: Setting) -> Result:
@@ -144,8 +144,8 @@ def c16(setting: Setting) -> Result:
     "the rocking spectrum is very sensitive to slenderness",
     "2.3",
     Kind.PROPERTY,
-    evidence=f"|change of ln max |θ|| when slenderness changes by ±{CHANGE:.0%}, median over the blocks of "
-    "each motion; beside it that of Sd when damping changes as much",
+    evidence=f"|change of ln max |θ|| when slenderness changes by ±{100 * CHANGE:.0f} %, median over the blocks "
+    "of each motion; beside it that of Sd when damping changes as much",
     rule="the rotation changes by more than the slenderness does for most motions",
     error_rate=NO_ERROR,
 )
@@ -169,7 +169,8 @@ def c17(setting: Setting) -> Result:
     return Result(
         most(more, ratio.size),
         f"motions: {more} of {ratio.size}; rotation changes {np.median(ratio):.1f} times as much as "
-        f"slenderness (median; {ratio.min():.1f} to {ratio.max():.1f}), {np.mean(flips):.1%} of the outcomes "
+        f"slenderness (median; {ratio.min():.1f} to {ratio.max():.1f}), {100 * np.mean(flips):.1f} % of the "
+        f"outcomes "
         f"flip; Sd changes {np.median(np.abs(np.log(damping))) / CHANGE:.2f} times as much as damping",
         float(np.median(ratio)),
         float(ratio.min()),
@@ -210,7 +211,7 @@ def exchanges(values: Floats, other: Floats) -> tuple[int, int]:
     "2.3",
     Kind.PROPERTY,
     evidence="pairs of motions: which spectrum exceeds the other over most abscissas, Sd at "
-    f"{DAMPINGS[0]:.0%} and {DAMPINGS[1]:.0%} damping, max |θ|/θc at the specimens' slendernesses",
+    f"{100 * DAMPINGS[0]:.0f} % and {100 * DAMPINGS[1]:.0f} % damping, max |θ|/θc at the specimens' slendernesses",
     rule="true if some pairs change their order between slendernesses, and a larger fraction of them than of "
     "oscillators between dampings; false if a smaller fraction does; else open",
     error_rate=NO_ERROR,
