@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from rockfrag.engines.planar.compile import entry_kernel
+from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.planar.impact import strike
 from rockfrag.engines.planar.modes import kinetic_energy
 from rockfrag.engines.planar.records import posed, system_record, working_memory

@@ -7,7 +7,7 @@ fewer closed ends is taken.  Where neither ends, all modes are tried, the neighb
 
 import math
 
-from rockfrag.engines.planar.compile import kernel
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.planar.solve import bias, eliminate, end_of, fill_row
 
 CONSISTENT = 2e-13

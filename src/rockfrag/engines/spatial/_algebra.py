@@ -18,6 +18,12 @@ def cross(a, b):
 
 
 @kernel
+def norm(x, y):
+    """Length of a vector of two that is neither huge nor tiny."""
+    return math.sqrt(x * x + y * y)
+
+
+@kernel
 def plus(a, b):
     """Sum."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])

@@ -5,12 +5,10 @@ velocity of C (7:10, world); the angular velocity (10:13, body); the work done b
 the energy lost by friction (14).  Everything is for a unit of mass: energies in J/kg, forces in N/kg.
 """
 
-import math
-
 import numpy as np
 
 from rockfrag.engines.kernels.jit import kernel
-from rockfrag.engines.spatial._algebra import cross, dot, minus, plus, times, to_world
+from rockfrag.engines.spatial._algebra import cross, dot, minus, norm, plus, times, to_world
 
 SIZE = 15
 WORK, FRICTION = 13, 14
@@ -27,7 +25,8 @@ BODY = np.dtype(
         (
             "furthest",
             np.float64,
-        ),  # tilt at which the centre of mass is over the furthest point [rad]
+        ),  # distance in the base of its furthest point from below the centre of mass [m]
+        ("nearest", np.float64),  # distance of the nearest edge of its base from there [m]
         ("static", np.float64),  # coefficients of friction [-]
         ("kinetic", np.float64),
         (
@@ -59,7 +58,7 @@ def rim_contact(body):
 @kernel
 def rim_direction(body, up):
     """Direction in the base from its centre to the lowest point of the rim, and the sine of the tilt."""
-    sine = math.hypot(up[0], up[1])
+    sine = norm(up[0], up[1])
     if sine < 1e-300:
         return (1.0, 0.0, 0.0), 0.0
     return (-up[0] / sine, -up[1] / sine, 0.0), sine

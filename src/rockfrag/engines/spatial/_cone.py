@@ -11,8 +11,9 @@ import math
 
 import numpy as np
 
+from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.jit import kernel
-from rockfrag.engines.spatial._algebra import factor, solve_symmetric, substitute
+from rockfrag.engines.spatial._algebra import factor, norm, solve_symmetric, substitute
 from rockfrag.engines.spatial._forces import MOST
 
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
@@ -25,6 +26,9 @@ CLOSE_ENOUGH = 1e-13
 """Residual, relative to what is to be stopped, at which Newton's method ends [-]."""
 
 NEWTON_STEPS = 60
+
+HALVINGS = 12
+"""Times that a step of Newton's method is halved at most."""
 
 MOST_STUCK = 4
 """Steps of Newton's method that may leave the residual as large as it was; then there is no solution nearby."""
@@ -149,108 +153,131 @@ def cones_hold(s, n, mask, small):
             p = s.impulse[3 * i + 2]
             if p < -small:
                 return False
-            shear = math.hypot(s.impulse[3 * i], s.impulse[3 * i + 1])
+            shear = norm(s.impulse[3 * i], s.impulse[3 * i + 1])
             if not s.given[i] and shear > s.friction[i] * p * (1 + 1e-12) + small:
                 return False
     return True
 
 
 @kernel
-def residuals(s, n, mask, x, pace, out):
-    """Residuals of the projections; return the largest that counts as a velocity."""
-    product(s, n, x, s.after)
-    worst = 0.0
+def members(s, n, mask):
+    """Fill s.member with the contacts of a set; return how many there are."""
+    size = 0
     for i in range(n):
+        if in_set(mask, i):
+            s.member[size] = i
+            size += 1
+    return size
+
+
+@kernel
+def residuals(s, size, x, pace, out):
+    """Residuals of the projections of the set's contacts; return the largest that counts as a velocity."""
+    worst = 0.0
+    for m in range(size):
+        a = 3 * s.member[m]
+        for k in range(a, a + 3):
+            value = s.free[k]
+            for other in range(size):
+                j = 3 * s.member[other]
+                for c in range(j, j + 3):
+                    value += s.delassus[k, c] * x[c]
+            s.after[k] = value
+    for m in range(size):
+        i = s.member[m]
         a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
-        if not in_set(mask, i):
-            out[a], out[b], out[c] = x[a], x[b], x[c]
-            continue
-        out[c] = s.after[c] * pace
+        out[3 * m + 2] = s.after[c] * pace
         if s.given[i]:
-            out[a] = x[a] + s.friction[i] * x[c] * s.way[i, 0]
-            out[b] = x[b] + s.friction[i] * x[c] * s.way[i, 1]
+            out[3 * m] = x[a] + s.friction[i] * x[c] * s.way[i, 0]
+            out[3 * m + 1] = x[b] + s.friction[i] * x[c] * s.way[i, 1]
         else:
             u, v = x[a] - pace * s.after[a], x[b] - pace * s.after[b]
             limit = s.friction[i] * max(x[c], 0.0)
-            size = math.hypot(u, v)
-            factor_ = 1.0 if size <= limit else limit / size
-            out[a], out[b] = x[a] - factor_ * u, x[b] - factor_ * v
-        for k in (a, b, c):
+            length = norm(u, v)
+            factor_ = 1.0 if length <= limit else limit / length
+            out[3 * m], out[3 * m + 1] = x[a] - factor_ * u, x[b] - factor_ * v
+        for k in range(3 * m, 3 * m + 3):
             worst = max(worst, abs(out[k]))
     return worst / pace
 
 
 @kernel
-def slopes_in_plane(s, i, x, pace, n):
-    """Fill in the rows of the projection's derivative for the shear of a contact that may slide."""
+def slopes_in_plane(s, m, x, pace, size):
+    """Fill in the rows of the projection's derivative for the shear of a set's contact that may slide."""
+    i = s.member[m]
     a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
     u, v = x[a] - pace * s.after[a], x[b] - pace * s.after[b]
     limit = s.friction[i] * max(x[c], 0.0)
-    size = math.hypot(u, v)
-    if size <= limit:
-        for j in range(3 * n):
-            s.matrix[a, j] = pace * s.delassus[a, j]
-            s.matrix[b, j] = pace * s.delassus[b, j]
-        return
-    e, f = u / size, v / size
-    ratio = limit / size
-    for j in range(3 * n):
-        du = -pace * s.delassus[a, j] + (1.0 if j == a else 0.0)
-        dv = -pace * s.delassus[b, j] + (1.0 if j == b else 0.0)
-        along = e * du + f * dv
-        grow = s.friction[i] if j == c and x[c] > 0 else 0.0
-        s.matrix[a, j] = (1.0 if j == a else 0.0) - ratio * (du - along * e) - grow * e
-        s.matrix[b, j] = (1.0 if j == b else 0.0) - ratio * (dv - along * f) - grow * f
+    length = norm(u, v)
+    sticks = length <= limit
+    e, f, ratio = 0.0, 0.0, 1.0
+    if not sticks:
+        e, f, ratio = u / length, v / length, limit / length
+    for other in range(size):
+        for k in range(3):
+            j, at = 3 * s.member[other] + k, 3 * other + k
+            if sticks:
+                s.matrix[3 * m, at] = pace * s.delassus[a, j]
+                s.matrix[3 * m + 1, at] = pace * s.delassus[b, j]
+                continue
+            du = -pace * s.delassus[a, j] + (1.0 if j == a else 0.0)
+            dv = -pace * s.delassus[b, j] + (1.0 if j == b else 0.0)
+            along = e * du + f * dv
+            grow = s.friction[i] if j == c and x[c] > 0 else 0.0
+            s.matrix[3 * m, at] = (1.0 if j == a else 0.0) - ratio * (du - along * e) - grow * e
+            s.matrix[3 * m + 1, at] = (1.0 if j == b else 0.0) - ratio * (dv - along * f) - grow * f
 
 
 @kernel
-def fill_slopes(s, n, mask, x, pace):
+def fill_slopes(s, size, x, pace):
     """Fill in the derivative of the residuals."""
-    for i in range(n):
-        a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
-        for j in range(3 * n):
-            for k in (a, b, c):
-                s.matrix[k, j] = 1.0 if j == k and not in_set(mask, i) else 0.0
-        if not in_set(mask, i):
-            continue
-        for j in range(3 * n):
-            s.matrix[c, j] = pace * s.delassus[c, j]
+    for m in range(size):
+        i = s.member[m]
+        row = 3 * m
+        for other in range(size):
+            for k in range(3):
+                at = 3 * other + k
+                s.matrix[row, at] = s.matrix[row + 1, at] = 0.0
+                s.matrix[row + 2, at] = pace * s.delassus[3 * i + 2, 3 * s.member[other] + k]
         if s.given[i]:
             for k in range(2):
-                s.matrix[a + k, a + k] = 1.0
-                s.matrix[a + k, c] = s.friction[i] * s.way[i, k]
+                s.matrix[row + k, row + k] = 1.0
+                s.matrix[row + k, row + 2] = s.friction[i] * s.way[i, k]
         else:
-            slopes_in_plane(s, i, x, pace, n)
+            slopes_in_plane(s, m, x, pace, size)
         # redundant directions: the step stays where it is
-        for k in (a, b, c):
-            s.matrix[k, k] += 1e-11
+        for k in range(3):
+            s.matrix[row + k, row + k] += 1e-11
 
 
 @kernel
 def newton(s, n, mask, pace, small):
-    """Improve s.impulse until the residuals vanish; return whether they do."""
-    x = s.impulse
-    worst = residuals(s, n, mask, x, pace, s.right)
+    """Improve the impulses of a set until the residuals vanish; return whether they do."""
+    x, size = s.impulse, members(s, n, mask)
+    worst = residuals(s, size, x, pace, s.right)
     stuck = 0
     for _ in range(NEWTON_STEPS):
         if worst <= small:
             return True
-        fill_slopes(s, n, mask, x, pace)
-        for i in range(3 * n):
+        fill_slopes(s, size, x, pace)
+        for i in range(3 * size):
             s.vector[i] = -s.right[i]
-        if not factor(s.matrix, s.order, 3 * n):
+        if not factor(s.matrix, s.order, 3 * size):
             return False
-        substitute(s.matrix, s.order, 3 * n, s.vector)
+        substitute(s.matrix, s.order, 3 * size, s.vector)
         step = 1.0
-        for _ in range(12):
-            for i in range(3 * n):
-                s.trial[i] = x[i] + step * s.vector[i]
-            least = residuals(s, n, mask, s.trial, pace, s.right)
+        for _ in range(HALVINGS):
+            for m in range(size):
+                for k in range(3):
+                    j = 3 * s.member[m] + k
+                    s.trial[j] = x[j] + step * s.vector[3 * m + k]
+            least = residuals(s, size, s.trial, pace, s.right)
             if least < worst * (1 - 0.1 * step) or least <= small:
                 break
             step *= 0.5
-        for i in range(3 * n):
-            x[i] = s.trial[i]
+        for m in range(size):
+            for j in range(3 * s.member[m], 3 * s.member[m] + 3):
+                x[j] = s.trial[j]
         stuck += least >= worst
         if stuck > MOST_STUCK:
             return False
@@ -269,12 +296,10 @@ def start_sliding(s, n, mask, turned):
             continue
         normal = max(-s.free[a + 2], 0.0) / s.delassus[a + 2, a + 2]
         u, v = s.free[a], s.free[a + 1]
-        size = max(math.hypot(u, v), 1e-300)
+        size = max(norm(u, v), 1e-300)
         e, f = u / size, v / size
-        e, f = (
-            e * math.cos(turned) - f * math.sin(turned),
-            e * math.sin(turned) + f * math.cos(turned),
-        )
+        sine, cosine = sin_cos(turned)
+        e, f = e * cosine - f * sine, e * sine + f * cosine
         if s.given[i]:
             e, f = s.way[i, 0], s.way[i, 1]
         s.impulse[a] = -s.friction[i] * normal * e
@@ -303,7 +328,7 @@ def clip_to_cones(s, n, mask):
         if in_set(mask, i) and not s.given[i]:
             a = 3 * i
             limit = s.friction[i] * max(s.impulse[a + 2], 0.0)
-            size = math.hypot(s.impulse[a], s.impulse[a + 1])
+            size = norm(s.impulse[a], s.impulse[a + 1])
             if size > limit:
                 s.impulse[a] *= limit / size
                 s.impulse[a + 1] *= limit / size
@@ -430,7 +455,7 @@ def direction_between(s, i, p, q, u, v, before, after):
     for _ in range(60):
         part = (low * after - high * before) / (after - before)
         e, f = p + part * (u - p), q + part * (v - q)
-        size = math.hypot(e, f)
+        size = norm(e, f)
         e, f = e / size, f / size
         value = off_direction(s, i, e, f)[0]
         if (value > 0) == (before > 0):

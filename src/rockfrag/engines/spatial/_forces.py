@@ -10,6 +10,7 @@ from rockfrag.engines.spatial._algebra import (
     dot,
     factor,
     minus,
+    norm,
     plus,
     rotation,
     scaled,
@@ -75,6 +76,7 @@ CASE = np.dtype(
         ("best", np.float64, (3 * MOST,)),
         ("trial", np.float64, (3 * MOST,)),
         ("order", np.int64, (3 * MOST,)),
+        ("member", np.int64, (MOST,)),  # contacts of a set
         # a step: rates at its stages, the state at its end, slip at its beginning
         ("slopes", np.float64, (STAGES, SIZE)),
         ("new", np.float64, (SIZE,)),
@@ -155,7 +157,7 @@ def fill_accelerations(body, y, rows, weight, which, n, out):
 @kernel
 def slip_direction(s, i, u, v):
     """Direction of slip of contact i whose velocity in the plan is (u, v)."""
-    speed = math.hypot(u, v)
+    speed = norm(u, v)
     if speed > SLIP_FLOOR:
         return u / speed, v / speed
     return s.direction[i, 0], s.direction[i, 1]
@@ -196,7 +198,7 @@ def slider_force(body, y, rows, omega, spin, weight, s):
 
 @kernel
 def hinge_acceleration(body, rows, omega, weight, i, j):
-    """Angular acceleration about the edge from point i to j, force at i and at j along the edge shared evenly."""
+    """Angular acceleration about the edge from point i to j, force at both ends, and the edge's direction."""
     p, q = arm(body, rows[2], i), arm(body, rows[2], j)
     edge = minus(q, p)
     length = math.sqrt(dot(edge, edge))
@@ -206,10 +208,16 @@ def hinge_acceleration(body, rows, omega, weight, i, j):
     gyroscopic = cross(omega, times(body.inertia, omega))
     moment = minus(scaled(-1.0, gyroscopic), cross(p, load))
     alpha = scaled(dot(e, moment) / dot(e, times(body.about[i], e)), e)
-    whole = scaled(-1.0, plus(cross(alpha, p), load))
+    return alpha, scaled(-1.0, plus(cross(alpha, p), load)), e
+
+
+@kernel
+def far_force(body, rows, omega, alpha, whole, e, i, j):
+    """Force at the far end j of the edge from point i but for its part along the edge, by the moment about i."""
+    p, q = arm(body, rows[2], i), arm(body, rows[2], j)
+    gyroscopic = cross(omega, times(body.inertia, omega))
     left = minus(plus(times(body.inertia, alpha), gyroscopic), cross(p, whole))
-    far = scaled(1.0 / length, cross(left, e))
-    return alpha, whole, far, e
+    return scaled(1.0 / dot(minus(q, p), e), cross(left, e))
 
 
 @kernel
@@ -302,8 +310,8 @@ def largest_compliance(s, n):
 
 
 @kernel
-def rates(body, tau, y, dy, s):
-    """Fill in dy/dt, and the contact forces in world components.
+def rates(body, tau, y, dy, s, share=True):
+    """Fill in dy/dt, and the contact forces in world components; those of a hinge's ends only if they are shared.
 
     ``s.field`` holds the effective gravity at the beginning of the interval, its rate, and the gravity of a ground
     at rest; ``tau`` counts from there.
@@ -325,11 +333,12 @@ def rates(body, tau, y, dy, s):
             s.lam[0, k] = pushed[k]
         acceleration = plus(pull, pushed)
     elif kind == HINGE:
-        alpha, whole, far, e = hinge_acceleration(
-            body, rows, omega, weight, s.closed[0], s.closed[1]
-        )
+        i, j = s.closed[0], s.closed[1]
+        alpha, whole, e = hinge_acceleration(body, rows, omega, weight, i, j)
         pushed = to_world(rows, whole)
-        fraction_along(pushed, to_world(rows, far), to_world(rows, e), body.static, s)
+        if share:
+            far = far_force(body, rows, omega, alpha, whole, e, i, j)
+            fraction_along(pushed, to_world(rows, far), to_world(rows, e), body.static, s)
         acceleration = plus(pull, pushed)
     elif kind == SLIDER:
         spin = free_spin(body, omega)

@@ -2,9 +2,11 @@
 
 import math
 
+from rockfrag.elementary import atan2
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import (
     dot,
+    norm,
     plus,
     rotation,
     scaled,
@@ -68,7 +70,7 @@ def touching(body, y, rows, s):
     """Fill in s.which with the points that touch, at most MOST, the fastest to approach; return their number."""
     n = 0
     speed = s.vector
-    if body.rim > 0 and math.hypot(rows[2][0], rows[2][1]) < 1e-9:
+    if body.rim > 0 and norm(rows[2][0], rows[2][1]) < 1e-9:
         return stand_on_feet(body, y, rows, s)
     for i in range(first_candidate(body), last_candidate(body)):
         if gap(body, y, rows[2], i) > TOUCH:
@@ -92,11 +94,12 @@ def stand_on_feet(body, y, rows, s):
     """Fill in s.which with four points of a flat rim, the first where the body would tip; return their number."""
     p = (body.centre[0], body.centre[1], -body.height)
     u = point_velocity(y, rows, p)
-    if math.hypot(u[0], u[1]) < AT_REST:
+    if norm(u[0], u[1]) < AT_REST:
         u = (s.field[0], s.field[1], 0.0)
     front = to_body(rows, (u[0], u[1], 0.0))
     each = body.count // MOST
-    first = round(math.atan2(front[1], front[0]) / (2 * math.pi) * body.count) % body.count
+    part = atan2(front[1], front[0]) / (2 * math.pi)
+    first = math.floor(part * body.count + 0.5) % body.count
     n = 0
     for k in range(MOST):
         i = (first + k * each) % body.count
@@ -113,7 +116,7 @@ def fill_edges(body, y, rows, which, n, s):
         p = position_of_base(y, rows, arm(body, rows[2], which[i]))
         for j in range(n):
             q = position_of_base(y, rows, arm(body, rows[2], which[j]))
-            length = max(math.hypot(q[0] - p[0], q[1] - p[1]), 1e-300)
+            length = max(norm(q[0] - p[0], q[1] - p[1]), 1e-300)
             s.edge[i, j, 0] = (q[0] - p[0]) / length
             s.edge[i, j, 1] = (q[1] - p[1]) / length
 
@@ -182,7 +185,7 @@ def keep_slow_contacts(body, y, rows, n, found, s):
         if in_set(found, i) or leaving < s.close:
             slow = slow or not in_set(found, i)
             s.closed[count] = s.which[i]
-            slip = math.hypot(s.after[3 * i], s.after[3 * i + 1])
+            slip = norm(s.after[3 * i], s.after[3 * i + 1])
             s.slides[count] = SLIDES if slip > max(s.close, AT_REST) else STICKS
             count += 1
     s.count, s.rests = count, 0
@@ -212,7 +215,7 @@ def rest_margin(body, y, rows, pull):
 
     Positive: it rests.  In units of acceleration.
     """
-    level = math.hypot(pull[0], pull[1])
+    level = norm(pull[0], pull[1])
     margin = -body.static * pull[2] - level
     if body.rim > 0:
         return min(margin, topple_margin(body, rows, pull))
@@ -237,30 +240,30 @@ def topple_margin(body, rows, pull):
     centre = to_world(rows, (body.centre[0], body.centre[1], 0.0))
     x = body.height * pull[0] + pull[2] * centre[0]
     y = body.height * pull[1] + pull[2] * centre[1]
-    return (-body.rim * pull[2] - math.hypot(x, y)) / body.height
+    return (-body.rim * pull[2] - norm(x, y)) / body.height
 
 
 @kernel
 def carried_flat(body, y, rows, pull):
     """Whether a round body that is flat, and slides or is about to, stays on its face."""
-    if body.rim == 0.0 or math.hypot(rows[2][0], rows[2][1]) > 1e-9 or abs(y[9]) > LEAVES:
+    if body.rim == 0.0 or norm(rows[2][0], rows[2][1]) > 1e-9 or abs(y[9]) > LEAVES:
         return False
-    if math.hypot(y[10], y[11]) > LEAVES / body.rim:
+    if norm(y[10], y[11]) > LEAVES / body.rim:
         return False
-    off = math.hypot(body.centre[0], body.centre[1])
+    off = norm(body.centre[0], body.centre[1])
     if body.kinetic * body.height + off < body.rim:
         return True
-    return math.hypot(y[7], y[8]) < AT_REST and topple_margin(body, rows, pull) >= 0
+    return norm(y[7], y[8]) < AT_REST and topple_margin(body, rows, pull) >= 0
 
 
 @kernel
 def slide_flat(body, y, rows, pull, s):
     """Let a round body slide on four points of its face, those that do not slip yet the way it is pulled."""
-    level = max(math.hypot(pull[0], pull[1]), 1e-300)
+    level = max(norm(pull[0], pull[1]), 1e-300)
     n = touching(body, y, rows, s)
     for i in range(n):
         u = point_velocity(y, rows, arm(body, rows[2], s.which[i]))
-        speed = math.hypot(u[0], u[1])
+        speed = norm(u[0], u[1])
         s.closed[i], s.slides[i] = s.which[i], SLIDES
         if speed > AT_REST:
             s.direction[i, 0], s.direction[i, 1] = u[0] / speed, u[1] / speed
@@ -282,7 +285,7 @@ def edge_normal(body, y, rows, i, j):
     """Outward normal of an edge in the plan, and its distance from the centre of mass."""
     p = position_of_base(y, rows, arm(body, rows[2], i))
     q = position_of_base(y, rows, arm(body, rows[2], j))
-    length = math.hypot(q[0] - p[0], q[1] - p[1])
+    length = norm(q[0] - p[0], q[1] - p[1])
     normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
     return normal, normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
 
@@ -328,20 +331,18 @@ def choose_mode(body, tau, y, s):
         come_to_rest(body, y, s)
         return True
     if carried_flat(body, y, rows, pull):
-        slip = math.hypot(y[7], y[8]) + body.rim * abs(y[12])
+        slip = norm(y[7], y[8]) + body.rim * abs(y[12])
         if slip < 2 * AT_REST and rest_margin(body, y, rows, pull) >= 0:
             come_to_rest(body, y, s)
         else:
             slide_flat(body, y, rows, pull, s)
         return True
-    found, ways, n = -1, 0, 0
-    for slow in (AT_REST, SLOW_SLIP):
-        if found < 0:
-            n = pick_closed(body, y, rows, slow, s)
-            fill_delassus(body, rows, s.which, n, s.delassus)
-            fill_accelerations(body, y, rows, to_body(rows, pull), s.which, n, s.free)
-            fill_edges(body, y, rows, s.which, n, s)
-            found, ways = solve_cones(s, n, 0)
+    n, slipping = pick_closed(body, y, rows, AT_REST, s)
+    found, ways = solve_forces(body, y, rows, pull, n, s)
+    if found < 0:
+        n, fewer = pick_closed(body, y, rows, SLOW_SLIP, s)
+        if fewer < slipping:
+            found, ways = solve_forces(body, y, rows, pull, n, s)
     s.counters[CHANGES] += 1
     s.counters[AMBIGUOUS] += ways > 1
     if found < 0:
@@ -357,21 +358,31 @@ def choose_mode(body, tau, y, s):
 
 @kernel
 def pick_closed(body, y, rows, slow, s):
-    """Fill s.which with points that touch and do not leave, and how each slips; return how many there are."""
+    """Fill s.which with points that touch and do not leave, and how each slips; count both."""
     n = touching(body, y, rows, s)
-    kept = 0
+    kept, slipping = 0, 0
     for i in range(n):
         u = point_velocity(y, rows, arm(body, rows[2], s.which[i]))
         if u[2] > LEAVES:
             continue
         s.which[kept] = s.which[i]
-        speed = math.hypot(u[0], u[1])
+        speed = norm(u[0], u[1])
         s.given[kept] = speed > slow
+        slipping += s.given[kept]
         if s.given[kept]:
             s.way[kept, 0], s.way[kept, 1] = u[0] / speed, u[1] / speed
         s.friction[kept] = body.kinetic if s.given[kept] else body.static
         kept += 1
-    return kept
+    return kept, slipping
+
+
+@kernel
+def solve_forces(body, y, rows, pull, n, s):
+    """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do."""
+    fill_delassus(body, rows, s.which, n, s.delassus)
+    fill_accelerations(body, y, rows, to_body(rows, pull), s.which, n, s.free)
+    fill_edges(body, y, rows, s.which, n, s)
+    return solve_cones(s, n, 0)
 
 
 @kernel
@@ -389,9 +400,9 @@ def write_mode(body, y, rows, n, found, s):
             s.slides[count] = SLIDES
             s.direction[count, 0], s.direction[count, 1] = s.way[i, 0], s.way[i, 1]
         else:
-            shear = math.hypot(s.impulse[3 * i], s.impulse[3 * i + 1])
+            shear = norm(s.impulse[3 * i], s.impulse[3 * i + 1])
             limit = s.friction[i] * s.impulse[3 * i + 2]
-            size = math.hypot(u, v)
+            size = norm(u, v)
             if size > 1e-9 and shear > limit * (1 - 1e-9):
                 s.slides[count] = SLIDES
                 s.direction[count, 0], s.direction[count, 1] = u / size, v / size
@@ -410,7 +421,7 @@ def insist(body, what, y, s):
     """
     worst, value = 0, 1e300
     for i in range(s.count):
-        shear = math.hypot(s.lam[i, 0], s.lam[i, 1])
+        shear = norm(s.lam[i, 0], s.lam[i, 1])
         here = s.lam[i, 2] if what == OPENS else body.static * s.lam[i, 2] - shear
         if here < value and (what == OPENS or s.slides[i] == STICKS):
             worst, value = i, here
@@ -421,7 +432,7 @@ def insist(body, what, y, s):
                 s.direction[i, k], s.anchor[i, k] = s.direction[i + 1, k], s.anchor[i + 1, k]
         s.count -= 1
     else:
-        shear = math.hypot(s.lam[worst, 0], s.lam[worst, 1])
+        shear = norm(s.lam[worst, 0], s.lam[worst, 1])
         s.slides[worst] = SLIDES
         for k in range(2):
             s.direction[worst, k] = -s.lam[worst, k] / shear

@@ -1,9 +1,7 @@
 """One step of Dormand and Prince's pair of order 5 (1980), and what must not become negative in it."""
 
-import math
-
 from rockfrag.engines.kernels.jit import kernel
-from rockfrag.engines.spatial._algebra import normalise, rotation
+from rockfrag.engines.spatial._algebra import norm, normalise, rotation
 from rockfrag.engines.spatial._body import (
     SIZE,
     arm,
@@ -42,25 +40,25 @@ def attempt(body, tau, h, y, s):
     k, new = s.slopes, s.new
     for i in range(SIZE):
         new[i] = y[i] + h * (0.2 * k[0, i])
-    rates(body, tau + 0.2 * h, new, k[1], s)
+    rates(body, tau + 0.2 * h, new, k[1], s, False)
     for i in range(SIZE):
         new[i] = y[i] + h * (3 / 40 * k[0, i] + 9 / 40 * k[1, i])
-    rates(body, tau + 0.3 * h, new, k[2], s)
+    rates(body, tau + 0.3 * h, new, k[2], s, False)
     for i in range(SIZE):
         new[i] = y[i] + h * (44 / 45 * k[0, i] - 56 / 15 * k[1, i] + 32 / 9 * k[2, i])
-    rates(body, tau + 0.8 * h, new, k[3], s)
+    rates(body, tau + 0.8 * h, new, k[3], s, False)
     for i in range(SIZE):
         new[i] = y[i] + h * (
             19372 / 6561 * k[0, i] - 25360 / 2187 * k[1, i] + 64448 / 6561 * k[2, i]
             - 212 / 729 * k[3, i]
         )  # fmt: skip
-    rates(body, tau + 8 / 9 * h, new, k[4], s)
+    rates(body, tau + 8 / 9 * h, new, k[4], s, False)
     for i in range(SIZE):
         new[i] = y[i] + h * (
             9017 / 3168 * k[0, i] - 355 / 33 * k[1, i] + 46732 / 5247 * k[2, i]
             + 49 / 176 * k[3, i] - 5103 / 18656 * k[4, i]
         )  # fmt: skip
-    rates(body, tau + h, new, k[5], s)
+    rates(body, tau + h, new, k[5], s, False)
     for i in range(SIZE):
         new[i] = y[i] + h * (
             35 / 384 * k[0, i] + 500 / 1113 * k[2, i] + 125 / 192 * k[3, i]
@@ -92,7 +90,7 @@ def attitude_weight(body, y):
     if body.rim == 0.0:
         return 1.0
     up = rotation(y)[2]
-    return min(1.0, 1e3 * math.hypot(up[0], up[1]) + 1e-4)
+    return min(1.0, 1e3 * norm(up[0], up[1]) + 1e-4)
 
 
 @kernel
@@ -119,7 +117,7 @@ def begin_slips(body, y, s):
         s.armed[i] = 0
         if s.slides[i] == SLIDES:
             u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
-            speed = math.hypot(u[0], u[1])
+            speed = norm(u[0], u[1])
             s.slip[i, 0], s.slip[i, 1] = s.direction[i, 0], s.direction[i, 1]
             if speed > 2 * AT_REST:
                 s.slip[i, 0], s.slip[i, 1] = u[0] / speed, u[1] / speed
@@ -148,7 +146,7 @@ def pressure_centre(body, s):
 def pressure_margin(body, s):
     """Distance of the centre of pressure from the edge of a round face; a negative one means that it tips [m]."""
     x, y = pressure_centre(body, s)
-    return body.rim - math.hypot(x, y) + 1e-12
+    return body.rim - norm(x, y) + 1e-12
 
 
 @kernel
@@ -157,7 +155,7 @@ def face_slip(body, y, rows, s):
     fastest, forwards, armed = 0.0, -1.0, 0
     for i in range(s.count):
         u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
-        fastest = max(fastest, math.hypot(u[0], u[1]))
+        fastest = max(fastest, norm(u[0], u[1]))
         forwards = max(forwards, slip_along(body, y, rows, i, s))
         armed = max(armed, s.armed[i])
     return fastest - AT_REST if armed else forwards + BACKWARD
@@ -177,7 +175,7 @@ def margin(body, y, s):
                 least, what = value, LANDS
     small = LEAST_FORCE * s.field[6]
     # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
-    passes = body.rim > 0 and math.hypot(rows[2][0], rows[2][1]) < NEAR_FLAT
+    passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
     on_face = body.rim > 0 and s.count >= 3
     if on_face:
         least, what = pressure_margin(body, s), OPENS
@@ -193,7 +191,7 @@ def margin(body, y, s):
             if value < least:
                 least, what = value, SLIP_ENDS
         elif not (s.jammed or passes):
-            value = body.static * s.lam[i, 2] - math.hypot(s.lam[i, 0], s.lam[i, 1]) + small
+            value = body.static * s.lam[i, 2] - norm(s.lam[i, 0], s.lam[i, 1]) + small
             if value < least:
                 least, what = value, LEAVES_CONE
     return least, what

@@ -145,7 +145,7 @@ def _filled(
     body["count"], body["height"] = count, height
     body["static"], body["kinetic"] = friction
     body["barrier"] = g * (math.hypot(reach[0], height) - height)
-    body["furthest"] = math.atan2(reach[1], height)
+    body["nearest"], body["furthest"] = reach
     body["inertia"], body["inverse"] = inertia, np.linalg.inv(inertia)
     body["points"][0, :count], body["about"][0, :count] = points, about
     body["about_inverse"][0, :count] = np.linalg.inv(about)
