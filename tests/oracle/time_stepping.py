@@ -3,8 +3,9 @@
 It knows no modes and no contact events.  In each step of constant length the velocities are those after impulses
 that keep every corner from sinking through the face under it and obey Coulomb's law, found by Gauss-Seidel
 iteration over the contacts; where Newton's method on which of them press, stick and slide comes to an end, the
-iteration starts from what it has found, and only has to confirm it.  Candidates are each corner of a base over the face below, and each edge of a face
-under the base above, as long as one lies over the other.  The method is of first order in the step.
+iteration starts from what it has found, and only has to confirm it.  Candidates are each corner of a base over the
+face below, and each edge of a face under the base above, as long as one lies over the other.  The method is of first
+order in the step.
 """
 
 import math
@@ -68,20 +69,20 @@ def _candidates(table, q, points, axes, gaps, below):
 
 @numba.njit(cache=True)
 def _response(jn, jt, inverse, below, count, w):
-    """Fill what a unit of each impulse (normal 2 c, tangent 2 c + 1) changes along each; a little is left to give."""
+    """Fill what a unit of each impulse (normal 2 c, tangent 2 c + 1) changes along each, and a little more."""
     for c in range(count):
         for e in range(c + 1):
             for i in range(2):
-                one = jn[c] if i == 0 else jt[c]
+                above = jn[c] if i == 0 else jt[c]
                 for j in range(2):
-                    two = jn[e] if j == 0 else jt[e]
+                    other = jn[e] if j == 0 else jt[e]
                     total = 0.0
                     if below[e] == below[c]:
                         for d in range(3 if below[c] == 0 else 0, 6):
-                            total += one[d] * two[d] * inverse[3 * below[c] - 3 + d]
+                            total += above[d] * other[d] * inverse[3 * below[c] - 3 + d]
                     elif below[e] == below[c] - 1:
                         for d in range(3):
-                            total += one[d] * two[d + 3] * inverse[3 * below[c] - 3 + d]
+                            total += above[d] * other[d + 3] * inverse[3 * below[c] - 3 + d]
                     w[2 * c + i, 2 * e + j] = w[2 * e + j, 2 * c + i] = total
         w[2 * c, 2 * c] *= 1.0 + 1e-9
         w[2 * c + 1, 2 * c + 1] *= 1.0 + 1e-9
