@@ -4,8 +4,8 @@ It knows no modes and no contact events.  In each step of constant length the ve
 that keep every corner from sinking through the face under it and obey Coulomb's law, found by Gauss-Seidel
 iteration over the contacts; where Newton's method on which of them press, stick and slide comes to an end, the
 iteration starts from what it has found, and only has to confirm it.  Candidates are each corner of a base over the
-face below, and each edge of a face under the base above, as long as one lies over the other.  The method is of first
-order in the step.
+face below, and each edge of a face under the base above, as long as one lies over the other.  The method is of
+first order in the step.
 """
 
 import math
