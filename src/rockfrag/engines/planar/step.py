@@ -208,7 +208,8 @@ def least_margin(p, w, q, v):
             if w.closed[k, end] == 1:
                 some = True
                 pressed += w.normal[k, end]
-                margin = w.normal[k, end] / p.weight + SLACK
+                stiff = max(1.0, p.kinetic[k]) if w.slides[k] != 0 else 1.0
+                margin = stiff * w.normal[k, end] / p.weight + SLACK
                 if k > 0 and w.slides[k] != 0:
                     _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, w.kind[k, end])
                     inside = AT_EDGE - beyond / p.size
