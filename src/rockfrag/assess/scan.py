@@ -132,11 +132,11 @@ def make_scan(
     ways = ways.sort_values("alpha_deg", kind="stable", ignore_index=True)
     assumed = [
         Assumption(
-            f"{item.words} was not measured",
-            f"{item.words.capitalize()}: {item.source}.",
+            f"{quantity.words} was not measured",
+            f"{quantity.words.capitalize()}: {quantity.source}.",
             (SOURCE_OF[name],),
         )
-        for name, item in open_ones.items()
+        for name, quantity in open_ones.items()
         if name != "contact_tolerance_mm" or tolerance is None
     ]
     return Scan(shape, ways, _parts(ways, list(open_ones))), assumed

@@ -98,18 +98,18 @@ def order(parts: Parts, *, unit: str = "earthquake", more: str = "") -> Result:
     if finding is Finding.OPEN and (p_bounded := _p_bounded(parts)) < LEVEL:
         finding, p, p_of = Finding.BOUNDED, min(1.0, 2 * p_bounded), LARGE_CHANGE
     decisive = strongest if finding is Finding.AGAINST else weakest
-    item = parts[decisive].estimate
+    estimate = parts[decisive].estimate
     notes = [more] if more else []
     if finding is Finding.OPEN:
-        notes.append(power_note(item, unit))
+        notes.append(power_note(estimate, unit))
     elif finding is Finding.BOUNDED:
         notes.append("a smaller change, or none, is not excluded")
     return Result(
         finding,
         _listed(parts, decisive),
-        item.ratio,
-        item.ratio_lower,
-        item.ratio_upper,
+        estimate.ratio,
+        estimate.ratio_lower,
+        estimate.ratio_upper,
         p=p,
         p_of=p_of,
         remark="; ".join(notes),
