@@ -100,7 +100,7 @@ def _add_object(about: Any) -> None:
         action=_Once,
         type=float,
         metavar="DEGREES",
-        help="direction of the width, from the first component of each record; needs the depth",
+        help="direction of the width, or of a mesh's x axis, from the first component of each record",
     )
     about.add_argument("--round", action="store_true", help="the base is round")
     about.add_argument(
