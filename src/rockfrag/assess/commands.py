@@ -102,6 +102,13 @@ def _add_object(about: Any) -> None:
         metavar="DEGREES",
         help="direction of the width, or of a mesh's x axis, from the first component of each record",
     )
+    about.add_argument(
+        "--base-spread",
+        action=_Once,
+        type=float,
+        metavar="FRACTION",
+        help="by how much corners of the base lie elsewhere in space, over its size: 0.001",
+    )
     about.add_argument("--round", action="store_true", help="the base is round")
     about.add_argument(
         "--mesh", action=_Once, metavar="FILE", help="mesh of it (OBJ, PLY, STL, GLB) instead"
@@ -312,6 +319,7 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
         "name": options.name,
         "round": options.round or None,
         "facing_deg": options.facing,
+        "base_spread": options.base_spread,
         "restitution": options.restitution,
         "friction": options.friction,
         "pad_friction": options.pad_friction,

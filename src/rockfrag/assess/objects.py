@@ -74,6 +74,8 @@ class Objects:
         Direction of that plane, from the first component of each record towards the second [degrees].
     faces_anywhere
         Whether nobody said how it faces the shaking, which counts in space.
+    base_spread
+        By how much corners of the base lie elsewhere in space, over its extent, other for each record [-].
     scan
         The scan and the ways in which it may stand; None where dimensions were given.
     scanned
@@ -102,6 +104,7 @@ class Objects:
     depth: float | None = None
     facing_deg: float = 0.0
     faces_anywhere: bool = False
+    base_spread: float = 0.0
     scan: Scan | None = None
     scanned: RigidBody | None = None
     livelier: float = 1.0
@@ -381,6 +384,7 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         facing_deg=facing,
         faces_anywhere="facing_deg" not in settings
         and "direction_deg" not in settings.get("mesh", {}),
+        base_spread=float(settings.get("base_spread", 0.0)),
         scan=scan,
         scanned=scan.space.body() if scan and scan.space and not is_round else None,
         assumed=(*first, *assumed),
