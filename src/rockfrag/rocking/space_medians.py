@@ -5,7 +5,6 @@ The level of a record is the geometric mean of the peaks of its two components, 
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -18,11 +17,11 @@ from rockfrag.plausibility import STONE
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.space_sweep import Sweep
 from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
 
-SQUARE, OBLONG, ROUND = "square", "one to two", "round"
-BASES = (SQUARE, OBLONG, ROUND)
+OBLONG, ROUND = "one to two", "round"
 
 PLANAR = ("one_component", "mean_direction", "worst_direction")
 """Planar answers: along each component as recorded, in any direction, in the worst direction of each record."""
@@ -36,39 +35,13 @@ Floats = NDArray[np.float64]
 Pair = tuple[Motion, Motion]
 
 
-@dataclass(frozen=True)
-class Sweep:
-    """Levels and directions that are tried.
-
-    Attributes
-    ----------
-    lowest, highest
-        Lowest and highest level over the uplift of the narrow side, b/h [-].
-    levels
-        Number of levels, a constant factor apart.
-    directions
-        Directions of planar rocking over half a turn.
-    resamples
-        Times that earthquakes are drawn again for intervals.
-    spread
-        Largest displacement of each vertex of a base over its extent [-].
-    """
-
-    lowest: float
-    highest: float
-    levels: int
-    directions: int
-    resamples: int
-    spread: float
-
-
 def body_of(base: str, slenderness: float, height: float) -> Block:
     """Return a uniform body of stone.
 
     Parameters
     ----------
     base
-        One of :data:`BASES`.
+        ``square``, ``one to two`` or ``round``.
     slenderness
         Height over the narrow side or the diameter [-].
     height

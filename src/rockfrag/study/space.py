@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rockfrag.rocking.space_medians import Sweep
+from rockfrag.rocking.space_sweep import Sweep
 from rockfrag.schema import checked
 
 SPACE_KEY = "space"
