@@ -9,12 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.engines.contract import Cases, Request, engine_for, run_cases
+from rockfrag.engines.contract import Cases, Request, run_cases
 from rockfrag.engines.steps import STEP
 from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
 from rockfrag.outcomes.outcomes import Outcomes
-from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.rocking.inputs import (
     MotionLike,
     check_case_count,
@@ -187,18 +186,13 @@ def prepared(
         g=options.g,
         step=positive_number("step", options.step),
     )
-    if shaking:
-        for system in systems:
-            engine_for(system, richest(shaking), request)
     threads = checked_threads(options.threads)
     cases = Cases(systems, tuple(shaking), factors, request, threads)
+    if shaking:
+        # refused before anything is computed
+        _ = cases.answering
     warn_of_units(cases, motions)
     return cases
-
-
-def richest(motions: Sequence[GroundMotion]) -> GroundMotion:
-    """Return the motion with most components."""
-    return max(motions, key=lambda motion: len(motion.components))
 
 
 def shaken(cases: Cases) -> Outcomes:
