@@ -276,7 +276,9 @@ def _write_app(path: Path) -> None:
         pulse = ricker_symmetric(1.5 + 0.1 * i, 0.25 + 0.06 * i, 0.01).acceleration
         time = np.arange(1500) * 0.01
         phases = np.random.default_rng(i).uniform(0, 2 * np.pi, 12)
-        waves = np.sin(2 * np.pi * np.geomspace(0.7, 9, 12)[:, np.newaxis] * time + phases[:, np.newaxis])
+        waves = np.sin(
+            2 * np.pi * np.geomspace(0.7, 9, 12)[:, np.newaxis] * time + phases[:, np.newaxis]
+        )
         shaken = 0.5 * waves.sum(axis=0) * np.exp(-(((time - 5) / 3) ** 2))
         shaken[300 : 300 + pulse.size] += pulse[:1200]
         about = {"earthquake": f"made earthquake {i // 3 + 1}"}
@@ -284,7 +286,9 @@ def _write_app(path: Path) -> None:
     made = tuple(motions)
     form = {"width": "35 cm", "height": "1.2 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_app(MotionSet(made, made, (), "24 made motions of 8 made earthquakes"), form, path, made=True)
+    write_app(
+        MotionSet(made, made, (), "24 made motions of 8 made earthquakes"), form, path, made=True
+    )
 
 
 ACCESSIBLE = (
