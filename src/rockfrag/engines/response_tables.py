@@ -41,20 +41,31 @@ def contact_event_table(
     -------
     A row per contact event, with the columns of ``Response.contact_events`` without friction.
     """
-    before, after = ([rocking_mode_name(row) for row in each.tolist()] for each in states)
     return pd.DataFrame(
         {
             "time": time,
             "kind": list(kind),
-            "from": before,
-            "to": after,
-            "omega_before": list(map(tuple, omega[0].tolist())),
-            "omega_after": list(map(tuple, omega[1].tolist())),
-            "theta": list(map(tuple, theta.tolist())),
+            "from": _rocking_modes(states[0]),
+            "to": _rocking_modes(states[1]),
+            "omega_before": _tuples(omega[0]),
+            "omega_after": _tuples(omega[1]),
+            "theta": _tuples(theta),
             "energy_before": kinetic[0],
             "energy_after": kinetic[1],
         }
     )
+
+
+def _tuples(rows: Floats) -> list[tuple[float, ...]]:
+    return list(zip(*rows.T.tolist(), strict=True))
+
+
+def _rocking_modes(states: Ints) -> list[str]:
+    """Names of rows of contact states, each of the few that there are named once."""
+    code = (states + 1) @ 4 ** np.arange(states.shape[1])
+    _, first, which = np.unique(code, return_index=True, return_inverse=True)
+    names = [rocking_mode_name(states[at].tolist()) for at in first]
+    return [names[at] for at in which.tolist()]
 
 
 def with_slips(table: pd.DataFrame, states: Ints, slides: Ints, slip: Floats) -> pd.DataFrame:
@@ -63,7 +74,7 @@ def with_slips(table: pd.DataFrame, states: Ints, slides: Ints, slip: Floats) ->
     modes = [tuple(mode_name(*pair) for pair in each) for each in pairs]
     return table.assign(
         modes=pd.Series(modes, dtype=object),
-        slip=pd.Series(list(map(tuple, slip.tolist())), dtype=object),
+        slip=pd.Series(_tuples(slip), dtype=object),
     )
 
 
