@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TextIO
 
 from rockfrag import __version__
+from rockfrag.assess.app.commands import add_app_command
 from rockfrag.assess.commands import add_assess_commands
 from rockfrag.errors import InputError
 from rockfrag.record_commands import add_record_commands
@@ -62,6 +63,7 @@ def make_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     add_assess_commands(commands)
+    add_app_command(commands)
     add_survival_commands(commands)
     add_record_commands(commands)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rockfrag.engines.planar.compile import entry_kernel
+from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.planar.search import (
     CONSISTENT,
     mode_number,

@@ -1,6 +1,6 @@
 """One body with friction, by the contact kernels alone: what tests hold beside pure rocking and other programs."""
 
-from rockfrag.engines.planar.history import CLOSING, contact_history
+from rockfrag.engines.planar.history import CLOSING, contact_run, response_of
 from rockfrag.engines.response import Response
 from rockfrag.engines.steps import STEP
 from rockfrag.rocking.inputs import MotionLike, ground_motion
@@ -43,4 +43,4 @@ def simulate_with_friction(
     """
     system = system_of(body, friction, restitution, theta0, omega0)
     motion = ground_motion(acceleration, dt, vertical)
-    return contact_history(system, motion, g, step, closing)[0]
+    return response_of(contact_run(system, motion, g, step, closing))

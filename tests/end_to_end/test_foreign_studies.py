@@ -15,6 +15,7 @@ LONG = (
     "with and without a plinth on one upper floor",
     "the thesis's bodies, but nobody asks for the thesis",
     "pairs of which some never overturn",
+    "arrangements compared with each other",
     "two pedestals under one figure",
     "a base between figure and plinth, and nothing else",
     "three cabinets on floors of their own",

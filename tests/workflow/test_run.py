@@ -44,6 +44,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_the_workflow_writes_what_the_stages_write_to_the_byte(ran: Path, tmp_path: Path):
     """Stages run one after the other, in a process where libraries choose their functions as in jobs."""
     path = make_smaller(tmp_path / "by hand") / "study.yaml"

@@ -56,9 +56,7 @@ def add_assess_commands(commands: Any) -> None:
         nargs="?",
         help="statue.yaml that says all this, or inventory.csv with an object a row",
     )
-    _add_object(parser.add_argument_group("the object"))
-    _add_place(parser.add_argument_group("the place"))
-    _add_motions(parser.add_argument_group("the motions"))
+    add_request_options(parser)
     out = parser.add_argument_group("the answer")
     out.add_argument(
         "--output", metavar="FOLDER", default="assessment", help="where page and JSON are written"
@@ -81,6 +79,13 @@ def add_assess_commands(commands: Any) -> None:
     )
     rules.add_argument("--output", metavar="FILE", help="write the table as .csv or .parquet")
     rules.set_defaults(run=_rules)
+
+
+def add_request_options(parser: argparse.ArgumentParser) -> None:
+    """Add what an object, its place and its motions are told by."""
+    _add_object(parser.add_argument_group("the object"))
+    _add_place(parser.add_argument_group("the place"))
+    _add_motions(parser.add_argument_group("the motions"))
 
 
 def _add_object(about: Any) -> None:
@@ -227,7 +232,7 @@ def _assess(options: argparse.Namespace) -> int:
     from rockfrag.assess.inventory import FaultyRows
     from rockfrag.assess.surface import on_command_line
 
-    given = _settings(options)
+    given = settings_of(options)
     _refuse_unused(options)
     try:
         if _is_inventory(options):
@@ -312,7 +317,7 @@ def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:
     return make_request(settings | given, options.file or "rockfrag assess", folder)
 
 
-def _settings(options: argparse.Namespace) -> dict[str, Any]:
+def settings_of(options: argparse.Namespace) -> dict[str, Any]:
     """What the command line says, with the keys of ``statue.yaml``."""
     plain = {key: getattr(options, key) for key in _KEYS}
     plain |= {

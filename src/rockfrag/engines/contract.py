@@ -124,6 +124,18 @@ class Cases:
         return len(self.systems), self.scales.shape[0], self.scales.shape[1]
 
     @cached_property
+    def answering(self) -> list["Engine"]:
+        """Engine of each system under all motions: the one with most components decides.
+
+        Raises
+        ------
+        InputError
+            If no engine supports a system.
+        """
+        richest = max(self.motions, key=lambda motion: len(motion.components))
+        return [engine_for(system, richest, self.request) for system in self.systems]
+
+    @cached_property
     def names(self) -> list[tuple[str, ...]]:
         """Names of the bodies of each system."""
         return [system.names for system in self.systems]
@@ -284,23 +296,17 @@ def run_cases(cases: Cases) -> Outcomes:
         return empty_outcomes(cases.names, cases.scales)
     if not cases.scales.size:
         return empty_outcomes(cases.names, cases.scales)
-    chosen = [_engine_of(cases, system) for system in cases.systems]
+    chosen = cases.answering
+    if all(engine is chosen[0] for engine in chosen):
+        return chosen[0].run(cases)
     parts = []
     for engine in dict.fromkeys(chosen):
         rows = [i for i, choice in enumerate(chosen) if choice is engine]
         some = replace(cases, systems=tuple(cases.systems[i] for i in rows))
         parts.append((rows, engine.run(some)))
-    if len(parts) == 1:
-        return parts[0][1]
     # an engine may have asked others
     used = dict.fromkeys(name for _, found in parts for name in found.engines)
     result = empty_outcomes(cases.names, cases.scales, tuple(used))
     for rows, found in parts:
         merge_outcomes(result, rows, found)
     return result
-
-
-def _engine_of(cases: Cases, system: System) -> Engine:
-    """Engine of one system under all motions: the richest of them decides."""
-    richest = max(cases.motions, key=lambda motion: len(motion.components))
-    return engine_for(system, richest, cases.request)

@@ -1,5 +1,7 @@
 """From a system to the record of numbers that the kernels read."""
 
+from types import SimpleNamespace
+
 import numpy as np
 
 from rockfrag.engines.kernels.equations import BODY
@@ -32,20 +34,21 @@ def body_record(system: System, linear: bool = False, g: float = GRAVITY) -> np.
         If ``g`` is not positive.
     """
     positive_number("g", g, "m/s²")
-    store = np.zeros(1, BODY)
-    p: np.void = store[0]
+    p: np.void = np.zeros(1, BODY)[0]
     found = afters(system)
     for name, after in zip(FIELDS, found, strict=True):
         p[name] = after
     p["gravity"] = g
-    # a view whose fields are attributes, as those of records are in kernels
-    named = store.view(np.recarray)[0]
+    # its fields are attributes, as those of records are in kernels
+    named = SimpleNamespace()
     if system.count == 1:
         geometry.fill_block(named, system.shapes[0])
         p["linear"] = 2 if linear else 0
     else:
         geometry.fill_pile(named, system.pile)
         p["linear"] = 1 if linear else 0
+    for name, value in vars(named).items():
+        p[name] = value
     p["measured"] = any(after != BY_MOMENTUM for after in found)
     return p
 

@@ -9,7 +9,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
-from rockfrag.engines.response import ROCKING_MODES, Response
+from rockfrag.engines.response import Response
+from rockfrag.engines.response_tables import contact_event_table, energy_table
 from rockfrag.engines.two_blocks import pair_support
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
@@ -236,11 +237,11 @@ def _response(
         state=state,
         slides=np.zeros_like(state),
         slip=np.zeros_like(theta),
-        contact_events=_contact_event_table(contact_events, blocks),
+        contact_events=_contact_events(contact_events, blocks),
         overturned=fallen > 0,
         overturned_body=("", *system.names)[which],
         overturning_time=float(summary["fall_time"]),
-        energy=_energy_table(record, time, history, contact_events, system.count == 1),
+        energy=_energies(record, time, history, contact_events, system.count),
         normal_force=normal,
         friction_force=friction,
         impacts=int(summary["impacts"]),
@@ -255,43 +256,31 @@ def _response(
     )
 
 
-def _contact_event_table(contact_events: NDArray[np.void], blocks: list[str]) -> pd.DataFrame:
+def _contact_events(contact_events: NDArray[np.void], blocks: list[str]) -> pd.DataFrame:
     """Make the table of contact events of a response."""
     from rockfrag.engines.kernels.record import CHATTER, CLOSING, LIFTING, OPENING
 
     kinds = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter", LIFTING: "lift-off"}
-    before, after = contact_events["before"], contact_events["after"]
 
-    def each(state: NDArray[np.void], name: str) -> list[tuple[float, ...]]:
-        return list(zip(*(state[name + block].tolist() for block in blocks), strict=True))
+    def each(when: str, name: str) -> NDArray[Any]:
+        return np.column_stack([contact_events[when][name + block] for block in blocks])
 
-    def rocking_modes(state: NDArray[np.void]) -> list[str]:
-        return [
-            ROCKING_MODES[pair]
-            for pair in zip(state["c1"].tolist(), state["c2"].tolist(), strict=True)
-        ]
-
-    return pd.DataFrame(
-        {
-            "time": contact_events["time"],
-            "kind": [kinds[kind] for kind in contact_events["kind"].tolist()],
-            "from": rocking_modes(before),
-            "to": rocking_modes(after),
-            "omega_before": each(before, "omega"),
-            "omega_after": each(after, "omega"),
-            "theta": each(after, "theta"),
-            "energy_before": contact_events["energy_before"],
-            "energy_after": contact_events["energy_after"],
-        }
+    return contact_event_table(
+        contact_events["time"],
+        [kinds[kind] for kind in contact_events["kind"].tolist()],
+        (each("before", "c"), each("after", "c")),
+        (each("before", "omega"), each("after", "omega")),
+        each("after", "theta"),
+        (contact_events["energy_before"], contact_events["energy_after"]),
     )
 
 
-def _energy_table(
+def _energies(
     record: np.void,
     time: Array,
     history: NDArray[np.void],
     contact_events: NDArray[np.void],
-    lone: bool,
+    contacts: int,
 ) -> pd.DataFrame:
     """Balance of energy by cause over time [J]."""
     from rockfrag.engines.kernels.equations import STATE
@@ -302,7 +291,7 @@ def _energy_table(
     potential = np.empty(len(history))
     with compiling_alone(fill_energies):
         fill_energies(record, history, kinetic, potential, np.zeros(1, STATE)[0])
-    # an impact closes the ground if the pedestal's contact changed, the interface otherwise
+    # an impact closes the ground if the lower body's contact changed, the interface otherwise
     before = contact_events["before"]["c1"]
     by_ground = (before != 0) & (before != contact_events["after"]["c1"])
     loss = np.where(
@@ -310,30 +299,10 @@ def _energy_table(
         0.0,
         contact_events["energy_before"] - contact_events["energy_after"],
     )
-    at = np.searchsorted(time, contact_events["time"] - 1e-12 * max(1.0, time[-1]))
-
-    def so_far(values: Array) -> Array:
-        total = np.zeros(len(time) + 1)
-        np.add.at(total, at, values)
-        return np.cumsum(total)[: len(time)]
-
     # of a lone body, the kernels' second, the interface is the ground
-    lost = [so_far(loss)] if lone else [so_far(loss * by_ground), so_far(loss * ~by_ground)]
-    work = history["work"]
-    start = kinetic[0] + potential[0]
-    total = kinetic + potential
-    for each in lost:
-        total = total + each
-    return pd.DataFrame(
-        {
-            "time": time,
-            "kinetic": kinetic,
-            "potential": potential,
-            "input": work,
-            **{f"lost_contact_{k + 1}": values for k, values in enumerate(lost)},
-            "residual": total - work - start,
-        }
-    )
+    closed = np.where(by_ground, 0, contacts - 1)
+    losses = contact_events["time"], closed, loss
+    return energy_table(time, kinetic, potential, history["work"], losses, contacts=contacts)
 
 
 ENGINE = Single()

@@ -1,6 +1,5 @@
 """Overturning as a function of several intensity measures, for example ln PGA and ln PGV."""
 
-import warnings as python_warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -8,12 +7,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 from scipy import optimize, special
-from statsmodels.genmod import families
-from statsmodels.genmod.generalized_linear_model import GLM
-from statsmodels.tools.sm_exceptions import PerfectSeparationError, PerfectSeparationWarning
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.batch_glm import fit_batch
+from rockfrag.fragility.batch_glm import BatchFit, fit_batch
 from rockfrag.fragility.observations import Floats, positive, read_observations
 from rockfrag.short_repr import short_repr
 
@@ -107,21 +103,15 @@ def fit_surface(
             f"{source}: the measures {', '.join(measures)} are proportional to each other (or "
             "constant) in these tests; choose fewer."
         )
-    method = "probit, maximum likelihood (GLM)"
+    method = "probit, maximum likelihood"
     # among so many tests no plane parts what a fit does not find parted
-    if outcome.size <= MOST_FOR_THE_PLANE and linearly_separable(design, outcome):
-        coefficients, information = _penalised(design, outcome)
+    apart = outcome.size <= MOST_FOR_THE_PLANE and linearly_separable(design, outcome)
+    fit = _fitted(design, outcome, penalised=apart)
+    if not apart and not fit.converged[0]:
+        apart, fit = True, _fitted(design, outcome, penalised=True)
+    if apart:
         method = "probit, penalised likelihood (Firth)"
-    else:
-        model = GLM(outcome, design, family=families.Binomial(families.links.Probit()))
-        with python_warnings.catch_warnings():
-            python_warnings.simplefilter("error", PerfectSeparationWarning)
-            try:
-                coefficients = np.asarray(model.fit(tol=1e-12, maxiter=200).params)
-                information = -np.asarray(model.hessian(coefficients, observed=False))
-            except (PerfectSeparationError, PerfectSeparationWarning):
-                coefficients, information = _penalised(design, outcome)
-                method = "probit, penalised likelihood (Firth)"
+    coefficients, information = fit.coefficients[0], fit.information[0]
     eta = design @ coefficients
     log_likelihood = float(special.log_ndtr(np.where(outcome > 0, eta, -eta)).sum())
     covariance = np.linalg.inv(information)
@@ -155,6 +145,6 @@ def linearly_separable(design: Floats, outcome: Floats) -> bool:
     return bool(-found.fun > 1e-9)
 
 
-def _penalised(design: Floats, outcome: Floats) -> tuple[Floats, Floats]:
-    fit = fit_batch(design, outcome[None, :], np.ones((1, outcome.size)), penalised=True)
-    return fit.coefficients[0], fit.information[0]
+def _fitted(design: Floats, outcome: Floats, *, penalised: bool) -> BatchFit:
+    trials = np.ones((1, outcome.size))
+    return fit_batch(design, outcome[None, :], trials, penalised=penalised, tolerance=1e-11)

@@ -9,12 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.engines.contract import Cases, Request, engine_for, run_cases
+from rockfrag.engines.contract import Cases, Request, run_cases
 from rockfrag.engines.steps import STEP
 from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
 from rockfrag.outcomes.outcomes import Outcomes
-from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.rocking.inputs import (
     MotionLike,
     check_case_count,
@@ -187,18 +186,13 @@ def prepared(
         g=options.g,
         step=positive_number("step", options.step),
     )
-    if shaking:
-        for system in systems:
-            engine_for(system, richest(shaking), request)
     threads = checked_threads(options.threads)
     cases = Cases(systems, tuple(shaking), factors, request, threads)
+    if shaking:
+        # refused before anything is computed
+        _ = cases.answering
     warn_of_units(cases, motions)
     return cases
-
-
-def richest(motions: Sequence[GroundMotion]) -> GroundMotion:
-    """Return the motion with most components."""
-    return max(motions, key=lambda motion: len(motion.components))
 
 
 def shaken(cases: Cases) -> Outcomes:
@@ -208,10 +202,13 @@ def shaken(cases: Cases) -> Outcomes:
         return outcomes
     if any(motion.z is not None for motion in cases.motions):
         outcomes.minimum_gravity_ratio[:] = _minimum_gravity_ratio(cases)
-    # a body that is answered in space leaves the ground where it has to
+    # a body that is answered in space leaves the ground where it has to, and so do more than two bodies
     in_space = any(motion.y is not None for motion in cases.motions)
     stuck = np.array(
-        [not system.loose and (system.planar or not in_space) for system in cases.systems]
+        [
+            not system.loose and system.count < 3 and (system.planar or not in_space)
+            for system in cases.systems
+        ]
     )
     if stuck.any() and not cases.request.forces:
         _warn_of_weight(outcomes.minimum_gravity_ratio[stuck])

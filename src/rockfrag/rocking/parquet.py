@@ -25,7 +25,7 @@ from rockfrag.files import whole_file
 from rockfrag.keywords import named_keywords
 from rockfrag.outcomes.columns import Table
 from rockfrag.outcomes.outcomes import columns as columns_of
-from rockfrag.rocking.ensemble import Options, prepared, richest, shaken
+from rockfrag.rocking.ensemble import Options, prepared, shaken
 from rockfrag.rocking.inputs import MotionLike
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput
@@ -228,9 +228,9 @@ def stream_histories(
     cases = prepared(bodies, motions, dt, scales, options)
     request = replace(cases.request, history=True)
     if cases.motions:
+        # refused here and not in the middle of the file: the longest interval needs most steps
+        _ = replace(cases, request=request).answering
         for system in cases.systems:
-            # refused here and not in the middle of the file: the longest interval needs most steps
-            engine_for(system, richest(cases.motions), request)
             step_count(system, [motion.dt for motion in cases.motions], g, step)
     total = len(cases.systems) * cases.scales.size
 

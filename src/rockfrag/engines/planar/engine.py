@@ -101,15 +101,15 @@ class PlanarContact:
     def history(self, case: Case) -> Response:
         """Return the response of a case."""
         from rockfrag.engines.planar.ensemble import COARSE_CLOSING
-        from rockfrag.engines.planar.history import contact_history
+        from rockfrag.engines.planar.history import contact_run, response_of
 
         motion, g = scaled(case.motion, case.scale), case.request.g
         # as outcomes have it, so that history and outcome are of one response
-        found, loose = contact_history(case.system, motion, g, closing=COARSE_CLOSING)
+        found = contact_run(case.system, motion, g, closing=COARSE_CLOSING)
         pure = replace(case, system=without_friction(case.system))
         engine = self._pure(pure.system, motion, pure.request)
-        if loose or engine is None:
-            return found
+        if found.loose or engine is None:
+            return response_of(found)
         return without_slip(replace(engine.history(pure), system=case.system))
 
 
@@ -135,19 +135,15 @@ def scaled(motion: GroundMotion, factor: float) -> GroundMotion:
 
 def without_slip(response: Response) -> Response:
     """Give a response of pure rocking the columns of one with friction."""
-    import pandas as pd
-
-    from rockfrag.engines.response import ROCKING_MODES, mode_name
+    from rockfrag.engines.response import ROCKING_MODES
+    from rockfrag.engines.response_tables import with_slips
 
     bodies = response.slip.shape[1]
     states = {name: pair[2 - bodies :] for pair, name in ROCKING_MODES.items()}
-    modes = [
-        tuple(mode_name(state, 0) for state in states[name])
-        for name in response.contact_events["to"]
-    ]
-    contact_events = response.contact_events.copy()
-    contact_events["modes"] = pd.Series(modes, dtype=object)
-    contact_events["slip"] = pd.Series([(0.0,) * bodies] * len(modes), dtype=object)
+    after = np.array([states[name] for name in response.contact_events["to"]], dtype=np.int64)
+    after = after.reshape(-1, bodies)
+    still = np.zeros_like(after)
+    contact_events = with_slips(response.contact_events, after, still, still.astype(np.float64))
     energy = response.energy.copy()
     energy.insert(energy.shape[1] - 1, "lost_friction", 0.0)
     return replace(response, contact_events=contact_events, energy=energy)

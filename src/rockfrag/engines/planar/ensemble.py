@@ -68,13 +68,20 @@ def contact_outcomes(
     numbers = np.flatnonzero(wanted)
     book = Book(np.zeros((0, 0)), np.zeros((0, 0)))
 
-    def work(first: int, last: int) -> None:
-        integrate_cases(numbers[first:last], cases, closing, book, working_memory(), outcome)
+    firsts = iter(range(0, numbers.size, CHUNK))
 
-    work(0, 0)
-    with ThreadPoolExecutor(grid.threads) as pool:
-        firsts = range(0, numbers.size, CHUNK)
-        list(pool.map(work, firsts, [first + CHUNK for first in firsts]))
+    def work(memory: np.void) -> None:
+        for first in firsts:
+            chunk = numbers[first : first + CHUNK]
+            integrate_cases(chunk, cases, closing, book, memory, outcome)
+
+    memories = [working_memory() for _ in range(grid.threads)]
+    integrate_cases(numbers[:0], cases, closing, book, memories[0], outcome)
+    if grid.threads == 1:
+        work(memories[0])
+    else:
+        with ThreadPoolExecutor(grid.threads) as pool:
+            list(pool.map(work, memories))
     return outcome.reshape(wanted.shape)
 
 

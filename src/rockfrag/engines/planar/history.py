@@ -1,7 +1,7 @@
 """One body, one motion, with friction, flight and vertical motion."""
 
 import math
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -22,31 +22,61 @@ from rockfrag.engines.planar.integrate import (
     integrate,
 )
 from rockfrag.engines.planar.records import posed, system_record, working_memory
-from rockfrag.engines.response import FLIGHT, Response, mode_name, rocking_mode_name, sampled_demand
+from rockfrag.engines.response import FLIGHT, Response, sampled_demand
+from rockfrag.engines.response_tables import contact_event_table, energy_table, with_slips
 from rockfrag.engines.steps import STEP, free_samples, step_count
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
-Modes = tuple[tuple[int, int], ...]
-"""Contact state and sign of slip of each interface."""
+Ints = NDArray[np.int64]
 
 CLOSING = 1e-6
 """Parting speed over √(g b) below which a contact stays closed after an impact, where the history is kept."""
 
 _KINDS = {IMPACT: "impact", PARADOX: "paradox", FALLEN: "fall", PASSING: "edge"}
-_STATES = (FLIGHT, -1, +1, 0)
+_STATES = np.array([FLIGHT, -1, +1, 0])
 """Contact state of an interface whose closed ends are the bits (left, right) of a number."""
 
 
-def contact_history(
+class ContactRun(NamedTuple):
+    """What the contact kernels wrote of one system under one motion.
+
+    Attributes
+    ----------
+    system, motion
+        What was shaken, and by what.
+    body, work
+        The records ``BODY`` and ``WORK``.
+    history, contact_events
+        Rows of the columns that the kernels write.
+    fall
+        Time of the fall [s], NaN if there was none.
+    """
+
+    system: System
+    motion: GroundMotion
+    body: np.void
+    work: np.void
+    history: Array
+    contact_events: Array
+    fall: float
+
+    @property
+    def loose(self) -> bool:
+        """Whether a contact reached its friction, opened as a whole or had no consistent mode."""
+        work = self.work
+        return bool(work["slid"].max() > 0 or np.any(work["flights"]) or work["paradoxes"] > 0)
+
+
+def contact_run(
     system: System,
     motion: GroundMotion,
     g: float = GRAVITY,
     step: float = STEP,
     closing: float = CLOSING,
-) -> tuple[Response, bool]:
+) -> ContactRun:
     """Integrate one planar system that may slide, rock and fly.
 
     Parameters
@@ -63,7 +93,7 @@ def contact_history(
 
     Returns
     -------
-    The response, and whether a contact reached its friction, opened as a whole or had no consistent mode.
+    What the kernels wrote; :func:`response_of` makes a response of it.
     """
     values, interval = motion.x.acceleration, motion.dt
     up = np.zeros(0) if motion.z is None else motion.z.acceleration
@@ -84,19 +114,24 @@ def contact_history(
         if count <= capacity:
             break
         capacity = count
-    history, contact_events = history[:done], contact_events[:count]
-    time = np.arange(done, dtype=np.float64) * interval
+    return ContactRun(system, motion, p, work, history[:done], contact_events[:count], float(fall))
+
+
+def response_of(run: ContactRun) -> Response:
+    """Return the response that the contact kernels wrote."""
+    system, p, work, history = run.system, run.body, run.work, run.history
+    done, blocks, values = len(history), int(p["count"]), run.motion.x.acceleration
+    time = np.arange(done, dtype=np.float64) * run.motion.dt
     centres, speeds = history[:, : 6 * blocks].reshape(done, 2, blocks, 3).transpose(1, 0, 2, 3)
     slips, normal, shear, alpha = (
         history[:, 6 * blocks : 10 * blocks].reshape(done, 4, blocks).transpose(1, 0, 2)
     )
-    modes = [_modes(number, blocks) for number in history[:, -1]]
+    state, slides = _modes(history[:, -1], blocks)
     fallen = int(work["fallen"])
-    table = _contact_event_table(contact_events, blocks)
+    table = _contact_events(run.contact_events, blocks)
     ground = np.zeros(done)
     ground[: min(done, values.size)] = values[:done]
-    loose = work["slid"].max() > 0 or np.any(work["flights"]) or work["paradoxes"] > 0
-    response = Response(
+    return Response(
         system=system,
         time=time,
         ground_acceleration=ground,
@@ -104,14 +139,14 @@ def contact_history(
         theta=centres[:, :, 2],
         omega=speeds[:, :, 2],
         alpha=alpha,
-        state=np.array([[state for state, _ in mode] for mode in modes]),
-        slides=np.array([[slides for _, slides in mode] for mode in modes]),
+        state=state,
+        slides=slides,
         slip=slips,
         contact_events=table,
         overturned=fallen > 0,
         overturned_body=("", *system.names)[fallen],
-        overturning_time=float(fall),
-        energy=_energy_table(p, time, history, contact_events),
+        overturning_time=run.fall,
+        energy=_energies(p, time, history, run.contact_events),
         normal_force=normal,
         friction_force=shear,
         impacts=int(work["impacts"]),
@@ -124,58 +159,41 @@ def contact_history(
         forced=int(work["forced"]),
         unstable_distance=float("nan"),
     )
-    return response, bool(loose)
 
 
-def _modes(number: float, blocks: int) -> Modes:
-    """Contact states and signs of slip in the number that the kernels keep."""
-    digits = [(int(number) >> (4 * k)) & 15 for k in range(blocks)]
-    return tuple((_STATES[digit & 3], (digit >> 2) - 1) for digit in digits)
+def _modes(numbers: Array, blocks: int) -> tuple[Ints, Ints]:
+    """Contact states and signs of slip in the numbers that the kernels keep, each of shape (n, blocks)."""
+    digits = (numbers.astype(np.int64)[:, np.newaxis] >> (4 * np.arange(blocks))) & 15
+    return _STATES[digits & 3], (digits >> 2) - 1
 
 
-def _contact_event_table(contact_events: Array, blocks: int) -> pd.DataFrame:
-    rows: list[dict[str, Any]] = []
-    for contact_event in contact_events:
-        before, after = _modes(contact_event[2], blocks), _modes(contact_event[3], blocks)
-        slips, theta, old, new = contact_event[6:].reshape(4, blocks).tolist()
-        rows.append(
-            {
-                "time": contact_event[0],
-                "kind": _KINDS.get(int(contact_event[1])) or _kind_of_change(before, after),
-                "from": _rocking_mode(before),
-                "to": _rocking_mode(after),
-                "omega_before": tuple(old),
-                "omega_after": tuple(new),
-                "theta": tuple(theta),
-                "energy_before": contact_event[4],
-                "energy_after": contact_event[5],
-                "modes": tuple(mode_name(*mode) for mode in after),
-                "slip": tuple(slips),
-            }
-        )
-    columns = [
-        "time", "kind", "from", "to", "omega_before", "omega_after", "theta",
-        "energy_before", "energy_after", "modes", "slip",
-    ]  # fmt: skip
-    return pd.DataFrame(rows, columns=columns)
+def _contact_events(contact_events: Array, blocks: int) -> pd.DataFrame:
+    """Make the table of contact events of a response."""
+    before, slid = _modes(contact_events[:, 2], blocks)
+    after, slides = _modes(contact_events[:, 3], blocks)
+    slip, theta, old, new = contact_events[:, 6:].reshape(-1, 4, blocks).transpose(1, 0, 2)
+    changes = zip(before, after, slid, slides, strict=True)
+    kinds = [
+        _KINDS.get(int(kind)) or _kind_of_change(*change)
+        for kind, change in zip(contact_events[:, 1], changes, strict=True)
+    ]
+    energies = contact_events[:, 4], contact_events[:, 5]
+    table = contact_event_table(
+        contact_events[:, 0], kinds, (before, after), (old, new), theta, energies
+    )
+    return with_slips(table, after, slides, slip)
 
 
-def _kind_of_change(before: Modes, after: Modes) -> str:
+def _kind_of_change(before: Ints, after: Ints, slid: Ints, slides: Ints) -> str:
     """Name of a contact event without an impact: what opens first, then what slides."""
-    pairs = list(zip(before, after, strict=True))
     assert CHANGE not in _KINDS
-    if any(new[0] == FLIGHT and old[0] != FLIGHT for old, new in pairs):
+    if np.any((after == FLIGHT) & (before != FLIGHT)):
         return "flight"
-    if any(new[0] != 0 and old[0] == 0 for old, new in pairs):
+    if np.any((after != 0) & (before == 0)):
         return "opening"
-    if any(new[0] != old[0] for old, new in pairs):
+    if np.any(after != before):
         return "closing"
-    return "slip" if any(new[1] not in (0, old[1]) for old, new in pairs) else "stick"
-
-
-def _rocking_mode(modes: Modes) -> str:
-    states = [state for state, _ in modes]
-    return rocking_mode_name(states)
+    return "slip" if np.any((slides != 0) & (slides != slid)) else "stick"
 
 
 def _grazings(contact_events: pd.DataFrame) -> int:
@@ -184,41 +202,18 @@ def _grazings(contact_events: pd.DataFrame) -> int:
     return int(((contact_events["kind"] == "impact") & (np.array(speeds) < GRAZING_SPEED)).sum())
 
 
-def _energy_table(p: np.void, time: Array, history: Array, contact_events: Array) -> pd.DataFrame:
+def _energies(p: np.void, time: Array, history: Array, contact_events: Array) -> pd.DataFrame:
     """Balance of energy by cause over time [J]."""
     blocks = int(p["count"])
-    coordinates = slice(0, 3 * blocks)
-    inertia = 1.0 / p["inverse"][coordinates]
+    inertia = 1.0 / p["inverse"][: 3 * blocks]
     kinetic = (inertia * history[:, 3 * blocks : 6 * blocks] ** 2).sum(axis=1) / 2
     potential = float(p["g"]) * (p["mass"][:blocks] * history[:, 1 : 3 * blocks : 3]).sum(axis=1)
     struck = np.isin(contact_events[:, 1], (IMPACT, PARADOX))
     loss = np.where(struck, contact_events[:, 4] - contact_events[:, 5], 0.0)
-    meets = np.array(
-        [_meeting(contact_event, blocks) for contact_event in contact_events], dtype=np.int64
-    )
-    at = np.searchsorted(time, contact_events[:, 0] - 1e-12 * max(1.0, time[-1]))
-    so_far = np.zeros((blocks, time.size + 1))
-    np.add.at(so_far, (meets, at), loss)
-    lost = np.cumsum(so_far, axis=1)[:, : time.size]
+    # the lowest contact whose mode changes as it comes down, or the uppermost
+    before, after = (_modes(contact_events[:, column], blocks)[0] for column in (2, 3))
+    closes = (before != 0) & (before != after)
+    closes[:, -1] = True
+    losses = contact_events[:, 0], closes.argmax(axis=1), loss
     work, rubbed = history[:, -4], history[:, -3]
-    total = kinetic + potential + lost.sum(axis=0)
-    return pd.DataFrame(
-        {
-            "time": time,
-            "kinetic": kinetic,
-            "potential": potential,
-            "input": work,
-            **{f"lost_contact_{k + 1}": values for k, values in enumerate(lost)},
-            "lost_friction": rubbed,
-            "residual": total + rubbed - work - total[0],
-        }
-    )
-
-
-def _meeting(contact_event: Array, blocks: int) -> int:
-    """Contact that an impact closes: the lowest whose mode changes as it comes down, or the uppermost."""
-    before, after = (_modes(number, blocks) for number in contact_event[2:4])
-    for k in range(blocks - 1):
-        if before[k][0] not in (0, after[k][0]):
-            return k
-    return blocks - 1
+    return energy_table(time, kinetic, potential, work, losses, rubbed, contacts=blocks)

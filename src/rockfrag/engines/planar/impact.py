@@ -1,8 +1,8 @@
 """Impacts: impulses at touching ends, Coulomb's law on them, and each contact's own law (``docs/contact.md``)."""
 
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.kernels.laws import moves_impulse, scales_momentum
 from rockfrag.engines.kernels.laws import rate as lawful_rate
-from rockfrag.engines.planar.compile import kernel
 from rockfrag.engines.planar.modes import (
     approach,
     kinetic_energy,

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.engines.planar.compile import entry_kernel, kernel
+from rockfrag.engines.kernels.jit import entry_kernel, kernel
 from rockfrag.engines.planar.impact import lift_laws, strike
 from rockfrag.engines.planar.modes import approach, kinetic_energy, project, settle
 from rockfrag.engines.planar.search import mode_number

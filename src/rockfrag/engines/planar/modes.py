@@ -1,7 +1,7 @@
 """From a contact event to the mode in which the touching contacts go on (``docs/contact.md``, 5 to 9)."""
 
 from rockfrag.elementary import sin_cos
-from rockfrag.engines.planar.compile import kernel
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.planar.search import mode_number, search, take_number, try_mode
 from rockfrag.engines.planar.solve import end_of, look_at, rate, solve
 

@@ -85,8 +85,8 @@ WORK = np.dtype(
         ("q1", F, (3 * MOST,)),
         ("v1", F, (3 * MOST,)),
         ("a1", F, (3 * MOST,)),
-        ("kv", F, (7, 3 * MOST)),
-        ("ka", F, (7, 3 * MOST)),
+        ("kv", F, (3 * MOST, 7)),
+        ("ka", F, (3 * MOST, 7)),
         ("early", F, (MOST, 2)),  # speeds at which open ends part at the start of a step
         ("fails", INT, (MOST, 6)),  # [interface, channel] what has become negative
         # search for a mode

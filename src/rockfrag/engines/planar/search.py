@@ -7,7 +7,7 @@ fewer closed ends is taken.  Where neither ends, all modes are tried, the neighb
 
 import math
 
-from rockfrag.engines.planar.compile import kernel
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.planar.solve import bias, eliminate, end_of, fill_row
 
 CONSISTENT = 2e-13
@@ -199,7 +199,9 @@ def try_mode(p, w, impact, force, motion):
             if not abs(apart) < UNSOLVED * motion:
                 w.flip[0] = -1
                 return -math.inf
-            worst = _note_worst(w, worst, w.right[at] / force, k, end, 0)
+            # a force that friction multiplies counts as the shear that it brings about
+            push = w.right[at] * (max(1.0, p.kinetic[k]) if slides != 0 else 1.0)
+            worst = _note_worst(w, worst, push / force, k, end, 0)
             pressed += w.right[at] * (1.0 + w.fraction[k, end])
             at += 1
             if closed < 0:

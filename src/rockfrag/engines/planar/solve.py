@@ -3,21 +3,21 @@
 import math
 
 from rockfrag.elementary import sin_cos
-from rockfrag.engines.planar.compile import kernel
+from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
 AT_EDGE = 1e-9
 """A corner counts as over the face until it is this fraction of the half width beyond the edge: bases as wide as
 their face stand on it and not on its edges."""
 
 
-@kernel
+@inlined_kernel
 def look_at(p, w, q):
     """Take sines and cosines of the rotations in ``q``."""
     for k in range(p.count):
         w.sin[k], w.cos[k] = sin_cos(q[3 * k + 2])
 
 
-@kernel
+@inlined_kernel
 def face_axis(p, w, k):
     """Tangent of the face below interface k (its normal is (-ty, tx))."""
     if k == 0:
@@ -25,6 +25,14 @@ def face_axis(p, w, k):
     c = w.cos[k - 1] * p.tilt_cos[k] - w.sin[k - 1] * p.tilt_sin[k]
     s = w.sin[k - 1] * p.tilt_cos[k] + w.cos[k - 1] * p.tilt_sin[k]
     return c, -s
+
+
+@inlined_kernel
+def corner_of(p, w, q, k, end):
+    """Corner (x, y) of the base of body k."""
+    cx, cy = p.corner[k, end, 0], p.corner[k, end, 1]
+    c, s = w.cos[k], w.sin[k]
+    return q[3 * k] + cx * c + cy * s, q[3 * k + 1] - cx * s + cy * c
 
 
 @kernel
@@ -37,10 +45,7 @@ def end_of(p, w, q, k, end, kind):
     -------
     Point (x, y), tangent (tx, ty), gap [m], how far the corner is beyond the edge [m], kind.
     """
-    cx, cy = p.corner[k, end, 0], p.corner[k, end, 1]
-    c, s = w.cos[k], w.sin[k]
-    x = q[3 * k] + cx * c + cy * s
-    y = q[3 * k + 1] - cx * s + cy * c
+    x, y = corner_of(p, w, q, k, end)
     if k == 0:
         return x, y, 1.0, 0.0, y, -math.inf, 1
     tx, ty = face_axis(p, w, k)
@@ -55,12 +60,13 @@ def end_of(p, w, q, k, end, kind):
         return x, y, tx, ty, -ty * (x - ox) + tx * (y - oy), beyond, 1
     ex = ox + side * p.half[k] * tx
     ey = oy + side * p.half[k] * ty
+    c, s = w.cos[k], w.sin[k]
     tx = c * p.tilt_cos[k] - s * p.tilt_sin[k]
     ty = -(s * p.tilt_cos[k] + c * p.tilt_sin[k])
     return ex, ey, tx, ty, -ty * (x - ex) + tx * (y - ey), beyond, 0
 
 
-@kernel
+@inlined_kernel
 def rate(p, q, v, k, x, y, dx, dy):
     """Velocity of body k relative to what is below it, at (x, y) along (dx, dy) [m/s].
 
@@ -74,7 +80,7 @@ def rate(p, q, v, k, x, y, dx, dy):
     return found
 
 
-@kernel
+@inlined_kernel
 def bias(q, v, k, x, y, dx, dy, kind):
     """Relative acceleration at (x, y) along (dx, dy), seen from the face, where all accelerations vanish."""
     turn = v[3 * k + 2]
@@ -96,7 +102,7 @@ def bias(q, v, k, x, y, dx, dy, kind):
     return dx * ax + dy * ay
 
 
-@kernel
+@inlined_kernel
 def fill_row(q, k, x, y, dx, dy, row):
     """Motion of body k relative to what is below it, at (x, y) along (dx, dy), per coordinate of both bodies."""
     row[3] = dx
@@ -141,6 +147,15 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     if standing > 0:
         _carry(p, w, q, ah, av, standing)
     return True
+
+
+@inlined_kernel
+def accelerate(p, w, q, v, ah, av):
+    """Accelerations of the mode in ``w`` into ``w.out``: :func:`solve` where steps spend their time."""
+    if p.count == 1:
+        _solve_lone(p, w, q, v, ah, av)
+    else:
+        solve(p, w, q, v, ah, av, False)
 
 
 @kernel
@@ -336,8 +351,8 @@ def _solve_lone(p, w, q, v, ah, av):
     w.normal[0, 1] = 0.0
     push, shear, twist = 0.0, 0.0, 0.0
     if w.closed[0, 0] == 1 and w.closed[0, 1] == 1:
-        left, _, _, _, _, _, _ = end_of(p, w, q, 0, 0, 1)
-        right, y, _, _, _, _, _ = end_of(p, w, q, 0, 1, 1)
+        left, _ = corner_of(p, w, q, 0, 0)
+        right, y = corner_of(p, w, q, 0, 1)
         rx0, rx1, ry = left - q[0], right - q[0], y - q[1]
         push = -fy / light
         shear = -slides * p.kinetic[0] * push if slides != 0 else -fx / light
@@ -346,7 +361,7 @@ def _solve_lone(p, w, q, v, ah, av):
         w.normal[0, 0] = push - w.normal[0, 1]
     elif w.closed[0, 0] == 1 or w.closed[0, 1] == 1:
         end = 0 if w.closed[0, 0] == 1 else 1
-        x, y, _, _, _, _, _ = end_of(p, w, q, 0, end, 1)
+        x, y = corner_of(p, w, q, 0, end)
         rx, ry = x - q[0], y - q[1]
         across = light + rx * rx * slow
         both = -rx * ry * slow
@@ -416,8 +431,8 @@ def _solve_upper(p, w, q, v, ah, av):
         pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
         twist = first * push + two * shear
         moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
-    left, _, _, _, _, _, _ = end_of(p, w, q, 0, 0, 1)
-    right, y, _, _, _, _, _ = end_of(p, w, q, 0, 1, 1)
+    left, _ = corner_of(p, w, q, 0, 0)
+    right, y = corner_of(p, w, q, 0, 1)
     rx0, rx1, ry = left - q[0], right - q[0], y - q[1]
     shear = pull_x - p.mass[0] * fx
     push = pull_y - p.mass[0] * fy

@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
-from rockfrag.engines.planar.compile import kernel
-from rockfrag.engines.planar.solve import AT_EDGE, end_of, look_at, rate, solve
+from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.planar.solve import AT_EDGE, accelerate, end_of, look_at, rate, solve
 
 SLACK, TOUCH = 1e-12, 1e-13
 """Slack before a contact event is seen, so that what has just begun is not taken for its end: forces over weight;
@@ -14,6 +14,10 @@ ERROR = 1e-7
 """Error of a step above which it is taken again, half as long [-]."""
 SHORTEST = 1e-7
 """Fraction of a sampling interval below which a step is not made shorter."""
+
+HANGING = 1e-6
+"""Fraction of the half width by which a corner that comes in under an edge hangs beside the face and not over it:
+its base is at a right angle to the face, and the body has fallen."""
 
 WIDTH = 1e-12
 """Fraction of a step to which the time of a contact event is found."""
@@ -56,11 +60,17 @@ def ground_at(stretch, part):
 
 @kernel
 def start_step(p, w):
-    """Take ``q``, ``v`` and ``a`` as the start of a step."""
+    """Take ``q``, ``v`` and ``a`` as the start of a step; ``look_at`` must have been called with ``q``."""
     for d in range(3 * p.count):
         w.q0[d] = w.q[d]
         w.v0[d] = w.v[d]
         w.a0[d] = w.a[d]
+    for k in range(p.count):
+        for end in range(2):
+            w.early[k, end] = 0.0
+            if w.closed[k, end] == 0:
+                x, y, tx, ty, _, _, _ = end_of(p, w, w.q0, k, end, -1)
+                w.early[k, end] = rate(p, w.q0, w.v0, k, x, y, -ty, tx)
 
 
 @kernel
@@ -72,8 +82,8 @@ def take_step(p, w, stretch, energy_balance):
     h = stretch.length
     size = 3 * p.count
     for d in range(size):
-        w.kv[0, d] = w.v0[d]
-        w.ka[0, d] = w.a0[d]
+        w.kv[d, 0] = w.v0[d]
+        w.ka[d, 0] = w.a0[d]
     work, rubbed = 0.0, 0.0
     if energy_balance:
         look_at(p, w, w.q0)
@@ -85,29 +95,29 @@ def take_step(p, w, stretch, energy_balance):
         if stage == 1:
             t = 0.2
             for d in range(size):
-                w.v1[d] = w.v0[d] + h * 0.2 * w.ka[0, d]
-                w.q1[d] = w.q0[d] + h * 0.2 * w.kv[0, d]
+                w.v1[d] = w.v0[d] + h * 0.2 * w.ka[d, 0]
+                w.q1[d] = w.q0[d] + h * 0.2 * w.kv[d, 0]
         elif stage == 2:
             t = 0.3
             for d in range(size):
-                w.v1[d] = w.v0[d] + h * (0.075 * w.ka[0, d] + 0.225 * w.ka[1, d])
-                w.q1[d] = w.q0[d] + h * (0.075 * w.kv[0, d] + 0.225 * w.kv[1, d])
+                w.v1[d] = w.v0[d] + h * (0.075 * w.ka[d, 0] + 0.225 * w.ka[d, 1])
+                w.q1[d] = w.q0[d] + h * (0.075 * w.kv[d, 0] + 0.225 * w.kv[d, 1])
         elif stage == 3:
             t = 0.8
             b0, b1, b2 = 44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0
             for d in range(size):
-                w.v1[d] = w.v0[d] + h * (b0 * w.ka[0, d] + b1 * w.ka[1, d] + b2 * w.ka[2, d])
-                w.q1[d] = w.q0[d] + h * (b0 * w.kv[0, d] + b1 * w.kv[1, d] + b2 * w.kv[2, d])
+                w.v1[d] = w.v0[d] + h * (b0 * w.ka[d, 0] + b1 * w.ka[d, 1] + b2 * w.ka[d, 2])
+                w.q1[d] = w.q0[d] + h * (b0 * w.kv[d, 0] + b1 * w.kv[d, 1] + b2 * w.kv[d, 2])
         elif stage == 4:
             t = 8.0 / 9.0
             b0, b1 = 19372.0 / 6561.0, -25360.0 / 2187.0
             b2, b3 = 64448.0 / 6561.0, -212.0 / 729.0
             for d in range(size):
                 w.v1[d] = w.v0[d] + h * (
-                    b0 * w.ka[0, d] + b1 * w.ka[1, d] + b2 * w.ka[2, d] + b3 * w.ka[3, d]
+                    b0 * w.ka[d, 0] + b1 * w.ka[d, 1] + b2 * w.ka[d, 2] + b3 * w.ka[d, 3]
                 )
                 w.q1[d] = w.q0[d] + h * (
-                    b0 * w.kv[0, d] + b1 * w.kv[1, d] + b2 * w.kv[2, d] + b3 * w.kv[3, d]
+                    b0 * w.kv[d, 0] + b1 * w.kv[d, 1] + b2 * w.kv[d, 2] + b3 * w.kv[d, 3]
                 )
         elif stage == 5:
             t = 1.0
@@ -115,12 +125,12 @@ def take_step(p, w, stretch, energy_balance):
             b3, b4 = 49.0 / 176.0, -5103.0 / 18656.0
             for d in range(size):
                 w.v1[d] = w.v0[d] + h * (
-                    b0 * w.ka[0, d] + b1 * w.ka[1, d] + b2 * w.ka[2, d] + b3 * w.ka[3, d]
-                    + b4 * w.ka[4, d]
+                    b0 * w.ka[d, 0] + b1 * w.ka[d, 1] + b2 * w.ka[d, 2] + b3 * w.ka[d, 3]
+                    + b4 * w.ka[d, 4]
                 )  # fmt: skip
                 w.q1[d] = w.q0[d] + h * (
-                    b0 * w.kv[0, d] + b1 * w.kv[1, d] + b2 * w.kv[2, d] + b3 * w.kv[3, d]
-                    + b4 * w.kv[4, d]
+                    b0 * w.kv[d, 0] + b1 * w.kv[d, 1] + b2 * w.kv[d, 2] + b3 * w.kv[d, 3]
+                    + b4 * w.kv[d, 4]
                 )  # fmt: skip
         else:
             t = 1.0
@@ -128,19 +138,19 @@ def take_step(p, w, stretch, energy_balance):
             b4, b5 = -2187.0 / 6784.0, 11.0 / 84.0
             for d in range(size):
                 w.v1[d] = w.v0[d] + h * (
-                    b0 * w.ka[0, d] + b2 * w.ka[2, d] + b3 * w.ka[3, d] + b4 * w.ka[4, d]
-                    + b5 * w.ka[5, d]
+                    b0 * w.ka[d, 0] + b2 * w.ka[d, 2] + b3 * w.ka[d, 3] + b4 * w.ka[d, 4]
+                    + b5 * w.ka[d, 5]
                 )  # fmt: skip
                 w.q1[d] = w.q0[d] + h * (
-                    b0 * w.kv[0, d] + b2 * w.kv[2, d] + b3 * w.kv[3, d] + b4 * w.kv[4, d]
-                    + b5 * w.kv[5, d]
+                    b0 * w.kv[d, 0] + b2 * w.kv[d, 2] + b3 * w.kv[d, 3] + b4 * w.kv[d, 4]
+                    + b5 * w.kv[d, 5]
                 )  # fmt: skip
         look_at(p, w, w.q1)
         ah, av = ground_at(stretch, t)
-        solve(p, w, w.q1, w.v1, ah, av, False)
+        accelerate(p, w, w.q1, w.v1, ah, av)
         for d in range(size):
-            w.kv[stage, d] = w.v1[d]
-            w.ka[stage, d] = w.out[d]
+            w.kv[d, stage] = w.v1[d]
+            w.ka[d, stage] = w.out[d]
         if energy_balance and 2 <= stage <= 5:
             first, two = _powers(p, w, w.q1, w.v1, ah, av)
             weight = 500.0 / 1113.0
@@ -166,8 +176,8 @@ def step_error(p, w, h):
     """
     worst = 0.0
     for d in range(3 * p.count):
-        off = 71.0 / 57600.0 * w.ka[0, d] - 71.0 / 16695.0 * w.ka[2, d] + 71.0 / 1920.0 * w.ka[3, d]
-        off += -17253.0 / 339200.0 * w.ka[4, d] + 22.0 / 525.0 * w.ka[5, d] - 0.025 * w.ka[6, d]
+        off = 71.0 / 57600.0 * w.ka[d, 0] - 71.0 / 16695.0 * w.ka[d, 2] + 71.0 / 1920.0 * w.ka[d, 3]
+        off += -17253.0 / 339200.0 * w.ka[d, 4] + 22.0 / 525.0 * w.ka[d, 5] - 0.025 * w.ka[d, 6]
         worst = max(worst, abs(off) * (p.size if d % 3 == 2 else 1.0))
     return worst * h / p.speed
 
@@ -196,19 +206,24 @@ def least_margin(p, w, q, v):
     for k in range(p.count):
         pressed = 0.0
         some = False
+        w.fails[k, FALL] = 0
         for end in range(2):
             w.fails[k, GAP + end] = 0
             w.fails[k, EDGE + end] = 0
             if w.closed[k, end] == 1:
                 some = True
                 pressed += w.normal[k, end]
-                margin = w.normal[k, end] / p.weight + SLACK
+                stiff = max(1.0, p.kinetic[k]) if w.slides[k] != 0 else 1.0
+                margin = stiff * w.normal[k, end] / p.weight + SLACK
                 if k > 0 and w.slides[k] != 0:
                     _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, w.kind[k, end])
                     inside = AT_EDGE - beyond / p.size
                     inside = (inside if w.kind[k, end] == 1 else -inside) + TOUCH
                     if inside < 0.0:
                         w.fails[k, EDGE + end] = 1
+                        _, _, _, _, over, _, _ = end_of(p, w, q, k, end, 1)
+                        if over < -HANGING * p.size:
+                            w.fails[k, FALL] = 1
                     least = min(least, inside)
             else:
                 _, _, _, _, gap, beyond, _ = end_of(p, w, q, k, end, -1)
@@ -234,7 +249,6 @@ def least_margin(p, w, q, v):
         if k > 0:
             turned = max(turned, abs(q[3 * k + 2] - q[3 * k - 1]))
         margin = 0.5 * math.pi - turned
-        w.fails[k, FALL] = 0
         if k > 0 and off_the_edge(p, w, q, k):
             w.fails[k, FALL] = 1
         if margin < 0.0:
@@ -280,7 +294,7 @@ def margin_at(p, w, tau, stretch):
     interpolate(p, w, tau, stretch.length)
     look_at(p, w, w.q)
     ah, av = ground_at(stretch, tau)
-    solve(p, w, w.q, w.v, ah, av, False)
+    accelerate(p, w, w.q, w.v, ah, av)
     return least_margin(p, w, w.q, w.v)
 
 
@@ -318,19 +332,10 @@ def first_failure(p, w, at_low, high, at_high, stretch):
 
 @kernel
 def comes_near(p, w):
-    """Whether a gap has narrowed at the start of the step and widens at its end."""
-    some = False
-    look_at(p, w, w.q0)
-    for k in range(p.count):
-        for end in range(2):
-            w.early[k, end] = 0.0
-            if w.closed[k, end] == 0:
-                x, y, tx, ty, _, _, _ = end_of(p, w, w.q0, k, end, -1)
-                w.early[k, end] = rate(p, w.q0, w.v0, k, x, y, -ty, tx)
-                some = some or w.early[k, end] < 0.0
-    if not some:
-        return False
-    look_at(p, w, w.q1)
+    """Whether a gap has narrowed at the start of the step and widens at its end.
+
+    ``look_at`` must have been called with ``w.q1``.
+    """
     for k in range(p.count):
         for end in range(2):
             if w.early[k, end] < 0.0:

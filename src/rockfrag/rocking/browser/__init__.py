@@ -21,7 +21,7 @@ _FOLDER = Path(__file__).parent
 
 
 def module_bytes(name: str = "integrate") -> bytes:
-    """Return the bytes of a module: of one history (``integrate``), or of outcomes (``ensemble``)."""
+    """Return the bytes of a module: ``integrate``, of one history, ``ensemble`` or ``ensemble-fused``."""
     return (_FOLDER / f"{name}.wasm").read_bytes()
 
 

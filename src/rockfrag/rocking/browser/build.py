@@ -11,6 +11,8 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +32,7 @@ from rockfrag.rocking.browser.ensemble import (
     count_blocks,
     count_stacks,
     describe_shaken,
+    multiply_add,
 )
 from rockfrag.rocking.browser.entry import CALL, describe, integrate_call
 from rockfrag.units import GRAVITY
@@ -50,16 +53,17 @@ def build_integrate() -> bytes:
     entries: Entries = {"describe": (describe, (call,)), "integrate": (integrate_call, history)}
     constants = {"gravity": GRAVITY, "step": STEP, "free_time": FREE_TIME}
     return _module(
-        entries, {"call": CALL, "sample": SAMPLE, "event": CONTACT_EVENT}, constants, wide=False
+        entries, {"call": CALL, "sample": SAMPLE, "event": CONTACT_EVENT}, constants, fused=None
     )
 
 
-def build_ensemble() -> bytes:
-    """Return the bytes of the module that counts outcomes."""
+def build_ensemble(*, fused: bool) -> bytes:
+    """Return the bytes of the module that counts outcomes, with fused multiply-adds or without."""
     call, table, whole = np.zeros(1, SHAKEN)[0], np.zeros((1, 1)), np.zeros((1, 1), np.int64)
     motions = table, whole, table, whole, np.zeros(1), table, whole, np.zeros(1, OUTCOME)
     entries: Entries = {
         "describe": (describe_shaken, (call,)),
+        "multiplyAdd": (multiply_add, (call,)),
         "countBlocks": (count_blocks, (call, np.zeros((1, 1, 2), PIVOT), *motions)),
         "countStacks": (count_stacks, (call, table, *motions)),
     }
@@ -67,20 +71,35 @@ def build_ensemble() -> bytes:
         "gravity": GRAVITY, "step": STEP, "stack_step": STACK_STEP, "free_time": FREE_TIME, "block": BLOCK,
     }  # fmt: skip
     records = {"call": SHAKEN, "body": BODY, "pivot": PIVOT, "outcome": OUTCOME}
-    return _module(entries, records, constants, wide=True)
+    return _module(entries, records, constants, fused=fused)
+
+
+_VECTORS = {None: "", False: ",+simd128", True: ",+simd128,+relaxed-simd"}
+"""Features by whether multiply-adds are fused; None: there are none."""
+
+MODULES: Mapping[str, Callable[[], bytes]] = {
+    "integrate": build_integrate,
+    "ensemble": partial(build_ensemble, fused=False),
+    "ensemble-fused": partial(build_ensemble, fused=True),
+}
+"""How each module is made, by its name."""
 
 
 def _module(
-    entries: Entries, records: dict[str, np.dtype[Any]], constants: dict[str, float], *, wide: bool
+    entries: Entries,
+    records: dict[str, np.dtype[Any]],
+    constants: dict[str, float],
+    *,
+    fused: bool | None,
 ) -> bytes:
     """Compile and link entries, with the layout of records in a section of their own."""
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
-    objects = [_object(name, *entry, wide) for name, entry in entries.items()]
+    objects = [_object(name, *entry, fused) for name, entry in entries.items()]
     return _with_section(_linked(objects, list(entries)), "layout", _layout(records, constants))
 
 
-def _object(name: str, function: Any, arguments: tuple[Any, ...], wide: bool) -> bytes:
+def _object(name: str, function: Any, arguments: tuple[Any, ...], fused: bool | None) -> bytes:
     """Compile a function and all that it needs; it gets this name, and all others none."""
     text, entry = whole_ir(function, tuple(map(numba.typeof, arguments)))
     text = text.replace(f"@{entry}", f"@{name}").replace(f'@"{entry}"', f"@{name}")
@@ -88,13 +107,13 @@ def _object(name: str, function: Any, arguments: tuple[Any, ...], wide: bool) ->
     # a square root is an instruction, not a function of a library
     text = re.sub(r"^declare double @sqrt\(double\).*$", "", text, flags=re.MULTILINE)
     text = text.replace("@sqrt(", "@llvm.sqrt.f64(")
-    # no processor of WebAssembly has multiply-adds: these round twice
+    # as what may be fused it is made vectors of; how it is fused is said below
     text = text.replace("@llvm.fma.f64", "@llvm.fmuladd.f64")
     # WebAssembly has no symbols that several objects may define
     text = text.replace("= common ", "= internal ")
     module = llvm.parse_assembly(text)
     machine = llvm.Target.from_triple(TRIPLE).create_target_machine(
-        cpu="", features=FEATURES + ",+simd128" * wide, opt=3, reloc="static", codemodel="default"
+        cpu="", features=FEATURES + _VECTORS[fused], opt=3, reloc="static", codemodel="default"
     )
     module.triple, module.data_layout = TRIPLE, str(machine.target_data)
     for item in [*module.functions, *module.global_variables]:
@@ -102,11 +121,77 @@ def _object(name: str, function: Any, arguments: tuple[Any, ...], wide: bool) ->
             item.linkage = "internal"
     module.verify()
     options = llvm.create_pipeline_tuning_options(speed_level=3)
-    options.loop_vectorization = options.slp_vectorization = wide
+    options.loop_vectorization = options.slp_vectorization = fused is not None
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
+    if fused is not None:
+        module = llvm.parse_assembly(_with_multiply_adds(str(module), fused))
+        module.verify()
+        builder = llvm.create_pass_builder(machine, options)
+        builder.getModulePassManager().run(module, builder)
     made: bytes = machine.emit_object(module)
     return made
+
+
+_FUSED = """
+declare <2 x double> @llvm.wasm.relaxed.madd.v2f64(<2 x double>, <2 x double>, <2 x double>)
+define internal <2 x double> @fma2(<2 x double> %a, <2 x double> %b, <2 x double> %c) alwaysinline {
+  %r = call <2 x double> @llvm.wasm.relaxed.madd.v2f64(<2 x double> %a, <2 x double> %b, <2 x double> %c)
+  ret <2 x double> %r
+}
+"""
+
+_BY_PARTS = """
+define internal <2 x double> @fma2(<2 x double> %a, <2 x double> %b, <2 x double> %c) alwaysinline {
+  %ka = fmul <2 x double> %a, <double 134217729.0, double 134217729.0>
+  %kb = fmul <2 x double> %b, <double 134217729.0, double 134217729.0>
+  %xa = fsub <2 x double> %ka, %a
+  %xb = fsub <2 x double> %kb, %b
+  %ah = fsub <2 x double> %ka, %xa
+  %bh = fsub <2 x double> %kb, %xb
+  %al = fsub <2 x double> %a, %ah
+  %bl = fsub <2 x double> %b, %bh
+  %p = fmul <2 x double> %a, %b
+  %hh = fmul <2 x double> %ah, %bh
+  %hl = fmul <2 x double> %ah, %bl
+  %lh = fmul <2 x double> %al, %bh
+  %ll = fmul <2 x double> %al, %bl
+  %e1 = fsub <2 x double> %hh, %p
+  %e2 = fadd <2 x double> %e1, %hl
+  %e3 = fadd <2 x double> %e2, %lh
+  %e = fadd <2 x double> %e3, %ll
+  %s = fadd <2 x double> %p, %c
+  %q = fsub <2 x double> %s, %p
+  %w = fsub <2 x double> %s, %q
+  %d1 = fsub <2 x double> %p, %w
+  %d2 = fsub <2 x double> %c, %q
+  %t = fadd <2 x double> %d1, %d2
+  %u = fadd <2 x double> %t, %e
+  %r = fadd <2 x double> %s, %u
+  ret <2 x double> %r
+}
+"""
+
+_ONE_OF_TWO = """
+define internal double @fma1(double %a, double %b, double %c) alwaysinline {
+  %va = insertelement <2 x double> zeroinitializer, double %a, i32 0
+  %vb = insertelement <2 x double> zeroinitializer, double %b, i32 0
+  %vc = insertelement <2 x double> zeroinitializer, double %c, i32 0
+  %r = call <2 x double> @fma2(<2 x double> %va, <2 x double> %vb, <2 x double> %vc)
+  %x = extractelement <2 x double> %r, i32 0
+  ret double %x
+}
+"""
+
+
+def _with_multiply_adds(text: str, fused: bool) -> str:
+    """Say how multiply-adds round once: by an instruction that may fuse, or by the parts of a product (Dekker).
+
+    What the second leaves to chance is below 2**-50 an operation.
+    """
+    text = re.sub(r"^declare .*@llvm\.fmuladd\..*$", "", text, flags=re.MULTILINE)
+    text = text.replace("@llvm.fmuladd.v2f64", "@fma2").replace("@llvm.fmuladd.f64", "@fma1")
+    return text + (_FUSED if fused else _BY_PARTS) + _ONE_OF_TWO
 
 
 def _linked(objects: list[bytes], exports: list[str]) -> bytes:
@@ -169,7 +254,7 @@ if __name__ == "__main__":
         raise SystemExit(
             f"numba: the module is made with version {TESTED_NUMBA[0]}x; install that."
         )
-    for name, build in (("integrate", build_integrate), ("ensemble", build_ensemble)):
+    for name, build in MODULES.items():
         path = Path(__file__).with_name(f"{name}.wasm")
         path.write_bytes(build())
         print(f"{path}: {path.stat().st_size} bytes")

@@ -10,7 +10,7 @@ import numpy as np
 from rockfrag.engines.kernels.by_reference import referred
 from rockfrag.engines.kernels.chatter import RESTORING
 from rockfrag.engines.kernels.equations import BODY, STATE
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.kernels.jit import fma, kernel
 from rockfrag.engines.kernels.lanes import block, stack_case, stack_one, stack_two
 from rockfrag.engines.kernels.lanes.case import LANES, OUTCOME, Ensemble, Motions
 from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
@@ -47,6 +47,12 @@ SHAKEN = np.dtype(
 # as parts of what is compiled here, and not as the entries that Python calls
 _integrate_blocks = kernel(block.integrate_blocks.py_func)
 _integrate_stacks = kernel(integrate_stacks.py_func)
+
+
+@kernel
+def multiply_add(call):
+    """Put a multiply-add of numbers of a call into it, which tells whether it rounds once."""
+    call.uplift = fma(call.measured, call.livelier, call.uplift)
 
 
 @kernel

@@ -1,0 +1,124 @@
+/* The answer about one object: outcomes of its bodies by motion and level, and what follows from them. */
+const answer = (data) => {
+  "use strict";
+  const { constants: { AT_REST, LARGEST_FACTOR, LARGEST_PEAK, MODEL, SPACE }, measures } = data;
+  const judge = risk(data), shiftOf = conversion(data);
+
+  // levels of a request: the asked one among those of the measure
+  function levelsOf(request, few) {
+    const { levels, few: coarse } = measures[request.measure], all = [...(few ? coarse : levels)];
+    const asked = siteLevel(request);
+    if (!all.includes(asked)) all.push(asked);
+    return all.sort((a, b) => a - b);
+  }
+  const hazardOf = ({ curve, years, level }) => curve ?? (years === null ? null : judge.curveOfOneLevel(level, years));
+  const siteLevel = (request) => request.level ?? judge.levelOf(request.curve, 1 / 475);
+
+  // factors on some motions at all levels, and which of them count
+  function scalesOf(request, few, first, shaking) {
+    const levels = levelsOf(request, few), { values } = measures[request.measure];
+    const scales = new Float64Array(levels.length * shaking.length), allowed = new Uint8Array(scales.length);
+    shaking.forEach(({ peak }, m) => levels.forEach((level, k) => {
+      const scale = level / values[first + m], most = ((1 - 1e-9) * LARGEST_PEAK) / peak, at = m * levels.length + k;
+      allowed[at] = scale <= LARGEST_FACTOR && scale >= 1 / LARGEST_FACTOR && scale <= most ? 1 : 0;
+      scales[at] = Math.min(allowed[at] ? scale : AT_REST, most);
+    }));
+    return { levels, scales, allowed };
+  }
+
+  // a worker's part: outcomes of a run under some of the motions
+  function counter(ensemble, motions) {
+    const floors = new Map(), parts = new Map(), described = new Map();
+    function shakingOf(place, floor, part) {
+      const key = place.ground ? "" : `${place.key} ${floor}`, known = floors.get(key) ?? new Map();
+      if (floors.size > 8 && !floors.has(key)) floors.clear();
+      floors.set(key, known);
+      if (!known.has(part)) known.set(part, partOf(part).map((motion) => {
+        const moved = place.ground ? motion : building.floorMotion(place.floors[floor], motion);
+        return { ...moved, peak: moved.samples.reduce((most, a) => Math.max(most, Math.abs(a)), 0) };
+      }));
+      return known.get(part);
+    }
+    const partOf = (part) => {
+      const [first, last] = part.split("-");
+      return motions.slice(Number(first), Number(last));
+    };
+    return function count(request, run, first, last) {
+      const shaking = shakingOf(request.place, run.floor ?? "", `${first}-${last}`), { scales, allowed } = scalesOf(request, run.few, first, shaking);
+      // what is allowed follows from the floor as it is, on whatever floor it is counted
+      const own = run.floor ? scalesOf(request, run.few, first, shakingOf(request.place, "", `${first}-${last}`)) : null;
+      return { ...ensemble.count(ensemble.bodyOf(run.body), shaking, own ? moved(own, shaking) : scales), allowed: own?.allowed ?? allowed };
+    };
+  }
+  function moved({ levels, scales }, shaking) {
+    return scales.map((scale, at) => Math.min(scale, ((1 - 1e-9) * LARGEST_PEAK) / shaking[Math.floor(at / levels.length)].peak));
+  }
+
+  // all parts of a run put together
+  function joined(request, run, parts) {
+    const levels = levelsOf(request, run.few), found = { levels };
+    for (const name of ["overturned", "rocked", "allowed"]) {
+      found[name] = new Uint8Array(levels.length * data.earthquakes.length);
+      for (const part of parts) found[name].set(part[name], part.first * levels.length);
+    }
+    return found;
+  }
+
+  // what is known so far of runs whose outcomes are complete; `outcomes` by the place of the run in the plan
+  function found(request, runs, outcomes, ensemble) {
+    const now = outcomes[0], level = siteLevel(request), hazard = hazardOf(request), { place } = request;
+    const exact = request.measure === "PGA" && place.ground;
+    const known = (role) => runs.map((run, i) => ({ ...run, outcomes: outcomes[i] })).filter((run) => run.role === role && run.outcomes);
+    const target = hazard ? judge.riskTarget(hazard, 50) : judge.fractionTarget(level);
+    const answer = { level, years: 50, counts: countsOf(now, level), rocksFrom: rocksFrom(request, now, exact, ensemble), shares: judge.fractions(now), levels: now.levels };
+    answer.value = judge.valueOf(judge.fractionTarget(level), now);
+    answer.rockingValue = judge.valueOf(judge.fractionTarget(level, "rocked"), now);
+    answer.probabilityValue = hazard ? judge.valueOf(target, now) : null;
+    answer.deciding = deciding(now, level);
+    const moved = known("moved"), sides = [];
+    for (let i = 0; i + 1 < moved.length; i += 2) sides.push([moved[i].name, moved[i].outcomes, moved[i + 1].outcomes]);
+    answer.complete = runs.every((run, i) => run.role !== "moved" || outcomes[i]);
+    if (answer.complete) {
+      const shifts = { model: MODEL, space: SPACE }, fit = measures[request.measure].ratios ? shiftOf(now, measures[request.measure].ratios) : null;
+      if (fit) shifts.conversion = fit.shift;
+      const fraction = judge.estimate(judge.fractionTarget(level), now, sides, {}, shifts);
+      const rocking = judge.estimateRocking(level, now, sides, exact);
+      if (!(rocking.value > 0)) fraction.upper = Math.min(fraction.upper, rocking.upper);
+      rocking.lower = Math.max(rocking.lower, fraction.lower);
+      rocking.upper = Math.max(rocking.upper, fraction.upper);
+      Object.assign(answer, { fraction, rocking });
+      if (hazard) answer.probability = judge.estimate(target, now, sides, judge.ofQuantiles(now, hazard), shifts);
+      const main = answer.probability ?? fraction;
+      Object.assign(answer, { main, narrowed: judge.narrowed(main), wide: judge.isWide(fraction) });
+    }
+    answer.arrangements = [["on_its_pedestal", judge.valueOf(target, now)], ...known("arrangement").map((run) => [run.name, judge.valueOf(target, run.outcomes)])];
+    answer.mitigations = known("mitigation").map((run) => ({ ...run, outcomes: null, ...judge.compared(target, now, run.outcomes) })).sort((a, b) => a.value - b.value);
+    return answer;
+  }
+  function countsOf({ levels, allowed, rocked, overturned }, level) {
+    const at = levels.indexOf(level), counts = [0, 0, 0];
+    for (let place = at; place < allowed.length; place += levels.length) {
+      if (!allowed[place]) continue;
+      counts[0] += 1;
+      counts[1] += rocked[place];
+      counts[2] += overturned[place];
+    }
+    return counts[0] ? counts : null;
+  }
+  function rocksFrom(request, now, exact, ensemble) {
+    if (exact) return ensemble.bodyOf({ ...request, measured: request.restitution }).uplift;
+    const first = judge.fractions(now, "rocked").findIndex((share) => share > 0);
+    return first < 0 ? Infinity : now.levels[first];
+  }
+  // the motion that topples it first, and at which level; the first one at the site's where none does
+  function deciding({ levels, allowed, overturned }, level) {
+    let best = { motion: 0, level, falls: false };
+    for (let m = 0; m < data.earthquakes.length; m++) {
+      const k = levels.findIndex((_, k) => allowed[m * levels.length + k] && overturned[m * levels.length + k]);
+      if (k >= 0 && (!best.falls || levels[k] < best.level)) best = { motion: m, level: levels[k], falls: true };
+    }
+    return best;
+  }
+  return { counter, joined, found, siteLevel, levelsOf, hazardOf, judge };
+};
+if (typeof module !== "undefined") module.exports = answer;

@@ -1,0 +1,96 @@
+"""The command ``rockfrag app``."""
+
+import argparse
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockfrag.assess import commands as assess
+from rockfrag.errors import InputError
+
+if TYPE_CHECKING:
+    from rockfrag.assess.hazard.curve import HazardCurve
+
+_OBJECT = {"width": "35 cm", "height": "1.2 m"}
+_SHAKING = {"pga": "0.4 g", "return_period": "475"}
+"""What stands in the form where no object, and no shaking, is given."""
+
+_FORM = ("name", "width", "height", "mass", "cg_height", "cg_offset", "restitution", "floor")
+_KEYS = (*_FORM, "pedestal", "building", "pga", "pgv", "return_period", "hazard", "records")
+"""Keys of ``statue.yaml`` that the page has a field for, or is written with."""
+
+
+def add_app_command(commands: Any) -> None:
+    """Add ``app`` to the parsers of a command line."""
+    parser = commands.add_parser(
+        "app",
+        help="write the assessment as one page that needs no installation",
+        description="One HTML file that computes what 'rockfrag assess' says of objects that rock in a plane. "
+        "What is given stands in its form at first; records are those that it computes with.",
+    )
+    parser.add_argument("file", nargs="?", help="statue.yaml that says all this")
+    assess.add_request_options(parser)
+    parser.add_argument("--output", metavar="FILE", default="assess.html", help="the page")
+    parser.set_defaults(run=_app)
+
+
+# imported when it runs: `rockfrag --help` should not wait for numba
+def _app(options: argparse.Namespace) -> int:
+    from rockfrag.assess.app.writing import write_app
+    from rockfrag.assess.motions import motion_set
+    from rockfrag.assess.place import Place
+    from rockfrag.assess.request import make_request
+    from rockfrag.yaml_file import read_yaml
+
+    given = assess.settings_of(options)
+    if options.file:
+        given = read_yaml(options.file) | given
+    beyond = [key for key, value in given.items() if value and key not in _KEYS]
+    if beyond:
+        raise InputError(
+            f"key {beyond[0]}: the page does not compute with it; rockfrag assess does."
+        )
+    shaken = given.keys() & {"pga", "pgv", "hazard"}
+    settings = _OBJECT | ({} if shaken else _SHAKING) | given
+    folder = Path(options.file).parent if options.file else Path()
+    request = make_request(settings, options.file or "rockfrag app", folder)
+    motions = motion_set(request.records, Place(), Path(options.records))
+    write_app(
+        motions, _form(settings, request.hazard), options.output, on_floor=request.records.on_floor
+    )
+    print(options.output)
+    return 0
+
+
+def _form(settings: Mapping[str, Any], hazard: "Sequence[HazardCurve]") -> dict[str, str]:
+    """What stands in the form at first."""
+    form = {key: str(settings[key]) for key in _FORM if key in settings}
+    pedestal, building = settings.get("pedestal") or {}, settings.get("building") or {}
+    if isinstance(pedestal, list):
+        raise InputError("key pedestal: the page has one; rockfrag assess takes several.")
+    if not isinstance(building, Mapping) or not building.keys() <= {
+        "storey_height",
+        "material",
+        "first_period_s",
+    }:
+        raise InputError("key building: the page knows one storey height, a period and a material.")
+    form |= {f"pedestal_{key}": str(value) for key, value in pedestal.items()}
+    form |= {key: str(building[key]) for key in ("storey_height", "material") if key in building}
+    if "first_period_s" in building:
+        form["period"] = f"{building['first_period_s']} s"
+    level = "pga" if "pga" in settings else "pgv"
+    if "pga" in settings and "pgv" in settings:
+        raise InputError("key pgv: the page takes one level; rockfrag assess takes both.")
+    form |= {"measure": level.upper(), "level": str(settings.get(level, ""))}
+    if "hazard" in settings:
+        (curve, *others) = hazard
+        if others or curve.quantiles or curve.measure.imt not in ("PGA", "PGV"):
+            raise InputError(
+                "key hazard: the page takes one mean curve, in PGA or PGV; leave the others out."
+            )
+        rows = zip(curve.levels.tolist(), curve.rates.tolist(), strict=True)
+        form |= {
+            "measure": curve.measure.imt,
+            "hazard": "\n".join(f"{x!r} {rate!r}" for x, rate in rows),
+        }
+    return form | {"years": str(settings.get("return_period", ""))}

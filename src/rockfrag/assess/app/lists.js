@@ -1,0 +1,69 @@
+/* Objects as CSV and as statue.yaml: written by the page, and read again; nothing in them is executed. */
+const lists_ = (data, fields) => {
+  "use strict";
+  const cell = (text) => (/[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  // a sheet would take what begins so for a formula
+  const guarded = (text) => (/^[=+@\t]/.test(text) ? ` ${text}` : text);
+  const csvOf = (forms) => [fields.join(","), ...forms.map((form) => fields.map((name) => cell(guarded(String(form[name] ?? "")))).join(","))].join("\r\n") + "\r\n";
+  function rowsOf(text) {
+    const rows = [[""]];
+    for (let i = 0, quoted = false; i < text.length; i++) {
+      const letter = text[i], row = rows.at(-1);
+      if (quoted && letter === '"' && text[i + 1] === '"') row[row.length - 1] += text[++i];
+      else if (letter === '"') quoted = !quoted;
+      else if (!quoted && letter === ",") row.push("");
+      else if (!quoted && letter === "\n") rows.push([""]);
+      else if (letter !== "\r" || quoted) row[row.length - 1] += letter;
+    }
+    return rows.filter((row) => row.some((text) => text.trim()));
+  }
+  // keys of statue.yaml by the fields of the form
+  const KEYS = { storey_height: ["building", "storey_height"], material: ["building", "material"], period: ["building", "first_period"],
+    pedestal_width: ["pedestal", "width"], pedestal_height: ["pedestal", "height"], pedestal_mass: ["pedestal", "mass"] };
+  const LEFT_OUT = ["measure", "level", "years", "hazard", "round"];
+  function yamlOf(form) {
+    const plain = fields.filter((name) => !KEYS[name] && !LEFT_OUT.includes(name) && form[name]?.trim?.());
+    const value = (name) => (name === "restitution" ? point(form[name]) : JSON.stringify(point(form[name].trim())));
+    const lines = plain.map((name) => `${name}: ${value(name)}`);
+    if (form.round) lines.push("round: true");
+    for (const part of ["pedestal", "building"]) {
+      const own = Object.entries(KEYS).filter(([name, [home]]) => home === part && form[name]?.trim() && (part === "pedestal" || form.floor?.trim()));
+      if (own.length) lines.push(`${part}:`, ...own.map(([name, [, key]]) => `  ${key}: ${value(name)}`));
+    }
+    if (form.level?.trim()) lines.push(`${form.measure === "PGV" ? "pgv" : "pga"}: ${value("level")}`);
+    if (form.years?.trim()) lines.push(`return_period: ${JSON.stringify(form.years.trim())}`);
+    return lines.join("\n") + "\n";
+  }
+  const point = (text) => text.replace(/^(\s*[-+]?\d+),(\d+)/, "$1.$2");
+  function ofYaml(text, say) {
+    const form = {}, unquoted = (value) => {
+      const plain = value.replace(/\s+#.*$/, "").trim();
+      return /^".*"$/.test(plain) ? JSON.parse(plain) : plain.replace(/^'(.*)'$/, "$1");
+    };
+    let home = "";
+    for (const line of text.split(/\r?\n/)) {
+      if (!line.trim() || /^\s*#/.test(line)) continue;
+      const found = /^(\s*)([a-z_]+):\s*(.*)$/.exec(line);
+      if (!found) throw new Error(say("file_keys", { key: line.trim().slice(0, 40) }));
+      const [, indent, key, value] = found;
+      if (!indent) home = value ? "" : key;
+      if (!indent && !value) continue;
+      const name = indent ? Object.keys(KEYS).find((own) => KEYS[own][0] === home && KEYS[own][1] === key)
+        : { pga: "level", pgv: "level", return_period: "years", return_period_years: "years" }[key] ?? key;
+      if (!fields.includes(name) || (!indent && KEYS[name])) throw new Error(say("file_keys", { key: key.slice(0, 40) }));
+      form[name] = name === "round" ? unquoted(value) === "true" : String(unquoted(value));
+      if (key === "pgv" || key === "pga") form.measure = key.toUpperCase();
+    }
+    return [form];
+  }
+  function read(name, text, say) {
+    if (!/\.csv$/i.test(name)) return ofYaml(text, say);
+    const [titles, ...rows] = rowsOf(text.replace(/^\ufeff/, ""));
+    const unknown = (titles ?? []).find((title) => !fields.includes(title.trim()));
+    if (unknown !== undefined) throw new Error(say("file_keys", { key: unknown.trim().slice(0, 40) }));
+    if (!rows.length) throw new Error(say("file_no_rows"));
+    return rows.slice(0, 500).map((row) => Object.fromEntries(titles.map((title, i) => [title.trim(), (row[i] ?? "").trim()])));
+  }
+  return { csvOf, yamlOf, read };
+};
+if (typeof module !== "undefined") module.exports = lists_;

@@ -1,0 +1,211 @@
+/* From what was typed to bodies: sizes, what stands on what, what is not known to the digit, and what helps. */
+const objects = (data) => {
+  "use strict";
+  const { units, constants } = data;
+  const {
+    STONE, DEPTHS, DENSITIES, WIDER, PLATE, STEEL, LOWER, BALLAST, BALLAST_AT, PEDESTAL_HEIGHT, PERIOD_FACTORS, STOREY_HEIGHT,
+    STOREY_MASS, HIGHEST_BUILDING, DAMPING, TOLERANCES, PLACE_TOLERANCES, KNOWN_PERIOD, LONGEST_PERIOD,
+  } = constants;
+
+  // a refusal: the field it is about, and the sentence of the table with what stands in it
+  class Refusal extends Error {
+    constructor(field, id, values = {}) {
+      super(`${field}: ${id}`);
+      Object.assign(this, { field, id, values });
+    }
+  }
+  const refuse = (field, id, values) => { throw new Refusal(field, id, values); };
+
+  // ---- what was typed
+
+  const NUMBER = /^\s*([-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$/s;
+  const plain = (unit) => unit.replaceAll("²", "2").replaceAll("^", "").split(/[\s·*_/]+/).join("_");
+
+  // a number with its unit in SI; null where nothing stands
+  function quantity(field, text, dimension) {
+    if (!text?.trim()) return null;
+    const example = units.examples[dimension], found = NUMBER.exec(text);
+    const value = found ? Number(found[1].replace(",", ".")) : NaN;
+    if (!Number.isFinite(value)) refuse(field, "no_number", { text: short(text), example });
+    const unit = units.dimensions[dimension][plain(found[2])];
+    if (!unit) {
+      refuse(field, found[2] ? "no_unit" : "unit_missing", { text: short(text), example, known: units.known[dimension] });
+    }
+    return (value * unit[0]) / unit[1];
+  }
+  const short = (text) => String(text).trim().slice(0, 60);
+  function positive(field, text, dimension) {
+    const value = quantity(field, text, dimension);
+    if (value !== null && !(value > 0)) refuse(field, "not_above_zero", { text: short(text) });
+    return value;
+  }
+  function number(field, text, id, low, high) {
+    if (!text?.trim()) return null;
+    const found = NUMBER.exec(text), value = found && /^[a-z]*$/i.test(found[2]) ? Number(found[1].replace(",", ".")) : NaN;
+    if (!(value > low && value <= high)) refuse(field, id, { text: short(text), low, high });
+    return value;
+  }
+
+  // the form's texts, by field, as a request in SI
+  function requestOf(form) {
+    if (form.round) refuse("round", "round");
+    if (form.depth?.trim()) refuse("depth", "depth");
+    const width = positive("width", form.width, "length"), height = positive("height", form.height, "length");
+    if (width === null) refuse("width", "missing", { example: "35 cm" });
+    if (height === null) refuse("height", "missing", { example: "1.2 m" });
+    const mass = positive("mass", form.mass, "mass"), cgHeight = positive("cg_height", form.cg_height, "length");
+    if (cgHeight !== null && cgHeight >= height) refuse("cg_height", "above_top");
+    const cgOffset = quantity("cg_offset", form.cg_offset, "length") ?? 0;
+    const statue = { width, height, mass: mass ?? STONE * width * width * height, cgHeight, cgOffset };
+    checkDensity("mass", statue);
+    let pedestal = null;
+    if (form.pedestal_width?.trim() || form.pedestal_height?.trim()) {
+      const wide = positive("pedestal_width", form.pedestal_width, "length"), high = positive("pedestal_height", form.pedestal_height, "length");
+      if (wide === null) refuse("pedestal_width", "missing", { example: "50 cm" });
+      if (high === null) refuse("pedestal_height", "missing", { example: "90 cm" });
+      const heavy = positive("pedestal_mass", form.pedestal_mass, "mass");
+      pedestal = { width: wide, height: high, mass: heavy ?? STONE * wide * wide * high, massGiven: heavy !== null };
+      checkDensity("pedestal_mass", pedestal);
+    } else if (form.pedestal_mass?.trim()) refuse("pedestal_width", "missing", { example: "50 cm" });
+    return {
+      name: short(form.name ?? "") || data.texts.en.the_object, statue, pedestal, massGiven: mass !== null,
+      restitution: number("restitution", form.restitution, "restitution", 0, 1),
+      place: placeOf(form), ...shakingOf(form),
+    };
+  }
+  function checkDensity(field, { width, height, mass }) {
+    const most = mass / (width * height * DEPTHS[0] * width), least = mass / (width * height * DEPTHS[1] * Math.max(width, height));
+    if (!(most >= DENSITIES[0] && least <= DENSITIES[1])) refuse(field, "density");
+  }
+
+  function shakingOf(form) {
+    const level = form.measure === "PGV" ? quantity("level", form.level, "velocity") : quantity("level", form.level, "acceleration");
+    const measure = form.measure === "PGV" ? "PGV" : "PGA", { highest } = data.measures[measure];
+    const value = level === null ? null : measure === "PGV" ? level * 100 : level / constants.GRAVITY;
+    if (value !== null && !(value > 0 && value <= highest)) refuse("level", "level", { highest, unit: data.measures[measure].unit });
+    const years = number("years", form.years, "years", 0, LONGEST_PERIOD), curve = curveOf(form.hazard, measure);
+    if (curve && years !== null) refuse("years", "both_hazards");
+    if (years !== null && value === null) refuse("level", "level_missing");
+    if (value === null && !curve) refuse("level", "level_missing");
+    return { measure, level: value, years, curve };
+  }
+
+  // pasted lines of a level and its annual rate, return period (above 1) or as the heading says
+  function curveOf(text, measure) {
+    if (!text?.trim()) return null;
+    if (text.length > 20000) refuse("hazard", "hazard_long");
+    const lines = text.trim().split(/\r?\n/).map((line) => line.trim()).filter((line) => line && !line.startsWith("#"));
+    const cells = (line) => line.split(/[;\t]+|\s+|,(?=\s)|(?<=\.\d+),|,(?=\d*\.)/).filter(Boolean);
+    const heading = /[a-df-zA-DF-Z]/.test(lines[0]) ? lines.shift().toLowerCase() : "";
+    const told = /return|tr\b|anni|periodo/.test(heading) ? (v) => 1 / v : /poe/.test(heading) ? poe(heading) : (v) => v;
+    const rows = lines.map((line, i) => {
+      const row = cells(line).map((cell) => (/^[-+\d.,eE]+$/.test(cell) ? Number(cell.replace(",", ".")) : NaN));
+      if (row.length !== 2 || !row.every(Number.isFinite)) refuse("hazard", "hazard_line", { line: i + 1 + (heading ? 1 : 0), text: short(line) });
+      return [row[0], told(row[1])];
+    }).sort((a, b) => a[0] - b[0]).filter(([, rate], i, all) => rate > 0 && !(all[i + 1]?.[1] === rate));
+    const { highest, damaging } = data.measures[measure];
+    if (rows.length < 2) refuse("hazard", "hazard_few");
+    rows.forEach(([level, rate], i) => {
+      if (!(level > 0 && rate <= 100) || (i && !(level > rows[i - 1][0] && rate < rows[i - 1][1]))) refuse("hazard", "hazard_order", { line: i + 1 });
+    });
+    if (!(rows.at(-1)[0] <= highest && rows.at(-1)[0] >= damaging)) refuse("hazard", "hazard_unit", { highest, damaging, unit: data.measures[measure].unit });
+    return { levels: rows.map((row) => row[0]), rates: rows.map((row) => row[1]), quantiles: [] };
+  }
+  const poe = (heading) => {
+    const years = Number(/poe_?(\d+)/.exec(heading)?.[1] ?? 50);
+    return (p) => (p >= 0 && p < 1 ? -Math.log1p(-p) / years : NaN);
+  };
+
+  function placeOf(form) {
+    if (data.onFloor || !form.floor?.trim()) {
+      return { ground: true, key: "", floors: {}, assumed: data.onFloor ? "" : "on_ground" };
+    }
+    const found = /^\s*(\d{1,3})\s*\/\s*(\d{1,3})\s*$/.exec(form.floor);
+    const [level, storeys] = found ? [Number(found[1]), Number(found[2])] : [1, 0];
+    if (!(level <= storeys && storeys >= 1 && storeys <= HIGHEST_BUILDING)) refuse("floor", "floor", { most: HIGHEST_BUILDING, text: short(form.floor) });
+    const each = positive("storey_height", form.storey_height, "length"), given = positive("period", form.period, "time");
+    const heights = new Array(storeys).fill(each ?? STOREY_HEIGHT), total = heights.reduce((a, b) => a + b, 0);
+    if (!(heights[0] >= data.limits.storey[0] && heights[0] <= data.limits.storey[1])) refuse("storey_height", "storey");
+    const material = PERIOD_FACTORS[form.material] ? form.material : "masonry";
+    const period = given ?? PERIOD_FACTORS[material] * total ** 0.75;
+    if (!(period >= data.limits.period[0] && period <= data.limits.period[1])) refuse("period", "period");
+    const known = each === null && given === null && material === "masonry" ? data.floors?.[storeys] : null;
+    if (known && level) {
+      const floors = Object.fromEntries(Object.entries(known).map(([name, modes]) => [name, { modes, level }]));
+      return { ground: false, level, storeys, floors, key: `${level}/${storeys}`, assumed: "building", total, period };
+    }
+    const masses = heights.map(() => STOREY_MASS), stiffnesses = building.stiffnessesFor(masses, heights, period);
+    const at = { masses, stiffnesses, damping: DAMPING, level };
+    const slower = (factor) => ({ ...at, stiffnesses: stiffnesses.map((k) => k / factor ** 2) });
+    const spread = { ...PLACE_TOLERANCES, ...(given === null ? {} : { period: KNOWN_PERIOD }) };
+    const floors = level === 0 ? {} : {
+      "": at, "period-": slower(1 - spread.period), "period+": slower(1 + spread.period),
+      "damping-": { ...at, damping: DAMPING * (1 - spread.damping) }, "damping+": { ...at, damping: DAMPING * (1 + spread.damping) },
+    };
+    return { ground: level === 0, level, storeys, floors, key: JSON.stringify(at), assumed: "building", total, period, computed: level > 0 };
+  }
+
+  // ---- bodies
+
+  const inertiaOf = (block) => block.inertia ?? (block.mass * (block.width * block.width + block.height * block.height)) / 12;
+  const heightOf = (block) => block.cgHeight ?? block.height / 2;
+  const wider = (block, factor) => ({ ...block, width: block.width * factor, inertia: inertiaOf(block) });
+  const higher = (block, factor) => ({ ...block, cgHeight: Math.min(heightOf(block) * factor, block.height), inertia: inertiaOf(block) });
+
+  // what is shaken: roles, and bodies as the module takes them; the object as it stands first
+  function planOf(request, ensemble) {
+    const { statue, pedestal, restitution: measured, place } = request;
+    const body = (top, below = pedestal, livelier = 1) => ({ statue: top, pedestal: below, measured, livelier });
+    const joined = (top, below) => {
+      const { centre: [x, y, inertia] } = ensemble.bodyOf({ statue: top, pedestal: below });
+      return { width: below.width, height: below.height + top.height, mass: below.mass + top.mass, inertia, cgHeight: y, cgOffset: x };
+    };
+    if (measured !== null && measured > ensemble.bodyOf(body(statue)).largest) refuse("restitution", "gains_energy");
+    const runs = [{ role: "now", body: body(statue) }];
+    const move = (name, make) => {
+      const s = TOLERANCES[name];
+      for (const factor of [1 - s, 1 + s]) runs.push({ role: "moved", name, few: true, body: make(factor) });
+    };
+    move("width", (f) => body(wider(statue, f), pedestal && wider(pedestal, f)));
+    move("cg_height", (f) => body(higher(statue, f)));
+    move("restitution", (f) => body(statue, pedestal, f));
+    if (pedestal) move("mass", (f) => body({ ...statue, mass: statue.mass * f, inertia: inertiaOf(statue) * f }));
+    for (const floor of Object.keys(place.floors).filter(Boolean))
+      runs.push({ role: "moved", name: floor.slice(0, -1), few: true, floor, body: body(statue) });
+    if (pedestal) {
+      runs.push({ role: "arrangement", name: "fixed_to_pedestal", body: body(joined(statue, pedestal), null) });
+      runs.push({ role: "arrangement", name: "on_the_floor", body: body(statue, null) });
+    }
+    const helps = (name, what, values = {}) => runs.push({ role: "mitigation", name, body: what, values });
+    const onPlate = (block) => joined(block, { width: WIDER * block.width, height: PLATE, mass: STEEL * PLATE * (WIDER * block.width) ** 2 });
+    const plate = (block) => ({ width: 100 * WIDER * block.width, thick: 100 * PLATE });
+    if (!pedestal) helps("plate_it", body(onPlate(statue)), plate(statue));
+    else {
+      helps("plate_pedestal", body(statue, onPlate(pedestal)), plate(pedestal));
+      if (WIDER * statue.width <= pedestal.width) helps("plate_object", body(onPlate(statue)), plate(statue));
+    }
+    helps("lower", body(higher(statue, LOWER)), { part: 100 * (1 - LOWER) });
+    helps("ballast", body(withBallast(statue)), { part: 100 * BALLAST });
+    if (pedestal) {
+      const half = { ...pedestal, height: PEDESTAL_HEIGHT * pedestal.height, mass: PEDESTAL_HEIGHT * pedestal.mass };
+      helps("lower_pedestal", body(statue, half), { height: 100 * half.height });
+      helps("fix_to_pedestal", body(joined(statue, pedestal), null));
+      helps("fix_pedestal", body(statue, null));
+    }
+    return runs;
+  }
+  function withBallast(block, part = BALLAST) {
+    const added = part * block.mass, mass = block.mass + added, at = BALLAST_AT * block.height, h = heightOf(block);
+    const cgHeight = (block.mass * h + added * at) / mass, cgOffset = (block.mass * block.cgOffset) / mass;
+    const own = block.mass * ((h - cgHeight) ** 2 + (block.cgOffset - cgOffset) ** 2);
+    const inertia = inertiaOf(block) + own + added * ((at - cgHeight) ** 2 + cgOffset ** 2);
+    return { ...block, mass, cgHeight, cgOffset, inertia };
+  }
+  // the object with a wider foot, a lower centre of gravity and ballast of a part of its mass in its foot
+  function changed(statue, { wider: foot, lower, ballast }) {
+    const heavier = ballast ? withBallast(statue, ballast) : statue;
+    return higher(wider(heavier, foot), lower);
+  }
+  return { requestOf, planOf, changed };
+};
+if (typeof module !== "undefined") module.exports = objects;

@@ -1,0 +1,422 @@
+/* The page: a form, workers that compute beside it, and what they say. */
+(() => {
+"use strict";
+const find = (id) => document.getElementById(id);
+const data = JSON.parse(find("data").textContent);
+const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+const make = (tag, attributes = {}, ...children) => {
+  const element = Object.assign(document.createElement(tag), attributes);
+  element.append(...children);
+  return element;
+};
+const FIELDS = {
+  object: ["name", "width", "height", "mass"],
+  more: ["depth", "round", "cg_height", "cg_offset", "restitution"],
+  pedestal: ["pedestal_width", "pedestal_height", "pedestal_mass"],
+  place: ["floor", "storey_height", "material", "period"],
+  shaking: ["measure", "level", "years", "hazard"],
+};
+const CLOSED = ["more", "pedestal", "place"]; // groups that open where they are wanted
+const OPTIONS = { measure: ["PGA", "PGV"], material: ["masonry", "concrete", "steel"] };
+const ALL = Object.values(FIELDS).flat();
+const PART = 25; // motions of a task
+let texts = data.texts.en, say = null, linesOf = null;
+
+// ---- texts
+
+function choose(language) {
+  texts = { ...data.texts.en, ...data.texts[language] };
+  document.documentElement.lang = language;
+  linesOf = words(data, texts);
+  say = (id, values = {}) => (texts[id] ?? id).replace(/\{(\w+)\}/g, (whole, name) => String(values[name] ?? whole));
+  document.title = say("title");
+  for (const element of document.querySelectorAll("[data-text]")) element.textContent = say(element.dataset.text);
+  find("lead").textContent = say("lead", { motions: texts.motions ?? data.motions });
+  find("made").hidden = !data.made;
+  find("made").textContent = say("made");
+  find("progress").setAttribute("aria-label", say("answer"));
+}
+
+// ---- the form
+
+const form = find("form"), inputs = {};
+function drawForm() {
+  const old = formTexts();
+  form.replaceChildren();
+  for (const [group, names] of Object.entries(FIELDS)) {
+    const title = say(group === "shaking" ? "measure" : group), boxes = names.map((name) => field(name, old));
+    const given = names.some((name) => inputs[name].checked || (inputs[name].type === "text" && inputs[name].value));
+    form.append(CLOSED.includes(group) ? make("details", { open: given }, make("summary", { textContent: title }), ...boxes)
+      : make("fieldset", {}, make("legend", { textContent: title }), ...boxes));
+  }
+}
+function field(name, old) {
+  const options = OPTIONS[name], value = old?.[name] ?? data.form[name] ?? "";
+  const input = name === "hazard" ? make("textarea", { rows: 3, value }) : options
+    ? make("select", {}, ...options.map((id) => make("option", { value: id, textContent: say(id) })))
+    : make("input", name === "round" ? { type: "checkbox", checked: Boolean(value) } : { type: "text", value, maxLength: 80 });
+  if (options) input.value = options.includes(value) ? value : options[0];
+  input.id = `field-${name}`;
+  input.setAttribute("aria-describedby", `${input.id}-error`);
+  input.addEventListener("input", later);
+  inputs[name] = input;
+  const label = make("label", { htmlFor: input.id, textContent: say(name) });
+  const box = make("div", { className: name === "hazard" ? "field long" : "field" }, label, input, make("small", { id: `${input.id}-error` }));
+  return box;
+}
+function formTexts() {
+  if (!inputs.width) return null;
+  return Object.fromEntries(ALL.map((name) => [name, name === "round" ? inputs[name].checked : inputs[name].value]));
+}
+function complain(refusal) {
+  for (const name of ALL) {
+    const wrong = refusal?.field === name;
+    inputs[name].setAttribute("aria-invalid", String(wrong));
+    const { id, values } = refusal ?? {};
+    if (wrong && inputs[name].closest("details")) inputs[name].closest("details").open = true;
+    find(`field-${name}-error`).textContent = wrong ? say(texts[`${id}_refused`] ? `${id}_refused` : id, values) : "";
+  }
+}
+
+// ---- workers
+
+const pool = [], waiting = [], asked = new Map();
+let number = 0, current = null, other = null;
+async function startWorkers() {
+  const url = URL.createObjectURL(new Blob([find("computing").textContent], { type: "text/javascript" }));
+  const count = Math.max(1, Math.min(4, navigator.hardwareConcurrency ?? 2));
+  const modules = { fused: bytesOf(data.modules.fused), plain: bytesOf(data.modules.plain) }, samples = bytesOf(data.packed);
+  const { packed, modules: _, ...rest } = data;
+  return Promise.all(Array.from({ length: count }, () => {
+    const worker = { post: started(url), busy: true };
+    worker.post.onmessage = ({ data: message }) => {
+      worker.busy = false;
+      const task = worker.task;
+      worker.task = null;
+      next();
+      task?.done(message);
+    };
+    // it could not start at all
+    worker.post.onerror = () => worker.task?.done({ failure: "no_workers" });
+    pool.push(worker);
+    return new Promise((resolve, reject) => {
+      worker.task = { done: (message) => (message.failure ? reject(new Error(message.failure)) : resolve()) };
+      worker.post.postMessage({ kind: "begin", data: rest, modules, samples });
+    });
+  }));
+}
+function started(url) {
+  try {
+    return new Worker(url);
+  } catch {
+    throw new Error("no_workers");
+  }
+}
+// the first of those that wait for a worker which is free; what an older request asked for is dropped
+function next() {
+  for (const worker of pool) {
+    while (!worker.busy && waiting.length) {
+      const task = waiting.shift();
+      if (task.of && task.of !== current && task.of !== other) continue;
+      worker.busy = true;
+      worker.task = task;
+      worker.post.postMessage(task.message);
+    }
+  }
+}
+function ask(of, message, first = false) {
+  return new Promise((resolve) => {
+    waiting[first ? "unshift" : "push"]({ of, message, done: (told) => { if (!of || of === current || of === other) resolve(told); } });
+    next();
+  });
+}
+// ---- a request, from its plan to its answer
+
+let timer = 0;
+function later() {
+  clearTimeout(timer);
+  timer = setTimeout(update, 120);
+}
+function update() {
+  let request;
+  try {
+    request = bodies.requestOf(formTexts());
+  } catch (error) {
+    if (!error.field) throw error;
+    current = other = null;
+    complain(error);
+    find("answer").classList.add("stale");
+    return;
+  }
+  complain(null);
+  find("blocked").hidden = true;
+  current = { id: ++number, request, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
+  document.body.dataset.stage = "";
+  other = null;
+  compute(current, (told) => { show(told); if (told.last) slide(); });
+}
+async function compute(run, told, only = Infinity) {
+  const { id, request } = run, count = data.earthquakes.length;
+  const plan = await ask(run, { kind: "plan", id, request });
+  if (plan.refusal) return complain({ field: plan.refusal.field, id: plan.refusal.text, values: plan.refusal.values });
+  if (plan.failure) return refused(plan.failure);
+  const roles = plan.told.roles.slice(0, only), parts = roles.map(() => []);
+  const starts = Array.from({ length: Math.ceil(count / PART) }, (_, i) => i * PART);
+  const needed = (role) => roles.map(({ role: own }, i) => (own === role ? i : -1)).filter((i) => i >= 0);
+  const moments = [[0], [...needed("now"), ...needed("moved")], roles.map((_, i) => i)].slice(0, only === 1 ? 1 : 3);
+  let done = 0, latest = 0;
+  const ready = (i) => parts[i].length === starts.length;
+  const answerNow = async () => {
+    const stage = moments.findLastIndex((all) => all.every(ready));
+    if (stage < latest) return;
+    latest = stage + 1;
+    const message = { kind: "answer", id, request, parts: parts.map((each, i) => (ready(i) && moments[stage].includes(i) ? each : null)) };
+    const found = await ask(run, message, true);
+    if (found.failure) return refused(found.failure);
+    if (stage + 1 < latest) return; // a later one was asked for since, and may have come first
+    told({ run, found: found.told, last: stage === moments.length - 1 });
+  };
+  roles.forEach((_, i) => starts.forEach((first) => {
+    const message = { kind: "count", id, request, run: i, first, last: Math.min(first + PART, count) };
+    ask(run, message).then((part) => {
+      if (part.failure) return refused(part.failure);
+      parts[i].push({ first, ...part.told });
+      done += 1;
+      if (run === current) progress(done, roles.length * starts.length);
+      if (ready(i)) answerNow();
+    });
+  }));
+}
+// what a body says of itself in the words of the module is said beside the width
+function refused(words) {
+  find("field-width-error").textContent = words;
+  find("answer").classList.add("stale");
+}
+function progress(done, all) {
+  find("progress").max = all;
+  find("progress").value = done;
+  find("done").textContent = done === all ? say("ready") : say("working", { done, all });
+}
+
+// ---- the answer
+
+let shown = null;
+function show(told) {
+  shown = told;
+  const { run: { request, since }, found } = told, said = linesOf(request, found);
+  find("answer").classList.remove("stale");
+  find("headline").textContent = said.headline;
+  const lines = [["Result", said.result], ["Risk", said.risk], ["Position", said.position], ["What helps", told.last ? said.helps : ""], ["How sure", said.sure]];
+  find("lines").replaceChildren(...lines.filter(([, text]) => text).flatMap(([id, text]) =>
+    [make("dt", { textContent: say(id) }), make("dd", { textContent: text })]));
+  find("note").hidden = !request.place.computed;
+  find("note").textContent = say("computed_floor");
+  document.body.dataset.stage = told.last ? "complete" : found.complete ? "interval" : "first";
+  document.body.dataset[document.body.dataset.stage] = String(performance.now() - since);
+  if (scene.of !== told.run) draw(told);
+}
+
+// ---- what helps: sliders, before and after
+
+const SLIDERS = { width: [0, 50, 0], cg: [0, 40, 0], ballast: [0, 100, 0] };
+function drawSliders() {
+  find("sliders").replaceChildren(...Object.entries(SLIDERS).map(([id, [low, high, at]]) => {
+    const input = make("input", { type: "range", min: low, max: high, step: 1, id: `slide-${id}` }), told = make("output");
+    input.value = at;
+    const tell = () => { told.textContent = ` ${SLIDERS[id][2]} %`; };
+    input.addEventListener("input", () => { SLIDERS[id][2] = Number(input.value); tell(); slide(); });
+    tell();
+    return make("div", { className: "field" }, make("label", { htmlFor: input.id }, say(`slide_${id}`), told), input);
+  }));
+}
+function slide() {
+  if (!shown || shown.run !== current) return;
+  const [width, cg, ballast] = Object.values(SLIDERS).map(([, , at]) => at / 100), before = shown.found;
+  if (!(width || cg || ballast)) return compare(before, null);
+  const { request } = current, statue = bodies.changed(request.statue, { wider: 1 + width, lower: 1 - cg, ballast });
+  other = { id: ++number, request: { ...request, statue } };
+  compute(other, ({ found }) => compare(before, found), 1);
+}
+function compare(before, after) {
+  const percent = (value) => (value === null ? "–" : new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 2 }).format(100 * value) + " %");
+  const rows = [["topples_column", "value"], ["risk_column", "probabilityValue"]];
+  find("compared").replaceChildren(...rows.map(([title, key]) => make("tr", {}, make("th", { scope: "row", textContent: say(title) }),
+    make("td", { className: "number", textContent: percent(before[key]) }), make("td", { className: "number", textContent: after ? percent(after[key]) : "–" }))));
+}
+
+// ---- the object under the motion that decides
+
+const scene = { of: null, response: null, timer: 0, at: 0 };
+let kernel = null;
+async function draw(told) {
+  const { run: of, found: { deciding } } = told;
+  scene.of = of;
+  kernel ??= await rockfragKernel(await unpacked(data.modules.history));
+  const motion = (await ask(null, { kind: "motion", motion: deciding.motion })).told;
+  if (scene.of !== of) return;
+  const { statue, pedestal, restitution, measure, place } = { measure: "PGA", ...of.request };
+  const ground = place.ground ? motion : building.floorMotion(place.floors[""], motion);
+  const body = kernel.bodyOf({ statue, pedestal, restitution: pedestal && restitution !== null ? [restitution, restitution] : restitution });
+  const scale = deciding.level / data.measures[measure].values[deciding.motion];
+  scene.response = kernel.integrate({ body, samples: ground.samples, dt: motion.dt, scale });
+  Object.assign(scene, { dt: motion.dt, statue, pedestal, at: 0 });
+  const { unit } = data.measures[measure], level = `${measure} ${Number(deciding.level.toPrecision(2))} ${unit}`;
+  scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level, what: say(scene.response.fallen ? "falls" : "stays") });
+  find("scene-words").textContent = scene.words();
+  find("scene").setAttribute("aria-label", scene.words());
+  const { theta2, done } = scene.response;
+  let most = 0;
+  for (let k = 0; k < done; k++) if (Math.abs(theta2[k]) > Math.abs(theta2[most]) && Math.abs(theta2[k]) < 0.6) most = k;
+  scene.at = most;
+  paint();
+}
+const unpacked = async (text) => new Uint8Array(await new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+function paint() {
+  const { response, statue, pedestal, at } = scene, canvas = find("scene"), context = canvas.getContext("2d");
+  if (!response) return;
+  const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  const below = pedestal?.height ?? 0, tall = below + statue.height, zoom = Math.min(230 / tall, 320 / Math.max(tall, statue.width));
+  context.clearRect(0, 0, 600, 300);
+  context.fillStyle = colour("rule");
+  context.fillRect(40, 280, 520, 3);
+  const turn = ([x, y], angle, [px, py]) => {
+    const s = Math.sin(angle), c = Math.cos(angle);
+    return [px + (x - px) * c + (y - py) * s, py - (x - px) * s + (y - py) * c];
+  };
+  const box = (width, bottom, height) => [[-width / 2, bottom], [width / 2, bottom], [width / 2, bottom + height], [-width / 2, bottom + height]];
+  const one = pedestal ? response.theta1[at] : 0, two = response.theta2[at];
+  const foot = [((one < 0 ? -1 : 1) * (pedestal?.width ?? 0)) / 2, 0], contact = Math.min(statue.width, pedestal?.width ?? Infinity) / 2;
+  const pivot = [(two - one < 0 ? -1 : 1) * contact, below];
+  const fill = (corners, name) => {
+    context.beginPath();
+    corners.forEach(([x, y]) => context.lineTo(300 + zoom * x, 280 - zoom * y));
+    context.closePath();
+    context.fillStyle = colour(name);
+    context.fill();
+  };
+  if (pedestal) fill(box(pedestal.width, 0, below).map((corner) => turn(corner, one, foot)), "faint");
+  fill(box(statue.width, below, statue.height).map((corner) => turn(turn(corner, two - one, pivot), one, foot)), "blue");
+}
+function play() {
+  if (!scene.response) return;
+  if (scene.timer) {
+    cancelAnimationFrame(scene.timer);
+    scene.timer = 0;
+    find("play").textContent = say("play");
+    return;
+  }
+  const start = performance.now();
+  find("play").textContent = say("pause");
+  const step = (now) => {
+    scene.at = Math.min(scene.response.done - 1, Math.max(0, Math.round((now - start) / 1000 / scene.dt)));
+    paint();
+    scene.timer = scene.at < scene.response.done - 1 ? requestAnimationFrame(step) : 0;
+    if (!scene.timer) find("play").textContent = say("play");
+  };
+  scene.timer = requestAnimationFrame(step);
+}
+
+// ---- objects that are kept
+
+const kept = [];
+function drawKept() {
+  const button = (id, action) => {
+    const made = make("button", { type: "button", textContent: say(id) });
+    made.addEventListener("click", action);
+    return made;
+  };
+  const file = make("input", { type: "file", accept: ".csv,.yaml,.yml", id: "file", hidden: true });
+  file.addEventListener("change", () => openFile(file));
+  find("tools").replaceChildren(button("keep", keep), button("save_csv", saveCsv), button("save_yaml", () => save("statue.yaml", lists.yamlOf(formTexts()))),
+    button("open", () => file.click()), button("print", () => print()), file);
+  find("columns").replaceChildren(...["rank", "name", "topples_column", "risk_column", "Result"].map((id) => make("th", { scope: "col", textContent: say(id) })), make("td", { className: "screen" }));
+  const risk = ({ told: { found } }) => found.probabilityValue ?? found.value;
+  kept.sort((a, b) => risk(b) - risk(a));
+  find("objects").replaceChildren(...kept.map((item, i) => {
+    const { run: { request }, found } = item.told, said = linesOf(request, found), percent = (v) => (v === null ? "–" : `${Number((100 * v).toPrecision(2))} %`);
+    return make("tr", {}, ...[i + 1, request.name, percent(found.value), percent(found.probabilityValue), said.result].map((text) => make("td", { textContent: text })),
+      make("td", { className: "screen" }, button("load", () => fillForm(item.form)), button("remove", () => { kept.splice(kept.indexOf(item), 1); drawKept(); })));
+  }));
+}
+function keep() {
+  if (shown?.run !== current || !shown) return;
+  kept.push({ form: formTexts(), told: shown });
+  drawKept();
+}
+function fillForm(values) {
+  for (const name of ALL) {
+    if (name === "round") inputs[name].checked = values[name] === true || values[name] === "true";
+    else inputs[name].value = values[name] ?? (OPTIONS[name]?.[0] ?? "");
+  }
+  update();
+}
+function save(name, text) {
+  const link = make("a", { href: URL.createObjectURL(new Blob([text], { type: "text/plain" })), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+const saveCsv = () => save("objects.csv", lists.csvOf(kept.map(({ form }) => form)));
+async function openFile(input) {
+  const [file] = input.files, problem = find("file-error");
+  problem.hidden = true;
+  try {
+    if (file.size > 200000) throw new Error(say("file_long"));
+    const read = lists.read(file.name, await file.text(), say);
+    fillForm(read[0]);
+    for (const form of read.slice(1)) await assessed(form);
+  } catch (error) {
+    problem.textContent = say("file_unread", { why: error.message });
+    problem.hidden = false;
+  }
+  input.value = "";
+}
+// the objects of a list, one after another
+function assessed(form) {
+  return new Promise((resolve) => {
+    const until = setInterval(() => {
+      if (document.body.dataset.stage !== "complete" || shown?.run !== current) return;
+      clearInterval(until);
+      keep();
+      fillForm(form);
+      resolve();
+    }, 50);
+  });
+}
+
+// ---- the beginning
+
+const bodies = objects(data), lists = lists_(data, ALL);
+async function begin() {
+  for (const [id, { language }] of Object.entries(data.texts)) find("language").append(make("option", { value: id, textContent: language }));
+  const wanted = navigator.language?.slice(0, 2);
+  find("language").value = data.texts[wanted] ? wanted : "en";
+  find("language").addEventListener("change", () => { translate(); });
+  find("play").addEventListener("click", play);
+  form.addEventListener("submit", (event) => event.preventDefault());
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", paint);
+  translate();
+  const stop = (id) => {
+    find("blocked").textContent = say(id);
+    find("blocked").hidden = false;
+  };
+  if (typeof WebAssembly !== "object" || typeof DecompressionStream !== "function") return stop("no_wasm");
+  find("done").textContent = say("starting");
+  try {
+    await startWorkers();
+  } catch (error) {
+    return stop(error.message === "no_workers" ? "no_workers" : "no_wasm");
+  }
+  update();
+}
+function translate() {
+  choose(find("language").value);
+  drawForm();
+  drawSliders();
+  drawKept();
+  if (shown) {
+    show(shown);
+    if (scene.words) find("scene-words").textContent = scene.words();
+  }
+}
+begin();
+})();

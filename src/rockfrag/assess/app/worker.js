@@ -1,0 +1,49 @@
+/* A worker of the page: it decodes the motions once, and counts and answers as it is asked. */
+let tools = null;
+async function begin({ data, modules, samples }) {
+  const unpacked = async (packed) => new Uint8Array(await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+  const fused = await unpacked(modules.fused);
+  let ensemble = WebAssembly.validate(fused) ? await rockfragEnsemble(fused) : null;
+  if (!ensemble?.roundsOnce()) ensemble = await rockfragEnsemble(await unpacked(modules.plain));
+  const motions = decoded(data, await unpacked(samples));
+  const made = answer(data);
+  tools = { ensemble, made, motions, bodies: objects(data), count: made.counter(ensemble, motions), plans: new Map() };
+}
+// samples are decimals: whole numbers over powers of ten, times the factor of their unit; bytes of equal rank together
+function decoded({ samples: { counts, dts, factor, decimal } }, bytes) {
+  const total = counts.reduce((a, b) => a + b, 0), values = new Float64Array(total), size = decimal ? 4 : 8;
+  const plain = new Uint8Array(total * size);
+  for (let rank = 0; rank < size; rank++) for (let i = 0; i < total; i++) plain[i * size + rank] = bytes[rank * total + i];
+  if (!decimal) values.set(new Float64Array(plain.buffer));
+  else {
+    const whole = new Int32Array(plain.buffer), powers = Array.from({ length: 23 }, (_, i) => Number(`1e${i}`));
+    for (let i = 0; i < total; i++) values[i] = (whole[i] / powers[bytes[4 * total + i]]) * factor;
+  }
+  let at = 0;
+  return counts.map((count, i) => ({ samples: values.subarray(at, (at += count)), dt: dts[i] }));
+}
+function planOf({ id, request }) {
+  const { plans, bodies, ensemble } = tools;
+  if (!plans.has(id)) {
+    if (plans.size > 4) plans.clear();
+    plans.set(id, bodies.planOf(request, ensemble));
+  }
+  return plans.get(id);
+}
+const TASKS = {
+  begin: async (task) => { await begin(task); },
+  plan: (task) => ({ roles: planOf(task).map(({ role, name }) => ({ role, name })) }),
+  count: (task) => tools.count(task.request, planOf(task)[task.run], task.first, task.last),
+  answer: ({ parts, ...task }) => {
+    const runs = planOf(task), outcomes = parts.map((each, i) => each && tools.made.joined(task.request, runs[i], each));
+    return tools.made.found(task.request, runs, outcomes, tools.ensemble);
+  },
+  motion: ({ motion }) => ({ samples: tools.motions[motion].samples, dt: tools.motions[motion].dt }),
+};
+onmessage = async ({ data: task }) => {
+  try {
+    postMessage({ id: task.id, told: await TASKS[task.kind](task) });
+  } catch (error) {
+    postMessage({ id: task.id, refusal: error.field ? { field: error.field, text: error.id ?? "", values: error.values ?? {} } : null, failure: String(error.message ?? error) });
+  }
+};

@@ -1,0 +1,166 @@
+"""The page of ``rockfrag app``: one file that holds motions, modules, scripts and texts."""
+
+import base64
+import json
+import os
+import zlib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
+
+from rockfrag.assess.app import computing, data_of, script
+from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.scale import SCALE_WORDS, STEPS
+from rockfrag.assess.sources import SOURCES
+from rockfrag.errors import InputError
+from rockfrag.files import write_text
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.browser import driver_text, module_bytes
+from rockfrag.units import GRAVITY
+
+MOST_BYTES = 6_000_000
+"""Largest page [bytes], which a memory stick and a mail take."""
+
+LANGUAGES = ("en", "it")
+"""Languages of the page, each a file of texts; what one lacks is said in the first."""
+
+_FACTORS = (GRAVITY, 0.01, 1.0)
+"""Factors of units in which records state decimals [m/s²]."""
+
+_MOST_DIGITS = 9
+
+
+def write_app(
+    motions: MotionSet,
+    form: Mapping[str, str],
+    path: str | os.PathLike[str],
+    *,
+    on_floor: bool = False,
+    made: bool = False,
+) -> None:
+    """Write the page.
+
+    Parameters
+    ----------
+    motions
+        The motions of the ground.
+    form
+        What stands in the form at first, by the names of its fields.
+    path
+        Where to write it.
+    on_floor
+        Whether the motions were recorded on the floor of the object.
+    made
+        Whether they were made by formulas, which the page then says.
+
+    Raises
+    ------
+    InputError
+        If the motions are too many for a page.
+    """
+    page = page_of(motions, form, on_floor=on_floor, made=made)
+    size = len(page.encode())
+    if size > MOST_BYTES:
+        raise InputError(
+            f"--record: with these motions the page has {size / 1e6:.1f} MB, more than {MOST_BYTES / 1e6:g}; give "
+            "fewer or shorter records."
+        )
+    write_text(page, path)
+
+
+def page_of(motions: MotionSet, form: Mapping[str, str], *, on_floor: bool, made: bool) -> str:
+    """Return the page as HTML, which loads nothing."""
+    packed, about = packed_samples(motions.ground)
+    modules = {"fused": "ensemble-fused", "plain": "ensemble", "history": "integrate"}
+    data = {
+        **data_of(motions, on_floor=on_floor),
+        "form": dict(form),
+        "made": made,
+        "texts": {language: texts(language) for language in LANGUAGES},
+        "modules": {
+            name: _text(zlib.compress(module_bytes(of), 9)) for name, of in modules.items()
+        },
+        "samples": about,
+        "packed": _text(packed),
+    }
+    environment = Environment(
+        loader=PackageLoader("rockfrag.report"),
+        autoescape=select_autoescape(default=True),
+        undefined=StrictUndefined,
+    )
+    style = environment.get_template("style.css").render() + script("app.css")
+    shown = ("words", "lists", "page")
+    scripts = "\n".join(
+        [driver_text(), *(script(f"{name}.js") for name in ("building", "objects", *shown))]
+    )
+    return environment.from_string(script("app.html.j2")).render(
+        title=data["texts"]["en"]["title"],
+        style=Markup(style),
+        data=Markup(json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")),
+        computing=Markup(f"{computing()}\n{script('worker.js')}"),
+        scripts=Markup(scripts),
+    )
+
+
+def texts(language: str) -> dict[str, Any]:
+    """Return the texts of a language; those that the package has itself are taken from there."""
+    own: dict[str, Any] = json.loads(script(f"{language}.json"))
+    if language != LANGUAGES[0]:
+        return own
+    return own | {
+        "sources": {name: source.words for name, source in SOURCES.items()},
+        "measurements": {
+            name: source.measurement.words for name, source in SOURCES.items() if source.measurement
+        },
+        "steps": [step.name for step in STEPS],
+        "advice": [step.advice for step in STEPS],
+        "scale": SCALE_WORDS,
+    }
+
+
+def packed_samples(motions: Sequence[Motion]) -> tuple[bytes, dict[str, Any]]:
+    """Return the samples of motions, packed, and what a page needs to get every bit of them again.
+
+    Records are decimals of few digits: each sample is a whole number over a power of ten, times the factor of the
+    unit. Where one is not, all are written as they are.
+    """
+    samples = np.concatenate([motion.acceleration for motion in motions])
+    about: dict[str, Any] = {
+        "counts": [motion.acceleration.size for motion in motions],
+        "dts": [motion.dt for motion in motions],
+    }
+    for factor in _FACTORS:
+        whole, power = _decimals(samples, factor)
+        if (power >= 0).all():
+            content = _by_rank(whole.astype("<i4")) + power.astype(np.uint8).tobytes()
+            return zlib.compress(content, 9), {**about, "factor": factor, "decimal": True}
+    return zlib.compress(_by_rank(samples.astype("<f8")), 9), {
+        **about,
+        "factor": 1.0,
+        "decimal": False,
+    }
+
+
+def _by_rank(values: np.ndarray) -> bytes:
+    """Bytes of equal rank together, which pack better."""
+    return values.view(np.uint8).reshape(values.size, -1).T.tobytes()
+
+
+def _decimals(samples: np.ndarray, factor: float) -> tuple[np.ndarray, np.ndarray]:
+    """Whole numbers and powers of ten that give each sample to the bit; power -1 where none of few digits do."""
+    plain = samples / factor
+    size = np.floor(np.log10(np.abs(plain), out=np.zeros(plain.size), where=plain != 0))
+    whole, power = np.zeros(plain.size), np.full(plain.size, -1.0)
+    for digits in range(1, _MOST_DIGITS + 1):
+        tried = np.clip(digits - 1 - size, 0, 22)
+        number = np.round(plain * 10.0**tried)
+        hit = (power < 0) & (number / 10.0**tried * factor == samples) & (np.abs(number) < 2**31)
+        whole[hit], power[hit] = number[hit], tried[hit]
+    return whole, power
+
+
+def _text(content: bytes) -> str:
+    return base64.b64encode(content).decode("ascii")

@@ -1,0 +1,319 @@
+"""The page of ``rockfrag app`` says what ``rockfrag assess`` does: its scripts in Node, of random objects."""
+
+import base64
+import json
+import random
+import re
+import shutil
+import subprocess
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockfrag.assess.answer import Assessment, assess_with
+from rockfrag.assess.app import computing, script
+from rockfrag.assess.app.writing import page_of, texts
+from rockfrag.assess.request import make_request
+from rockfrag.assess.words import five_lines
+from rockfrag.cli import main
+from rockfrag.errors import InputError
+from rockfrag.rocking.browser import module_bytes
+
+NODE = shutil.which("node")
+needs_node = pytest.mark.skipif(NODE is None, reason="Node is not installed")
+
+RELAXED = "--experimental-wasm-relaxed-simd"
+"""Option of Node for multiply-adds that fuse; those that need none have no such option."""
+
+RUN = """
+const fs = require("fs");
+const { data, forms, modules, packed } = JSON.parse(fs.readFileSync(process.argv[2]));
+const bytes = (text) => Uint8Array.from(Buffer.from(text, "base64"));
+const finite = (key, v) => (typeof v === "number" && !Number.isFinite(v) ? null : v);
+const plain = (value) => JSON.parse(JSON.stringify(value, finite));
+const unpacked = { fused: bytes(modules.fused), plain: bytes(modules.plain) };
+begin({ data, modules: unpacked, samples: bytes(packed) }).then(() => {
+  const lines = words(data, data.texts.en);
+  const found = forms.map((form, id) => {
+    try {
+      const request = tools.bodies.requestOf(form), count = data.earthquakes.length;
+      const runs = TASKS.plan({ id, request }).roles;
+      const parts = runs.map((_, run) => [[0, 10], [10, count]].map(([first, last]) => (
+        { first, ...TASKS.count({ id, request, run, first, last }) })));
+      const answer = TASKS.answer({ id, request, parts });
+      return { answer: plain(answer), lines: lines(request, answer), computed: Boolean(request.place.computed) };
+    } catch (error) {
+      if (!error.field) return { failed: error.stack };
+      const { en } = data.texts;
+      return { refused: [error.field, error.id, Boolean(en[`${error.id}_refused`] ?? en[error.id])] };
+    }
+  });
+  console.log(JSON.stringify(found));
+});
+"""
+
+
+def page_data(motions):
+    """What a page holds."""
+    page = page_of(motions, {}, on_floor=False, made=True)
+    start = page.index('id="data">') + len('id="data">')
+    return json.loads(page[start : page.index("</script>", start)])
+
+
+def in_node(folder, motions, forms):
+    """What the scripts of a page make of forms."""
+    data = page_data(motions)
+    (folder / "in.json").write_text(
+        json.dumps(
+            {"data": data, "forms": forms, "modules": data["modules"], "packed": data["packed"]}
+        )
+    )
+    (folder / "run.cjs").write_text(
+        "\n".join(["let onmessage;", computing(), script("worker.js"), script("words.js"), RUN])
+    )
+    known = subprocess.run([NODE, RELAXED, "-e", "0"], capture_output=True).returncode == 0
+    command = [NODE, *([RELAXED] if known else []), folder / "run.cjs", folder / "in.json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def some_form(rng: random.Random) -> dict[str, str]:
+    """A random object at a random place, as it is typed; some with decimal commas."""
+    width = rng.uniform(0.05, 0.8)
+    height = width * rng.uniform(2, 6)
+    form = {"width": f"{100 * width:.3g} cm", "height": f"{height:.3g} m"}
+    some = {
+        "mass": f"{rng.uniform(300, 5000) * width * width * height:.4g} kg",
+        "cg_height": f"{rng.uniform(0.35, 0.6) * height:.3g} m",
+        "cg_offset": f"{rng.uniform(-5, 5) * width:.3g} cm",
+        "restitution": f"{rng.uniform(0.6, 0.9):.2f}",
+    }
+    form |= {key: value for key, value in some.items() if rng.random() < 0.35}
+    if rng.random() < 0.35:
+        form["pedestal_width"] = f"{100 * width * rng.uniform(0.9, 2):.3g} cm"
+        form["pedestal_height"] = f"{rng.uniform(0.1, 1.2):.3g} m"
+        if rng.random() < 0.5:
+            form["pedestal_mass"] = f"{rng.uniform(100, 900):.4g} kg"
+    if rng.random() < 0.4:
+        storeys = rng.randint(1, 6)
+        form["floor"] = f"{rng.randint(0, storeys)}/{storeys}"
+    measure, level = rng.choice(
+        [("PGA", f"{rng.uniform(0.05, 0.8):.3g} g"), ("PGV", f"{rng.uniform(5, 90):.3g} cm/s")]
+    )
+    form |= {"measure": measure, "level": level}
+    if rng.random() < 0.7:
+        form["years"] = rng.choice(["475", "975", "72"])
+    return form
+
+
+def settings_of(form):
+    """What ``rockfrag assess`` is told of a form."""
+    plain = ("width", "height", "mass", "cg_height", "cg_offset", "floor")
+    settings = {key: form[key] for key in plain if key in form}
+    if "restitution" in form:
+        settings["restitution"] = float(form["restitution"])
+    pedestal = {
+        key: form[f"pedestal_{key}"]
+        for key in ("width", "height", "mass")
+        if f"pedestal_{key}" in form
+    }
+    settings |= {"pedestal": pedestal} if pedestal else {}
+    settings |= {form["measure"].lower(): form["level"]}
+    return settings | ({"return_period": form["years"]} if "years" in form else {})
+
+
+def check(found: Assessment, said) -> None:
+    """The same shares to the bit, and the same intervals to 1e-9."""
+    answer = said["answer"]
+    assert answer["shares"] == found.outcomes.fractions().tolist()
+    assert answer["counts"] == (None if found.counts is None else list(found.counts))
+    for name in ("fraction", "rocking", "probability"):
+        own, estimate = answer.get(name), getattr(found, name)
+        assert (own is None) == (estimate is None)
+        if own is not None:
+            for key in ("value", "lower", "upper"):
+                assert own[key] == pytest.approx(getattr(estimate, key), rel=1e-9, abs=1e-12), (
+                    name,
+                    key,
+                )
+    his = [(item.value, item.factor) for item in found.mitigations]
+    mine = [
+        (item["value"], np.nan if item["factor"] is None else item["factor"])
+        for item in answer["mitigations"]
+    ]
+    np.testing.assert_allclose(mine, his, rtol=1e-9, atol=1e-12)
+
+
+def check_words(found: Assessment, said) -> None:
+    """The lines that both have in full are the same."""
+    titles = {"Result": "result", "Risk": "risk", "What helps": "helps"}
+    for line in five_lines(found):
+        title, _, words = line.partition(": ")
+        if title == "Risk" and found.probability is None:
+            continue  # options of the command line are no words of a page
+        if title in titles:
+            assert said["lines"][titles[title]] == words
+
+
+def compare(folder, motions, forms) -> int:
+    """Hold the page's answers against those of the package; how many there were."""
+    answered = 0
+    for form, said in zip(forms, in_node(folder, motions, forms), strict=True):
+        assert "failed" not in said, said
+        try:
+            request = make_request(settings_of(form), "form")
+        except InputError as error:
+            assert "answer" not in said, (form, error)
+            continue
+        found = assess_with(request, motions.at(request.place))
+        assert "answer" in said, (form, said)
+        check(found, said)
+        check_words(found, said)
+        answered += 1
+    return answered
+
+
+@needs_node
+def test_the_page_says_what_assess_does(tmp_path, motions):
+    rng = random.Random(5)
+    assert compare(tmp_path, motions, [some_form(rng) for _ in range(4)]) >= 3
+
+
+@pytest.mark.slow
+@needs_node
+def test_the_page_says_what_assess_does_of_200_objects(tmp_path, motions):
+    rng = random.Random(6)
+    assert compare(tmp_path, motions, [some_form(rng) for _ in range(200)]) >= 180
+
+
+HOSTILE = (
+    "<img src=x onerror=alert(1)>",
+    "1e999 m",
+    "-5 cm",
+    "12",
+    "NaN kg",
+    "0x10 m",
+    "１ m",
+    "a" * 5000,
+    "1,2,3 m",
+    "5 g",
+)
+
+
+@needs_node
+def test_hostile_input_gets_a_sentence(tmp_path, motions):
+    usual = {
+        "width": "35 cm",
+        "height": "1,2 m",
+        "measure": "PGA",
+        "level": "0,3 g",
+        "years": "475",
+    }
+    fields = (
+        "width",
+        "height",
+        "depth",
+        "mass",
+        "cg_height",
+        "cg_offset",
+        "restitution",
+        "pedestal_width",
+        "floor",
+        "level",
+        "years",
+    )
+    forms = [usual | {field: text} for field in fields for text in HOSTILE]
+    forms += [
+        usual | {"years": "", "hazard": text}
+        for text in (*HOSTILE, "0.1 0.1\n0.2 0.2", "0.1 1e-2", "1 2 3\n4 5 6")
+    ]
+    forms += [{**usual, "round": True}, {**usual, "width": ""}, {**usual, "floor": "5/4"}]
+    refused = in_node(tmp_path, motions, forms)
+    assert not [said for said in refused if "failed" in said]
+    assert all(said["refused"][2] for said in refused if "refused" in said), "each has its sentence"
+    assert sum("refused" in said for said in refused) > 0.9 * len(forms)
+
+
+@needs_node
+def test_a_pasted_curve_is_the_hazard(tmp_path, motions):
+    form = {
+        "width": "20 cm",
+        "height": "1 m",
+        "measure": "PGA",
+        "level": "",
+        "hazard": "pga rate\n0.1; 2e-2\n0.3; 2e-3\n0.9; 1e-4\n",
+    }
+    (tmp_path / "curve.csv").write_text("pga_g,annual_rate\n0.1,2e-2\n0.3,2e-3\n0.9,1e-4\n")
+    settings = {"width": "20 cm", "height": "1 m", "hazard": [str(tmp_path / "curve.csv")]}
+    request = make_request(settings, "form")
+    check(assess_with(request, motions.at(request.place)), in_node(tmp_path, motions, [form])[0])
+
+
+def test_the_samples_are_packed_to_the_bit(motions):
+    data = page_data(motions)
+    content = zlib.decompress(base64.b64decode(data["packed"]))
+    samples = np.concatenate([motion.acceleration for motion in motions.ground])
+    if not data["samples"]["decimal"]:
+        ranks = np.frombuffer(content, np.uint8).reshape(8, -1)
+        assert ranks.T.tobytes() == samples.astype("<f8").tobytes()
+    assert zlib.decompress(base64.b64decode(data["modules"]["plain"])) == module_bytes("ensemble")
+
+
+def test_all_languages_have_the_same_texts():
+    english = texts("en")
+    italian = texts("it")
+    assert italian.keys() <= english.keys()
+    missing = set(english) - set(italian)
+    assert not missing, sorted(missing)
+    for key, text in italian.items():
+        if isinstance(text, str):
+            assert set(_places(text)) == set(_places(english[key])), key
+
+
+def _places(text: str) -> list[str]:
+    return re.findall(r"\{(\w+)\}", text)
+
+
+def test_the_command_writes_a_page(tmp_path, own_records):
+    path = tmp_path / "assess.html"
+    assert (
+        main(
+            [
+                "app",
+                "--record",
+                str(own_records / "catalogue.csv"),
+                "--width",
+                "20cm",
+                "--height",
+                "1m",
+                "--pga",
+                "0.3g",
+                "--output",
+                str(path),
+            ]
+        )
+        == 0
+    )
+    page = path.read_text()
+    assert len(page) < 6_000_000
+    assert "http:" not in page.replace("http-equiv", "") and "https:" not in page
+
+
+def test_what_the_page_cannot_say_is_refused(tmp_path, own_records, capsys):
+    options = [
+        "app",
+        "--record",
+        str(own_records / "catalogue.csv"),
+        "--width",
+        "20cm",
+        "--height",
+        "1m",
+        "--pga",
+        "0.3g",
+    ]
+    for more in (["--round"], ["--friction", "0.5"], ["--pga", "0.4g"], ["--pgv", "20cm/s"]):
+        assert main([*options, *more, "--output", str(tmp_path / "a.html")]) == 2
+        assert len(capsys.readouterr().err.splitlines()) == 1
+    assert not Path(tmp_path / "a.html").exists()
