@@ -10,7 +10,6 @@ REPLACED = {
     "verdict": "outcome",
     "verdicts": "outcomes",
     "shares": "fractions",
-    "sweep": "IDA",
     "ladder": "intensity levels",
     "rung": "intensity level",
     "departure": "perturbed parameter",
@@ -42,9 +41,6 @@ REPLACED = {
 NO_NAMES = {"one", "item"}
 """What no variable is called: it says nothing of what it is."""
 
-ALLOWED = {"sine_sweep", "fault_normal"}
-"""Terms of the field that hold such a word."""
-
 
 def bound(path: Path) -> Iterator[tuple[int, str, bool]]:
     """Line and name of what a file binds, and whether it is a variable."""
@@ -62,7 +58,7 @@ def wrong(name: str, variable: bool) -> str:
     plain = name.strip("_").lower()
     if variable and plain in NO_NAMES:
         return "says nothing"
-    if plain in ALLOWED or "contact_event" in plain:
+    if "contact_event" in plain:
         return ""
     return next((REPLACED[part] for part in plain.split("_") if part in REPLACED), "")
 

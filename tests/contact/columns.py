@@ -114,3 +114,14 @@ def run(
         system, np.arange(done) * dt, q, v, history[:, 6 * n : 7 * n], (total - total[0]) / unit,
         contact_events[:count], int(w["fallen"]), float(when), w,
     )  # fmt: skip
+
+
+def is_critical(system: System, motion: np.ndarray, dt: float, vertical: np.ndarray) -> bool:
+    """Whether up to a hundredth more or less of the motions changes whether the system falls."""
+    factors = 1 + 0.01 * np.array(
+        [0, -1, 1, -0.5, 0.5, -0.2, 0.2, -0.1, 0.1, -0.05, 0.05, -0.02, 0.02]
+    )
+    fell = {
+        run(system, f * motion, dt, vertical=f * vertical, closing=1e-4).fallen > 0 for f in factors
+    }
+    return len(fell) == 2

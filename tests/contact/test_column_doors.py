@@ -1,5 +1,6 @@
 """A column goes wherever a block goes."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.rocking import find_thresholds, overturns, simulate, stream_overturns
+from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.shaketable.swept import fallen_names, labels_of
 from rockfrag.study.configurations import read_configurations, read_counterparts, read_specimens
 from rockfrag.system import Block, Column, Stack
@@ -49,6 +51,15 @@ def test_restitution_and_friction_go_together() -> None:
         COLUMN, [MOTION], DT, [1.0], friction=[0.6], restitution=[(None, 0.9, 0.97)]
     )
     assert held.impacts[0, 0, 0] != bounced.impacts[0, 0, 0] or held.overturned[0, 0, 0]
+
+
+def test_only_bodies_that_pure_rocking_holds_are_said_to_leave_the_ground() -> None:
+    upwards = 12 * np.sin(2 * np.pi * 3 * TIME)
+    with pytest.warns(LightBodies):
+        overturns(Stack(BASE, STATUE), [MOTION], DT, [1.0], vertical=[upwards])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        overturns(COLUMN, [MOTION], DT, [1.0, 10.0], vertical=[upwards])
 
 
 def test_thresholds_and_streams_take_columns(tmp_path: Path) -> None:

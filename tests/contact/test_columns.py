@@ -16,7 +16,7 @@ from ..oracle.cases import drum_column, drum_pulse
 from ..oracle.contact_reference import simulate_reference
 from ..oracle.time_stepping import time_stepping
 from .cases import DT, random_motion
-from .columns import Found, random_column, run, with_contacts
+from .columns import Found, is_critical, random_column, run, with_contacts
 
 
 def early(found: Found, contact_events: int = 6) -> int:
@@ -257,17 +257,28 @@ def test_histories_of_three_bodies_are_those_of_the_plain_reference() -> None:
 
 
 class Beside(NamedTuple):
-    """Outcomes beside those of time stepping: how many differ, still differ at a tenth of the step, and fall."""
+    """Outcomes beside those of time stepping.
+
+    Attributes
+    ----------
+    differing, refined
+        How many differ, and still differ at a tenth of the step.
+    critical
+        How many of those that differ would change with a hundredth of the motion.
+    fallen
+        How many fall.
+    """
 
     differing: int
     refined: int
+    critical: int
     fallen: int
 
 
 def outcomes_beside_stepping(cases: int, bodies: tuple[int, ...], seed: int) -> Beside:
     """Compare outcomes with those of time stepping at 200 µs; cases that differ once more at 20 µs."""
     rng = np.random.default_rng(seed)
-    differing = refined = fallen = 0
+    differing = refined = critical = fallen = 0
     for i in range(cases):
         n = bodies[i % len(bodies)]
         column, mus = random_column(rng, n), tuple(rng.uniform(0.2, 0.9, n))
@@ -279,7 +290,8 @@ def outcomes_beside_stepping(cases: int, bodies: tuple[int, ...], seed: int) -> 
             differing += 1
             fine = time_stepping(column, motion, DT, mus, step=2e-5, vertical=up)[0]
             refined += fine != (found.fallen > 0)
-    return Beside(differing, refined, fallen)
+            critical += is_critical(with_contacts(column, list(mus)), motion, DT, up)
+    return Beside(differing, refined, critical, fallen)
 
 
 @pytest.mark.slow
@@ -290,6 +302,7 @@ def test_outcomes_of_many_columns_are_those_of_time_stepping(
     found = outcomes_beside_stepping(cases, bodies, seed=8)
     print(f"{cases} columns of {bodies}: {found}")
     assert found.refined <= found.differing <= most
+    assert found.critical == found.differing
     assert cases // 4 <= found.fallen <= 3 * cases // 4 + 10
 
 

@@ -7,14 +7,15 @@ import pytest
 
 from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.planar.impact import strike
+from rockfrag.engines.planar.integrate import Book, Shaking, contact_event_columns, integrate
 from rockfrag.engines.planar.modes import kinetic_energy
-from rockfrag.engines.planar.records import posed, system_record, working_memory
+from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory
 from rockfrag.engines.planar.solve import look_at
 from rockfrag.rocking import MeasuredRestitution, simulate
 from rockfrag.system import ImpactLaw, System, geometry
 
 from .cases import DT, random_block, random_motion, random_stack
-from .columns import G, random_column, run, with_contacts
+from .columns import Found, G, random_column, run, with_contacts
 
 LAWS = ("position", "couple", "ratio")
 
@@ -188,6 +189,24 @@ def test_with_much_friction_impacts_are_those_of_pure_rocking(stacks: bool, law:
     assert compared >= 3
 
 
+def stops_by_momentum(
+    system: System, mus: np.ndarray, motion: np.ndarray, found: Found, when: float
+) -> bool:
+    """Whether the impact at an instant would stop all bodies under conservation of momentum too.
+
+    A couple multiplies what that leaves, which of squat bodies may be nothing.
+    """
+    i, n = int(when / DT), 3 * system.count
+    p, w = system_record(with_contacts(system, list(mus)), G), working_memory()
+    start = np.zeros((2, 3 * MOST))
+    start[0, :n], start[1, :n] = found.position[i], found.velocity[i]
+    book = Book(np.zeros((0, 0)), np.zeros((9, contact_event_columns(system.count))))
+    shaking = Shaking(motion[i : i + 2], np.zeros(0), DT, 1.0, 2, 0)
+    _, count, _ = integrate(p, shaking, start, 1e-6, book, w)
+    at = book.contact_events[:count]
+    return bool((at[np.abs(at[:, 0] + i * DT - when) < 1e-9, 5] == 0).any())
+
+
 class Bounces(NamedTuple):
     """What histories with friction and restitution showed: how many there were, gain, stop dead, and jump."""
 
@@ -213,11 +232,9 @@ def bouncing(cases: int, seed: int) -> Bounces:
         unit = 1e-9 * float(system.mass * G)
         impacts += len(struck)
         gains += int((after > before * (1 + 1e-9) + unit).sum())
-        # a couple multiplies what momentum leaves, which may be nothing
-        stops += law != "couple" and int(((after == 0) & (before > 1e4 * unit)).sum())
-        # not at the instant of a fall, where a base at a right angle to its face may touch it
-        whole = found.residual[:-1] if found.fallen else found.residual
-        ledgers += not np.abs(whole).max() < 2e-8
+        dead = struck[(after == 0) & (before > 1e4 * unit), 0]
+        stops += sum(not stops_by_momentum(system, mus, motion, found, when) for when in dead)
+        ledgers += not np.abs(found.residual).max() < 2e-8
         near = run(with_contacts(system, list(mus * (1 + 1e-9)), laws), motion, free=200)
         until = found.contact_events[4, 0] if len(found.contact_events) > 4 else np.inf
         n = min(int(np.searchsorted(found.time, until)), len(near.time))

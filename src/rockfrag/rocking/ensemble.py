@@ -202,10 +202,13 @@ def shaken(cases: Cases) -> Outcomes:
         return outcomes
     if any(motion.z is not None for motion in cases.motions):
         outcomes.minimum_gravity_ratio[:] = _minimum_gravity_ratio(cases)
-    # a body that is answered in space leaves the ground where it has to
+    # a body that is answered in space leaves the ground where it has to, and so do more than two bodies
     in_space = any(motion.y is not None for motion in cases.motions)
     stuck = np.array(
-        [not system.loose and (system.planar or not in_space) for system in cases.systems]
+        [
+            not system.loose and system.count < 3 and (system.planar or not in_space)
+            for system in cases.systems
+        ]
     )
     if stuck.any() and not cases.request.forces:
         _warn_of_weight(outcomes.minimum_gravity_ratio[stuck])

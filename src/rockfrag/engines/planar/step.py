@@ -15,6 +15,10 @@ ERROR = 1e-7
 SHORTEST = 1e-7
 """Fraction of a sampling interval below which a step is not made shorter."""
 
+HANGING = 1e-6
+"""Fraction of the half width by which a corner that comes in under an edge hangs beside the face and not over it:
+its base is at a right angle to the face, and the body has fallen."""
+
 WIDTH = 1e-12
 """Fraction of a step to which the time of a contact event is found."""
 
@@ -202,6 +206,7 @@ def least_margin(p, w, q, v):
     for k in range(p.count):
         pressed = 0.0
         some = False
+        w.fails[k, FALL] = 0
         for end in range(2):
             w.fails[k, GAP + end] = 0
             w.fails[k, EDGE + end] = 0
@@ -216,6 +221,9 @@ def least_margin(p, w, q, v):
                     inside = (inside if w.kind[k, end] == 1 else -inside) + TOUCH
                     if inside < 0.0:
                         w.fails[k, EDGE + end] = 1
+                        _, _, _, _, over, _, _ = end_of(p, w, q, k, end, 1)
+                        if over < -HANGING * p.size:
+                            w.fails[k, FALL] = 1
                     least = min(least, inside)
             else:
                 _, _, _, _, gap, beyond, _ = end_of(p, w, q, k, end, -1)
@@ -241,7 +249,6 @@ def least_margin(p, w, q, v):
         if k > 0:
             turned = max(turned, abs(q[3 * k + 2] - q[3 * k - 1]))
         margin = 0.5 * math.pi - turned
-        w.fails[k, FALL] = 0
         if k > 0 and off_the_edge(p, w, q, k):
             w.fails[k, FALL] = 1
         if margin < 0.0:

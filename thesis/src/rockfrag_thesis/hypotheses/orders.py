@@ -12,7 +12,7 @@ from enum import Enum
 from rockfrag.pedestal.cluster_means import Estimate
 from rockfrag.pedestal.power import power_note
 from rockfrag_thesis.hypotheses.evidence import Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, hypothesis
 from rockfrag_thesis.hypotheses.outcomes import (
     LEVEL,
     ONE_INTERVAL,
@@ -163,9 +163,6 @@ ORDERS: Mapping[int, Differences] = _ORDERS
 
 def order_hypothesis(
     number: int,
-    text: str,
-    source: str,
-    kind: Kind,
     *,
     rule: str,
     evidence: str = PAIRS,
@@ -178,7 +175,7 @@ def order_hypothesis(
 
     Parameters
     ----------
-    number, text, source, kind, rule, evidence
+    number, rule, evidence
         See `rockfrag_thesis.hypotheses.hypothesis.Hypothesis`.
     several
         Whether there is more than one difference.
@@ -194,9 +191,7 @@ def order_hypothesis(
             return order(differences(tests), unit=unit, more=more(tests))
 
         stated = f"{rule}. {SEVERAL_RULE if several else ONE_RULE}"
-        entry = hypothesis(
-            number, text, source, kind, evidence=evidence, rule=stated, error_rate=rate
-        )
+        entry = hypothesis(number, evidence=evidence, rule=stated, error_rate=rate)
         entry(test)
         _ORDERS[number] = differences
         return differences
