@@ -150,7 +150,8 @@ function update() {
   }
   complain(null);
   find("blocked").hidden = true;
-  current = { id: ++number, request, since: performance.now() };
+  current = { id: ++number, request, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
+  document.body.dataset.stage = "";
   other = null;
   compute(current, (told) => { show(told); if (told.last) slide(); });
 }
@@ -163,15 +164,16 @@ async function compute(run, told, only = Infinity) {
   const starts = Array.from({ length: Math.ceil(count / PART) }, (_, i) => i * PART);
   const needed = (role) => roles.map(({ role: own }, i) => (own === role ? i : -1)).filter((i) => i >= 0);
   const moments = [[0], [...needed("now"), ...needed("moved")], roles.map((_, i) => i)].slice(0, only === 1 ? 1 : 3);
-  let done = 0, told_ = 0;
+  let done = 0, latest = 0;
   const ready = (i) => parts[i].length === starts.length;
   const answerNow = async () => {
     const stage = moments.findLastIndex((all) => all.every(ready));
-    if (stage < told_) return;
-    told_ = stage + 1;
+    if (stage < latest) return;
+    latest = stage + 1;
     const message = { kind: "answer", id, request, parts: parts.map((each, i) => (ready(i) && moments[stage].includes(i) ? each : null)) };
     const found = await ask(run, message, true);
     if (found.failure) return refused(found.failure);
+    if (stage + 1 < latest) return; // a later one was asked for since, and may have come first
     told({ run, found: found.told, last: stage === moments.length - 1 });
   };
   roles.forEach((_, i) => starts.forEach((first) => {
