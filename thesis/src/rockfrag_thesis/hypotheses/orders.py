@@ -119,7 +119,7 @@ def order(parts: Parts, *, unit: str = "earthquake", more: str = "") -> Result:
 def _p_bounded(parts: Parts) -> float:
     """P value of changes of `SEEN` or more: of one that is claimed to be noticeable, or else of all of them.
 
-    Where a hypothesis hypotheses noticeable changes it is enough that one of them is excluded, with Bonferroni's
+    Where a hypothesis claims noticeable changes it is enough that one of them is excluded, with Bonferroni's
     adjustment; where it names no size every one has to be (an intersection-union test, which needs none).
     """
     noticeable = [part.p_bounded() for part in parts.values() if part.size is Size.NOTICEABLE]
