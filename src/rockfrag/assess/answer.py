@@ -22,6 +22,7 @@ from rockfrag.assess.outcomes import (
     LEVELS,
     IntensityLevels,
     ObjectOutcomes,
+    flip_rate,
     fraction_with_sliding,
     make_intensity_levels,
     on_pad,
@@ -104,6 +105,8 @@ class Assessment:
         Engineers' rules held against the outcomes.
     sliding_fraction
         Fraction of the motions at the level that topple it if it may slide [-]; NaN without friction or level.
+    flip_rate
+        Fraction of the outcomes in space at the level that differ if the base does by a millionth [-]; or NaN.
     """
 
     request: Request
@@ -127,6 +130,7 @@ class Assessment:
     effects: tuple[Moved[float], ...]
     rules: tuple[RuleCheck, ...]
     sliding_fraction: float
+    flip_rate: float = math.nan
 
     __repr__ = short_repr
 
@@ -424,6 +428,9 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         sliding_fraction=math.nan
         if brief or at is None or objects.friction is None
         else fraction_with_sliding(objects, motions, measure, at),
+        flip_rate=math.nan
+        if brief or at is None or not motions.both
+        else flip_rate(objects, motions, measure, at),
     )
 
 

@@ -105,7 +105,14 @@ def _add_object(about: Any) -> None:
         action=_Once,
         type=float,
         metavar="DEGREES",
-        help="direction of the width, from the first component of each record; needs the depth",
+        help="direction of the width, or of a mesh's x axis, from the first component of each record",
+    )
+    about.add_argument(
+        "--base-spread",
+        action=_Once,
+        type=float,
+        metavar="FRACTION",
+        help="by how much corners of the base lie elsewhere in space, over its size: 0.001",
     )
     about.add_argument("--round", action="store_true", help="the base is round")
     about.add_argument(
@@ -317,6 +324,7 @@ def settings_of(options: argparse.Namespace) -> dict[str, Any]:
         "name": options.name,
         "round": options.round or None,
         "facing_deg": options.facing,
+        "base_spread": options.base_spread,
         "restitution": options.restitution,
         "friction": options.friction,
         "pad_friction": options.pad_friction,

@@ -451,6 +451,11 @@ def assumptions(found: Assessment) -> list[str]:
             "counted "
             "in the figures; that both components act at once is counted in their intervals, as for a square box."
         )
+    if math.isfinite(found.flip_rate):
+        lines.append(
+            f"A base whose corners lie elsewhere by a millionth of its size turns "
+            f"{fraction_words(found.flip_rate)} of the outcomes in space at that level round."
+        )
     if math.isfinite(found.sliding_fraction) and found.fraction is not None:
         lines.append(
             f"With a friction of {request.objects.friction:g} it may slide, and "

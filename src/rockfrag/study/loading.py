@@ -35,6 +35,7 @@ from rockfrag.study.measured_table import (
     measured_table_from,
 )
 from rockfrag.study.paths import check_file, existing_file
+from rockfrag.study.space import SpaceStudy, is_space_study, space_study_from
 from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from
@@ -52,11 +53,11 @@ OF_ONE_COMPONENT = (
 )
 """Steps that choose a part or a factor by the component itself."""
 
-AnyStudy = Study | MeasuredTable | CampaignStudy
+AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 
 
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
-    """Read a configuration of any kind: a simulated study, a measured table, a campaign on a shake table.
+    """Read a configuration of any kind: a simulated study, a measured table, a campaign, bodies in space.
 
     Raises
     ------
@@ -78,6 +79,8 @@ def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnySt
         return measured_table_from(content, path)
     if is_campaign(content):
         return campaign_from(content, path)
+    if is_space_study(content):
+        return space_study_from(content, path)
     return study_from(content, path)
 
 
