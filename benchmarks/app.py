@@ -1,7 +1,7 @@
 """How long a user of the assessment's page waits, in Chromium, and what it takes of memory.
 
-``python benchmarks/app.py`` writes the page with the default motions, opens it from its file and types a width; the last
-part of ``make bench`` runs it too.  Seconds go from opening the file, and then from the key stroke.
+``python benchmarks/app.py`` writes the page with the default motions, opens it from its file and types a width;
+``make bench`` runs it too.  Seconds go from opening the file, and then from the key stroke.
 """
 
 import sys
