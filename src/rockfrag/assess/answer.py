@@ -299,28 +299,30 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
         Motions and levels.
     """
     objects = [request.objects for request in requests]
-    ways = [dict(item.arrangements) for item in objects]
+    ways = [dict(object_.arrangements) for object_ in objects]
     if plan.brief:
         ways = [dict(list(bodies.items())[:1]) for bodies in ways]
     arrangements = outcomes_of_each(objects, ways, plan.motions, plan.intensity_levels)
     under = (plan.motions, plan.intensity_levels)
-    changes = [mitigations_of(item) for item in objects]
+    changes = [mitigations_of(object_) for object_ in objects]
     if plan.compares_few:
         # of few motions the object as it stands comes first, then with each mitigation
         under = (plan.fewer, plan.fewer_intensity_levels)
-        changes = [{"": item.body, **each} for item, each in zip(objects, changes, strict=True)]
+        changes = [
+            {"": object_.body, **each} for object_, each in zip(objects, changes, strict=True)
+        ]
     compared = outcomes_of_each(objects, changes, *under)
     moved = _moved(requests, plan)
     found = []
-    for item, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
+    for object_, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
         before = change.pop("") if plan.compares_few else next(iter(way.values()))
-        if item.pad_friction is not None:
-            outcomes, slip = on_pad(item, item.pad_friction, *under)
-            change[_pad_words(item.pad_friction, slip, plan, under[1])] = outcomes
+        if object_.pad_friction is not None:
+            outcomes, slip = on_pad(object_, object_.pad_friction, *under)
+            change[_pad_words(object_.pad_friction, slip, plan, under[1])] = outcomes
         planar = None
         if plan.motions.both and not plan.brief:
-            flat = item.in_plane()
-            planar = outcomes_of(flat, {"": item.body}, plan.motions, plan.intensity_levels)[""]
+            flat = object_.in_plane()
+            planar = outcomes_of(flat, {"": object_.body}, plan.motions, plan.intensity_levels)[""]
         found.append(Shaken(way, sides, before, planar, change))
     return found
 
@@ -539,9 +541,9 @@ def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | 
 def _moved(requests: Sequence[Request], plan: Plan) -> list[list[Moved[ObjectOutcomes]]]:
     """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
     variants = [request.objects.variants() for request in requests]
-    sides = [side for each in variants for item in each for side in item.sides]
+    sides = [side for each in variants for variant in each for side in variant.sides]
     shaken = iter(outcomes_of_all(sides, plan.fewer, plan.fewer_intensity_levels))
-    found = [[item.turned(lambda _: next(shaken)) for item in each] for each in variants]
+    found = [[variant.turned(lambda _: next(shaken)) for variant in each] for each in variants]
     objects = [request.objects for request in requests]
     for moved in requests[0].place.variants():
         floors = moved.turned(

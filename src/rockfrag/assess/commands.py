@@ -366,9 +366,9 @@ def _building(options: argparse.Namespace) -> dict[str, Any] | None:
 
     known: dict[str, Any] = {}
     if options.storey_height:
-        item = len(options.storey_height) == 1
-        known["storey_height" if item else "storey_heights"] = (
-            options.storey_height[0] if item else options.storey_height
+        uniform = len(options.storey_height) == 1
+        known["storey_height" if uniform else "storey_heights"] = (
+            options.storey_height[0] if uniform else options.storey_height
         )
     if options.period:
         try:
@@ -384,13 +384,13 @@ def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:
     """The pedestal as a file would have it, or several from above."""
     if given is None:
         return None
-    for item in given:
-        if len(item) not in (2, 3):
+    for numbers in given:
+        if len(numbers) not in (2, 3):
             raise InputError(
                 "--pedestal: expected width, height and, if known, mass, such as 50cm 90cm 400kg; got "
-                f"{' '.join(item)}."
+                f"{' '.join(numbers)}."
             )
-    found = [dict(zip(("width", "height", "mass"), item, strict=False)) for item in given]
+    found = [dict(zip(("width", "height", "mass"), numbers, strict=False)) for numbers in given]
     return found if len(found) > 1 else found[0]
 
 

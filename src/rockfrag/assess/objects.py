@@ -645,8 +645,8 @@ def _pedestals(settings: Mapping[str, Any], assumed: list[Assumption]) -> tuple[
     """What the object stands on, from below."""
     given = settings.get("pedestal", [])
     found = [
-        _pedestal(item, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
-        for i, item in enumerate(given, start=1)
+        _pedestal(block, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
+        for i, block in enumerate(given, start=1)
     ]
     return tuple(reversed(found))
 

@@ -249,7 +249,7 @@ def outcomes_of_all(
     intensity_levels
         The levels.
     """
-    bodies = [{"": item.body} for item in objects]
+    bodies = [{"": object_.body} for object_ in objects]
     return [found[""] for found in outcomes_of_each(objects, bodies, motions, intensity_levels)]
 
 
@@ -273,12 +273,14 @@ def outcomes_of_each(
         The levels.
     """
     every = [
-        (item, body) for item, named in zip(objects, bodies, strict=True) for body in named.values()
+        (object_, body)
+        for object_, named in zip(objects, bodies, strict=True)
+        for body in named.values()
     ]
-    systems = [item.system_of(body) for item, body in every]
-    solids = [item.solid(body) for item, body in every]
-    worst = any(item.round for item in objects)
-    spread = max(item.base_spread for item in objects)
+    systems = [object_.system_of(body) for object_, body in every]
+    solids = [object_.solid(body) for object_, body in every]
+    worst = any(object_.round for object_ in objects)
+    spread = max(object_.base_spread for object_ in objects)
     most = max(1, MOST_TESTS // intensity_levels.scales.size)
     found: list[ObjectOutcomes] = []
     for i in range(0, len(systems), most):
@@ -310,13 +312,13 @@ def _shaken(
     """
     if not motions.both:
         return _shaken_in_plane(systems, motions, intensity_levels)
-    planar = [i for i, item in enumerate(solids) if item is None or systems[i].count > 1]
+    planar = [i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1]
     shake = _shaken_from_all_sides if worst else _shaken_in_plane
     fallen = shake([systems[i] for i in planar], motions, intensity_levels)
     found = dict(zip(planar, fallen, strict=True))
-    for i, item in enumerate(solids):
-        if item is not None:
-            solid = in_space(item, motions, intensity_levels, spread)
+    for i, body in enumerate(solids):
+        if body is not None:
+            solid = in_space(body, motions, intensity_levels, spread)
             found[i] = found[i].joined(solid) if i in found else solid
     return [found[i] for i in range(len(systems))]
 
@@ -403,10 +405,12 @@ def simulated(
             [motion.dt for motion in shaking],
             scales,
         )
-    light = [issubclass(item.category, LightBodies) for item in caught]
-    for item, known in zip(caught, light, strict=True):
+    light = [issubclass(warning.category, LightBodies) for warning in caught]
+    for warning, known in zip(caught, light, strict=True):
         if not known:
-            warnings.warn_explicit(item.message, item.category, item.filename, item.lineno)
+            warnings.warn_explicit(
+                warning.message, warning.category, warning.filename, warning.lineno
+            )
     return result, any(light)
 
 
@@ -436,8 +440,8 @@ def in_space(
     result = run_in_space([body], shaking, scales, spread=spread, threads=checked_threads(None))
     place = np.zeros(len(motions.base), dtype=np.intp)
     place[first] = np.arange(len(first))
-    for item, other in motions.pairs:
-        place[other] = place[item]
+    for own, other in motions.pairs:
+        place[other] = place[own]
     states = {name: cases[0][place] for name, cases in _reached(result).items()}
     return _object_outcomes(states, motions, intensity_levels)
 

@@ -159,11 +159,11 @@ def make_scan(
     ways["least_deg"] = [_least_angle_deg(shape, way) for way in ways.to_dict("records")]
     assumed = [
         Assumption(
-            f"{item.words} was not measured",
-            f"{item.words.capitalize()}: {item.source}.",
+            f"{quantity.words} was not measured",
+            f"{quantity.words.capitalize()}: {quantity.source}.",
             (SOURCE_OF[name],),
         )
-        for name, item in open_ones.items()
+        for name, quantity in open_ones.items()
         if name != "contact_tolerance_mm" or tolerance is None
     ]
     upright = ways[ways["least_deg"] >= LEAST_ANGLE_DEG]

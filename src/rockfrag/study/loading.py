@@ -146,7 +146,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     )
     asked = plugins_asked(content)
     study = replace(
-        study, added={name: item.settings(content, study) for name, item in asked.items()}
+        study, added={name: plugin.settings(content, study) for name, plugin in asked.items()}
     )
     _check_names(study)
     _check_records_exist(study)
@@ -178,7 +178,7 @@ def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.
 def _chosen(
     source: Path, known: Sequence[System], names: Sequence[str] | None
 ) -> tuple[System, ...]:
-    by_name = {item.name: item for item in known}
+    by_name = {motion.name: motion for motion in known}
     for i, name in enumerate(names or ()):
         if name not in by_name:
             raise InputError(
@@ -207,7 +207,7 @@ def _measured(
         measured[name] = tuple(value) if isinstance(value, list) else value
     law = content.get("law", law_names()[0])
     try:
-        return tuple(with_restitution(item, measured, law) for item in chosen)
+        return tuple(with_restitution(configuration, measured, law) for configuration in chosen)
     except InputError as error:
         raise InputError(f"{key}: {error}") from error
 

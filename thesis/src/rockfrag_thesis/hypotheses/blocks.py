@@ -74,7 +74,8 @@ def c3(setting: Setting) -> Result:
     total = len(TABLE_3_1) * len(DIGITS)
     return Result(
         Finding.AGAINST if wrong else Finding.FOR,
-        f"{total - len(wrong)} of {total} figures agree" + "".join(f"; {item}" for item in wrong),
+        f"{total - len(wrong)} of {total} figures agree"
+        + "".join(f"; {figure}" for figure in wrong),
         (total - len(wrong)) / total,
     )
 

@@ -163,17 +163,19 @@ def c52(tests: Evidence) -> Result:
     }
     if not found:
         raise Undecidable("no measure is known for all motions")
-    p = {name: p_nonzero(item) for name, item in found.items()}
+    p = {name: p_nonzero(estimate) for name, estimate in found.items()}
     strongest = min(p, key=p.__getitem__)
     bound = math.atanh(COULD_BE_FOUND)
-    p_none = max(max(item.p_above(-bound), item.p_below(bound)) for item in found.values())
+    p_none = max(
+        max(estimate.p_above(-bound), estimate.p_below(bound)) for estimate in found.values()
+    )
     p_some = min(1.0, p[strongest] * len(p) / 2)
     finding = Finding.OPEN
     if p_some < LEVEL:
         finding = Finding.AGAINST
     elif p_none < LEVEL:
         finding = Finding.FOR
-    item = found[strongest]
+    estimate = found[strongest]
     return Result(
         finding,
         f"motions: {n}; earthquakes: {joined['earthquake'].nunique()}; "
@@ -181,9 +183,9 @@ def c52(tests: Evidence) -> Result:
             f"{name} ρ = {math.tanh(each.mean):.2f} [{math.tanh(each.lower):.2f}, {math.tanh(each.upper):.2f}]"
             for name, each in found.items()
         ),
-        math.tanh(item.mean),
-        math.tanh(item.lower),
-        math.tanh(item.upper),
+        math.tanh(estimate.mean),
+        math.tanh(estimate.lower),
+        math.tanh(estimate.upper),
         p=min(1.0, 2 * min(p_some, p_none)),
         p_of="no correlation"
         if p_some <= p_none

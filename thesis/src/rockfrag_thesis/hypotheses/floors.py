@@ -62,7 +62,7 @@ def c37(tests: Evidence) -> Parts:
 
 
 SIGNS = {GROUND: (1, 1, 1), THIRD: (1, -1, -1), FIFTH: (-1, -1, -1)}
-"""Signs of the effect that C38 hypotheses, by floor for T1, T2, T3."""
+"""Signs of the effect that C38 claims, by floor for T1, T2, T3."""
 
 
 @order_hypothesis(

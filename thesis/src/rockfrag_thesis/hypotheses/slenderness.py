@@ -134,7 +134,7 @@ def c28(tests: Evidence) -> Result:
     finding = Finding.OPEN
     if p_differ[widest] < LEVEL:
         finding = Finding.FOR
-    elif all(item.finding is Finding.FOR for item in alike):
+    elif all(statement.finding is Finding.FOR for statement in alike):
         finding = Finding.AGAINST
     pair = pairs[widest]
     p_alike = max(each.p for each in alike)

@@ -285,7 +285,7 @@ def c19(setting: Setting) -> Result:
     pga = np.where(falls, np.log(AMPLITUDES_G[found.argmax(axis=2)]), np.nan)
     if (falls.sum(axis=1) < 3).all():
         raise Undecidable("no block overturns under three motions at these amplitudes")
-    sa = np.log([item.pseudo_acceleration for item in setting.spectra.oscillator(0.05)])
+    sa = np.log([spectrum.pseudo_acceleration for spectrum in setting.spectra.oscillator(0.05)])
     own = np.array(
         [
             [
@@ -308,7 +308,7 @@ def c19(setting: Setting) -> Result:
         finding = Finding.FOR
     elif p_less < LEVEL:
         finding = Finding.AGAINST
-    decisive = max(ratios.values(), key=lambda item: item.mean)
+    decisive = max(ratios.values(), key=lambda ratio: ratio.mean)
     spread = {
         name: float(np.nanmean(np.nanstd(values, axis=1, ddof=1)))
         for name, values in (("PGA", pga), ("PGV", at_pgv), ("Sa(2π/p)", at_sa))

@@ -60,7 +60,7 @@ def c2(setting: Setting) -> Result:
     return Result(
         Finding.FOR if all(agree) and not wrong else Finding.AGAINST,
         f"{len(printed) - len(wrong)} of {len(printed)} figures agree; {sum(agree)} of {len(agree)} "
-        "simulated stacks start there" + "".join(f"; {item}" for item in wrong),
+        "simulated stacks start there" + "".join(f"; {name}" for name in wrong),
         (len(printed) - len(wrong)) / len(printed),
         remark="pattern 3 starts at its figure only if the statue is held; see C9",
     )
