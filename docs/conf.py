@@ -140,6 +140,7 @@ def _generate(app: Sphinx) -> None:
             text += _schema_tables()
         _write(folder / name.lstrip("/"), text)
     _write_live(folder / "reference" / "static" / "play.html")
+    _write_app(folder / "reference" / "static" / "assess.html")
     _write(folder / "reference" / "command-line.md", _command_line())
     for name, text in _library().items():
         _write(folder / "reference" / "api" / f"{name}.md", text)
@@ -259,6 +260,35 @@ def _write_live(path: Path) -> None:
     body = Stack(Block(0.5, 0.9, 400.0), Block(0.35, 1.2, 180.0))
     path.parent.mkdir(parents=True, exist_ok=True)
     write_play_page(body, named, path)
+
+
+def _write_app(path: Path) -> None:
+    """The assessment as one page, under pulses and noise that are made by formulas and may be published."""
+    import numpy as np
+
+    from rockfrag.assess.app.writing import write_app
+    from rockfrag.assess.motions import MotionSet
+    from rockfrag.motions import ricker_symmetric
+    from rockfrag.records.motion import Motion
+
+    motions = []
+    for i in range(24):
+        pulse = ricker_symmetric(1.5 + 0.1 * i, 0.25 + 0.06 * i, 0.01).acceleration
+        time = np.arange(1500) * 0.01
+        phases = np.random.default_rng(i).uniform(0, 2 * np.pi, 12)
+        waves = np.sin(
+            2 * np.pi * np.geomspace(0.7, 9, 12)[:, np.newaxis] * time + phases[:, np.newaxis]
+        )
+        shaken = 0.5 * waves.sum(axis=0) * np.exp(-(((time - 5) / 3) ** 2))
+        shaken[300 : 300 + pulse.size] += pulse[:1200]
+        about = {"earthquake": f"made earthquake {i // 3 + 1}"}
+        motions.append(Motion(np.round(shaken, 4), 0.01, f"made motion {i + 1}", about))
+    made = tuple(motions)
+    form = {"width": "35 cm", "height": "1.2 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_app(
+        MotionSet(made, made, (), "24 made motions of 8 made earthquakes"), form, path, made=True
+    )
 
 
 ACCESSIBLE = (

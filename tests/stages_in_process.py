@@ -13,11 +13,13 @@ from rockfrag.stages import (
     measured_tests,
     motions,
     pedestal,
+    space,
     tests,
 )
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import AnyStudy
+from rockfrag.study.space import SpaceStudy
 from rockfrag.study.study import Study
 from rockfrag_thesis.settings import settings_of
 from rockfrag_thesis.stages import hypotheses, sensitivity, sensitivity_analysis
@@ -29,6 +31,8 @@ def stages_of(study: AnyStudy) -> list[Stage]:
     """Stages of a study in the order in which data flow."""
     if isinstance(study, CampaignStudy):
         return [campaign.run, reports.campaign_report]
+    if isinstance(study, SpaceStudy):
+        return [space.run, reports.space_report]
     if not isinstance(study, Study):
         return [reports.measured_table]
     optional = (

@@ -207,7 +207,7 @@ def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
     """Return the body and the motion that the options tell."""
     from rockfrag.system.blocks import stacked
 
-    below = [_block("--pedestal", item) for item in reversed(options.pedestal or [])]
+    below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
     body = stacked([*below, _block("--body", options.body)])
     return body, _motion(options.record, options, options.channel)
 

@@ -131,7 +131,7 @@ def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
     """Express every quantity in the unit of its usual key, whatever key it was given under."""
     if isinstance(value, list):
         items = schema.get("items", {})
-        return [_in_usual_units(item, items, f"{key}[{i}]") for i, item in enumerate(value)]
+        return [_in_usual_units(entry, items, f"{key}[{i}]") for i, entry in enumerate(value)]
     if not isinstance(value, Mapping):
         return value
     properties = schema.get("properties", {})
@@ -156,7 +156,7 @@ def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
 
 def _converted(value: Any, name: str, unit: str | None, key: str) -> Any:
     if isinstance(value, list):
-        return [_converted(item, name, unit, f"{key}[{i}]") for i, item in enumerate(value)]
+        return [_converted(number, name, unit, f"{key}[{i}]") for i, number in enumerate(value)]
     usual = split_name(name)[1]
     if not isinstance(value, str) and unit == usual:
         return value  # the schema says what is wrong with it, if anything

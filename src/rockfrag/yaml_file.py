@@ -30,16 +30,16 @@ class _StrictLoader(yaml.SafeLoader):
         Aliases are refused: no configuration needs them, and they can stand for millions of values.
         """
         self.values += 1
-        event = self.peek_event()
+        coming = self.peek_event()
         if self.values > MOST_VALUES or self.depth > DEEPEST:
             much = "nested too deeply" if self.depth > DEEPEST else f"more than {MOST_VALUES}"
             raise yaml.MarkedYAMLError(
-                problem=f"values are {much}; simplify it", problem_mark=event.start_mark
+                problem=f"values are {much}; simplify it", problem_mark=coming.start_mark
             )
         if self.check_event(yaml.AliasEvent):
             raise yaml.MarkedYAMLError(
-                problem=f"the alias *{event.anchor} is not understood; write its value out",
-                problem_mark=event.start_mark,
+                problem=f"the alias *{coming.anchor} is not understood; write its value out",
+                problem_mark=coming.start_mark,
             )
         self.depth += 1
         node = super().compose_node(parent, index)

@@ -79,3 +79,17 @@ def test_the_sides_may_be_given_either_way_round_and_the_object_may_face_anywher
     np.testing.assert_allclose(about, Block(0.5, 1.2, 180.0, depth=0.35).body.tensor, atol=1e-9)
     with pytest.raises(InputError, match="needs width and depth"):
         asked(width="35 cm", height="1.2 m", facing_deg=20)
+
+
+def test_it_says_how_many_outcomes_next_to_nothing_turns_round(found):
+    assert 0 <= found.flip_rate <= 0.5
+    assert json.loads(as_json(found))["flip_rate"] == found.flip_rate
+
+
+def test_corners_may_lie_elsewhere_by_a_stated_part_of_the_base(found, few):
+    spread = assess_with(asked(**BOX, pga="0.4 g", base_spread=0.02), few)
+    ideal, real = (item.outcomes.overturned for item in (found, spread))
+    assert (ideal != real).any()
+    assert abs(ideal.mean() - real.mean()) < 0.1
+    with pytest.raises(InputError, match="base_spread"):
+        asked(**BOX, base_spread=0.5)

@@ -98,7 +98,7 @@ def test_velocity_pulse_integrates_to_its_definition(cycles, phase_deg):
 def test_ida_passes_its_octaves_at_the_stated_rate(start, end):
     ida = m.sine_sweep(1.5, start, end, 8.0, 0.002)
     assert ida.time[-1] == pytest.approx(4 / 8 * 60)
-    # zero crossings per second in the middle of the IDA curve, where the frequency is the geometric mean
+    # zero crossings per second in the middle of the sweep, where the frequency is the geometric mean
     near = np.abs(ida.time - 15.0) < 1.0
     crossings = np.flatnonzero(np.diff(np.sign(ida.acceleration[near])) != 0).size
     assert crossings / 2 / 2.0 == pytest.approx(math.sqrt(start * end), rel=0.1)

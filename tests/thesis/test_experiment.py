@@ -444,7 +444,7 @@ def test_there_are_58_statements_each_with_text_source_rule_and_error_rate():
 
 def test_a_number_is_given_once():
     with pytest.raises(ValueError, match="C35 is there already"):
-        hypothesis(35, "", "", Kind.IDENTITY, evidence="", rule="", error_rate="")(lambda _: None)
+        hypothesis(35, evidence="", rule="", error_rate="")(lambda _: None)
 
 
 def test_a_margin_is_positive_where_the_means_are_as_stated(made):

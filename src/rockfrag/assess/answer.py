@@ -22,6 +22,7 @@ from rockfrag.assess.outcomes import (
     LEVELS,
     IntensityLevels,
     ObjectOutcomes,
+    flip_rate,
     fraction_with_sliding,
     make_intensity_levels,
     on_pad,
@@ -104,6 +105,8 @@ class Assessment:
         Engineers' rules held against the outcomes.
     sliding_fraction
         Fraction of the motions at the level that topple it if it may slide [-]; NaN without friction or level.
+    flip_rate
+        Fraction of the outcomes in space at the level that differ if the base does by a millionth [-]; or NaN.
     """
 
     request: Request
@@ -127,6 +130,7 @@ class Assessment:
     effects: tuple[Moved[float], ...]
     rules: tuple[RuleCheck, ...]
     sliding_fraction: float
+    flip_rate: float = math.nan
 
     __repr__ = short_repr
 
@@ -295,28 +299,30 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
         Motions and levels.
     """
     objects = [request.objects for request in requests]
-    ways = [dict(item.arrangements) for item in objects]
+    ways = [dict(object_.arrangements) for object_ in objects]
     if plan.brief:
         ways = [dict(list(bodies.items())[:1]) for bodies in ways]
     arrangements = outcomes_of_each(objects, ways, plan.motions, plan.intensity_levels)
     under = (plan.motions, plan.intensity_levels)
-    changes = [mitigations_of(item) for item in objects]
+    changes = [mitigations_of(object_) for object_ in objects]
     if plan.compares_few:
         # of few motions the object as it stands comes first, then with each mitigation
         under = (plan.fewer, plan.fewer_intensity_levels)
-        changes = [{"": item.body, **each} for item, each in zip(objects, changes, strict=True)]
+        changes = [
+            {"": object_.body, **each} for object_, each in zip(objects, changes, strict=True)
+        ]
     compared = outcomes_of_each(objects, changes, *under)
     moved = _moved(requests, plan)
     found = []
-    for item, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
+    for object_, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
         before = change.pop("") if plan.compares_few else next(iter(way.values()))
-        if item.pad_friction is not None:
-            outcomes, slip = on_pad(item, item.pad_friction, *under)
-            change[_pad_words(item.pad_friction, slip, plan, under[1])] = outcomes
+        if object_.pad_friction is not None:
+            outcomes, slip = on_pad(object_, object_.pad_friction, *under)
+            change[_pad_words(object_.pad_friction, slip, plan, under[1])] = outcomes
         planar = None
         if plan.motions.both and not plan.brief:
-            flat = item.in_plane()
-            planar = outcomes_of(flat, {"": item.body}, plan.motions, plan.intensity_levels)[""]
+            flat = object_.in_plane()
+            planar = outcomes_of(flat, {"": object_.body}, plan.motions, plan.intensity_levels)[""]
         found.append(Shaken(way, sides, before, planar, change))
     return found
 
@@ -424,6 +430,9 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         sliding_fraction=math.nan
         if brief or at is None or objects.friction is None
         else fraction_with_sliding(objects, motions, measure, at),
+        flip_rate=math.nan
+        if brief or at is None or not motions.both
+        else flip_rate(objects, motions, measure, at),
     )
 
 
@@ -532,9 +541,9 @@ def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | 
 def _moved(requests: Sequence[Request], plan: Plan) -> list[list[Moved[ObjectOutcomes]]]:
     """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
     variants = [request.objects.variants() for request in requests]
-    sides = [side for each in variants for item in each for side in item.sides]
+    sides = [side for each in variants for variant in each for side in variant.sides]
     shaken = iter(outcomes_of_all(sides, plan.fewer, plan.fewer_intensity_levels))
-    found = [[item.turned(lambda _: next(shaken)) for item in each] for each in variants]
+    found = [[variant.turned(lambda _: next(shaken)) for variant in each] for each in variants]
     objects = [request.objects for request in requests]
     for moved in requests[0].place.variants():
         floors = moved.turned(

@@ -45,6 +45,7 @@ def as_json(found: Assessment) -> str:
         "arrangements": found.by_arrangement,
         "in_space": found.motions.both,
         "in_one_plane": found.planar,
+        "flip_rate": found.flip_rate,
         "directions": found.directions and vars(found.directions),
         "mitigations": [vars(mitigation) for mitigation in found.mitigations],
         "rules_of_thumb": [vars(rule) for rule in found.rules],

@@ -105,7 +105,14 @@ def _add_object(about: Any) -> None:
         action=_Once,
         type=float,
         metavar="DEGREES",
-        help="direction of the width, from the first component of each record; needs the depth",
+        help="direction of the width, or of a mesh's x axis, from the first component of each record",
+    )
+    about.add_argument(
+        "--base-spread",
+        action=_Once,
+        type=float,
+        metavar="FRACTION",
+        help="by how much corners of the base lie elsewhere in space, over its size: 0.001",
     )
     about.add_argument("--round", action="store_true", help="the base is round")
     about.add_argument(
@@ -317,6 +324,7 @@ def settings_of(options: argparse.Namespace) -> dict[str, Any]:
         "name": options.name,
         "round": options.round or None,
         "facing_deg": options.facing,
+        "base_spread": options.base_spread,
         "restitution": options.restitution,
         "friction": options.friction,
         "pad_friction": options.pad_friction,
@@ -358,9 +366,9 @@ def _building(options: argparse.Namespace) -> dict[str, Any] | None:
 
     known: dict[str, Any] = {}
     if options.storey_height:
-        item = len(options.storey_height) == 1
-        known["storey_height" if item else "storey_heights"] = (
-            options.storey_height[0] if item else options.storey_height
+        uniform = len(options.storey_height) == 1
+        known["storey_height" if uniform else "storey_heights"] = (
+            options.storey_height[0] if uniform else options.storey_height
         )
     if options.period:
         try:
@@ -376,13 +384,13 @@ def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:
     """The pedestal as a file would have it, or several from above."""
     if given is None:
         return None
-    for item in given:
-        if len(item) not in (2, 3):
+    for numbers in given:
+        if len(numbers) not in (2, 3):
             raise InputError(
                 "--pedestal: expected width, height and, if known, mass, such as 50cm 90cm 400kg; got "
-                f"{' '.join(item)}."
+                f"{' '.join(numbers)}."
             )
-    found = [dict(zip(("width", "height", "mass"), item, strict=False)) for item in given]
+    found = [dict(zip(("width", "height", "mass"), numbers, strict=False)) for numbers in given]
     return found if len(found) > 1 else found[0]
 
 

@@ -123,7 +123,9 @@ def assess_inventory(
     order = {}
     if joint is not None:
         order = dict(zip(joint.objects["name"], joint.objects["annual_loss"], strict=True))
-    found.sort(key=lambda item: (order.get(item.request.name, 0.0), *_risk(item)), reverse=True)
+    found.sort(
+        key=lambda answer: (order.get(answer.request.name, 0.0), *_risk(answer)), reverse=True
+    )
     return Inventory(found, motions, joint, faults)
 
 
@@ -259,7 +261,10 @@ def _yes(row: Row, column: str) -> bool:
 
 def _risk(found: Assessment) -> tuple[float, float, float]:
     """What objects are sorted by: the probability, the fraction, and how little topples half of the motions."""
-    main = [0.0 if item is None else item.value for item in (found.probability, found.fraction)]
+    main = [
+        0.0 if estimate is None else estimate.value
+        for estimate in (found.probability, found.fraction)
+    ]
     return main[0], main[1], -found.amplitudes[0.5].value
 
 
@@ -268,9 +273,13 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
     rows = []
     for found in inventory.found:
         row: dict[str, Any] = {"name": found.request.name, "place": found.request.place.words}
-        for name, item in (("probability", found.probability), ("fraction", found.fraction)):
-            if item is not None:
-                row |= {name: item.value, f"{name}_lower": item.lower, f"{name}_upper": item.upper}
+        for name, estimate in (("probability", found.probability), ("fraction", found.fraction)):
+            if estimate is not None:
+                row |= {
+                    name: estimate.value,
+                    f"{name}_lower": estimate.lower,
+                    f"{name}_upper": estimate.upper,
+                }
         row |= {
             f"{found.measure.column}_tenth": found.amplitudes[0.1].value,
             f"{found.measure.column}_half": found.amplitudes[0.5].value,

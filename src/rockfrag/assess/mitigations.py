@@ -152,7 +152,7 @@ def compare(
     -------
     A :class:`Mitigation` for each change, the most helpful first.
     """
-    found = [_mitigation(target, name, now, item) for name, item in changed.items()]
+    found = [_mitigation(target, name, now, outcomes) for name, outcomes in changed.items()]
     found.sort(key=lambda mitigation: mitigation.value)
     return found
 

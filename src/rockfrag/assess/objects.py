@@ -7,6 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.assess.scan import Scan, make_scan
@@ -16,6 +18,8 @@ from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
 from rockfrag.rocking.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Body, stacked
+from rockfrag.system.body import Polygon, RigidBody, checked_tensor
+from rockfrag.system.contact import Contact
 from rockfrag.system.mesh import Shape, read_shape
 from rockfrag.system.system import (
     System,
@@ -41,6 +45,9 @@ ROLLING = 1.0
 HIGHER = 1.0 + 1e-9
 """Height of a body that is another one than the object, over that of the object."""
 
+ASIDE = 45.0
+"""Angle to both sides of how it faces the shaking, where nobody said it [degrees]: two at a right angle."""
+
 ALONE = "on the floor"
 """How an object stands without a pedestal."""
 
@@ -65,8 +72,14 @@ class Objects:
         Side of a rectangular base across that plane [m]; None where it is not known, or not to be used.
     facing_deg
         Direction of that plane, from the first component of each record towards the second [degrees].
+    faces_anywhere
+        Whether nobody said how it faces the shaking, which counts in space.
+    base_spread
+        By how much corners of the base lie elsewhere in space, over its extent, other for each record [-].
     scan
         The scan and the ways in which it may stand; None where dimensions were given.
+    scanned
+        The scan in space as it stands; None where dimensions were given, or it is not to be used.
     livelier
         Factor on every restitution, measured or not [-]; impacts never gain energy.
     tolerances
@@ -90,7 +103,10 @@ class Objects:
     round: bool = False
     depth: float | None = None
     facing_deg: float = 0.0
+    faces_anywhere: bool = False
+    base_spread: float = 0.0
     scan: Scan | None = None
+    scanned: RigidBody | None = None
     livelier: float = 1.0
     assumed: tuple[Assumption, ...] = ()
     quality_flags: tuple[str, ...] = ()
@@ -164,14 +180,17 @@ class Objects:
     def in_space(self) -> bool:
         """Whether it is simulated under both components of each record.
 
-        A rectangular base is if its depth is known, and its impacts take what conservation of momentum does.
+        A rectangular base is if its depth is known, and a scan on the polygon of the points that carry, unless its
+        restitution was measured.
         """
-        plain = self.depth is not None and self.restitution is None and self.livelier == 1
+        usual = 1.0 if self.scan is None else ON_POINTS["livelier"]
+        known = self.depth is not None or self.scanned is not None
+        plain = known and self.restitution is None and self.livelier == usual
         return self.round or (plain and self.pad_friction is None)
 
     def in_plane(self) -> "Objects":
         """The object as it rocks in one plane, on edges."""
-        return replace(self, round=False, depth=None)
+        return replace(self, round=False, depth=None, scanned=None)
 
     def solid(self, body: Body) -> System | None:
         """The object in space where it is free to move in an arrangement; None where it is not known in space.
@@ -183,13 +202,22 @@ class Objects:
         """
         top = body.blocks[-1]
         whole = top.height > self.statue.height * HIGHER
-        if not self.in_space or (self.round and whole):
+        if not self.in_space or (whole and self.depth is None):
             return None
+        if self.scanned is not None:
+            return System((self._changed(self.scanned, top),), (Contact(),))
         if self.round:
             across = top.centroidal_inertia
             along = top.mass * top.width**2 / 8
             return replace(top, round=True, inertia=diagonal(across, across, along)).system()
         return turned_about_vertical(self._box(top, whole=whole).system(), self.facing_deg)
+
+    def _changed(self, scanned: RigidBody, top: Block) -> RigidBody:
+        """The scan in space with what another block differs by from the object's."""
+        added = top.centroidal_inertia - self.statue.centroidal_inertia
+        factors = (top.width / self.statue.width, top.h / self.statue.h, top.mass / scanned.mass)
+        about = checked_tensor(scanned.tensor + np.diag([added, added, 0.0]))
+        return replace(stretched(scanned, *factors), inertia=about)
 
     def _box(self, top: Block, *, whole: bool) -> Block:
         """The object on a rectangular base, or one with what it is fixed to, whose base is square or as deep."""
@@ -216,15 +244,54 @@ class Objects:
             moves["mass"] = partial(_heavier, self)
         found = moved_to_both_sides(moves, self.tolerances)
         if self.scan is not None:
-            found += [_standing(self, self.scan, name) for name in self.scan.parts]
+            found += _standing(self, self.scan)
+        elif self.depth is not None and self.faces_anywhere:
+            turned = (replace(self, facing_deg=self.facing_deg + by) for by in (-ASIDE, ASIDE))
+            found.append(Moved("facing", 0.0, *turned))
         return found
 
 
-def _standing(objects: Objects, scan: Scan, name: str) -> Moved[Objects]:
-    """The object in the ways to stand that are one standard deviation of a source away."""
-    low, high, spread = scan.sides()[name]
-    lower, upper = (replace(objects, statue=scan.block(at)) for at in (low, high))
-    return Moved(name, spread, lower, upper)
+def _standing(objects: Objects, scan: Scan) -> list[Moved[Objects]]:
+    """The object in the ways to stand that are one standard deviation of each source away, planar and in space."""
+    planar, space = scan.sides(), {}
+    bodies: dict[str, tuple[RigidBody | None, ...]] = {}
+    if scan.space is not None and objects.scanned is not None:
+        space = scan.space.sides()
+        bodies = {name: tuple(map(scan.space.body, side[:2])) for name, side in space.items()}
+        if objects.faces_anywhere:
+            bodies["facing"] = tuple(scan.space.body(0.5, by) for by in (-ASIDE, ASIDE))
+    found = []
+    for name in dict.fromkeys((*planar, *bodies)):
+        low, high, spread = planar.get(name, (0.5, 0.5, space.get(name, (0, 0, 0.0))[2]))
+        sides = zip((low, high), bodies.get(name, (objects.scanned,) * 2), strict=True)
+        lower, upper = (replace(objects, statue=scan.block(at), scanned=body) for at, body in sides)
+        found.append(Moved(name, spread, lower, upper))
+    return found
+
+
+def stretched(body: RigidBody, width: float, height: float, mass: float) -> RigidBody:
+    """A body in space whose base is wider, whose centre of gravity is higher, and which is heavier, by factors.
+
+    Parameters
+    ----------
+    body
+        On a polygon whose origin lies below its centre of gravity.
+    width, height, mass
+        The factors; the inertia is as much larger as the mass.
+    """
+    assert isinstance(body.base, Polygon)
+    x, y, z = body.centre
+    return replace(
+        body,
+        mass=body.mass * mass,
+        inertia=checked_tensor(body.tensor * mass),
+        centre=(x, y, min(z * height, body.height)),
+        base=Polygon(tuple((width * x, width * y) for x, y in body.base.vertices)),
+    )
+
+
+def _stretched(objects: Objects, *factors: float) -> RigidBody | None:
+    return None if objects.scanned is None else stretched(objects.scanned, *factors)
 
 
 def _wider(objects: Objects, factor: float) -> Objects:
@@ -233,6 +300,7 @@ def _wider(objects: Objects, factor: float) -> Objects:
         objects,
         depth=None if objects.depth is None else objects.depth * factor,
         statue=wider(objects.statue, factor),
+        scanned=_stretched(objects, factor, 1.0, 1.0),
         pedestals=tuple(wider(block, factor) for block in objects.pedestals),
     )
 
@@ -243,7 +311,8 @@ def wider(block: Block, factor: float) -> Block:
 
 
 def _higher(objects: Objects, factor: float) -> Objects:
-    return replace(objects, statue=higher(objects.statue, factor))
+    scanned = _stretched(objects, 1.0, factor, 1.0)
+    return replace(objects, statue=higher(objects.statue, factor), scanned=scanned)
 
 
 def higher(block: Block, factor: float) -> Block:
@@ -262,7 +331,7 @@ def _livelier(objects: Objects, factor: float) -> Objects:
 def _heavier(objects: Objects, factor: float) -> Objects:
     statue = objects.statue
     heavier = replace(statue, mass=statue.mass * factor, inertia=statue.centroidal_inertia * factor)
-    return replace(objects, statue=heavier)
+    return replace(objects, statue=heavier, scanned=_stretched(objects, 1.0, 1.0, factor))
 
 
 def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
@@ -285,6 +354,7 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
     is_round = bool(settings.get("round", False))
     scan = None
     if "mesh" in settings:
+        settings = _facing_mesh(settings)
         scan, statue, plane = _from_mesh(settings, folder, assumed)
     else:
         statue, plane = _from_dimensions(settings, assumed, quality_flags)
@@ -312,7 +382,11 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         round=is_round,
         depth=depth,
         facing_deg=facing,
+        faces_anywhere="facing_deg" not in settings
+        and "direction_deg" not in settings.get("mesh", {}),
+        base_spread=float(settings.get("base_spread", 0.0)),
         scan=scan,
+        scanned=scan.space.body() if scan and scan.space and not is_round else None,
         assumed=(*first, *assumed),
         quality_flags=tuple(quality_flags),
         pad_friction=settings.get("pad_friction"),
@@ -333,10 +407,22 @@ _RESTITUTION = Assumption(
 
 _ON_POINTS = Assumption(
     "impacts on few points take more than conservation of momentum does",
-    "Each impact leaves 0.7 to 1 times the velocity that conservation of momentum does, 0.85 in the middle; the "
-    "restitution was not measured.",
+    "In one plane each impact leaves 0.7 to 1 times the velocity that conservation of momentum does, 0.85 in the "
+    "middle; the restitution was not measured.",
     ("restitution",),
 )
+
+
+def _facing_mesh(settings: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Say of a mesh how it faces the shaking by the direction of that in the mesh."""
+    if "facing_deg" not in settings:
+        return settings
+    if "direction_deg" in settings["mesh"]:
+        raise InputError(
+            "key facing_deg: mesh.direction_deg says so already; leave out one of them."
+        )
+    mesh = settings["mesh"] | {"direction_deg": -settings["facing_deg"] % 360.0}
+    return {key: value for key, value in settings.items() if key != "facing_deg"} | {"mesh": mesh}
 
 
 def _in_plan(settings: Mapping[str, Any]) -> tuple[float | None, float]:
@@ -346,7 +432,7 @@ def _in_plan(settings: Mapping[str, Any]) -> tuple[float | None, float]:
     if depth is None or settings.get("round"):
         if "facing_deg" in settings:
             raise InputError(
-                "key facing_deg: needs width and depth of a rectangular base; leave it out."
+                "key facing_deg: needs width and depth of a rectangular base, or a mesh; leave it out."
             )
         return None, 0.0
     # the plane is across the narrower side
@@ -364,9 +450,10 @@ def _of_the_base(is_round: bool, is_mesh: bool, is_box: bool) -> Assumption:
         )
     if is_mesh:
         return Assumption(
-            "it rocks in one plane",
-            "It rocks in one plane; the planes of all directions and what carries in them are a source of the "
-            "interval.",
+            "it stands on the polygon of the points that carry",
+            "It stands on the polygon of the points that carry, and is simulated in space under both components "
+            "of each record, where impacts are plastic; with a measured restitution, a pad, or records of one "
+            "component it rocks in one plane. What carries and how it faces are sources of the interval.",
         )
     if is_box:
         return Assumption(
@@ -558,8 +645,8 @@ def _pedestals(settings: Mapping[str, Any], assumed: list[Assumption]) -> tuple[
     """What the object stands on, from below."""
     given = settings.get("pedestal", [])
     found = [
-        _pedestal(item, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
-        for i, item in enumerate(given, start=1)
+        _pedestal(block, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
+        for i, block in enumerate(given, start=1)
     ]
     return tuple(reversed(found))
 

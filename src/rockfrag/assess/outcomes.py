@@ -1,5 +1,6 @@
 """Which motions topple a body at which level of shaking: fractions of motions, no curve assumed."""
 
+import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,6 +12,7 @@ from scipy import stats
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
+from rockfrag.engines.spatial.robustness import PERTURBATION
 from rockfrag.fragility.observations import Observations
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
@@ -247,7 +249,7 @@ def outcomes_of_all(
     intensity_levels
         The levels.
     """
-    bodies = [{"": item.body} for item in objects]
+    bodies = [{"": object_.body} for object_ in objects]
     return [found[""] for found in outcomes_of_each(objects, bodies, motions, intensity_levels)]
 
 
@@ -271,16 +273,24 @@ def outcomes_of_each(
         The levels.
     """
     every = [
-        (item, body) for item, named in zip(objects, bodies, strict=True) for body in named.values()
+        (object_, body)
+        for object_, named in zip(objects, bodies, strict=True)
+        for body in named.values()
     ]
-    systems = [item.system_of(body) for item, body in every]
-    solids = [item.solid(body) for item, body in every]
-    worst = any(item.round for item in objects)
+    systems = [object_.system_of(body) for object_, body in every]
+    solids = [object_.solid(body) for object_, body in every]
+    worst = any(object_.round for object_ in objects)
+    spread = max(object_.base_spread for object_ in objects)
     most = max(1, MOST_TESTS // intensity_levels.scales.size)
     found: list[ObjectOutcomes] = []
     for i in range(0, len(systems), most):
         found += _shaken(
-            systems[i : i + most], solids[i : i + most], motions, intensity_levels, worst=worst
+            systems[i : i + most],
+            solids[i : i + most],
+            motions,
+            intensity_levels,
+            worst=worst,
+            spread=spread,
         )
     each = iter(found)
     return [{name: next(each) for name in named} for named in bodies]
@@ -293,6 +303,7 @@ def _shaken(
     intensity_levels: IntensityLevels,
     *,
     worst: bool,
+    spread: float,
 ) -> list[ObjectOutcomes]:
     """Outcomes in space where both components act and a body is known in space, in a plane elsewhere.
 
@@ -301,13 +312,13 @@ def _shaken(
     """
     if not motions.both:
         return _shaken_in_plane(systems, motions, intensity_levels)
-    planar = [i for i, item in enumerate(solids) if item is None or systems[i].count > 1]
+    planar = [i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1]
     shake = _shaken_from_all_sides if worst else _shaken_in_plane
     fallen = shake([systems[i] for i in planar], motions, intensity_levels)
     found = dict(zip(planar, fallen, strict=True))
-    for i, item in enumerate(solids):
-        if item is not None:
-            solid = _in_space(item, motions, intensity_levels)
+    for i, body in enumerate(solids):
+        if body is not None:
+            solid = in_space(body, motions, intensity_levels, spread)
             found[i] = found[i].joined(solid) if i in found else solid
     return [found[i] for i in range(len(systems))]
 
@@ -349,6 +360,33 @@ def _object_outcomes(
     return ObjectOutcomes(intensity_levels, fell, rocked, motions.earthquakes, light, states)
 
 
+def flip_rate(
+    objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float
+) -> float:
+    """Fraction of the outcomes in space at a level that a perturbation turns round [-]; NaN where there are none.
+
+    Parameters
+    ----------
+    objects
+        The object.
+    motions
+        The motions, both components at once.
+    measure
+        The intensity measure.
+    level
+        The level, in its unit.
+    """
+    solid = objects.solid(objects.body)
+    here = _one_level(motions, measure, level)
+    if solid is None or not here.allowed.any():
+        return math.nan
+    first, other = (
+        in_space(solid, motions, here, objects.base_spread + more).overturned[here.allowed]
+        for more in (0.0, PERTURBATION)
+    )
+    return float((first != other).mean())
+
+
 def simulated(
     systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
 ) -> tuple[Outcomes, bool]:
@@ -371,17 +409,31 @@ def simulated(
             [motion.dt for motion in shaking],
             scales,
         )
-    light = [issubclass(item.category, LightBodies) for item in caught]
-    for item, known in zip(caught, light, strict=True):
+    light = [issubclass(warning.category, LightBodies) for warning in caught]
+    for warning, known in zip(caught, light, strict=True):
         if not known:
-            warnings.warn_explicit(item.message, item.category, item.filename, item.lineno)
+            warnings.warn_explicit(
+                warning.message, warning.category, warning.filename, warning.lineno
+            )
     return result, any(light)
 
 
-def _in_space(
-    body: System, motions: MotionSet, intensity_levels: IntensityLevels
+def in_space(
+    body: System, motions: MotionSet, intensity_levels: IntensityLevels, spread: float
 ) -> ObjectOutcomes:
-    """Outcomes of a body in space under both components of each record, where it has two."""
+    """Outcomes of a body in space under both components of each record, where it has two.
+
+    Parameters
+    ----------
+    body
+        The body.
+    motions
+        The motions.
+    intensity_levels
+        The levels.
+    spread
+        By how much corners of the base lie elsewhere, over its extent [-].
+    """
     paired = {i for pair in motions.pairs for i in pair}
     shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]
     shaking += [GroundMotion(m) for i, m in enumerate(motions.base) if i not in paired]
@@ -389,11 +441,11 @@ def _in_space(
     first += [i for i in range(len(motions.base)) if i not in paired]
     scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)[first]
     scales = np.minimum(scales, believable_scales(motions.base)[first])
-    result = run_in_space([body], shaking, scales, threads=checked_threads(None))
+    result = run_in_space([body], shaking, scales, spread=spread, threads=checked_threads(None))
     place = np.zeros(len(motions.base), dtype=np.intp)
     place[first] = np.arange(len(first))
-    for item, other in motions.pairs:
-        place[other] = place[item]
+    for own, other in motions.pairs:
+        place[other] = place[own]
     states = {name: cases[0][place] for name, cases in _reached(result).items()}
     return _object_outcomes(states, motions, intensity_levels)
 
@@ -463,6 +515,12 @@ def on_pad(
     return outcomes, result.peak_slip[0, ..., -1]
 
 
+def _one_level(motions: MotionSet, measure: IntensityMeasure, level: float) -> IntensityLevels:
+    scales = level / motions.values(measure)[:, np.newaxis]
+    allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
+    return IntensityLevels(measure, np.array([level]), scales, allowed)
+
+
 def fraction_with_sliding(
     objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float
 ) -> float:
@@ -482,16 +540,13 @@ def fraction_with_sliding(
     level
         The level, in the measure's unit.
     """
-    scales = level / motions.values(measure)
-    allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
+    at_level = _one_level(motions, measure, level)
+    allowed, scales = at_level.allowed[:, 0], at_level.scales[:, 0]
     solid = objects.solid(objects.body) if motions.both else None
     if solid is not None and objects.friction is not None and not objects.pedestals:
         friction = Friction(objects.friction, objects.friction)
         slides = replace(solid, contacts=(replace(solid.contacts[0], friction=friction),))
-        one_level = IntensityLevels(
-            measure, np.array([level]), scales[:, np.newaxis], allowed[:, np.newaxis]
-        )
-        return float(_in_space(slides, motions, one_level).fractions()[0])
+        return float(in_space(slides, motions, at_level, objects.base_spread).fractions()[0])
     fallen = overturns(
         objects.system_of(objects.body),
         motions.base,

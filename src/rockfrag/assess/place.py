@@ -278,7 +278,7 @@ def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:
         raise InputError(
             "key building.storey_height: the heights of all storeys are given too; leave one out."
         )
-    heights = tuple(float(item) for item in known["storey_heights_m"])
+    heights = tuple(float(height) for height in known["storey_heights_m"])
     if len(heights) != storeys:
         raise InputError(
             f"key building.storey_heights: {len(heights)} heights are given for {storeys} storeys; give one a "

@@ -408,7 +408,7 @@ def _limit(
         # at rest as it is: what could move it decides
         return sign * max([sign * bound, *ends])
     further = [max(0.0, end - sign * plain) for end in ends]
-    return bound + sign * _Z * math.sqrt(sum(item**2 for item in further))
+    return bound + sign * _Z * math.sqrt(sum(term**2 for term in further))
 
 
 def estimate_rocking(

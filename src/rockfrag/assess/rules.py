@@ -100,8 +100,8 @@ def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFra
     """
     given = checked(read_yaml(path), "rules_of_thumb", str(path))
     requests = [
-        make_request(item, f"{path}, object {i}", Path(path).parent)
-        for i, item in enumerate(given["objects"], start=1)
+        make_request(object_, f"{path}, object {i}", Path(path).parent)
+        for i, object_ in enumerate(given["objects"], start=1)
     ]
     motions = motion_set(Records(), Place(), Path(records))
     intensity_levels = make_intensity_levels(motions, PGA)

@@ -8,7 +8,7 @@ effects; of the order, since a foot that carries from some tolerance on makes th
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -17,11 +17,18 @@ import pandas as pd
 from scipy.stats import norm
 
 from rockfrag.assess.assumed import Assumption
-from rockfrag.campaign.standing import Unknown, lognormal, unknowns_of, ways_to_stand
+from rockfrag.campaign.standing import (
+    LEAST_ANGLE_DEG,
+    Unknown,
+    lognormal,
+    unknowns_of,
+    ways_to_stand,
+)
 from rockfrag.campaign.trials import block_of
 from rockfrag.fragility.model_error import SCAN
 from rockfrag.system.blocks import Block
-from rockfrag.system.mesh import Shape
+from rockfrag.system.body import RigidBody
+from rockfrag.system.mesh import Shape, edge_distances
 
 SOURCE_OF = {
     "contact_tolerance_mm": "contact",
@@ -48,14 +55,20 @@ class Scan:
     shape
         The scan.
     ways
-        A row each, by rising angle at which it balances (``alpha_deg``).
+        A row each, by rising angle at which it balances: that in its direction, or in space the least.
     parts
         Part of the variance of the order by source; the sum is 1.
+    order
+        Column of ``ways`` with that angle: ``alpha_deg``, or in space ``least_deg``.
+    space
+        The ways in the order that counts in space; None where it could stand in none of them.
     """
 
     shape: Shape
     ways: pd.DataFrame
     parts: Mapping[str, float]
+    order: str = "alpha_deg"
+    space: "Scan | None" = None
 
     def row_at(self, fraction: float) -> Mapping[str, float]:
         """The way below which a fraction of all balances.
@@ -78,12 +91,26 @@ class Scan:
         """
         return block_of(self.shape, self.row_at(fraction))
 
+    def body(self, fraction: float = 0.5, turned_deg: float = 0.0) -> RigidBody:
+        """The body in space of such a way.
+
+        Parameters
+        ----------
+        fraction
+            As in :meth:`row_at`.
+        turned_deg
+            Angle by which it faces another way [degrees].
+        """
+        way = self.row_at(fraction)
+        tolerance, retreat = way["contact_tolerance_mm"] / 1e3, way["edge_retreat_mm"] / 1e3
+        return self.shape.body(way["direction_deg"] - turned_deg, tolerance, retreat)
+
     def sides(self) -> dict[str, tuple[float, float, float]]:
         """Places of each source's standard deviation to both sides, and half their distance in ln angle."""
         found = {}
         for name, part in self.parts.items():
             low, high = norm.cdf(-math.sqrt(part)), norm.cdf(math.sqrt(part))
-            angles = [self.row_at(at)["alpha_deg"] for at in (low, high)]
+            angles = [self.row_at(at)[self.order] for at in (low, high)]
             found[name] = (float(low), float(high), math.log(angles[1] / angles[0]) / 2)
         return found
 
@@ -129,17 +156,31 @@ def make_scan(
     shape.contact_polygon(unknowns["contact_tolerance_mm"].quantile(0.5) / 1e3)
     open_ones = {name: unknown for name, unknown in unknowns.items() if name not in exact}
     ways = ways_to_stand(shape, open_ones, WAYS, 1, exact).table
-    ways = ways.sort_values("alpha_deg", kind="stable", ignore_index=True)
+    ways["least_deg"] = [_least_angle_deg(shape, way) for way in ways.to_dict("records")]
     assumed = [
         Assumption(
-            f"{item.words} was not measured",
-            f"{item.words.capitalize()}: {item.source}.",
+            f"{quantity.words} was not measured",
+            f"{quantity.words.capitalize()}: {quantity.source}.",
             (SOURCE_OF[name],),
         )
-        for name, item in open_ones.items()
+        for name, quantity in open_ones.items()
         if name != "contact_tolerance_mm" or tolerance is None
     ]
-    return Scan(shape, ways, _parts(ways, list(open_ones))), assumed
+    upright = ways[ways["least_deg"] >= LEAST_ANGLE_DEG]
+    carries = [name for name in open_ones if name != "direction_deg"]
+    space = _ordered(shape, upright, carries, "least_deg") if len(upright) else None
+    return replace(_ordered(shape, ways, list(open_ones), "alpha_deg"), space=space), assumed
+
+
+def _ordered(shape: Shape, ways: pd.DataFrame, names: list[str], order: str) -> Scan:
+    ordered = ways.sort_values(order, kind="stable", ignore_index=True)
+    return Scan(shape, ordered, _parts(ordered, names, order), order)
+
+
+def _least_angle_deg(shape: Shape, way: Mapping[Any, Any]) -> float:
+    """Least angle of all directions at which a way to stand balances [degrees]; negative where it cannot."""
+    reach = edge_distances(shape.contact_polygon(way["contact_tolerance_mm"] / 1e3)).min()
+    return math.degrees(math.atan2(reach - way["edge_retreat_mm"] / 1e3, shape.cg_height))
 
 
 def _in_mm(metres: float | None) -> float | None:
@@ -153,9 +194,9 @@ def _about(unknown: Unknown, tolerance: float | None, spread: float | None) -> U
     return Unknown(unknown.words, unknown.source, partial(lognormal, middle, known))
 
 
-def _parts(ways: pd.DataFrame, names: list[str]) -> dict[str, float]:
+def _parts(ways: pd.DataFrame, names: list[str], order: str) -> dict[str, float]:
     """Part of each unknown in the variance of the order: that of its means in bins of equally many ways."""
-    values = norm.ppf((ways["alpha_deg"].rank(method="first").to_numpy() - 0.5) / len(ways))
+    values = norm.ppf((ways[order].rank(method="first").to_numpy() - 0.5) / len(ways))
     found = {}
     for name in names:
         bins = (ways[name].rank(method="first", pct=True).to_numpy() * _BINS * 0.999999).astype(int)

@@ -74,7 +74,7 @@ SOURCES: Mapping[str, Source] = {
     ),
     "facing": Source(
         "the direction in which it faces the shaking",
-        "Any direction is as probable as any other",
+        "Any direction is as probable as any other; in space half the difference of two at a right angle",
         Measurement("the direction from which its shaking comes", 0.0),
     ),
     "cg_height": Source(

@@ -40,7 +40,7 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
 
     def option(found: re.Match[str]) -> str:
         key = _without_unit(found[1])
-        if given is not None and key.split(".")[0] not in {_without_unit(item) for item in given}:
+        if given is not None and key.split(".")[0] not in {_without_unit(other) for other in given}:
             return found[0]
         name = _OPTIONS.get(key, key.split(".")[0].replace("_", "-"))
         # a flag takes no value, and an axis stands beside its option

@@ -205,17 +205,17 @@ def _total(found: Assessment) -> int:
 
 def _counted(found: Assessment, what: int) -> str:
     """How many motions do it, such as ``1 of 100 motions topples``."""
-    item, many = {ROCK: ("makes", "make"), TOPPLE: ("topples", "topple")}[what]
+    single, many = {ROCK: ("makes", "make"), TOPPLE: ("topples", "topple")}[what]
     fraction = found.rocking if what == ROCK else found.fraction
     assert fraction is not None
     if fraction.value == 0:
-        return f"none of {_total(found)} motions {item}"
+        return f"none of {_total(found)} motions {single}"
     if found.counts is None:
         return f"{fraction_words(fraction.value)} of the motions {many}"
     number, total = found.counts[what], found.counts[0]
     if number == total:
         return f"all {total} motions {many}"
-    return f"{number} of {total} motions {item if number == 1 else many}"
+    return f"{number} of {total} motions {single if number == 1 else many}"
 
 
 def _interval(estimate: Estimate) -> str:
@@ -450,6 +450,11 @@ def assumptions(found: Assessment) -> list[str]:
             "Motions come in the direction in which they were recorded, at random. The worst direction is not "
             "counted "
             "in the figures; that both components act at once is counted in their intervals, as for a square box."
+        )
+    if math.isfinite(found.flip_rate):
+        lines.append(
+            f"A base whose corners lie elsewhere by a millionth of its size turns "
+            f"{fraction_words(found.flip_rate)} of the outcomes in space at that level round."
         )
     if math.isfinite(found.sliding_fraction) and found.fraction is not None:
         lines.append(

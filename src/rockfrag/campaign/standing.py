@@ -147,7 +147,8 @@ def ways_to_stand(
     rows, systems = [], []
     for point in points:
         way = dict(known or {}) | {
-            name: item.quantile(u) for (name, item), u in zip(unknowns.items(), point, strict=True)
+            name: unknown.quantile(u)
+            for (name, unknown), u in zip(unknowns.items(), point, strict=True)
         }
         try:
             block = block_of(thing, way)

@@ -91,7 +91,7 @@ def read_campaign(
         path,
         labels=[columns[key] for key in ("test", "motion", "group", "which_way") if key in columns],
         positive=[
-            *(item for recipe in recipes for item in recipe if isinstance(item, str)),
+            *(factor for recipe in recipes for factor in recipe if isinstance(factor, str)),
             *peaks,
         ],
         outcomes=[columns[key] for key in (MEASURED, *NOTED) if key in columns],
@@ -107,7 +107,7 @@ def read_campaign(
     if len(doubled):
         raise InputError(f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test.")
     for name, recipe in measures.items():
-        factors = [raw[item] if isinstance(item, str) else item for item in recipe]
+        factors = [raw[factor] if isinstance(factor, str) else factor for factor in recipe]
         tests[name] = math.prod(factors)
     if "motion" not in columns:
         tests["motion"] = settings_of(tests, list(measures))

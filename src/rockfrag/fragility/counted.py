@@ -134,7 +134,7 @@ class CountedObservations(Observations):
         low = self._edge_below(im[:1])[0]
         high = self.edges[np.searchsorted(self.edges, np.log(im[1]), side="right")]
         return np.column_stack(
-            [np.searchsorted(self.rise, item - self.scale) for item in (low, high)]
+            [np.searchsorted(self.rise, bound - self.scale) for bound in (low, high)]
         )
 
 
@@ -303,7 +303,7 @@ class _Counts:
         block, cell = np.nonzero(self.trials)
         with np.errstate(invalid="ignore", divide="ignore"):
             middle = np.exp(self.total / self.trials.sum(axis=0))
-        names = [f"block {item + 1}" for item in range(len(self.trials))]
+        names = [f"block {number + 1}" for number in range(len(self.trials))]
         labels = np.array(names, dtype=object)[block]
         return CountedObservations(
             middle[cell],

@@ -18,7 +18,7 @@ _TAIL = 2.6
 
 
 def curve_points(
-    labels: Mapping[str, Any], item: Fragility, outcomes: Observations
+    labels: Mapping[str, Any], curve: Fragility, outcomes: Observations
 ) -> pd.DataFrame:
     """Points of one curve over the range of its data.
 
@@ -32,7 +32,7 @@ def curve_points(
         form, which is to be used where the fitted one is rejected. Without a curve ``probability`` is
         missing.
     """
-    fit = item.fit
+    fit = curve.fit
     low, high = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
     if np.isfinite(fit.theta):
         # a nearly flat curve may not stretch the range, nor amplitudes far above it
@@ -42,12 +42,12 @@ def curve_points(
         low, high = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
     x = np.geomspace(low, high, POINTS)
     nothing = np.full(POINTS, np.nan)
-    lower, upper = item.interval.band(x) if np.isfinite(fit.theta) else (nothing, nothing)
+    lower, upper = curve.interval.band(x) if np.isfinite(fit.theta) else (nothing, nothing)
     inside = (x >= outcomes.im.min()) & (x <= outcomes.im.max()) & (np.ptp(outcomes.log_im) > 0)
     local = nothing.copy()
     if inside.any():
         local[inside] = local_fraction(outcomes, x[inside])
-    fraction, fraction_lower, fraction_upper = item.checks.fractions.at(x)
+    fraction, fraction_lower, fraction_upper = curve.checks.fractions.at(x)
     return pd.DataFrame(
         {
             **labels,
@@ -65,7 +65,7 @@ def curve_points(
     )
 
 
-def fraction_points(labels: Mapping[str, Any], item: Fragility) -> pd.DataFrame:
+def fraction_points(labels: Mapping[str, Any], curve: Fragility) -> pd.DataFrame:
     """Points of the non-parametric fragility function, if the fitted one is rejected; no row otherwise.
 
     Returns
@@ -74,17 +74,17 @@ def fraction_points(labels: Mapping[str, Any], item: Fragility) -> pd.DataFrame:
         ``labels``, ``im``, ``unit``; ``x``: the measure, rising; ``fraction`` of overturned tests, never falling
         and straight over ln x between the points, with ``lower`` and ``upper`` at the interval's level.
     """
-    fractions = item.checks.fractions
-    x = fractions.knots()[0] if item.checks.rejected else np.empty(0)
+    fractions = curve.checks.fractions
+    x = fractions.knots()[0] if curve.checks.rejected else np.empty(0)
     fraction, lower, upper = fractions.at(x) if x.size else (x, x, x)
     about = pd.DataFrame(
-        {**labels, "im": item.fit.im, "unit": item.fit.unit}, index=pd.RangeIndex(x.size)
+        {**labels, "im": curve.fit.im, "unit": curve.fit.unit}, index=pd.RangeIndex(x.size)
     )
     return about.assign(x=x, fraction=fraction, lower=lower, upper=upper)
 
 
 def outcome_bins(
-    labels: Mapping[str, Any], item: Fragility, outcomes: Observations
+    labels: Mapping[str, Any], curve: Fragility, outcomes: Observations
 ) -> pd.DataFrame:
     """Fractions of overturned tests in bins, under the labels of their curve.
 
@@ -96,5 +96,5 @@ def outcome_bins(
     """
     names = {"im": "x", "im_lower": "x_lower", "im_upper": "x_upper"}
     table = fraction_in_bins(outcomes).rename(columns=names)
-    about = pd.DataFrame({**labels, "im": item.fit.im, "unit": item.fit.unit}, index=table.index)
+    about = pd.DataFrame({**labels, "im": curve.fit.im, "unit": curve.fit.unit}, index=table.index)
     return pd.concat([about, table], axis=1)

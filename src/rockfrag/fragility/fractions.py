@@ -187,7 +187,7 @@ def _fractions(
     if np.isfinite(theta):
         theta_limits = _median_limits(np.exp(log_im), lower, upper, theta)
     fewer = motions * weights.mean(axis=1)
-    betas = np.array([_dispersion(middle, *item) for item in zip(left_out, fewer, strict=True)])
+    betas = np.array([_dispersion(middle, *pair) for pair in zip(left_out, fewer, strict=True)])
     beta_limits = _dispersion_limits(beta, betas, level)
     return Fractions(np.exp(log_im), fraction, lower, upper, theta, theta_limits, beta, beta_limits)
 

@@ -175,8 +175,8 @@ def recommend_measure(
     group = pd.factorize(pd.Series(first.earthquake))[0]
     scores = np.array(
         [
-            outcome_scores(item.log_im[:, None], item.overturned, item.trials, group)
-            for item in data.values()
+            outcome_scores(tests.log_im[:, None], tests.overturned, tests.trials, group)
+            for tests in data.values()
         ]
     )
     compared = ranked(pd.DataFrame(rows), scores, first.n, replicates, seed)

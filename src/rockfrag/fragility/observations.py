@@ -135,7 +135,10 @@ class Observations(Grouped):
         codes = pd.factorize(pd.Series(self.motion))[0]
         log_im = self.log_im
         return np.array(
-            [np.bincount(cell, (log_im > item[codes]) * self.trials) for item in capacity]
+            [
+                np.bincount(cell, (log_im > thresholds[codes]) * self.trials)
+                for thresholds in capacity
+            ]
         )
 
 

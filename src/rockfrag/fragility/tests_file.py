@@ -89,7 +89,9 @@ def read_tests(
                 f"measures, {name!r}: the name does not tell a unit; end it with one, such as pga_g, "
                 f"pgv_cm_s or sa_0_3s_g (write {name}_g: [{name}] for a column of the file in g)."
             )
-    factors = [item for recipe in recipes.values() for item in recipe if isinstance(item, str)]
+    factors = [
+        factor for recipe in recipes.values() for factor in recipe if isinstance(factor, str)
+    ]
     labels = [name for name in (motion, earthquake, *keep) if name is not None]
     needed = list(dict.fromkeys([overturned, *labels, *factors, *given]))
 

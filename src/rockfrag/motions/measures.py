@@ -91,7 +91,7 @@ def measure_motions(
     InputError
         If two motions have the same name, or as :func:`measure_motion`.
     """
-    rows = in_processes(lambda item: measure_motion(item, periods, damping), motions, processes)
+    rows = in_processes(lambda motion: measure_motion(motion, periods, damping), motions, processes)
     table = pd.DataFrame(rows)
     if rows and table["name"].duplicated().any():
         twice = table.loc[table["name"].duplicated(), "name"].iloc[0]

@@ -1,4 +1,4 @@
-"""Idealised input motions: sine, half-sine and rectangular pulses, Ricker wavelets, IDA curves.
+"""Idealised input motions: sine, half-sine and rectangular pulses, Ricker wavelets, sine sweeps.
 
 Each pulse starts and ends with a sample of zero.  The sampling interval is the largest one up to
 ``dt`` that divides the pulse's duration; pulses that jump are sampled at the middle of the
@@ -391,9 +391,9 @@ def mavroeidis_papageorgiou(
 def sine_sweep(
     amplitude: float, start_hz: float, end_hz: float, octaves_per_minute: float, dt: float = DT
 ) -> Motion:
-    """Logarithmic sine·IDA curve of constant acceleration amplitude.
+    """Logarithmic sine sweep of constant acceleration amplitude.
 
-    The frequency f(t) = f₀ 2^(rt/60) passes r octaves in a minute, upwards or downwards: the IDA curve
+    The frequency f(t) = f₀ 2^(rt/60) passes r octaves in a minute, upwards or downwards: the sweep
     of IEC 60068-2-6 as shake-table laboratories run it.
 
     Parameters
@@ -432,7 +432,7 @@ def sine_sweep(
     growth = math.copysign(rate, octaves) * math.log(2)
     return _pulse(
         who,
-        "IEC 60068-2-6, logarithmic IDA curve",
+        "IEC 60068-2-6, logarithmic sweep",
         lambda t: np.sin(2 * np.pi * start * np.expm1(growth * t) / growth),
         abs(octaves) / rate,
         dt,

@@ -105,11 +105,11 @@ def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Moti
             f"components {first.name!r} and {second.name!r} have the azimuths "
             f"{azimuth(first):g} and {azimuth(second):g}°, which are not at a right angle."
         )
-    item, other = common_time([first, second])
+    first, other = common_time([first, second])
     # the motion x has x·e₁ = a₁ and x·e₂ = a₂; its part in the direction wanted follows of both
     parts = math.sin(angles[1] - wanted) / sine, math.sin(wanted - angles[0]) / sine
-    turned = parts[0] * item.acceleration + parts[1] * other.acceleration
-    moved = item.after(
+    turned = parts[0] * first.acceleration + parts[1] * other.acceleration
+    moved = first.after(
         "rotate to azimuth", turned, second=second.name, azimuth_deg=float(azimuth_deg) % 360
     )
     facts = {**moved.metadata, "component": f"{float(azimuth_deg) % 360:g}"}
@@ -178,11 +178,11 @@ def stronger_direction(first: Motion, second: Motion) -> Motion:
     InputError
         If the components do not fit together.
     """
-    item, other = common_time([first, second])
-    _check_pair(item, other)
-    at = int(np.argmax(np.hypot(item.acceleration, other.acceleration)))
-    angle = math.degrees(math.atan2(other.acceleration[at], item.acceleration[at]))
-    return rotate(item, other, angle)
+    first, other = common_time([first, second])
+    _check_pair(first, other)
+    at = int(np.argmax(np.hypot(first.acceleration, other.acceleration)))
+    angle = math.degrees(math.atan2(other.acceleration[at], first.acceleration[at]))
+    return rotate(first, other, angle)
 
 
 def azimuth(motion: Motion) -> float:

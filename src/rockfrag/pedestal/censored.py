@@ -198,7 +198,7 @@ def _design(clean: pd.DataFrame) -> _Design:
     members = clean.reset_index(drop=True).groupby([*KEY, "repetition"]).indices
     rows = [np.sort(index) for index in members.values()]
     two = np.array([index for index in rows if len(index) == 2], dtype=int).reshape(-1, 2)
-    item = np.array([index[0] for index in rows if len(index) == 1], dtype=int)
+    alone = np.array([index[0] for index in rows if len(index) == 1], dtype=int)
     first, second = two[:, 0], two[:, 1]
     place, weight = np.arange(len(two)), np.ones(len(two))
     if len(two) > MOST_PAIRS:
@@ -207,7 +207,7 @@ def _design(clean: pd.DataFrame) -> _Design:
         found = np.unique(alike, axis=0, return_index=True, return_inverse=True, return_counts=True)
         place, weight = found[2].ravel(), found[3].astype(float)
         first, second = first[found[1]], second[found[1]]
-    return _Design(lower, upper, x, first, second, weight, item, two[:, 0], place)
+    return _Design(lower, upper, x, first, second, weight, alone, two[:, 0], place)
 
 
 def _maximum(
@@ -248,10 +248,10 @@ def _of_each(parameters: Array, design: _Design) -> tuple[Array, Array]:
     mean = design.x @ parameters[:-2]
     low, high = (design.lower - mean) / sd, (design.upper - mean) / sd
     single = _log_single(low[design.single], high[design.single], sd)
-    item, two = design.first, design.second
+    first, second = design.first, design.second
     # the axis integrated by quadrature is the one with the exact figure, if there is one
-    swap = (low[two] == high[two]) & (low[item] != high[item])
-    first, second = np.where(swap, two, item), np.where(swap, item, two)
+    swap = (low[second] == high[second]) & (low[first] != high[first])
+    first, second = np.where(swap, second, first), np.where(swap, first, second)
     exact = low[first] == high[first]
     residual = math.sqrt(1 - rho**2)
     pairs = np.zeros(len(first))

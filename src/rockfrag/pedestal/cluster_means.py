@@ -296,8 +296,8 @@ def slope_effect(table: pd.DataFrame, x: str = "s_c", value: str = "d") -> Estim
 def contrast(
     table: pd.DataFrame,
     factor: str,
-    word: str,
-    other: str,
+    level: str,
+    reference: str,
     block: str = "earthquake",
     value: str = "d",
 ) -> Estimate:
@@ -307,8 +307,8 @@ def contrast(
 
     Parameters
     ----------
-    factor, word, other
-        Column and its two levels; the estimate is ``word`` minus ``other``.
+    factor, level, reference
+        Column and its two levels; the estimate is ``level`` minus ``reference``.
     block
         Column within which the levels are compared: the earthquakes for floors and objects, the floors
         for a comparison of two earthquakes.
@@ -319,11 +319,11 @@ def contrast(
     cells = work.pivot_table(
         index=matched, columns=factor, values=[value, "known"], aggfunc="mean", observed=True
     )
-    for level in (word, other):
-        if (value, level) not in cells:
-            raise TooFewUnitsError(f"no row has {factor} {level}")
-    difference = (cells[value, word] - cells[value, other]).dropna()
-    known = (cells["known", word] + cells["known", other]).reindex(difference.index)
+    for wanted in (level, reference):
+        if (value, wanted) not in cells:
+            raise TooFewUnitsError(f"no row has {factor} {wanted}")
+    difference = (cells[value, level] - cells[value, reference]).dropna()
+    known = (cells["known", level] + cells["known", reference]).reindex(difference.index)
     hidden = pd.Series(tied_resolution(difference, known), index=difference.index)
     resolution = float(hidden.groupby(level=block).mean().mean())
     return t_estimate(difference.groupby(level=block).mean(), resolution=resolution)

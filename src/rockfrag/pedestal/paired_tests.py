@@ -231,12 +231,12 @@ def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
         return tests, {}
     parts = [tests[~tests["object"].isin(list(several.index))]]
     origin: dict[str, str] = {}
-    for item, configurations in several.items():
-        rows = tests[tests["object"] == item]
+    for object_name, configurations in several.items():
+        rows = tests[tests["object"] == object_name]
         for name in configurations:
             here = (rows["pedestal"] == "NP") | (rows["configuration"] == name)
             parts.append(rows[here].assign(object=name))
-            origin[str(name)] = str(item)
+            origin[str(name)] = str(object_name)
     return pd.concat(parts, ignore_index=True), origin
 
 
@@ -338,7 +338,7 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = No
         slenderness = dict.fromkeys(clean["object"].unique(), math.nan)
     slenderness = {
         **slenderness,
-        **{name: slenderness[item] for name, item in origin.items() if item in slenderness},
+        **{name: slenderness[tested] for name, tested in origin.items() if tested in slenderness},
     }
     slenderness_of(clean, slenderness)
     sides = _sides(clean)

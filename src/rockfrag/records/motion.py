@@ -176,7 +176,7 @@ def read_motion_set(
 def read_motion_metadata(path: str | os.PathLike[str]) -> list[dict[str, Any]]:
     """Read what is known of each motion of a set, without its samples."""
     found = pq.read_table(path, columns=["metadata"])["metadata"].to_pylist()
-    return [json.loads(item) for item in found]
+    return [json.loads(line) for line in found]
 
 
 def _motions(table: pd.DataFrame) -> list[Motion]:

@@ -124,7 +124,7 @@ def _answer(
         could_change=[
             f"{sentence(of_all(near, len(tests), 'test'))} {agree(near, len(tests), 'is', 'are')} near-critical: "
             "plausible ways to set up the object disagree about the outcome in more than one of ten.",
-            *(item.headline + "." for item in found[3:]),
+            *(finding.headline + "." for finding in found[3:]),
         ],
     )
 

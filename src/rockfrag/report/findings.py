@@ -127,7 +127,7 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
         numbers = ""
     elif motions == 1:
         fell = by_name["sum"] > 0
-        here, not_here = (listed([str(item) for item in by_name.index[it]]) for it in (fell, ~fell))
+        here, not_here = (listed([str(name) for name in by_name.index[it]]) for it in (fell, ~fell))
         headline = f"At recorded strength {subject} overturns {here}, and not {not_here}"
     else:
         counts = {str(name): int(n) for name, n in by_name["sum"].items()}
@@ -492,7 +492,7 @@ def sliding_found(sliding: pd.DataFrame) -> Finding:
             f"The friction needed never exceeds the friction available in "
             f"{counted(cases, 'analysis', 'analyses')}.",
         )
-    where = max(sliding.to_dict("records"), key=lambda item: float(item["largest_slip_m"]))
+    where = max(sliding.to_dict("records"), key=lambda row: float(row["largest_slip_m"]))
     words = [
         f"The largest slip is {number(100 * where['largest_slip_m'], 1)} cm ({where['configuration']}); "
         + ("nothing flies." if flew == 0 else f"bodies fly in {_analyses(flew, cases)}.")

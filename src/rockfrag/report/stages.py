@@ -1,4 +1,4 @@
-"""Stages that write reports: of a study, of a table of tests, of a campaign on a shake table."""
+"""Stages that write reports: of a study, of a table of tests, of a campaign, of bodies in space."""
 
 from typing import TYPE_CHECKING
 
@@ -6,6 +6,7 @@ from rockfrag.plugins import plugins_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.measured_table import MeasuredTable
+from rockfrag.study.space import SpaceStudy
 from rockfrag.study.study import Study
 
 if TYPE_CHECKING:
@@ -53,5 +54,14 @@ def campaign_report(job: Job[CampaignStudy]) -> Results:
     from rockfrag.report.campaign_page import write_campaign_report
 
     write_campaign_report(job.study, job.folder)
+    job.log.info("%s", job.folder / "report.html")
+    yield from ()
+
+
+def space_report(job: Job[SpaceStudy]) -> Results:
+    """Draw the figures of a study of bodies in space and write its page."""
+    from rockfrag.report.space_page import write_space_report
+
+    write_space_report(job.study, job.table("medians"), job.table("fractions"), job.folder)
     job.log.info("%s", job.folder / "report.html")
     yield from ()

@@ -77,7 +77,9 @@ def write_captions(answer: Answer, sections: Sequence[Section], folder: Path) ->
         for part in section.parts
         if isinstance(part, FigureSpec) and part is not answer.figure
     ]
-    captions = {item.name: {"chapter": chapter, "caption": item.caption} for item, chapter in found}
+    captions = {
+        figure.name: {"chapter": chapter, "caption": figure.caption} for figure, chapter in found
+    }
     write_text(json.dumps(captions, ensure_ascii=False, indent=1) + "\n", folder / "captions.json")
 
 

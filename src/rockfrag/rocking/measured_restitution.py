@@ -121,7 +121,7 @@ def _law_of(name: str, law: str, value: object, shape: geometry.Shape, lone: boo
     both = _checked(name, value, shape)
     if both is None:
         return BY_MOMENTUM
-    right, left = (_told(name, law, shape, *item) for item in zip(both, (+1, -1), strict=True))
+    right, left = (_told(name, law, shape, *side) for side in zip(both, (+1, -1), strict=True))
     if lone:
         # what was measured is the ratio of the lone body, unless its law makes another one of it
         both = _of_lone(right, both[0]), _of_lone(left, both[1])

@@ -111,7 +111,9 @@ def stream_overturns(
     cases = prepared(bodies, motions, dt, scales, options)
     chosen = [known[name] for name in known if name in columns]
     schema = pa.schema(
-        PLACE | WITHIN[table] | {item.title: pa.from_numpy_dtype(item.dtype) for item in chosen}
+        PLACE
+        | WITHIN[table]
+        | {quantity.title: pa.from_numpy_dtype(quantity.dtype) for quantity in chosen}
     )
     total = len(cases.systems) * cases.scales.size
     done = 0
@@ -127,7 +129,7 @@ def stream_overturns(
             found = shaken(part).table(table, columns)
             found["system"] += some.start
             found["motion"] += rows.start
-            arrays = [pa.array(found[item.name], type=item.type) for item in schema]
+            arrays = [pa.array(found[field.name], type=field.type) for field in schema]
             writer.write_table(pa.Table.from_arrays(arrays, schema=schema))
             done += math.prod(part.shape)
             if progress is not None:

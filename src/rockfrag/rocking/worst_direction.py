@@ -86,12 +86,12 @@ def worst_direction(
     """
     if not len(directions_deg):
         raise InputError("worst_direction: directions_deg is empty; give at least one angle.")
-    item, other = common_time([first, second])
-    motions = [rotate(item, other, angle) for angle in directions_deg]
+    common, other = common_time([first, second])
+    motions = [rotate(common, other, angle) for angle in directions_deg]
     found = find_thresholds(
         body,
         [motion.acceleration for motion in motions],
-        item.dt,
+        common.dt,
         highest,
         tolerance=tolerance,
         narrowest_resurrection=narrowest_resurrection,

@@ -276,17 +276,17 @@ def shaker_table(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0
     """
     rows = []
     for motion in motions:
-        item = shaker.demand(motion, 1.0, payload)
+        demand = shaker.demand(motion, 1.0, payload)
         limit_g, governing = shaker.limit(motion, payload)
         rows.append(
             {
                 "motion": motion.name,
                 "earthquake": motion.metadata.get("earthquake", ""),
                 "floor": motion.metadata.get("floor", ""),
-                "travel_cm_per_g": item.travel * CENTIMETRES_PER_METRE,
-                "excursion_cm_per_g": item.excursion * CENTIMETRES_PER_METRE,
-                "velocity_cm_s_per_g": item.velocity * CENTIMETRES_PER_METRE,
-                "force_n_per_g": item.force,
+                "travel_cm_per_g": demand.travel * CENTIMETRES_PER_METRE,
+                "excursion_cm_per_g": demand.excursion * CENTIMETRES_PER_METRE,
+                "velocity_cm_s_per_g": demand.velocity * CENTIMETRES_PER_METRE,
+                "force_n_per_g": demand.force,
                 "limit_g": limit_g,
                 "limited_by": governing,
             }

@@ -25,13 +25,13 @@ def run(job: Job[Study]) -> Results:
 
     study = job.study
     rows, felt, left_out = _felt(job)
-    records = [record.record for record in felt]
+    records = [motion.record for motion in felt]
     yield "motions/records", records
-    yield "motions/ground", [record.ground for record in felt]
-    floors = [floor for record in felt for floor in record.floors]
+    yield "motions/ground", [motion.ground for motion in felt]
+    floors = [floor for motion in felt for floor in motion.floors]
     yield "motions/floors", floors
     if study.vertical:
-        yield "motions/vertical", [floor for record in felt for floor in record.vertical]
+        yield "motions/vertical", [floor for motion in felt for floor in motion.vertical]
     if study.keep_going:
         yield LEFT_OUT, pd.DataFrame(left_out, columns=["motion", "reason"], dtype=str)
     if study.write_motions is not None:

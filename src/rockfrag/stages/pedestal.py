@@ -19,7 +19,7 @@ def run(job: Job[Study]) -> Results:
 
     slenderness = {name: block.slenderness for name, block in job.study.specimens.items()}
     tests, origin = with_counterparts(job.table("tests"), job.study.counterparts)
-    slenderness |= {name: slenderness[item] for name, item in origin.items()}
+    slenderness |= {name: slenderness[tested] for name, tested in origin.items()}
     found = pedestal_tables(tests, job.study.seed, slenderness)
     for name, table in found.items():
         yield f"pedestal/{name}", table

@@ -18,7 +18,7 @@ def ida_curves_of(
     """Yield the outcomes of a configuration, see :func:`rockfrag.shaketable.swept.read_swept`."""
     study = job.study
     jobs = range(study.ida_jobs)
-    files = (job.file(study.ida_file(configuration, item)) for item in jobs)
+    files = (job.file(study.ida_file(configuration, run)) for run in jobs)
     yield from read_swept(files, state=state)
 
 

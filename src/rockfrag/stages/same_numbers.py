@@ -49,6 +49,8 @@ def same_numbers(environment: Mapping[str, str]) -> dict[str, str]:
 
 def _with_c_library(tunables: str) -> str:
     kept = [
-        item for item in tunables.split(":") if item and not item.startswith("glibc.cpu.hwcaps=")
+        tunable
+        for tunable in tunables.split(":")
+        if tunable and not tunable.startswith("glibc.cpu.hwcaps=")
     ]
     return ":".join([*kept, _C_LIBRARY])

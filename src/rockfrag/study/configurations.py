@@ -87,7 +87,7 @@ def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) 
         if behind and under:
             raise row.error("pedestal", "what stands under the object is named behind it already")
         below = tuple(behind) or under
-        for column, block in (("object", object_name), *(("pedestal", item) for item in below)):
+        for column, block in (("object", object_name), *(("pedestal", name) for name in below)):
             if block not in blocks:
                 known = ", ".join(blocks)
                 raise row.error(column, f"expected one of the specimens {known}, found {block}")
@@ -156,7 +156,7 @@ def with_restitution(system: System, measured: Mapping[str, Measured], law: str)
         If a block would gain energy.
     """
     each = tuple(measured.get(name) for name in system.names)
-    if all(item is None for item in each):
+    if all(value is None for value in each):
         return system
     value = each if system.count > 1 else each[0]
     return system_of(system, restitution=MeasuredRestitution(value, law))  # type: ignore[arg-type]
@@ -180,7 +180,7 @@ def with_friction(system: System, content: float | Mapping[str, Any]) -> System:
         [content["ground"], content["interface"]] if isinstance(content, Mapping) else [content] * 2
     )
     ground, interface = (
-        (item["static"], item["kinetic"]) if isinstance(item, Mapping) else item for item in each
+        (mu["static"], mu["kinetic"]) if isinstance(mu, Mapping) else mu for mu in each
     )
     friction: dict[str, Any] = {"ground": ground}
     if system.count > 1:

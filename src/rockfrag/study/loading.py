@@ -35,6 +35,7 @@ from rockfrag.study.measured_table import (
     measured_table_from,
 )
 from rockfrag.study.paths import check_file, existing_file
+from rockfrag.study.space import SpaceStudy, is_space_study, space_study_from
 from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from
@@ -52,11 +53,11 @@ OF_ONE_COMPONENT = (
 )
 """Steps that choose a part or a factor by the component itself."""
 
-AnyStudy = Study | MeasuredTable | CampaignStudy
+AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 
 
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
-    """Read a configuration of any kind: a simulated study, a measured table, a campaign on a shake table.
+    """Read a configuration of any kind: a simulated study, a measured table, a campaign, bodies in space.
 
     Raises
     ------
@@ -78,6 +79,8 @@ def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnySt
         return measured_table_from(content, path)
     if is_campaign(content):
         return campaign_from(content, path)
+    if is_space_study(content):
+        return space_study_from(content, path)
     return study_from(content, path)
 
 
@@ -143,7 +146,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     )
     asked = plugins_asked(content)
     study = replace(
-        study, added={name: item.settings(content, study) for name, item in asked.items()}
+        study, added={name: plugin.settings(content, study) for name, plugin in asked.items()}
     )
     _check_names(study)
     _check_records_exist(study)
@@ -175,7 +178,7 @@ def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.
 def _chosen(
     source: Path, known: Sequence[System], names: Sequence[str] | None
 ) -> tuple[System, ...]:
-    by_name = {item.name: item for item in known}
+    by_name = {motion.name: motion for motion in known}
     for i, name in enumerate(names or ()):
         if name not in by_name:
             raise InputError(
@@ -204,7 +207,7 @@ def _measured(
         measured[name] = tuple(value) if isinstance(value, list) else value
     law = content.get("law", law_names()[0])
     try:
-        return tuple(with_restitution(item, measured, law) for item in chosen)
+        return tuple(with_restitution(configuration, measured, law) for configuration in chosen)
     except InputError as error:
         raise InputError(f"{key}: {error}") from error
 

@@ -153,7 +153,9 @@ class Study:
             for configuration in self.configurations
             if configuration.name not in self.counterparts
         )
-        return any(item.names[-1] in lone for item in rest if item.count > 1)
+        return any(
+            configuration.names[-1] in lone for configuration in rest if configuration.count > 1
+        )
 
     @property
     def simulated_in_page(self) -> bool:

@@ -31,6 +31,9 @@ Y_UP = (".glb", ".gltf")
 FEWEST_CARRY = 3
 """Points that make a polygon to stand on."""
 
+MOST_CORNERS, FLAT = 48, 1e-3
+"""Most corners of a polygon to stand on in space, and distance over its size at which one hardly turns it."""
+
 Array = NDArray[np.float64]
 
 
@@ -221,7 +224,8 @@ class Shape:
         angle = -math.radians(direction_deg)
         c, s = math.cos(angle), math.sin(angle)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        corners = _retreated(self.contact_polygon(tolerance) @ turn[:2, :2].T, retreat)
+        polygon = _without_hardly_turning(self.contact_polygon(tolerance))
+        corners = _retreated(polygon @ turn[:2, :2].T, retreat)
         if corners is None:
             raise InputError(
                 f"{self.name}: its centre of gravity is not above what is left of its base, so it cannot stand; "
@@ -259,11 +263,46 @@ class Shape:
         return float(directions[least]), float(math.atan2(reach[least], self.cg_height))
 
 
+def _outward(corners: Array) -> Array:
+    """Unit normals of the edges of a convex polygon in order, shape (n, 2)."""
+    edges = np.roll(corners, -1, axis=0) - corners
+    lengths = np.hypot(*edges.T)[:, np.newaxis]
+    return np.asarray(np.column_stack([edges[:, 1], -edges[:, 0]]) / lengths)
+
+
+def edge_distances(corners: Array) -> Array:
+    """Return the distances of a polygon's edges from the origin, negative where that is outside [m], shape (n,).
+
+    Parameters
+    ----------
+    corners
+        Corners of a convex polygon, anticlockwise, shape (n, 2) [m].
+    """
+    return np.asarray(np.einsum("ni,ni->n", _outward(corners), corners))
+
+
+def _without_hardly_turning(corners: Array) -> Array:
+    """Leave out corners of a convex polygon, each time the one that is nearest to the line past it.
+
+    As long as there are more than MOST_CORNERS, or it is nearer than FLAT times the polygon's size.
+    """
+    kept = corners
+    size = float(np.ptp(corners, axis=0).max())
+    while len(kept) > FEWEST_CARRY:
+        chord = np.roll(kept, -1, axis=0) - np.roll(kept, 1, axis=0)
+        side = kept - np.roll(kept, 1, axis=0)
+        off = np.abs(chord[:, 0] * side[:, 1] - chord[:, 1] * side[:, 0]) / np.hypot(*chord.T)
+        least = int(off.argmin())
+        if len(kept) <= MOST_CORNERS and off[least] >= FLAT * size:
+            break
+        kept = np.delete(kept, least, axis=0)
+    return kept
+
+
 def _retreated(corners: Array, distance: float) -> Array | None:
     """Move the edges of a convex polygon about the origin inwards; None where the origin is left outside."""
-    edges = np.roll(corners, -1, axis=0) - corners
-    outward = np.column_stack([edges[:, 1], -edges[:, 0]]) / np.hypot(*edges.T)[:, np.newaxis]
-    reach = np.einsum("ni,ni->n", outward, corners) - distance
+    outward = _outward(corners)
+    reach = edge_distances(corners) - distance
     if not (reach > 0).all():
         return None
     # corners of the polygon are the dual of the hull of its edges' poles

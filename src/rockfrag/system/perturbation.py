@@ -17,7 +17,7 @@ def perturbed(system: System, size: float, rng: np.random.Generator) -> System:
     that of a uniform rectangle.
     """
     drawn = [(1 + size * rng.uniform(-1, 1, 2)).tolist() for _ in system.bodies]
-    bodies = (_resized(body, *item) for body, item in zip(system.bodies, drawn, strict=True))
+    bodies = (_resized(body, *sizes) for body, sizes in zip(system.bodies, drawn, strict=True))
     return replace(system, bodies=tuple(bodies))
 
 

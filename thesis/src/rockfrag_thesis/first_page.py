@@ -175,7 +175,7 @@ def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]
     everywhere = inverse_problem[inverse_problem["acts_on"] == "all floors"]
     pairs = everywhere["factor_2"] != ""
     local = inverse_problem[inverse_problem["acts_on"] != "all floors"]
-    closest = [
+    nearest = [
         f"the closest {what} gives {_both(row, wanted_percent)} ({mechanism_name(row)}{_ACTING[row['acts_on']]})"
         for what, rows in (
             ("single one", everywhere[~pairs]),
@@ -187,7 +187,7 @@ def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]
     reached = int(inverse_problem["reaches"].sum())
     who = sentence(of_all(reached, len(inverse_problem), "mechanism"))
     verb = agree(reached, len(inverse_problem), "produces", "produce")
-    return f"{who} (one perturbation, or two together) {verb} {goal}; {listed(closest)}."
+    return f"{who} (one perturbation, or two together) {verb} {goal}; {listed(nearest)}."
 
 
 _ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above the ground alone"}

@@ -79,7 +79,9 @@ def data_of(motions: MotionSet, *, on_floor: bool = False) -> dict[str, Any]:
         "names": [motion.name for motion in motions.ground],
         "onFloor": on_floor,
         "measures": {measure.imt: _measure(motions, measure) for measure in (PGA, PGV)},
-        "measurements": {name: item.left for name, item in narrowing.MEASUREMENTS.items()},
+        "measurements": {
+            name: measurement.left for name, measurement in narrowing.MEASUREMENTS.items()
+        },
         "constants": _constants(),
         "floors": _floors(sorted({motion.dt for motion in motions.ground})),
         "steps": [{"name": step.name, "below": _finite(step.below)} for step in STEPS],

@@ -16,6 +16,7 @@ const FIELDS = {
   place: ["floor", "storey_height", "material", "period"],
   shaking: ["measure", "level", "years", "hazard"],
 };
+const CLOSED = ["more", "pedestal", "place"]; // groups that open where they are wanted
 const OPTIONS = { measure: ["PGA", "PGV"], material: ["masonry", "concrete", "steel"] };
 const ALL = Object.values(FIELDS).flat();
 const PART = 25; // motions of a task
@@ -43,9 +44,10 @@ function drawForm() {
   const old = formTexts();
   form.replaceChildren();
   for (const [group, names] of Object.entries(FIELDS)) {
-    const set = make("fieldset", {}, make("legend", { textContent: say(group === "shaking" ? "measure" : group) }));
-    for (const name of names) set.append(field(name, old));
-    form.append(set);
+    const title = say(group === "shaking" ? "measure" : group), boxes = names.map((name) => field(name, old));
+    const given = names.some((name) => inputs[name].checked || (inputs[name].type === "text" && inputs[name].value));
+    form.append(CLOSED.includes(group) ? make("details", { open: given }, make("summary", { textContent: title }), ...boxes)
+      : make("fieldset", {}, make("legend", { textContent: title }), ...boxes));
   }
 }
 function field(name, old) {
@@ -69,9 +71,9 @@ function formTexts() {
 function complain(refusal) {
   for (const name of ALL) {
     const wrong = refusal?.field === name;
-    inputs[name].toggleAttribute("aria-invalid", wrong);
-    if (wrong) inputs[name].setAttribute("aria-invalid", "true");
+    inputs[name].setAttribute("aria-invalid", String(wrong));
     const { id, values } = refusal ?? {};
+    if (wrong && inputs[name].closest("details")) inputs[name].closest("details").open = true;
     find(`field-${name}-error`).textContent = wrong ? say(texts[`${id}_refused`] ? `${id}_refused` : id, values) : "";
   }
 }
@@ -80,13 +82,13 @@ function complain(refusal) {
 
 const pool = [], waiting = [], asked = new Map();
 let number = 0, current = null, other = null;
-function startWorkers() {
+async function startWorkers() {
   const url = URL.createObjectURL(new Blob([find("computing").textContent], { type: "text/javascript" }));
   const count = Math.max(1, Math.min(4, navigator.hardwareConcurrency ?? 2));
   const modules = { fused: bytesOf(data.modules.fused), plain: bytesOf(data.modules.plain) }, samples = bytesOf(data.packed);
-  const { packed, ...rest } = data;
+  const { packed, modules: _, ...rest } = data;
   return Promise.all(Array.from({ length: count }, () => {
-    const worker = { post: new Worker(url), busy: true };
+    const worker = { post: started(url), busy: true };
     worker.post.onmessage = ({ data: message }) => {
       worker.busy = false;
       const task = worker.task;
@@ -94,13 +96,21 @@ function startWorkers() {
       next();
       task?.done(message);
     };
-    worker.post.onerror = (event) => fail(event.message || "worker");
+    // it could not start at all
+    worker.post.onerror = () => worker.task?.done({ failure: "no_workers" });
     pool.push(worker);
     return new Promise((resolve, reject) => {
       worker.task = { done: (message) => (message.failure ? reject(new Error(message.failure)) : resolve()) };
       worker.post.postMessage({ kind: "begin", data: rest, modules, samples });
     });
   }));
+}
+function started(url) {
+  try {
+    return new Worker(url);
+  } catch {
+    throw new Error("no_workers");
+  }
 }
 // the first of those that wait for a worker which is free; what an older request asked for is dropped
 function next() {
@@ -120,11 +130,6 @@ function ask(of, message, first = false) {
     next();
   });
 }
-function fail(why) {
-  find("blocked").textContent = say("failed", { why });
-  find("blocked").hidden = false;
-}
-
 // ---- a request, from its plan to its answer
 
 let timer = 0;
@@ -145,7 +150,8 @@ function update() {
   }
   complain(null);
   find("blocked").hidden = true;
-  current = { id: ++number, request, since: performance.now() };
+  current = { id: ++number, request, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
+  document.body.dataset.stage = "";
   other = null;
   compute(current, (told) => { show(told); if (told.last) slide(); });
 }
@@ -158,15 +164,16 @@ async function compute(run, told, only = Infinity) {
   const starts = Array.from({ length: Math.ceil(count / PART) }, (_, i) => i * PART);
   const needed = (role) => roles.map(({ role: own }, i) => (own === role ? i : -1)).filter((i) => i >= 0);
   const moments = [[0], [...needed("now"), ...needed("moved")], roles.map((_, i) => i)].slice(0, only === 1 ? 1 : 3);
-  let done = 0, told_ = 0;
+  let done = 0, latest = 0;
   const ready = (i) => parts[i].length === starts.length;
   const answerNow = async () => {
     const stage = moments.findLastIndex((all) => all.every(ready));
-    if (stage < told_) return;
-    told_ = stage + 1;
+    if (stage < latest) return;
+    latest = stage + 1;
     const message = { kind: "answer", id, request, parts: parts.map((each, i) => (ready(i) && moments[stage].includes(i) ? each : null)) };
     const found = await ask(run, message, true);
     if (found.failure) return refused(found.failure);
+    if (stage + 1 < latest) return; // a later one was asked for since, and may have come first
     told({ run, found: found.told, last: stage === moments.length - 1 });
   };
   roles.forEach((_, i) => starts.forEach((first) => {
@@ -202,13 +209,14 @@ function show(told) {
   const lines = [["Result", said.result], ["Risk", said.risk], ["Position", said.position], ["What helps", told.last ? said.helps : ""], ["How sure", said.sure]];
   find("lines").replaceChildren(...lines.filter(([, text]) => text).flatMap(([id, text]) =>
     [make("dt", { textContent: say(id) }), make("dd", { textContent: text })]));
+  const form = formTexts(), typed = ALL.filter((name) => form[name] && name !== "hazard" && !OPTIONS[name] && name !== "round");
+  find("sizes").textContent = typed.map((name) => `${say(name)}: ${form[name]}`).join("; ") + ".";
   find("note").hidden = !request.place.computed;
   find("note").textContent = say("computed_floor");
   document.body.dataset.stage = told.last ? "complete" : found.complete ? "interval" : "first";
   document.body.dataset[document.body.dataset.stage] = String(performance.now() - since);
-  if (!scene.of || scene.of !== run(told)) draw(told);
+  if (scene.of !== told.run) draw(told);
 }
-const run = (told) => told.run;
 
 // ---- what helps: sliders, before and after
 
@@ -398,7 +406,7 @@ async function begin() {
   try {
     await startWorkers();
   } catch (error) {
-    return stop(typeof Worker === "function" && !/worker|security/i.test(String(error)) ? "no_wasm" : "no_workers");
+    return stop(error.message === "no_workers" ? "no_workers" : "no_wasm");
   }
   update();
 }

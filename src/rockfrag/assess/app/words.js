@@ -6,12 +6,17 @@ const words = (data, texts) => {
   const say = (id, values) => fill(texts[id] ?? id, values);
   const local = (text) => text.replace(".", texts.decimal).replace("e+", "e");
 
+  // a number of so many digits, halves to even as Python rounds them: mantissa and exponent
+  function rounded(value, digits) {
+    const [mantissa, power] = value.toExponential(60).split("e"), kept = mantissa.slice(0, mantissa.indexOf(".") + digits);
+    const tie = /^50*$/.test(mantissa.slice(kept.length)) && Number(kept.replace(".", "").at(-1)) % 2 === 0;
+    return (tie ? `${kept}e${power}` : value.toExponential(digits - 1)).split("e");
+  }
   // a number as Python's g format writes it
   function g(value, digits) {
     if (value === 0) return "0";
-    const exponent = Number(value.toExponential(digits - 1).split("e")[1]);
-    if (exponent >= -4 && exponent < digits) return local(String(Number(value.toPrecision(digits))));
-    const [mantissa, power] = value.toExponential(digits - 1).split("e");
+    const [mantissa, power] = rounded(value, digits), exponent = Number(power);
+    if (exponent >= -4 && exponent < digits) return local(String(Number(`${mantissa}e${power}`)));
     return local(`${Number(mantissa)}e${power[0]}${power.slice(1).padStart(2, "0")}`);
   }
   // whole numbers as Python rounds them, halves to even

@@ -16,7 +16,7 @@ VELOCITY_PER_G = GRAVITY * CENTIMETRES_PER_METRE
 _SA = re.compile(r"(?:P?SA)\s*[(\[_]?\s*T?=?\s*(\d*[.P]?\d+)\s*S?\s*[)\]]?", re.IGNORECASE)
 
 
-_KNOWN = {item.openquake: item for item in declared()}
+_KNOWN = {measure.openquake: measure for measure in declared()}
 PGA, PGV, SA = (_KNOWN[kind] for kind in ("PGA", "PGV", "SA"))
 
 

@@ -91,4 +91,4 @@ def _found(
 
 def _named(root: ET.Element, name: str) -> Iterator[ET.Element]:
     """Elements of a name in any namespace."""
-    return (item for item in root.iter() if item.tag.rpartition("}")[2] == name)
+    return (element for element in root.iter() if element.tag.rpartition("}")[2] == name)

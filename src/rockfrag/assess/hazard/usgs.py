@@ -30,7 +30,7 @@ def read(text: str, path: str) -> list[Found]:
     try:
         response = answer["response"]
         curves = (
-            [_old(item) for item in response]
+            [_old(curve) for curve in response]
             if isinstance(response, list)
             else [_new(hazardcurve) for hazardcurve in response["hazardCurves"]]
         )
@@ -47,21 +47,21 @@ def read(text: str, path: str) -> list[Found]:
         ) from None
 
 
-def _new(item: Any) -> tuple[str, Any, Any]:
-    values = _total(item["data"])["values"]
-    return str(item["imt"]["value"]), values["xs"], values["ys"]
+def _new(curve: Any) -> tuple[str, Any, Any]:
+    values = _total(curve["data"])["values"]
+    return str(curve["imt"]["value"]), values["xs"], values["ys"]
 
 
-def _old(item: Any) -> tuple[str, Any, Any]:
-    about = item["metadata"]
-    return str(about["imt"]["value"]), about["xvalues"], _total(item["data"])["yvalues"]
+def _old(curve: Any) -> tuple[str, Any, Any]:
+    about = curve["metadata"]
+    return str(about["imt"]["value"]), about["xvalues"], _total(curve["data"])["yvalues"]
 
 
 def _total(data: Any) -> Any:
     """Return the component of all sources together."""
-    for item in data:
-        if item["component"] == TOTAL:
-            return item
+    for component in data:
+        if component["component"] == TOTAL:
+            return component
     raise KeyError(TOTAL)
 
 

@@ -94,8 +94,8 @@ def _callers_first(libraries: list[Any]) -> list[Any]:
                 visit(called)
         order.append(library)
 
-    for item in libraries:
-        visit(item)
+    for other in libraries:
+        visit(other)
     return order[::-1]
 
 
@@ -133,8 +133,8 @@ class _Prepare:
         code = state.func_ir
         code.blocks = canonicalize_cfg(code.blocks)
         # tuple[0] is then a part of the tuple, not a function of tuple and index to be compiled
-        for item in (RewriteConstGetitems, RewriteConstSetitems):
-            rewrite = item(state)
+        for kind in (RewriteConstGetitems, RewriteConstSetitems):
+            rewrite = kind(state)
             for key, block in code.blocks.items():
                 if rewrite.match(code, block, None, None):
                     code.blocks[key] = rewrite.apply()
@@ -224,7 +224,7 @@ def _of_plain_types(find: Any) -> Any:
     """
 
     def get_call_type(kernel: Any, context: Any, args: Any, named: Any) -> Any:
-        plain = {name: unliteral(item) for name, item in named.items()}
+        plain = {name: unliteral(kind) for name, kind in named.items()}
         return find(kernel, context, tuple(map(unliteral, args)), plain)
 
     return get_call_type
@@ -303,7 +303,7 @@ class _KernelCompiler(CompilerBase):
         state.library.enable_object_caching()
         state.type_annotation = None
         with _shortcuts(), ConfigStack().enter(state.flags.copy()):
-            for item in (
+            for kind in (
                 untyped_passes.TranslateByteCode,
                 untyped_passes.FixupArgs,
                 _Prepare,
@@ -312,7 +312,7 @@ class _KernelCompiler(CompilerBase):
                 self.lowering,
                 typed_passes.NoPythonBackend,
             ):
-                item().run_pass(state)
+                kind().run_pass(state)
         return state.cr
 
 

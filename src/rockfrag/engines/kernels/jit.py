@@ -157,8 +157,8 @@ def take_next(typing_context, counter):  # type: ignore[no-untyped-def]
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         array = context.make_array(signature.args[0])(context, builder, arguments[0])
-        item = context.get_constant(types.int64, 1)
-        return builder.atomic_rmw("add", array.data, item, "monotonic")
+        unit = context.get_constant(types.int64, 1)
+        return builder.atomic_rmw("add", array.data, unit, "monotonic")
 
     return types.int64(counter), generate
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
 from rockfrag.engines.spatial.body import kernel_body, later_peaks
 from rockfrag.engines.spatial.outcome import AFTER, SpatialOutcome, history_table, run_case
+from rockfrag.engines.spatial.robustness import spread_vertices
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.records.ground_motion import GroundMotion
@@ -86,8 +87,16 @@ class SpatialEngine:
             return Support(reason="a planar body moves in its own plane only; give its depth")
         return found
 
-    def run(self, cases: Cases) -> Outcomes:
-        """Return the outcomes of cases whose systems and motions it supports."""
+    def run(self, cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
+        """Return the outcomes of cases whose systems and motions it supports.
+
+        Parameters
+        ----------
+        cases
+            The cases.
+        spread, seed
+            As of :func:`run_in_space`.
+        """
         result = empty_outcomes(cases.names, cases.scales, [self.name])
         g = cases.request.g
         bodies = [kernel_body(system, g) for system in cases.systems]
@@ -95,11 +104,14 @@ class SpatialEngine:
 
         def run_pair(task: tuple[int, int]) -> None:
             i, j = task
-            motion = cases.motions[j]
+            motion, body = cases.motions[j], bodies[i]
+            if spread > 0:
+                rng = np.random.default_rng([seed, i, j])
+                body = kernel_body(spread_vertices(cases.systems[i], spread, rng), g)
             ground = motion.accelerations
             later = later_peaks(ground)
             for k, scale in enumerate(cases.scales[j]):
-                found, _ = run_case(bodies[i], ground, motion.dt, float(scale), g=g, peaks=later)
+                found, _ = run_case(body, ground, motion.dt, float(scale), g=g, peaks=later)
                 _write(result, (i, j, k), found, _least_gravity_ratio(ground, float(scale), g))
 
         with ThreadPoolExecutor(cases.threads) as pool:
@@ -158,6 +170,8 @@ def run_in_space(
     motions: Sequence[GroundMotion],
     scales: ArrayLike = (1.0,),
     *,
+    spread: float = 0.0,
+    seed: int = 0,
     threads: int = 1,
     g: float = GRAVITY,
 ) -> Outcomes:
@@ -171,6 +185,11 @@ def run_in_space(
         Motions of the ground with one to three components.
     scales
         Factors on all components, shape (scales,) or (motions, scales).
+    spread
+        Largest displacement of each vertex of the base over its extent, drawn anew for each motion [-]: an ideal
+        base has outcomes that no real one has.
+    seed
+        Seed of the displacements.
     threads
         Threads to use; outcomes do not depend on it.
     g
@@ -193,7 +212,7 @@ def run_in_space(
     factors = np.broadcast_to(
         np.atleast_2d(np.asarray(scales, dtype=np.float64)), (len(motions), np.shape(scales)[-1])
     )
-    return engine.run(Cases(systems, tuple(motions), factors, request, threads))
+    return engine.run(Cases(systems, tuple(motions), factors, request, threads), spread, seed)
 
 
 def simulate_in_space(

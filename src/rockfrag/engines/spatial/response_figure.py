@@ -65,7 +65,8 @@ def _plan(panel: Axes, history: pd.DataFrame, outline: NDArray[np.float64]) -> N
         panel.plot(*moved.T, color=colour, lw=1.0, label=name)
         corners.append(moved)
     panel.plot(history.base_x_m, history.base_y_m, color=BLUE, lw=0.7, label="path of its middle")
-    turn = np.degrees(history.turn_rad.iloc[-1])
+    corners.append(history[["base_x_m", "base_y_m"]].to_numpy())
+    turn = round(float(np.degrees(history.turn_rad.iloc[-1])), 1) + 0.0
     panel.set_title(f"Turned by {turn:.1f}°".replace("-", "−"), loc="left")
     _square(panel, np.vstack(corners).T, 1.1)
     panel.set_xlabel("x [m]")

@@ -21,7 +21,7 @@ _REQUEST = re.compile(
     r"(?P<channel>[\w*?]+)\s+(?P<rest>\S.*)$"
 )
 _WINDOW = re.compile(
-    r"^(?P<event>\S+)\s+(?P<before>[+-]\d+(?:\.\d+)?)\s+(?P<after>[+-]\d+(?:\.\d+)?)$"
+    r"^(?P<earthquake>\S+)\s+(?P<before>[+-]\d+(?:\.\d+)?)\s+(?P<after>[+-]\d+(?:\.\d+)?)$"
 )
 RECORDS, STATIONS, FACTS = "records.mseed", "stations.xml", "request.json"
 """Names of the three files that a request leaves; the last is written when the others are whole."""
@@ -31,7 +31,7 @@ RECORDS, STATIONS, FACTS = "records.mseed", "stations.xml", "request.json"
 class FdsnRequest:
     """What is asked of a service; codes may have the wildcards ``*`` and ``?``.
 
-    The window is either from ``start`` to ``end`` or, with ``event``, from ``before`` to ``after``
+    The window is either from ``start`` to ``end`` or, with ``earthquake``, from ``before`` to ``after``
     seconds about its origin (``before`` is negative for a time before it).
     """
 
@@ -43,7 +43,7 @@ class FdsnRequest:
     channel: str
     start: UTCDateTime | None = None
     end: UTCDateTime | None = None
-    event: str = ""
+    earthquake: str = ""
     before: float = 0.0
     after: float = 0.0
 
@@ -58,7 +58,7 @@ def parse_request(words: str) -> FdsnRequest:
     """Read ``CLIENT NET.STA.LOC.CHA START END`` or ``CLIENT NET.STA.LOC.CHA EVENT -30 +120``.
 
     For instance ``NCEDC BK.CMB.00.HNE 2014-08-24T10:20:14 2014-08-24T10:22:44`` or ``NCEDC
-    BK.CMB.*.HN? nc72282711 -10 +120``; times are UTC, an event is the service's identifier.
+    BK.CMB.*.HN? nc72282711 -10 +120``; times are UTC, an earthquake is the service's identifier.
 
     Raises
     ------
@@ -78,7 +78,12 @@ def parse_request(words: str) -> FdsnRequest:
         if after <= before:
             raise InputError(f"FDSN request {words!r}: the window ends before it begins.")
         return FdsnRequest(
-            words, match["client"], *codes, event=window["event"], before=before, after=after
+            words,
+            match["client"],
+            *codes,
+            earthquake=window["earthquake"],
+            before=before,
+            after=after,
         )
     times = match["rest"].split()
     if len(times) != 2:
@@ -141,7 +146,7 @@ def _answered(folder: Path) -> bool:
 
 
 def _ask(request: FdsnRequest) -> tuple[Any, Any, dict[str, str]]:
-    """Return waveforms, stations and what is known of the event."""
+    """Return waveforms, stations and what is known of the earthquake."""
     # imported here: the client is slow to import and only this source needs it
     from obspy.clients.fdsn import Client
 
@@ -168,10 +173,12 @@ def _window(
 ) -> tuple[UTCDateTime, UTCDateTime, dict[str, str]]:
     if request.start is not None and request.end is not None:
         return request.start, request.end, {}
-    event = client.get_events(eventid=request.event)[0]
-    origin = event.preferred_origin() or event.origins[0]
-    facts = {"earthquake": request.event, "origin_time": str(origin.time)}
-    magnitude = event.preferred_magnitude() or (event.magnitudes[0] if event.magnitudes else None)
+    earthquake = client.get_events(eventid=request.earthquake)[0]
+    origin = earthquake.preferred_origin() or earthquake.origins[0]
+    facts = {"earthquake": request.earthquake, "origin_time": str(origin.time)}
+    magnitude = earthquake.preferred_magnitude() or (
+        earthquake.magnitudes[0] if earthquake.magnitudes else None
+    )
     if magnitude is not None:
         facts["magnitude"] = str(magnitude.mag)
     return origin.time + request.before, origin.time + request.after, facts

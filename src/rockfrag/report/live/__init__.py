@@ -156,7 +156,7 @@ def _row(outcomes: pd.DataFrame, body: str, motion: str, amplitudes: Any) -> str
     """Outcomes of one body under one motion, a digit an amplitude."""
     own = outcomes[(outcomes["configuration"] == body) & (outcomes["motion"] == motion)]
     fell = own.set_index("amplitude_g")["overturned"].reindex(amplitudes)
-    return "".join("1" if item else "0" for item in fell.to_numpy(dtype=bool))
+    return "".join("1" if fallen else "0" for fallen in fell.to_numpy(dtype=bool))
 
 
 def _start(

@@ -52,7 +52,7 @@ def _message(fallen: pd.DataFrame) -> str:
     """Say which configuration overturns earliest, and where."""
     if fallen.empty:
         return "No floor has a curve of overturning: too few objects overturned on a single one."
-    weakest = min(fallen.to_dict("records"), key=lambda item: float(item["theta"]))
+    weakest = min(fallen.to_dict("records"), key=lambda row: float(row["theta"]))
     return (
         f"{weakest['configuration']} on {weakest['floor']} is the most fragile: the median of its lognormal "
         f"curve is {weakest['theta_text']} g."

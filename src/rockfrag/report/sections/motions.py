@@ -10,12 +10,12 @@ from rockfrag.units import GRAVITY
 
 def _columns() -> list[Column]:
     shown = [measure for measure in intensity_measures() if measure.decimals is not None]
-    titles = (f"{item.title or item.label} [{item.unit or '-'}]" for item in shown)
+    titles = (f"{measure.title or measure.label} [{measure.unit or '-'}]" for measure in shown)
     return [
         Column("name", "Motion"),
         *(
-            Column(item.column, title, item.decimals)
-            for item, title in zip(shown, titles, strict=True)
+            Column(measure.column, title, measure.decimals)
+            for measure, title in zip(shown, titles, strict=True)
         ),
     ]
 

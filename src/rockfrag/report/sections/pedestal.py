@@ -101,7 +101,7 @@ def _section(results: Results) -> Section:
         f"{found[0].headline}.",
         [
             *opened(found[0]),
-            *(item.said for item in found[1:]),
+            *(finding.said for finding in found[1:]),
             f"The ratio is the overturning a{about.divided[1:]}, paired by object and motion. Motions of one "
             "earthquake are not independent, so intervals are over earthquakes where there are several. "
             "“Detectable” is the smallest ratio found with 80 % power. There is neither interval nor test "

@@ -116,9 +116,9 @@ def _object(name: str, function: Any, arguments: tuple[Any, ...], fused: bool | 
         cpu="", features=FEATURES + _VECTORS[fused], opt=3, reloc="static", codemodel="default"
     )
     module.triple, module.data_layout = TRIPLE, str(machine.target_data)
-    for item in [*module.functions, *module.global_variables]:
-        if not item.is_declaration and item.name != name:
-            item.linkage = "internal"
+    for symbol in [*module.functions, *module.global_variables]:
+        if not symbol.is_declaration and symbol.name != name:
+            symbol.linkage = "internal"
     module.verify()
     options = llvm.create_pipeline_tuning_options(speed_level=3)
     options.loop_vectorization = options.slp_vectorization = fused is not None

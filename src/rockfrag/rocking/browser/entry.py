@@ -120,7 +120,7 @@ def _check_restitution(call, block, restitution):
 
 
 @kernel
-def integrate_call(call, samples, vertical, history, events):
+def integrate_call(call, samples, vertical, history, contact_events):
     """Integrate the body of a call; see ``single.integrate``."""
     shaking = Shaking(samples, vertical, call.scale, call.dt, call.substeps, call.free_samples)
     scratch = Scratch(
@@ -132,4 +132,6 @@ def integrate_call(call, samples, vertical, history, events):
         call.balances,
         call.beyond,
     )
-    call.done = _integrate(call.body, shaking, call.initial, history, events, call.summary, scratch)
+    call.done = _integrate(
+        call.body, shaking, call.initial, history, contact_events, call.summary, scratch
+    )

@@ -1,7 +1,7 @@
 """The 58 hypotheses of the thesis, C1 to C58: what each says, what can test it, what came out.
 
-**Where a hypothesis is.**  Its words, kind and rule stand beside the function that tests it, named after its
-number (``c35`` is C35), in the file of its group:
+**Where a hypothesis is.**  Its words, source and kind are a row of ``statements.csv``; its rule stands beside the
+function that tests it, named after its number (``c35`` is C35), in the file of its group:
 
 ====================  ==================================  ================================================
 `blocks`              C1, C3 to C8, C20                   the single block
@@ -20,7 +20,7 @@ contradicts itself.
 
 **How to add a hypothesis.**
 
-1. Choose the file of its group and a number that is not taken.
+1. Write its row in ``statements.csv``, with a number that is not taken, and choose the file of its group.
 2. Decide its kind (`hypothesis.Kind`): can data change it at all, does it speak about equations, about what
    was seen in the thesis's plots, or about what a laboratory would find?
 3. Where it claims an order ("higher", "largest"), write a function from `Evidence` to named differences that

@@ -14,7 +14,7 @@ from rockfrag.rocking.restitution import (
 )
 from rockfrag.rocking.spectra import uniform_block
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, SEEN, most
 from rockfrag_thesis.hypotheses.setting import (
     EXACT,
@@ -40,9 +40,6 @@ DIGITS = (3, 2, 2)
 
 @hypothesis(
     1,
-    "a block starts to rock once the ground accelerates by more than (b/h) g",
-    "2.1.1, eq. 2.1",
-    Kind.IDENTITY,
     evidence="balance of moments about a corner, and simulations of sudden accelerations",
     rule="simulated blocks start between 1 - 1e-9 and 1 + 1e-9 of (b/h) g",
     error_rate=NO_ERROR,
@@ -58,9 +55,6 @@ def c1(setting: Setting) -> Result:
 
 @hypothesis(
     3,
-    "the specimens have the critical angles, radii and frequencies of Table 3.1",
-    "3.1, Tab. 3.1",
-    Kind.IDENTITY,
     evidence="the specimens' dimensions",
     rule="computed figures round to the printed digits (g = 9.81 m/s²)",
     error_rate=NO_ERROR,
@@ -80,16 +74,14 @@ def c3(setting: Setting) -> Result:
     total = len(TABLE_3_1) * len(DIGITS)
     return Result(
         Finding.AGAINST if wrong else Finding.FOR,
-        f"{total - len(wrong)} of {total} figures agree" + "".join(f"; {item}" for item in wrong),
+        f"{total - len(wrong)} of {total} figures agree"
+        + "".join(f"; {figure}" for figure in wrong),
         (total - len(wrong)) / total,
     )
 
 
 @hypothesis(
     4,
-    "the restitution depends on slenderness only, not on size or velocity",
-    "2.1.1, eq. 2.14",
-    Kind.IDENTITY,
     evidence="conservation of momentum, and first impacts of simulated blocks of the specimens' "
     "slendernesses in two sizes from two amplitudes",
     rule="ω⁺/ω⁻ is 1 - 1.5 sin²α within 1e-9; about real blocks see C5",
@@ -120,9 +112,6 @@ QUOTED = 0.87 - 0.70
 
 @hypothesis(
     5,
-    "the restitution of real blocks differs from the computed one",
-    "2.1.1, eq. 2.14",
-    Kind.INFERENCE,
     evidence="restitution fitted to measured histories of free rocking, 95 % intervals",
     rule="true if every interval excludes the computed value, false if every one contains it and none a "
     f"value as far from it as the one that the thesis quotes ({QUOTED:.2f})",
@@ -174,9 +163,6 @@ def _first_impact(block: Block, theta0: float, linear: bool = False) -> float:
 
 @hypothesis(
     6,
-    "the period of free rocking depends on the amplitude",
-    "2.1.2, eq. 2.20",
-    Kind.PROPERTY,
     evidence="four times the time to the first impact of simulations from 0.2 and 0.9 of the critical "
     "angle",
     rule="it is longer from the larger amplitude for every block, and eq. 2.20 holds within 1e-6 for the "
@@ -217,9 +203,6 @@ def _least_half_sine(block: Block, linear: bool) -> float:
 
 @hypothesis(
     7,
-    "the linearised equation holds for slender blocks, H/B > 3",
-    "2.1.1, eq. 2.9",
-    Kind.PROPERTY,
     evidence="simulations with the linearised and the nonlinear equation: time to the first impact from "
     "half the critical angle, and least overturning half-sine pulse of ωp = 3 p",
     rule=f"both change by less than {100 * SEEN:.0f} %, the least change that the experiment could show",
@@ -279,9 +262,6 @@ def least_overturning_amplitudes(
 
 @hypothesis(
     8,
-    "the response is very sensitive to small changes of size, slenderness or input",
-    "1",
-    Kind.PROPERTY,
     evidence=f"least overturning amplitudes of {DRAWS} copies of each lone block, uniform within ±1 % of "
     "width, ±0.5 % of height and ±0.02 of restitution",
     rule="ln a scatters more than ln(b/h), on which alone it would depend in statics, for most blocks and "
@@ -319,9 +299,6 @@ def c8(setting: Setting) -> Result:
 
 @hypothesis(
     20,
-    "a rocking block is infinitely stiff, then its stiffness is negative",
-    "2.3, Tab. 2.2",
-    Kind.IDENTITY,
     evidence="restoring moment m g R sin(θc - θ), and simulations",
     rule="no rotation under 0.999999 of the acceleration that starts rocking; the moment of simulations "
     "follows the law within 1e-9 m g R, and its slope is negative up to the critical angle",

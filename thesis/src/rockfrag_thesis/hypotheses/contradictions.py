@@ -5,6 +5,8 @@ of the two holds there, if either.
 """
 
 import itertools
+from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import pandas as pd
 
@@ -15,7 +17,6 @@ from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 from rockfrag_thesis.hypotheses.slenderness import stack_slenderness
 
 UPPER = (THIRD, FIFTH)
-COLUMNS = ("hypotheses", "what", "why", "in_these_tests")
 
 
 def orderings_of_floor_means() -> int:
@@ -71,79 +72,15 @@ def _stack(evidence: Evidence) -> str:
     )
 
 
-def _nothing(_: Evidence) -> str:
-    return ""
-
-
-_ROWS = (
-    (
-        "C42 with C43, C35, C37",
-        "on which floor the mean with pedestal is largest",
-        "NP is largest on GF (C43), P exceeds NP there (C35), P falls below NP on the 5th (C37): so P "
-        "on GF exceeds P on the 5th, against C42; of the 24 orders of these four means "
-        f"{orderings_of_floor_means()} satisfy all four hypotheses",
-        _four_means,
-    ),
-    (
-        "C47 with C48",
-        "which earthquake shows the largest increase",
-        "chapter 4 says Loma Prieta's is the most distinguished, chapter 5 that Friuli's is "
-        "significant and Loma Prieta's much smaller",
-        lambda evidence: _by(evidence, "earthquake"),
-    ),
-    (
-        "C38 with C50",
-        "how many exceptions there are on the upper floors",
-        "section 4.4 has one anomaly (T1 on the 3rd floor), chapter 5 a few exceptions",
-        _upper_cells,
-    ),
-    (
-        "C32 with C39",
-        "which tower gains most",
-        "the increase is most significant for T3 (C32) but T1's on the only floor with an increase "
-        "is much greater than the others' (C39); both hold only if T1 loses more above than it gains",
-        lambda evidence: _by(evidence, "object"),
-    ),
-    (
-        "C29 with C34, C36, C37",
-        "whether the pedestal raises the acceleration",
-        "the main observation is an increase, yet two of the three floors decrease",
-        lambda evidence: _by(evidence, "floor"),
-    ),
-    (
-        "C30",
-        "whether the stack is more slender than the tower",
-        "the common centre rises, but the base widens more: by Table 3.1 the stack's height of the "
-        "common centre over half its base is below the tower's H/B",
-        _stack,
-    ),
-    (
-        "C55",
-        "what the reported acceleration is",
-        "the abstract has the acceleration that leads to overturning, section 3.4 the one just before "
-        "overturning; they differ by the step of the protocol",
-        _nothing,
-    ),
-    (
-        "abstract with 3.3, Tab. 3.3, 4.4",
-        "the year of the Loma Prieta earthquake",
-        "the abstract has 1986, the rest 17 October 1989, which is right",
-        _nothing,
-    ),
-    (
-        "C46 (4.4)",
-        "what Northridge's towers with the pedestal are compared with",
-        "the sentence compares those with the pedestal with those 'with the pedestal'; the second "
-        "must be 'without', as chapter 5 has it",
-        _nothing,
-    ),
-    (
-        "C33",
-        "the sign of T2's effect",
-        "'nearly opposite' to an increase and 'still an increase' exclude each other as signs",
-        lambda evidence: _by(evidence, "object"),
-    ),
-)
+_SHOWN: Mapping[str, Callable[[Evidence], str]] = {
+    "floor means": _four_means,
+    "by earthquake": lambda evidence: _by(evidence, "earthquake"),
+    "by object": lambda evidence: _by(evidence, "object"),
+    "by floor": lambda evidence: _by(evidence, "floor"),
+    "upper cells": _upper_cells,
+    "stack": _stack,
+}
+"""What a table of tests says of a contradiction, by the word in the column ``shown``."""
 
 
 def contradictions(evidence: Evidence | None = None) -> pd.DataFrame:
@@ -152,20 +89,26 @@ def contradictions(evidence: Evidence | None = None) -> pd.DataFrame:
     Parameters
     ----------
     evidence
-        Tests that show what holds there; without it that column is empty, C30 excepted.
+        Tests that show what holds there; without it that column is empty.
 
     Returns
     -------
     pandas.DataFrame
         hypotheses, what, why, in_these_tests.
     """
-    rows = []
-    for hypotheses, what, why, look in _ROWS:
-        seen = ""
-        if evidence is not None:
-            try:
-                seen = look(evidence)
-            except Undecidable as reason:
-                seen = f"cannot be said: {reason}"
-        rows.append((hypotheses, what, why, seen))
-    return pd.DataFrame(rows, columns=list(COLUMNS))
+    table = pd.read_csv(
+        Path(__file__).with_name("contradictions.csv"), comment="#", keep_default_na=False
+    )
+    seen = [_seen(evidence, shown) for shown in table.pop("shown")]
+    why = [words.format(orders=orderings_of_floor_means()) for words in table["why"]]
+    return table.assign(why=why, in_these_tests=seen)
+
+
+def _seen(evidence: Evidence | None, shown: str) -> str:
+    """What a table of tests says of one contradiction; nothing where there is none, or nothing to look at."""
+    if evidence is None or not shown:
+        return ""
+    try:
+        return _SHOWN[shown](evidence)
+    except Undecidable as reason:
+        return f"cannot be said: {reason}"

@@ -10,7 +10,7 @@ from rockfrag.pedestal.cluster_means import Estimate
 from rockfrag.pedestal.power import LEVEL as POWER_LEVEL
 from rockfrag.pedestal.power import POWER
 from rockfrag_thesis.hypotheses.evidence import Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.jackknife import jackknife
 from rockfrag_thesis.hypotheses.orders import Part, Parts, Size, order_hypothesis
 from rockfrag_thesis.hypotheses.outcomes import LEVEL, p_nonzero
@@ -28,9 +28,6 @@ INFERENCE = "about motions of the same earthquakes on the tested floors"
 
 @order_hypothesis(
     45,
-    "with the pedestal more is endured in Friuli, Kobe and Loma Prieta",
-    "4.4, Fig. 4.7",
-    Kind.DESCRIPTION,
     evidence=OF_ONE_EARTHQUAKE,
     rule="an increase in each of the three earthquakes",
     several=True,
@@ -44,9 +41,6 @@ def c45(tests: Evidence) -> Parts:
 
 @order_hypothesis(
     46,
-    "with the pedestal less is endured in Northridge",
-    "4.4, Fig. 4.7; 5",
-    Kind.DESCRIPTION,
     evidence=OF_ONE_EARTHQUAKE,
     rule="a decrease in Northridge",
     unit="motion",
@@ -69,9 +63,6 @@ def _lead(tests: Evidence, top: str, others: tuple[str, ...], size: Size) -> Par
 
 @order_hypothesis(
     47,
-    "the increase is the most distinguished for Loma Prieta",
-    "4.4, Fig. 4.7",
-    Kind.DESCRIPTION,
     evidence=FLOOR_BY_FLOOR,
     rule="P/NP in Loma Prieta exceeds that in each other earthquake, floor by floor",
     several=True,
@@ -86,9 +77,6 @@ def c47(tests: Evidence) -> Parts:
 
 @order_hypothesis(
     48,
-    "Friuli's increase is significant, Loma Prieta's and Kobe's much smaller",
-    "5",
-    Kind.INFERENCE,
     evidence=FLOOR_BY_FLOOR,
     rule="an increase in Friuli, and more than in Kobe and in Loma Prieta, floor by floor",
     several=True,
@@ -154,9 +142,6 @@ def rank_correlation(joined: pd.DataFrame, measure: str) -> Estimate:
 
 @hypothesis(
     52,
-    "no correlation between the input motion and the effect can be found",
-    "5",
-    Kind.INFERENCE,
     evidence="mean effect of each motion and its PGV/PGA, mean period and significant duration",
     rule="Spearman's correlation with each: true if |ρ| = "
     f"{COULD_BE_FOUND:.2f}, what {MOTIONS} independent motions could show, is excluded for all; false if "
@@ -178,17 +163,19 @@ def c52(tests: Evidence) -> Result:
     }
     if not found:
         raise Undecidable("no measure is known for all motions")
-    p = {name: p_nonzero(item) for name, item in found.items()}
+    p = {name: p_nonzero(estimate) for name, estimate in found.items()}
     strongest = min(p, key=p.__getitem__)
     bound = math.atanh(COULD_BE_FOUND)
-    p_none = max(max(item.p_above(-bound), item.p_below(bound)) for item in found.values())
+    p_none = max(
+        max(estimate.p_above(-bound), estimate.p_below(bound)) for estimate in found.values()
+    )
     p_some = min(1.0, p[strongest] * len(p) / 2)
     finding = Finding.OPEN
     if p_some < LEVEL:
         finding = Finding.AGAINST
     elif p_none < LEVEL:
         finding = Finding.FOR
-    item = found[strongest]
+    estimate = found[strongest]
     return Result(
         finding,
         f"motions: {n}; earthquakes: {joined['earthquake'].nunique()}; "
@@ -196,9 +183,9 @@ def c52(tests: Evidence) -> Result:
             f"{name} ρ = {math.tanh(each.mean):.2f} [{math.tanh(each.lower):.2f}, {math.tanh(each.upper):.2f}]"
             for name, each in found.items()
         ),
-        math.tanh(item.mean),
-        math.tanh(item.lower),
-        math.tanh(item.upper),
+        math.tanh(estimate.mean),
+        math.tanh(estimate.lower),
+        math.tanh(estimate.upper),
         p=min(1.0, 2 * min(p_some, p_none)),
         p_of="no correlation"
         if p_some <= p_none

@@ -11,7 +11,7 @@ import pandas as pd
 from rockfrag.pedestal.cluster_means import contrast, mean_effect, unit_means
 from rockfrag.pedestal.permutation import sign_flip_test
 from rockfrag_thesis.hypotheses.evidence import Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import (
     AMPLITUDES,
     ONE_RULE,
@@ -30,9 +30,6 @@ TOWERS = ("T1", "T2", "T3")
 
 @order_hypothesis(
     34,
-    "the increase is noticeable on the ground floor only",
-    "4.3, Fig. 4.6",
-    Kind.DESCRIPTION,
     rule=f"an increase on GF; increases of {100 * SEEN:.0f} % or more excluded on F3 and F5",
     several=True,
 )
@@ -46,53 +43,30 @@ def c34(tests: Evidence) -> Parts:
     return parts
 
 
-@order_hypothesis(
-    35,
-    "on the ground floor the mean increases with the pedestal",
-    "4.3, 4.4, Fig. 4.6",
-    Kind.DESCRIPTION,
-    rule="an increase on GF",
-)
+@order_hypothesis(35, rule="an increase on GF")
 def c35(tests: Evidence) -> Parts:
     """The ground floor's increase."""
     return {"P/NP on GF": Part(tests.effect(floor=GROUND))}
 
 
-@order_hypothesis(
-    36,
-    "on the 3rd floor the mean slightly decreases with the pedestal",
-    "4.3, Fig. 4.6",
-    Kind.DESCRIPTION,
-    rule="a decrease on F3, however slight",
-)
+@order_hypothesis(36, rule="a decrease on F3, however slight")
 def c36(tests: Evidence) -> Parts:
     """The 3rd floor's decrease."""
     return {"NP/P on F3": Part(tests.effect(floor=THIRD).times(-1))}
 
 
-@order_hypothesis(
-    37,
-    "on the 5th floor the mean slightly decreases with the pedestal",
-    "4.3, Fig. 4.6",
-    Kind.DESCRIPTION,
-    rule="a decrease on F5, however slight",
-)
+@order_hypothesis(37, rule="a decrease on F5, however slight")
 def c37(tests: Evidence) -> Parts:
     """The 5th floor's decrease."""
     return {"NP/P on F5": Part(tests.effect(floor=FIFTH).times(-1))}
 
 
 SIGNS = {GROUND: (1, 1, 1), THIRD: (1, -1, -1), FIFTH: (-1, -1, -1)}
-"""Signs of the effect that C38 hypotheses, by floor for T1, T2, T3."""
+"""Signs of the effect that C38 claims, by floor for T1, T2, T3."""
 
 
 @order_hypothesis(
-    38,
-    "each tower shows the floors' signs, except T1 on the 3rd floor",
-    "4.3, 4.4, Fig. 4.6b",
-    Kind.DESCRIPTION,
-    rule="increases of all towers on GF and of T1 on F3, decreases elsewhere",
-    several=True,
+    38, rule="increases of all towers on GF and of T1 on F3, decreases elsewhere", several=True
 )
 def c38(tests: Evidence) -> Parts:
     """The effect in each of the nine cells, in the direction claimed."""
@@ -122,9 +96,6 @@ def _first_tower(tests: Evidence, floor: str, sign: int) -> Parts:
 
 @order_hypothesis(
     39,
-    "on the ground floor T1's increase is much greater than T2's and T3's",
-    "4.3, Fig. 4.6b",
-    Kind.DESCRIPTION,
     rule="an increase of T1 on GF, and more than that of T2 and of T3, earthquake by earthquake",
     several=True,
 )
@@ -135,9 +106,6 @@ def c39(tests: Evidence) -> Parts:
 
 @order_hypothesis(
     40,
-    "on the 5th floor T1's decrease is much greater than T2's and T3's",
-    "4.3, Fig. 4.6b",
-    Kind.DESCRIPTION,
     rule="a decrease of T1 on F5, and more than that of T2 and of T3, earthquake by earthquake",
     several=True,
 )
@@ -148,9 +116,6 @@ def c40(tests: Evidence) -> Parts:
 
 @order_hypothesis(
     41,
-    "the relative change is largest on the ground floor",
-    "4.4, Fig. 4.5",
-    Kind.DESCRIPTION,
     rule="the change on GF exceeds that on F3 and F5 and the opposite of each, earthquake by earthquake",
     error_rate="at most 5 % to be true (GF's change may have either sign), 2.5 % to be false",
 )
@@ -181,9 +146,6 @@ def _leading_floor(tests: Evidence, side: str, floor: str) -> Parts:
 
 @order_hypothesis(
     42,
-    "with the pedestal the mean is largest on the 5th floor",
-    "4.4, Fig. 4.6",
-    Kind.DESCRIPTION,
     evidence=AMPLITUDES,
     rule="ln a of P on F5 exceeds that on GF and on F3, earthquake by earthquake",
     several=True,
@@ -196,9 +158,6 @@ def c42(tests: Evidence) -> Parts:
 
 @order_hypothesis(
     43,
-    "without the pedestal the mean is largest on the ground floor",
-    "4.4, Fig. 4.6",
-    Kind.DESCRIPTION,
     evidence=AMPLITUDES,
     rule="ln a of NP on GF exceeds that on F3 and on F5, earthquake by earthquake",
     several=True,
@@ -211,9 +170,6 @@ def c43(tests: Evidence) -> Parts:
 
 @order_hypothesis(
     44,
-    "the 3rd floor has the smallest mean for every tower, with and without pedestal",
-    "4.4",
-    Kind.DESCRIPTION,
     evidence=AMPLITUDES,
     rule="ln a on GF and on F5 exceeds that on F3 for every tower and side, earthquake by earthquake",
     several=True,
@@ -232,9 +188,6 @@ def c44(tests: Evidence) -> Parts:
 
 @hypothesis(
     50,
-    "on the upper floors the pedestal lowers the acceleration, with few exceptions",
-    "5",
-    Kind.INFERENCE,
     evidence=PAIRS,
     rule="a decrease on F3 and F5 together, with more pairs decreasing than increasing by more than their "
     f"steps. {ONE_RULE}",
@@ -255,15 +208,7 @@ def c50(tests: Evidence) -> Result:
     return found
 
 
-@hypothesis(
-    51,
-    "the increase on the ground floor is significant",
-    "5",
-    Kind.INFERENCE,
-    evidence=PAIRS,
-    rule=f"an increase on GF. {ONE_RULE}",
-    error_rate=ONE_INTERVAL,
-)
+@hypothesis(51, evidence=PAIRS, rule=f"an increase on GF. {ONE_RULE}", error_rate=ONE_INTERVAL)
 def c51(tests: Evidence) -> Result:
     """The test that the thesis did not make."""
     rows = tests.part(floor=GROUND)

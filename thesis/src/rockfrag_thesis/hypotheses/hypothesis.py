@@ -4,7 +4,10 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 from typing import Any
+
+import pandas as pd
 
 
 class Kind(StrEnum):
@@ -121,12 +124,8 @@ class Hypothesis:
     ----------
     number
         Its number, 1 to 58 (written C1 to C58); it never changes.
-    text
-        What it says, shortly.
-    source
-        Chapter or section of the thesis, and the equation, table or figure where there is one.
-    kind
-        What sort of sentence it is.
+    text, source, kind
+        What it says, where the thesis says it, and what sort of sentence it is: its row of ``statements.csv``.
     evidence
         What is looked at.
     rule
@@ -147,6 +146,10 @@ class Hypothesis:
     test: Test
 
 
+_STATEMENTS = pd.read_csv(
+    Path(__file__).with_name("statements.csv"), comment="#", index_col="number"
+).to_dict("index")
+
 _HYPOTHESES: dict[int, Hypothesis] = {}
 
 HYPOTHESES: Mapping[int, Hypothesis] = _HYPOTHESES
@@ -155,9 +158,6 @@ HYPOTHESES: Mapping[int, Hypothesis] = _HYPOTHESES
 
 def hypothesis(
     number: int,
-    text: str,
-    source: str,
-    kind: Kind,
     *,
     evidence: str,
     rule: str,
@@ -174,8 +174,16 @@ def hypothesis(
     def enter(test: Test) -> Test:
         if number in _HYPOTHESES:
             raise ValueError(f"C{number} is there already")
+        stated = _STATEMENTS[number]
         _HYPOTHESES[number] = Hypothesis(
-            number, text, source, kind, evidence, rule, error_rate, test
+            number,
+            stated["statement"],
+            stated["source"],
+            Kind(stated["kind"]),
+            evidence,
+            rule,
+            error_rate,
+            test,
         )
         return test
 

@@ -28,7 +28,7 @@ def jackknife(whole: float, without: Sequence[float]) -> Estimate:
         If a figure is not finite.
     """
     k = len(without)
-    pseudo = t_estimate([k * whole - (k - 1) * item for item in without])
+    pseudo = t_estimate([k * whole - (k - 1) * fewer for fewer in without])
     half = (pseudo.upper - pseudo.lower) / 2
     zero = Estimate(whole, pseudo.se, k, whole - half, whole + half, math.nan)
     p = 2 * min(zero.p_above(0.0), zero.p_below(0.0))

@@ -49,7 +49,7 @@ class MotionSpectra:
 
     def displacement(self, damping: float) -> Floats:
         """Sd over `PERIODS`, shape (motions, periods) [m]."""
-        return np.array([item.displacement for item in self.oscillator(damping)])
+        return np.array([spectrum.displacement for spectrum in self.oscillator(damping)])
 
     def rotation(self, factor: float = 1.0) -> Floats:
         """Largest |θ|/θc over `SIZES`, shape (slendernesses, motions, sizes) [-]; infinite if it fell.

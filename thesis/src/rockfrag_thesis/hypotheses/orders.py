@@ -12,7 +12,7 @@ from enum import Enum
 from rockfrag.pedestal.cluster_means import Estimate
 from rockfrag.pedestal.power import power_note
 from rockfrag_thesis.hypotheses.evidence import Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, hypothesis
 from rockfrag_thesis.hypotheses.outcomes import (
     LEVEL,
     ONE_INTERVAL,
@@ -98,18 +98,18 @@ def order(parts: Parts, *, unit: str = "earthquake", more: str = "") -> Result:
     if finding is Finding.OPEN and (p_bounded := _p_bounded(parts)) < LEVEL:
         finding, p, p_of = Finding.BOUNDED, min(1.0, 2 * p_bounded), LARGE_CHANGE
     decisive = strongest if finding is Finding.AGAINST else weakest
-    item = parts[decisive].estimate
+    estimate = parts[decisive].estimate
     notes = [more] if more else []
     if finding is Finding.OPEN:
-        notes.append(power_note(item, unit))
+        notes.append(power_note(estimate, unit))
     elif finding is Finding.BOUNDED:
         notes.append("a smaller change, or none, is not excluded")
     return Result(
         finding,
         _listed(parts, decisive),
-        item.ratio,
-        item.ratio_lower,
-        item.ratio_upper,
+        estimate.ratio,
+        estimate.ratio_lower,
+        estimate.ratio_upper,
         p=p,
         p_of=p_of,
         remark="; ".join(notes),
@@ -119,7 +119,7 @@ def order(parts: Parts, *, unit: str = "earthquake", more: str = "") -> Result:
 def _p_bounded(parts: Parts) -> float:
     """P value of changes of `SEEN` or more: of one that is claimed to be noticeable, or else of all of them.
 
-    Where a hypothesis hypotheses noticeable changes it is enough that one of them is excluded, with Bonferroni's
+    Where a hypothesis claims noticeable changes it is enough that one of them is excluded, with Bonferroni's
     adjustment; where it names no size every one has to be (an intersection-union test, which needs none).
     """
     noticeable = [part.p_bounded() for part in parts.values() if part.size is Size.NOTICEABLE]
@@ -163,9 +163,6 @@ ORDERS: Mapping[int, Differences] = _ORDERS
 
 def order_hypothesis(
     number: int,
-    text: str,
-    source: str,
-    kind: Kind,
     *,
     rule: str,
     evidence: str = PAIRS,
@@ -178,7 +175,7 @@ def order_hypothesis(
 
     Parameters
     ----------
-    number, text, source, kind, rule, evidence
+    number, rule, evidence
         See `rockfrag_thesis.hypotheses.hypothesis.Hypothesis`.
     several
         Whether there is more than one difference.
@@ -194,9 +191,7 @@ def order_hypothesis(
             return order(differences(tests), unit=unit, more=more(tests))
 
         stated = f"{rule}. {SEVERAL_RULE if several else ONE_RULE}"
-        entry = hypothesis(
-            number, text, source, kind, evidence=evidence, rule=stated, error_rate=rate
-        )
+        entry = hypothesis(number, evidence=evidence, rule=stated, error_rate=rate)
         entry(test)
         _ORDERS[number] = differences
         return differences

@@ -4,7 +4,7 @@ import numpy as np
 
 from rockfrag.pedestal.cluster_means import slope_effect
 from rockfrag_thesis.hypotheses.evidence import Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Kind, Result, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import Result, hypothesis
 from rockfrag_thesis.hypotheses.orders import (
     PAIRS,
     Part,
@@ -29,26 +29,13 @@ def _changed(tests: Evidence) -> str:
     )
 
 
-@order_hypothesis(
-    29,
-    "overturning acceleration is generally higher with the pedestal",
-    "4.3, Fig. 4.3",
-    Kind.DESCRIPTION,
-    rule="an increase over all pairs",
-)
+@order_hypothesis(29, rule="an increase over all pairs")
 def c29(tests: Evidence) -> Parts:
     """The effect over all pairs."""
     return general_increase(tests)
 
 
-@order_hypothesis(
-    49,
-    "towers are in general more stable atop the pedestal",
-    "5",
-    Kind.INFERENCE,
-    rule="as C29, which says the same",
-    more=_changed,
-)
+@order_hypothesis(49, rule="as C29, which says the same", more=_changed)
 def c49(tests: Evidence) -> Parts:
     """The effect over all pairs."""
     return general_increase(tests)
@@ -56,9 +43,6 @@ def c49(tests: Evidence) -> Parts:
 
 @hypothesis(
     31,
-    "the increase with the pedestal is not correlated with slenderness",
-    "4.3, Fig. 4.4",
-    Kind.DESCRIPTION,
     evidence=PAIRS,
     rule=f"slope of ln P/NP on H/B inside each earthquake: over the range of H/B within ±{100 * SEEN:.0f} %",
     error_rate=ONE_INTERVAL,
@@ -71,12 +55,7 @@ def c31(tests: Evidence) -> Result:
 
 
 @order_hypothesis(
-    32,
-    "the increase with the pedestal is largest for T3",
-    "4.3, Fig. 4.4",
-    Kind.DESCRIPTION,
-    rule="P/NP of T3 exceeds that of T1 and of T2, earthquake by earthquake",
-    several=True,
+    32, rule="P/NP of T3 exceeds that of T1 and of T2, earthquake by earthquake", several=True
 )
 def c32(tests: Evidence) -> Parts:
     """T3's effect over T1's and T2's."""
@@ -86,13 +65,7 @@ def c32(tests: Evidence) -> Parts:
     }
 
 
-@order_hypothesis(
-    33,
-    "for T2 the pedestal has nearly the opposite effect, still a slight increase",
-    "4.3",
-    Kind.DESCRIPTION,
-    rule="an increase of T2; “nearly opposite” cannot be tested",
-)
+@order_hypothesis(33, rule="an increase of T2; “nearly opposite” cannot be tested")
 def c33(tests: Evidence) -> Parts:
     """T2's effect."""
     return {"P/NP of T2": Part(tests.effect(object="T2"))}

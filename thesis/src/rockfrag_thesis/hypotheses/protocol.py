@@ -7,7 +7,7 @@ import numpy as np
 from rockfrag.pedestal.cluster_means import t_estimate
 from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import Part, order
 from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, ONE_INTERVAL, same
 
@@ -21,9 +21,6 @@ specimens offers, and what none does (ranges of engineering handbooks)."""
 
 @hypothesis(
     55,
-    "each specimen met twelve motions; the figure is the one just before overturning",
-    "3.3, 3.4",
-    Kind.DESCRIPTION,
     evidence="the table of tests",
     rule="twelve motions for every tower on both sides; open for a table of other tests",
     error_rate=NO_ERROR,
@@ -52,9 +49,6 @@ def c55(tests: Evidence) -> Result:
 
 @hypothesis(
     56,
-    "maximum acceleration follows from the shaker's force over the moved mass",
-    "3.4",
-    Kind.INFERENCE,
     evidence="recorded force and moved mass of each test against its reported acceleration",
     rule="force over mass within one step of the protocol (median of the tests) of what was reported",
     error_rate=ONE_INTERVAL,
@@ -99,9 +93,6 @@ def c56(tests: Evidence) -> Result:
 
 @hypothesis(
     57,
-    "nothing but rocking occurs",
-    "abstract; 3.1, 3.2",
-    Kind.PROPERTY,
     evidence="friction and contact forces that pure rocking needs in simulations of the tests",
     rule="true if contacts stay closed in every test and none needs more friction than the least that "
     "dry wood offers; false if a contact opens or needs more than rubber on concrete offers",
@@ -139,9 +130,6 @@ def c57(tests: Evidence) -> Result:
 
 @hypothesis(
     58,
-    "excluding sliding is the worst case",
-    "abstract",
-    Kind.PROPERTY,
     evidence="overturning amplitudes of simulations with and without sliding",
     rule="with sliding allowed the mean amplitude is higher, t over earthquakes",
     error_rate=ONE_INTERVAL,

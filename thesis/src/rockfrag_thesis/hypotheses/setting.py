@@ -99,9 +99,9 @@ class Setting:
     def histories(self) -> list[Response]:
         """Every stack under every motion of the sample at each amplitude of `PEAKS_G`."""
         return [
-            simulate(stack, scale_to_pga(item, peak))
+            simulate(stack, scale_to_pga(motion, peak))
             for stack in self.assemblies.values()
-            for item in self.sample
+            for motion in self.sample
             for peak in PEAKS_G
         ]
 

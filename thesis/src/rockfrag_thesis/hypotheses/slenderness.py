@@ -10,7 +10,7 @@ from rockfrag.pedestal.cluster_means import Estimate, contrast, slope_effect, t_
 from rockfrag.pedestal.power import power_note
 from rockfrag.system.blocks import Stack
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import (
     AMPLITUDES,
     PAIRS,
@@ -49,9 +49,6 @@ def _earthquake_means(tests: Evidence) -> pd.DataFrame:
 
 @hypothesis(
     25,
-    "overturning acceleration falls almost linearly with slenderness",
-    "4.2, Fig. 4.1",
-    Kind.DESCRIPTION,
     evidence=AMPLITUDES,
     rule=f"ln a falls with H/B; mean of T2 within ±{100 * SEEN:.0f} % of the middle between T1 and T3",
     error_rate=SEVERAL_INTERVALS,
@@ -77,9 +74,6 @@ def c25(tests: Evidence) -> Result:
 
 @order_hypothesis(
     26,
-    "the trend with slenderness is the same with and without pedestal",
-    "4.2, Fig. 4.1; 5",
-    Kind.DESCRIPTION,
     evidence=AMPLITUDES,
     rule="ln a falls with H/B inside each earthquake, with and without pedestal",
     several=True,
@@ -95,9 +89,6 @@ def c26(tests: Evidence) -> Parts:
 
 @hypothesis(
     27,
-    "the relative decrease of the mean is nearly equal with and without pedestal",
-    "4.2",
-    Kind.DESCRIPTION,
     evidence=PAIRS,
     rule=f"decrease from T1 to T3 with P over that without, earthquake by earthquake, within ±{100 * SEEN:.0f} %",
     error_rate=ONE_INTERVAL,
@@ -110,9 +101,6 @@ def c27(tests: Evidence) -> Result:
 
 @hypothesis(
     28,
-    "the relative decrease differs by floor",
-    "4.2, Fig. 4.2",
-    Kind.DESCRIPTION,
     evidence=AMPLITUDES,
     rule="decrease from the squattest to the most slender tower of one floor over that of another, earthquake "
     f"by earthquake: true if any pair of floors differs, false if all are within ±{100 * SEEN:.0f} %",
@@ -146,7 +134,7 @@ def c28(tests: Evidence) -> Result:
     finding = Finding.OPEN
     if p_differ[widest] < LEVEL:
         finding = Finding.FOR
-    elif all(item.finding is Finding.FOR for item in alike):
+    elif all(statement.finding is Finding.FOR for statement in alike):
         finding = Finding.AGAINST
     pair = pairs[widest]
     p_alike = max(each.p for each in alike)
@@ -189,9 +177,6 @@ def stack_slenderness(tests: Evidence) -> pd.DataFrame:
 
 @hypothesis(
     30,
-    "the stack is more slender than the tower and yet stronger",
-    "4.3",
-    Kind.IDENTITY,
     evidence="dimensions and masses of the specimens",
     rule="height of the common centre of gravity over half the pedestal's width against the tower's H/B: "
     "false if no stack is the more slender",
@@ -216,9 +201,6 @@ def c30(tests: Evidence) -> Result:
 
 @order_hypothesis(
     53,
-    "more slender structures overturn under smaller excitation",
-    "5",
-    Kind.INFERENCE,
     evidence=AMPLITUDES,
     rule="ln a of T1 exceeds that of T2, and that of T2 that of T3, earthquake by earthquake",
     several=True,
@@ -236,9 +218,6 @@ def c53(tests: Evidence) -> Parts:
 
 @hypothesis(
     54,
-    "trends should not be extrapolated to other geometries",
-    "5",
-    Kind.INFERENCE,
     evidence=AMPLITUDES,
     rule="the trends a on H/B (the thesis's), ln a on H/B and a on B/H through T1 and T2 prolonged to T3: "
     f"true if all miss its mean, false if the thesis's own is within ±{100 * SEEN:.0f} %",

@@ -12,7 +12,7 @@ from rockfrag.motions.spectra import oscillator_response
 from rockfrag.pedestal.cluster_means import Estimate
 from rockfrag.rocking import overturns
 from rockfrag.units import GRAVITY
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.jackknife import jackknife
 from rockfrag_thesis.hypotheses.motion_spectra import PERIODS, SIZES
 from rockfrag_thesis.hypotheses.outcomes import LEVEL, NO_ERROR, SEEN, known, most
@@ -29,9 +29,6 @@ CHANGE = 0.05
 
 @hypothesis(
     14,
-    "rotations of the rocking spectrum fall nearly monotonically with 2π/p",
-    "2.3",
-    Kind.PROPERTY,
     evidence=f"max |θ|/θc of {SIZES.size} blocks with 2π/p from {SIZES[0]:g} to {SIZES[-1]:g} s of each "
     "specimen's slenderness, motions as recorded",
     rule="Spearman's ρ with 2π/p is nearer to -1 than to 0 in most spectra",
@@ -62,9 +59,6 @@ def c14(setting: Setting) -> Result:
 
 @hypothesis(
     15,
-    "the oscillator's displacement grows with period and tends to the ground's",
-    "2.3",
-    Kind.PROPERTY,
     evidence=f"5 % damped Sd from {PERIODS[0]:g} to {PERIODS[-1]:g} s, and at {LONG:g} s within the record",
     rule="true if up to its maximum Sd grows in rank with the period (Spearman's ρ nearer to 1 than to 0), "
     f"and the oscillator of {LONG:g} s moves as the ground within its damping, for every motion",
@@ -111,9 +105,6 @@ def _longest_band(inside: NDArray[np.bool_]) -> tuple[float, float]:
 
 @hypothesis(
     16,
-    "there are period ranges where the displacement hardly depends on damping",
-    "2.3",
-    Kind.PROPERTY,
     evidence=f"Sd at {100 * DAMPINGS[0]:.0f} % and {100 * DAMPINGS[1]:.0f} % damping from {PERIODS[0]:g} to "
     f"{PERIODS[-1]:g} s",
     rule=f"true if one motion has a range of a third of an octave or more in which the two are within "
@@ -141,9 +132,6 @@ def c16(setting: Setting) -> Result:
 
 @hypothesis(
     17,
-    "the rocking spectrum is very sensitive to slenderness",
-    "2.3",
-    Kind.PROPERTY,
     evidence=f"|change of ln max |θ|| when slenderness changes by ±{100 * CHANGE:.0f} %, median over the blocks "
     "of each motion; beside it that of Sd when damping changes as much",
     rule="the rotation changes by more than the slenderness does for most motions",
@@ -207,9 +195,6 @@ def exchanges(values: Floats, other: Floats) -> tuple[int, int]:
 
 @hypothesis(
     18,
-    "oscillator spectra rank two records alike at any damping, rocking spectra need not",
-    "2.3",
-    Kind.PROPERTY,
     evidence="pairs of motions: which spectrum exceeds the other over most abscissas, Sd at "
     f"{100 * DAMPINGS[0]:.0f} % and {100 * DAMPINGS[1]:.0f} % damping, max |θ|/θc at the specimens' slendernesses",
     rule="true if some pairs change their order between slendernesses, and a larger fraction of them than of "
@@ -277,9 +262,6 @@ def dispersion_ratio(measure: Floats, other: Floats, groups: list[str]) -> Estim
 
 @hypothesis(
     19,
-    "the response spectrum is no proxy for rocking",
-    "2.3",
-    Kind.PROPERTY,
     evidence="scatter over motions of ln Sa (5 %, T = 2π/p of the block) at which each lone block first "
     "overturns, against that of ln PGA and of ln PGV: a proxy would scatter least",
     rule="true if Sa scatters more than PGA or more than PGV (95 % interval by jackknife over earthquakes), "
@@ -303,7 +285,7 @@ def c19(setting: Setting) -> Result:
     pga = np.where(falls, np.log(AMPLITUDES_G[found.argmax(axis=2)]), np.nan)
     if (falls.sum(axis=1) < 3).all():
         raise Undecidable("no block overturns under three motions at these amplitudes")
-    sa = np.log([item.pseudo_acceleration for item in setting.spectra.oscillator(0.05)])
+    sa = np.log([spectrum.pseudo_acceleration for spectrum in setting.spectra.oscillator(0.05)])
     own = np.array(
         [
             [
@@ -326,7 +308,7 @@ def c19(setting: Setting) -> Result:
         finding = Finding.FOR
     elif p_less < LEVEL:
         finding = Finding.AGAINST
-    decisive = max(ratios.values(), key=lambda item: item.mean)
+    decisive = max(ratios.values(), key=lambda ratio: ratio.mean)
     spread = {
         name: float(np.nanmean(np.nanstd(values, axis=1, ddof=1)))
         for name, values in (("PGA", pga), ("PGV", at_pgv), ("Sa(2π/p)", at_sa))

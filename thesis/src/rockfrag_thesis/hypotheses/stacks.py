@@ -10,7 +10,7 @@ import pandas as pd
 from rockfrag.engines.response import ROCKING_MODES
 from rockfrag.rocking import Block, Stack, simulate
 from rockfrag.units import GRAVITY
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Kind, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, most
 from rockfrag_thesis.hypotheses.setting import (
     EXACT,
@@ -30,9 +30,6 @@ TABLE_4_1_ROCKING_MODE_3 = {"P&T1": 3.69, "P&T2": 3.04, "P&T3": 2.56}
 
 @hypothesis(
     2,
-    "a stack starts to rock at the accelerations of Table 4.1",
-    "2.2.1, eq. 2.21-2.25; Tab. 4.1",
-    Kind.IDENTITY,
     evidence="eq. 2.21 to 2.25, and simulations of sudden accelerations (of the stack held together for "
     "pattern 3)",
     rule="computed figures round to the printed digits; simulated bodies start between 1 - 1e-9 and "
@@ -63,7 +60,7 @@ def c2(setting: Setting) -> Result:
     return Result(
         Finding.FOR if all(agree) and not wrong else Finding.AGAINST,
         f"{len(printed) - len(wrong)} of {len(printed)} figures agree; {sum(agree)} of {len(agree)} "
-        "simulated stacks start there" + "".join(f"; {item}" for item in wrong),
+        "simulated stacks start there" + "".join(f"; {name}" for name in wrong),
         (len(printed) - len(wrong)) / len(printed),
         remark="pattern 3 starts at its figure only if the statue is held; see C9",
     )
@@ -75,9 +72,6 @@ SUDDEN = np.geomspace(1.01, 6.0, 20)
 
 @hypothesis(
     9,
-    "a stack at rest starts in pattern 3 or pattern 4",
-    "2.2.1",
-    Kind.PROPERTY,
     evidence="first pattern of the stacks under the motions, and under sudden accelerations up to "
     f"{SUDDEN[-1]:g} times the one that starts rocking",
     rule="true under all motions; exceptions among sudden accelerations are said",
@@ -119,9 +113,6 @@ def _counted(counts: Counter[str]) -> str:
 
 @hypothesis(
     10,
-    "transitions without an impact start only from patterns 3 and 4",
-    "2.2.3",
-    Kind.IDENTITY,
     evidence="only patterns 3 and 4 have an interface in full contact that could open; openings in "
     "simulations of the stacks",
     rule="no simulated opening from pattern 1 or 2",
@@ -190,9 +181,6 @@ def _kinds(transitions: Counter[tuple[str, str]]) -> Counter[str]:
 
 @hypothesis(
     11,
-    "where the impact solution is impossible the blocks stay together",
-    "2.2.4, eq. 2.79-2.86",
-    Kind.PROPERTY,
     evidence="outcomes of all impacts of the stacks under the motions, and of random stacks whose statue "
     "is tilted and released",
     rule="after every impact under the motions both interfaces rock on, or what met stays together; "
@@ -298,9 +286,6 @@ def random_stacks(seed: int) -> tuple[Counter[str], Counter[tuple[str, str]]]:
 
 @hypothesis(
     12,
-    "from pattern 4a an impact usually leads to 4b, possibly to 1b",
-    "2.2.4, eq. 2.85-2.86",
-    Kind.PROPERTY,
     evidence="what the pedestal does after a statue lands on it while it stood still: the stacks under the "
     f"motions, and the first landing in free fall of {GEOMETRIES} random stacks",
     rule="true if it stands still before the statue comes down next after more than half of the landings "
@@ -334,9 +319,6 @@ def c12(setting: Setting) -> Result:
 
 @hypothesis(
     13,
-    "energy is lost at impacts only; velocities are continuous elsewhere",
-    "2.1.1, 2.2.3",
-    Kind.PROPERTY,
     evidence="kinetic energy across impacts, velocities across openings, and the balance of energy, losses "
     "and input between them in simulations of the stacks",
     rule="no impact gains energy (1e-9), no opening changes a velocity, the balance closes to 1e-6 of the "
@@ -379,9 +361,6 @@ SQUAT_ON_SLENDER = Stack(Block(0.1, 1.0, 10.0), Block(0.1, 0.05, 0.5))
 
 @hypothesis(
     21,
-    "pattern 4 starts at a smaller acceleration than pattern 3",
-    "4.1, Tab. 4.1",
-    Kind.IDENTITY,
     evidence="eq. 2.21 to 2.25 (C2)",
     rule="true for every stack; a squat statue on a slender pedestal is the exception",
     error_rate=NO_ERROR,
@@ -399,9 +378,6 @@ def c21(setting: Setting) -> Result:
 
 @hypothesis(
     22,
-    "the threshold of pattern 4 is the single block's",
-    "4.1, Tab. 4.1",
-    Kind.IDENTITY,
     evidence="eq. 2.1 and 2.24, 2.25: a still pedestal is like the ground",
     rule="the two figures are equal within 1e-9",
     error_rate=NO_ERROR,
@@ -420,9 +396,6 @@ def c22(setting: Setting) -> Result:
 
 @hypothesis(
     23,
-    "both blocks of a stack need more excitation to rock than a single block",
-    "4.1",
-    Kind.IDENTITY,
     evidence="eq. 2.21, 2.22 against 2.1 for a statue that is held, simulations of sudden accelerations "
     "for a free one",
     rule="true for every stack; a squat statue on a slender pedestal is the exception",
@@ -445,9 +418,6 @@ def c23(setting: Setting) -> Result:
 
 @hypothesis(
     24,
-    "the acceleration that starts rocking falls with slenderness",
-    "4.1",
-    Kind.IDENTITY,
     evidence="eq. 2.1 and 2.21 to 2.25 (C2)",
     rule="the thresholds of lone towers, pattern 3 and pattern 4 fall from each tower to the next more "
     "slender",

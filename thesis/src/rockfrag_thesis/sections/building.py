@@ -64,7 +64,7 @@ def _message(span: pd.DataFrame) -> str:
     known = span[span["min"] > 0]
     if known.empty:
         return "No mean amplitude is known for other buildings."
-    row = max(known.to_dict("records"), key=lambda item: float(item["max"] / item["min"]))
+    row = max(known.to_dict("records"), key=lambda row: float(row["max"] / row["min"]))
     return (
         f"The {str(row['axis']).lower()} matters most: the mean amplitude on {row['floor']} lies between "
         f"{number(row['min'], 2)} and {number(row['max'], 2)} g over the values tried."

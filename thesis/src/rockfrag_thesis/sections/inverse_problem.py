@@ -89,7 +89,7 @@ def _perturbation(row: Mapping[Hashable, Any], number: int) -> str:
 def _together(row: Mapping[Hashable, Any]) -> str:
     values = [row.get("simulated_ground"), row.get("simulated_above")]
     known = [float(value) for value in values if isinstance(value, float) and math.isfinite(value)]
-    return ", ".join(f"{item:.3f}" for item in known) if known else "–"
+    return ", ".join(f"{number:.3f}" for number in known) if known else "–"
 
 
 INVERSE_PROBLEM = Part(

@@ -303,7 +303,7 @@ def sensitivity_analysis_figure(effects: pd.DataFrame, order: Sequence[str] = ()
     ideal = ideal.assign(name="ideal model", lower=ideal["ratio_lower"], upper=ideal["ratio_upper"])
     rows = pd.concat([ideal, shown], ignore_index=True)
     own = set(effects["floor"]) - {"all"}
-    floors = [item for item in dict.fromkeys([*order, *effects["floor"]]) if item in own]
+    floors = [floor for floor in dict.fromkeys([*order, *effects["floor"]]) if floor in own]
     with figure_style():
         figure = new_figure(WIDEST, 1.0 + 0.26 * len(rows))
         axes = figure.subplots()

@@ -153,7 +153,9 @@ def _by_earthquake(
     """
     work = ratios.assign(
         d=np.log(ratios["ratio"].astype(float)),
-        place=["ground" if floors.get(str(item), 1) == 0 else "above" for item in ratios["floor"]],
+        place=[
+            "ground" if floors.get(str(floor), 1) == 0 else "above" for floor in ratios["floor"]
+        ],
         level=ratios["level"].astype(str),
         reference=ratios["reference"].astype(bool),
     )

@@ -318,7 +318,7 @@ def case_ratios(
     ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g`` (amplitudes [g]), ``ratio``,
     ``resolution`` (half-width to which its logarithm is known, a step of the series of levels [-]).
     """
-    order = list(dict.fromkeys(item for case in cases for item in (case.lone, case.stack)))
+    order = list(dict.fromkeys(name for case in cases for name in (case.lone, case.stack)))
     parts = []
     for first in range(0, len(order), BATCH):
         batch = order[first : first + BATCH]

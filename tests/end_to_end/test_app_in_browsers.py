@@ -1,0 +1,234 @@
+"""The page of ``rockfrag app`` as browsers show it: it answers, loads nothing, and refuses in sentences."""
+
+import json
+import time
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.app.writing import write_app
+from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.request import make_request, read_request
+from rockfrag.assess.words import five_lines
+
+from .browsers import Browser
+
+FORM = {"width": "25 cm", "height": "1 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
+SETTINGS = {"width": "25 cm", "height": "1 m", "pga": "0.4 g", "return_period": "475"}
+
+STAGE = """
+new Promise(done => {
+  const look = () => document.body.dataset.stage === 'complete' ? done(true) : setTimeout(look, 20);
+  look();
+})
+"""
+
+
+@pytest.fixture(scope="module")
+def motions(made_motions) -> MotionSet:
+    made = made_motions(12)
+    pairs = tuple((i, i + 1) for i in range(0, len(made), 2))
+    return MotionSet(made, made, pairs, "12 made motions")
+
+
+@pytest.fixture(scope="module")
+def app_page(motions, tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("app") / "assess.html"
+    write_app(motions, FORM, path, made=True)
+    return path
+
+
+def typed(field: str, text: str) -> str:
+    """A script that types into a field, as a person does."""
+    return (
+        f"(() => {{ const field = document.getElementById('field-{field}'); field.focus();"
+        f"field.value = {json.dumps(text)}; field.dispatchEvent(new Event('input', {{bubbles: true}})); }})()"
+    )
+
+
+def waited(browser: Browser, script: str) -> None:
+    """Wait until something is so in the page."""
+    for _ in range(600):
+        if browser.run(script):
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"{script}: {browser.run('document.body.innerText')[:2000]}")
+
+
+def lines_of(browser: Browser) -> list[str]:
+    return browser.run("[...document.querySelectorAll('#lines dd')].map(line => line.textContent)")
+
+
+@pytest.mark.parametrize(("width", "dark"), [(1400, False), (390, True)])
+def test_it_answers_in_the_words_of_assess(browser, app_page, motions, width, dark):
+    browser.open(app_page, width, 900, dark=dark)
+    assert browser.run(STAGE)
+    request = make_request(SETTINGS, "form")
+    said = [
+        line.partition(": ")[2]
+        for line in five_lines(assess_with(request, motions.at(request.place)))
+    ]
+    lines = lines_of(browser)
+    assert [lines[i] for i in (0, 1, 3)] == [said[i] for i in (0, 1, 3)]
+    assert browser.run("document.documentElement.scrollWidth <= innerWidth")
+    assert browser.console == []
+
+
+def test_it_loads_nothing(browser, app_page):
+    """There is no network in these tests, and the page asks for none."""
+    browser.open(app_page)
+    assert browser.run(STAGE)
+    loaded = browser.run("performance.getEntriesByType('resource').map(entry => entry.name)")
+    assert [name for name in loaded if not name.startswith("blob:")] == []
+    refused = browser.run("fetch('data:,x').then(() => false, () => true)")
+    assert refused, "its policy refuses every request"
+
+
+def test_the_last_key_stroke_is_answered(browser, app_page):
+    browser.open(app_page)
+    assert browser.run(STAGE)
+    for text in ("10 cm", "2 m", "45,5 cm"):
+        browser.run(typed("width", text))
+        time.sleep(0.15)
+    waited(browser, "document.getElementById('lines').textContent.includes('45.5 cm')")
+    assert browser.run(STAGE)
+    assert "45.5 cm" in " ".join(lines_of(browser))
+    assert browser.console == []
+
+
+def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
+    browser.open(app_page)
+    assert browser.run(STAGE)
+    for field, text in (
+        ("width", "<b>1</b> m"),
+        ("mass", "12"),
+        ("depth", "30 cm"),
+        ("floor", "9/4"),
+        ("level", "40 g"),
+        ("hazard", "=1+1"),
+        ("cg_offset", "20 cm"),
+    ):
+        before = browser.run(f"document.getElementById('field-{field}').value")
+        browser.run(typed(field, text))
+        error = "width" if field == "cg_offset" else field
+        waited(browser, f"document.getElementById('field-{error}-error').textContent.endsWith('.')")
+        browser.run(typed(field, before))
+        waited(browser, f"!document.getElementById('field-{error}-error').textContent")
+    assert browser.run("document.querySelectorAll('main img, main b').length") == 0
+    assert browser.console == []
+
+
+@pytest.mark.parametrize(
+    ("allowed", "instead", "words"),
+    [
+        (" 'wasm-unsafe-eval'", "", "WebAssembly"),
+        ("worker-src blob:", "worker-src 'none'", "workers"),
+    ],
+)
+def test_a_browser_that_is_not_allowed_to_compute_says_so(
+    browser, app_page, tmp_path, allowed, instead, words
+):
+    text = app_page.read_text()
+    assert text.count(allowed) == 1
+    path = tmp_path / "blocked.html"
+    path.write_text(text.replace(allowed, instead))
+    browser.open(path)
+    waited(browser, "!document.getElementById('blocked').hidden")
+    assert words in browser.run("document.getElementById('blocked').textContent")
+
+
+def test_sliders_compare_before_and_after(browser, app_page):
+    browser.open(app_page)
+    assert browser.run(STAGE)
+    waited(browser, "document.querySelectorAll('#compared tr').length === 2")
+    browser.run(
+        "(() => { const slide = document.getElementById('slide-width'); slide.value = 40;"
+        "slide.dispatchEvent(new Event('input')); })()"
+    )
+    cells = "[...document.querySelectorAll('#compared tr')[1].cells].map(cell => parseFloat(cell.textContent))"
+    waited(browser, f"{cells}[2] >= 0")
+    _, before, after = browser.run(cells)
+    assert after < before
+
+
+def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
+    browser.open(app_page)
+    assert browser.run(STAGE)
+    browser.run(
+        "URL.createObjectURL = blob => { blob.text().then(text => { window.saved = text; }); return 'blob:x'; }"
+    )
+    press = "[...document.querySelectorAll('#tools button')][{}].click()"
+    browser.run(typed("name", "=HYPERLINK(1)"))
+    waited(browser, "document.getElementById('lines').textContent.includes('=HYPERLINK')")
+    assert browser.run(STAGE)
+    browser.run(press.format(0))
+    waited(browser, "document.querySelectorAll('#objects tr').length === 1")
+    browser.run(press.format(1))
+    waited(browser, "window.saved && window.saved.startsWith('name,')")
+    assert browser.run("window.saved").splitlines()[1].startswith(" =HYPERLINK(1),25 cm,1 m")
+    browser.run("window.saved = ''")
+    browser.run(press.format(2))
+    waited(browser, "window.saved")
+    path = tmp_path / "statue.yaml"
+    path.write_text(browser.run("window.saved"))
+    request = read_request(path)
+    assert (request.objects.statue.width, request.hazard[0].measure.imt) == (0.25, "PGA")
+    open_file = (
+        "(() => {{ const data = new DataTransfer(); data.items.add(new File([{}], {}));"
+        "const file = document.getElementById('file'); file.files = data.files;"
+        "file.dispatchEvent(new Event('change')); }})()"
+    )
+    browser.run(
+        open_file.format(json.dumps("width: 30 cm\nheight: 1 m\npga: 0.5 g\n"), "'statue.yaml'")
+    )
+    waited(browser, "document.getElementById('field-width').value === '30 cm'")
+    for name, text in (
+        ("a.yaml", "!!js/function x"),
+        ("a.csv", "<script>,b\n1,2\n"),
+        ("a.yaml", "friction: 0.5\n"),
+        ("a.csv", "\x00\x01"),
+    ):
+        browser.run(open_file.format(json.dumps(text), json.dumps(name)))
+        waited(browser, "!document.getElementById('file-error').hidden")
+        assert browser.run("document.getElementById('file-error').textContent").endswith(".")
+
+
+def test_readers_of_every_kind_can_use_it(browser, app_page):
+    axe = find_spec("axe_core_python")
+    if axe is None or axe.origin is None:
+        pytest.skip("axe-core-python is not installed")
+    script = (Path(axe.origin).parent / "axe.min.js").read_text(encoding="utf-8")
+    for dark in (False, True):
+        browser.open(app_page, 1400, 900, dark=dark)
+        assert browser.run(STAGE)
+        browser.run("document.querySelectorAll('details').forEach(one => { one.open = true; })")
+        browser.run(f"(() => {{ {script} }})() || 1")
+        found = browser.run(
+            "axe.run().then(found => found.violations.map(one => [one.id, one.nodes[0].html]))"
+        )
+        assert found == []
+
+
+def test_a_keyboard_is_enough(browser, app_page):
+    """All that is pressed or typed into is of a kind that browsers give to the keyboard."""
+    browser.open(app_page)
+    assert browser.run(STAGE)
+    unreached = "[...document.querySelectorAll('input, select, textarea, button, summary')]"
+    assert browser.run(f"{unreached}.filter(one => !one.hidden && one.tabIndex < 0).length") == 0
+    assert browser.run("document.querySelectorAll('[onclick], div[role=button]').length") == 0
+
+
+def test_it_speaks_italian(browser, app_page):
+    browser.open(app_page)
+    assert browser.run(STAGE)
+    browser.run(
+        "(() => { const choice = document.getElementById('language'); choice.value = 'it';"
+        "choice.dispatchEvent(new Event('change')); })()"
+    )
+    text = browser.run("document.body.innerText")
+    for word in ("Si ribalta?", "Larghezza", "Rischio", "0,4 g"):
+        assert word in text
+    lines = " ".join(lines_of(browser)).lower()
+    assert not [word for word in ("topple", "height", "motions that", "interval ") if word in lines]

@@ -1,0 +1,43 @@
+# Bodies in space under both components of records, beside planar ones.
+
+
+rule space:
+    """Shake every body in space and in the plane, and compare the medians of overturning."""
+    output:
+        table("medians", "fractions"),
+    log:
+        f"{RESULTS}/logs/space.log",
+    conda:
+        "../envs/rockfrag.yaml"
+    threads: CORES
+    resources:
+        mem_mb=MEMORY_MB,
+        runtime=120,
+    params:
+        stage="rockfrag.stages.space:run",
+        study=STUDY_FILE,
+        settings=settings("seed", "space"),
+    script:
+        "../scripts/run_stage.py"
+
+
+rule space_report:
+    """Draw the figures and write the page."""
+    input:
+        read("medians", "fractions"),
+    output:
+        figures=report(directory(f"{RESULTS}/figures"), patterns=["{figure}.svg"]),
+        page=report(f"{RESULTS}/report.html", category="Report"),
+    log:
+        f"{RESULTS}/logs/space_report.log",
+    conda:
+        "../envs/rockfrag.yaml"
+    resources:
+        mem_mb=MEMORY_MB,
+        runtime=120,
+    params:
+        stage="rockfrag.report.stages:space_report",
+        study=STUDY_FILE,
+        settings=settings("title"),
+    script:
+        "../scripts/run_stage.py"
