@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from app import app_seconds
 from gallery import gallery_seconds
 
 from rockfrag.files import write_table
@@ -43,6 +44,8 @@ REACH = {
     ("make test", ""): 300,
     ("measures of a motion", ""): 0.004,
     ("gallery", "300 objects, 2 floors"): 60,
+    ("app", "first answer"): 2,
+    ("app", "further answer"): 1,
 }
 """What is to be reached on two idle cores [s]."""
 
@@ -77,6 +80,8 @@ def main() -> None:
                 seconds = measuring_seconds()
             elif name == "gallery":
                 seconds = gallery_seconds()[0]
+            elif name == "app":
+                seconds = app_seconds().get(f"{state}: first", float("nan"))
             else:
                 seconds = study_seconds(project, name, state)
             rows.append({"wait": f"{name} {state}".strip(), "seconds": float(f"{seconds:.3g}")})

@@ -47,7 +47,8 @@ begin({ data, modules: unpacked, samples: bytes(packed) }).then(() => {
     } catch (error) {
       if (!error.field) return { failed: error.stack };
       const { en } = data.texts;
-      return { refused: [error.field, error.id, Boolean(en[`${error.id}_refused`] ?? en[error.id])] };
+      const sentence = en[`${error.id}_refused`] ?? en[error.id] ?? error.id;
+      return { refused: [error.field, error.id, sentence.endsWith(".")] };
     }
   });
   console.log(JSON.stringify(found));
@@ -164,10 +165,10 @@ def compare(folder, motions, forms) -> int:
         assert "failed" not in said, said
         try:
             request = make_request(settings_of(form), "form")
+            found = assess_with(request, motions.at(request.place))
         except InputError as error:
             assert "answer" not in said, (form, error)
             continue
-        found = assess_with(request, motions.at(request.place))
         assert "answer" in said, (form, said)
         check(found, said)
         check_words(found, said)

@@ -295,15 +295,11 @@ def outcomes_beside_stepping(cases: int, bodies: tuple[int, ...], seed: int) -> 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("bodies", "cases", "most"), [((3, 4), 200, 6), ((8,), 50, 1)])
-def test_outcomes_of_many_columns_are_those_of_time_stepping(
-    bodies: tuple[int, ...], cases: int, most: int
-) -> None:
-    found = outcomes_beside_stepping(cases, bodies, seed=8)
-    print(f"{cases} columns of {bodies}: {found}")
-    assert found.refined <= found.differing <= most
-    assert found.critical == found.differing
-    assert cases // 4 <= found.fallen <= 3 * cases // 4 + 10
+def test_outcomes_of_many_columns_are_those_of_time_stepping() -> None:
+    short, long = (outcomes_beside_stepping(*each, seed=8) for each in ((200, (3, 4)), (50, (8,))))
+    print(f"200 columns of three and four bodies: {short}; 50 of eight: {long}")
+    assert short.differing + long.differing <= 0.03 * 250
+    assert 50 <= short.fallen <= 150 and 12 <= long.fallen <= 47
 
 
 def test_outcomes_of_columns_are_those_of_time_stepping() -> None:

@@ -127,7 +127,8 @@ def _newton(w, free, mu, count, press, slide, pn, pt, a, x, of):
             for j in range(i + 1, m):
                 x[i] -= a[i, j] * x[j]
             x[i] /= a[i, i]
-        pn[:count], pt[:count] = 0.0, 0.0
+        for c in range(count):
+            pn[c] = pt[c] = 0.0
         for i in range(m):
             c = of[i] // 2
             if of[i] % 2 == 1:
@@ -221,7 +222,8 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
                     free[2 * c + 1] += jt[c, d] * v[first + d]
             _response(jn, jt, inverse, below, count, weights)
             if _newton(weights, free, mu, count, press, slide, tried_n, tried_t, a, x, of):
-                pn[:count], pt[:count] = tried_n[:count], tried_t[:count]
+                for c in range(count):
+                    pn[c], pt[c] = tried_n[c], tried_t[c]
             for c in range(count):
                 first, low = 3 * below[c] - 3, 3 if below[c] == 0 else 0
                 for d in range(low, 6):

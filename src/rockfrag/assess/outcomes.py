@@ -333,11 +333,15 @@ def _shaken_in_plane(
     scales = np.minimum(scales, believable_scales(motions.base))
     result, light = simulated(systems, motions.base, scales)
     states = _reached(result)
+    # more than two bodies leave the ground where they have to
     return [
         _object_outcomes(
-            {name: cases[i] for name, cases in states.items()}, motions, intensity_levels, light
+            {name: cases[i] for name, cases in states.items()},
+            motions,
+            intensity_levels,
+            light and system.count < 3,
         )
-        for i in range(len(systems))
+        for i, system in enumerate(systems)
     ]
 
 
@@ -473,9 +477,9 @@ def _shaken_from_all_sides(
             {name: cases[i][place] for name, cases in states.items()},
             motions,
             intensity_levels,
-            light,
+            light and system.count < 3,
         )
-        for i in range(len(systems))
+        for i, system in enumerate(systems)
     ]
 
 

@@ -160,6 +160,7 @@ const objects = (data) => {
       const { centre: [x, y, inertia] } = ensemble.bodyOf({ statue: top, pedestal: below });
       return { width: below.width, height: below.height + top.height, mass: below.mass + top.mass, inertia, cgHeight: y, cgOffset: x };
     };
+    stands(body(statue), ensemble);
     if (measured !== null && measured > ensemble.bodyOf(body(statue)).largest) refuse("restitution", "gains_energy");
     const runs = [{ role: "now", body: body(statue) }];
     const move = (name, make) => {
@@ -192,7 +193,16 @@ const objects = (data) => {
       helps("fix_to_pedestal", body(joined(statue, pedestal), null));
       helps("fix_pedestal", body(statue, null));
     }
+    for (const { body: each } of runs) stands(each, ensemble);
     return runs;
+  }
+  // what cannot stand is said in the words of the module, beside the width
+  function stands(body, ensemble) {
+    try {
+      ensemble.bodyOf(body);
+    } catch ({ message }) {
+      refuse("width", message);
+    }
   }
   function withBallast(block, part = BALLAST) {
     const added = part * block.mass, mass = block.mass + added, at = BALLAST_AT * block.height, h = heightOf(block);

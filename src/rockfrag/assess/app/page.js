@@ -209,6 +209,8 @@ function show(told) {
   const lines = [["Result", said.result], ["Risk", said.risk], ["Position", said.position], ["What helps", told.last ? said.helps : ""], ["How sure", said.sure]];
   find("lines").replaceChildren(...lines.filter(([, text]) => text).flatMap(([id, text]) =>
     [make("dt", { textContent: say(id) }), make("dd", { textContent: text })]));
+  const form = formTexts(), typed = ALL.filter((name) => form[name] && name !== "hazard" && !OPTIONS[name] && name !== "round");
+  find("sizes").textContent = typed.map((name) => `${say(name)}: ${form[name]}`).join("; ") + ".";
   find("note").hidden = !request.place.computed;
   find("note").textContent = say("computed_floor");
   document.body.dataset.stage = told.last ? "complete" : found.complete ? "interval" : "first";
