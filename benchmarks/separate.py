@@ -37,7 +37,7 @@ def streamed_memory(kind: str, count: int) -> float:
     motions = [9.81 * np.sin(2 * np.pi * f * time_) for f in np.linspace(1.0, 3.0, 20)]
     scales = np.linspace(0.1, 1.0, count // 2000)
     with tempfile.TemporaryDirectory() as folder:
-        stream_overturns(bodies, motions, 0.01, scales, Path(folder) / "e.parquet", columns="peaks")
+        stream_overturns(bodies, motions, 0.01, scales, Path(folder) / "e.parquet", table="bodies")
     status = Path("/proc/self/status")
     if not status.exists():
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
