@@ -19,6 +19,20 @@ BY_HAND = {
 }
 
 
+PEDESTAL = [
+    {
+        "left_m": width / 2,
+        "right_m": width / 2,
+        "cg_height_m": height / 2,
+        "height_m": height,
+        "mass_kg": mass,
+        "inertia_kg_m2": mass * (width**2 + height**2) / 12,
+    }
+    for width, height, mass in ((0.14, 0.08, 40.0), (0.24, 0.5, 250.0))
+]
+"""A base and a plinth, from above."""
+
+
 def configured(folder: Path, laboratory: Laboratory, **changes: Any) -> Path:
     """Write the study of the synthetic laboratory, with keys of the campaign changed."""
     content: dict[str, Any] = {

@@ -14,13 +14,16 @@ from rockfrag.campaign.outcomes import simulate_tests
 from rockfrag.campaign.trials import sample_trials
 from rockfrag.campaign.validation import cross_validate
 from rockfrag.errors import InputError
+from rockfrag.rocking import overturns
+from rockfrag.stages import model_error
 from rockfrag.stages.campaign import campaign_with_motions, object_of
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any
+from rockfrag.system.blocks import Block, Column
 
 from ..stages_in_process import run_stages
-from .conftest import Laboratory
-from .studies import configured, granite
+from .conftest import BLOCK, DT, Laboratory
+from .studies import BY_HAND, PEDESTAL, configured, granite
 
 ROOT = Path(__file__).parents[2]
 
@@ -69,6 +72,65 @@ def test_whether_it_rocked_is_compared_where_the_laboratory_noted_it(
     rocking = run(path, tmp_path)["rocking"]
     assert rocking["right"].iloc[0] > 0.9
     assert "Whether the object rocked at all" in (tmp_path / "report.html").read_text()
+
+
+def of_a_column(folder: Path, laboratory: Laboratory, **changes: Any) -> tuple[Path, pd.DataFrame]:
+    """Write a study of the block on a base on a plinth, of every third synthetic test; and its tests."""
+    column = Column((Block(0.24, 0.5, 250.0), Block(0.14, 0.08, 40.0), BLOCK))
+    table = laboratory.table.iloc[::3]
+    motions = [laboratory.motions[name] for name in table["motion"]]
+    found = overturns([column], motions, DT, [1.0], friction=0.6)
+    table = table.assign(
+        overturned=found.overturned[0, :, 0].astype(int),
+        rocked=(found.peak_rotation[0, :, 0] > 0).any(axis=-1).astype(int),
+    )
+    table.to_csv(folder / "tests.csv", index=False)
+    columns = {name: name for name in ("test", "motion", "overturned", "rocked")}
+    changed: dict[str, Any] = {
+        "campaign__tests": str(folder / "tests.csv"),
+        "campaign__columns": {**columns, "group": "input"},
+        "object__pedestal": PEDESTAL,
+        "unknowns": {"edge_retreat_mm": [0, 10], "friction": [0.4, 0.8]},
+        "trials": 16,
+    }
+    return configured(folder, laboratory, **(changed | changes)), table
+
+
+def test_a_column_of_three_bodies_is_reproduced_from_configuration_to_page(
+    tmp_path: Path, laboratory: Laboratory
+):
+    path, table = of_a_column(tmp_path, laboratory)
+    assert 0.2 < table["overturned"].mean() < 0.8
+    tables = run(path, tmp_path)
+    agreement = tables["agreement"].set_index("who")
+    assert agreement.loc["rockfrag", "right"] > 0.85
+    assert tables["rocking"]["right"].iloc[0] > 0.9
+    assert tables["trials"]["edge_retreat_mm"].iloc[0] < 4
+    assert "Coefficient of friction" in (tmp_path / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"unknowns": {"edge_retreat_mm": [0, 10], "restitution": [0.8, 1.0]}}, "key unknowns"),
+        ({"object": {"mesh": "rock.ply", "mass_kg": 9.0, "pedestal": PEDESTAL}}, "beside a mesh"),
+        ({"object": {"pedestal": PEDESTAL}}, "left_m is missing"),
+        ({"object": {**BY_HAND, "pedestal": [{}]}}, "pedestal"),
+    ],
+)
+def test_a_pedestal_that_does_not_fit_ends_in_one_sentence(
+    tmp_path: Path, laboratory: Laboratory, changes: dict[str, Any], said: str
+):
+    path, _ = of_a_column(tmp_path, laboratory, **changes)
+    with pytest.raises(InputError, match=said) as raised:
+        load_any(path)
+    assert "\n" not in str(raised.value)
+
+
+def test_the_model_error_is_of_an_object_alone(tmp_path: Path, laboratory: Laboratory, capsys: Any):
+    path, _ = of_a_column(tmp_path, laboratory)
+    assert model_error.main([str(path)]) == 2
+    assert "object.pedestal" in capsys.readouterr().err
 
 
 def test_without_measures_the_motions_are_measured(tmp_path: Path, laboratory: Laboratory):

@@ -48,7 +48,7 @@ def simulate_tests(
 
     Returns
     -------
-    Whether the object overturns, and whether it rocks at all, each of shape (trials, tests).
+    Whether a body overturns, and whether any rocks at all, each of shape (trials, tests).
     """
     overturned, rocked = np.zeros((2, len(trials.systems), len(motions)), dtype=bool)
     for first in range(0, len(motions), BATCH):
@@ -58,6 +58,6 @@ def simulate_tests(
             warnings.simplefilter("ignore", LightBodies)
             result = shaken(trials.systems, batch, threads)
         overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
-        rocked[:, first : first + len(batch)] = result.peak_rotation[:, :, 0, 0] > 0
+        rocked[:, first : first + len(batch)] = (result.peak_rotation[:, :, 0] > 0).any(axis=-1)
         done(first + len(batch))
     return overturned, rocked

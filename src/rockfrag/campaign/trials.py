@@ -18,7 +18,7 @@ from rockfrag.errors import InputError
 from rockfrag.rocking.measured_restitution import largest_restitution
 from rockfrag.rocking.options import system_of
 from rockfrag.short_repr import short_repr
-from rockfrag.system.blocks import Block
+from rockfrag.system.blocks import Block, Column
 from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.mesh import Shape
 from rockfrag.system.system import System
@@ -26,7 +26,8 @@ from rockfrag.system.system import System
 UNKNOWNS = ("direction_deg", "contact_tolerance_mm", "edge_retreat_mm", "restitution", "friction")
 """What may be given as a range: direction of shaking from the mesh's x axis, height above the lowest point up
 to which points carry, distance by which edges lie further in, and in the plane the ratio of angular velocities in
-an impact (values above the one that conserves momentum stand for that), in space the coefficient of friction."""
+an impact (values above the one that conserves momentum stand for that); in space, and of blocks on each other, the
+coefficient of friction."""
 
 _LOGARITHMIC = ("contact_tolerance_mm",)
 
@@ -39,7 +40,7 @@ class Trials:
     ----------
     table
         One row a trial: the unknowns, ``left_m`` and ``right_m`` (edge distances from the centre of gravity)
-        and ``alpha_deg`` (the smaller critical angle).
+        and ``alpha_deg`` (the smaller critical angle); of blocks on each other those of the uppermost.
     systems
         What stood on the table in each trial.
     refused
@@ -54,17 +55,17 @@ class Trials:
 
 
 def sample_trials(
-    thing: Shape | Block, ranges: Mapping[str, tuple[float, float]], count: int, seed: int
+    thing: Shape | Block | Column, ranges: Mapping[str, tuple[float, float]], count: int, seed: int
 ) -> Trials:
     """Fill the ranges of the unknowns evenly with trials.
 
     Parameters
     ----------
     thing
-        The object: a shape, or the planar block itself where its edges were measured.
+        The object: a shape, or the planar block itself where its edges were measured, or blocks on each other.
     ranges
         Lowest and highest value of each of :data:`UNKNOWNS`; for a block without direction and tolerance. A shape
-        with ``friction`` instead of ``restitution`` is a body in space.
+        with ``friction`` instead of ``restitution`` is a body in space; a column has ``friction`` too.
     count
         Number of guesses; a power of two fills the ranges most evenly.
     seed
@@ -85,8 +86,14 @@ def sample_trials(
     for point in points:
         guess = {name: _value(name, ranges[name], u) for name, u in zip(names, point, strict=True)}
         try:
-            block = block_of(thing, guess)
-            systems.append(_standing(thing, block, guess))
+            if isinstance(thing, Column):
+                blocks = [block_of(block, guess) for block in thing.blocks]
+                column = Column(tuple(blocks), thing.offsets)
+                block = blocks[-1]
+                systems.append(system_of(column, friction=guess["friction"]))
+            else:
+                block = block_of(thing, guess)
+                systems.append(_standing(thing, block, guess))
         except InputError:
             continue
         angle = min(block.critical_angle(+1), block.critical_angle(-1))

@@ -1,6 +1,7 @@
 """The tables of a campaign on a shake table, from the table of tests to comparisons."""
 
 import logging
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.records.sources.url import fetch_url
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import PULSE_MEASURES, CampaignStudy
-from rockfrag.system.blocks import Block
+from rockfrag.system.blocks import Block, Column
 from rockfrag.system.mesh import Shape, read_shape
 from rockfrag.units import GRAVITY
 
@@ -143,8 +144,8 @@ def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> lis
     ]
 
 
-def object_of(study: CampaignStudy) -> Shape | Block:
-    """Return the object: a shape from its mesh, or the planar block given by hand."""
+def object_of(study: CampaignStudy) -> Shape | Block | Column:
+    """Return the object: a shape from its mesh, the planar block given by hand, or this on its pedestal."""
     given = study.object
     if study.mesh is not None:
         return read_shape(
@@ -153,6 +154,11 @@ def object_of(study: CampaignStudy) -> Shape | Block:
             density=given.get("density_kg_m3"),
             metres_per_unit=given.get("metres_per_unit", 1.0),
         )
+    blocks = [_block(block) for block in (given, *given.get("pedestal", ()))]
+    return Column(tuple(reversed(blocks))) if len(blocks) > 1 else blocks[0]
+
+
+def _block(given: Mapping[str, Any]) -> Block:
     return Block.from_edges(
         given["left_m"],
         given["right_m"],
@@ -309,7 +315,11 @@ SCANS = 50
 
 
 def _contact(
-    study: CampaignStudy, thing: Shape | Block, trials: Trials, outcomes: Any, measured: Any
+    study: CampaignStudy,
+    thing: Shape | Block | Column,
+    trials: Trials,
+    outcomes: Any,
+    measured: Any,
 ) -> pd.DataFrame:
     """How base and outcomes depend on the contact tolerance; the critical angle with scans repeated."""
     columns = [
@@ -360,7 +370,7 @@ def _contact(
 
 
 def _footprint(
-    study: CampaignStudy, thing: Shape | Block, trials: Trials, right: Any, groups: Any
+    study: CampaignStudy, thing: Shape | Block | Column, trials: Trials, right: Any, groups: Any
 ) -> pd.DataFrame:
     """Seen from above, about the centre of gravity: outline, and what carries within the plausible tolerances."""
     columns = ["what", "contact_tolerance_mm", "x_m", "y_m"]

@@ -51,7 +51,7 @@ class CampaignStudy:
     measures
         For each intensity measure the columns and numbers whose product it is; empty to measure the motions.
     object
-        Either ``mesh`` with its mass or density, or the planar block by hand.
+        Either ``mesh`` with its mass or density, or the planar block by hand, on those of ``pedestal`` if any.
     conditioning, varied_conditioning
         Steps that each motion goes through, and other lists of steps by name that are tried beside.
     unknowns
@@ -208,16 +208,19 @@ _OF_A_MESH = ("direction_deg", "contact_tolerance_mm")
 
 def _check_object(source: Path, thing: Mapping[str, Any], unknowns: Mapping[str, Any]) -> None:
     where = f"{source}: key object"
-    of_space = "friction" in unknowns
-    if ("restitution" in unknowns) == of_space or (of_space and "mesh" not in thing):
+    slides, piled = "friction" in unknowns, "pedestal" in thing
+    possible = piled or "mesh" in thing if slides else not piled
+    if ("restitution" in unknowns) == slides or not possible:
         raise InputError(
             f"{source}: key unknowns: expected the range of restitution, of a planar body, or that of "
-            "friction, of a mesh in space."
+            "friction, of a mesh in space or an object on a pedestal."
         )
     if "mesh" in thing:
-        strange = [key for key in _BY_HAND if key in thing and key != "mass_kg"]
+        strange = [key for key in (*_BY_HAND, "pedestal") if key in thing and key != "mass_kg"]
         if strange:
-            raise InputError(f"{where}: {strange[0]} follows from the mesh; leave it out.")
+            raise InputError(
+                f"{where}: {strange[0]} is of an object by hand; leave it out beside a mesh."
+            )
         if ("mass_kg" in thing) == ("density_kg_m3" in thing):
             raise InputError(f"{where}: give either mass_kg or density_kg_m3.")
         missing = [key for key in _OF_A_MESH if key not in unknowns]
