@@ -28,7 +28,7 @@ PEDESTAL = [
         "mass_kg": mass,
         "inertia_kg_m2": mass * (width**2 + height**2) / 12,
     }
-    for width, height, mass in ((0.14, 0.08, 40.0), (0.24, 0.5, 250.0))
+    for width, height, mass in ((0.12, 0.3, 40.0), (0.2, 0.6, 100.0))
 ]
 """A base and a plinth, from above."""
 
