@@ -36,7 +36,7 @@ def run(job: Job[SpaceStudy]) -> Results:
 
 
 def wide_set(every: int) -> tuple[list[Pair], list[str]]:
-    """Return both components of every so manieth record of FEMA P-695, and its earthquake.
+    """Return both components of records of FEMA P-695, and their earthquakes.
 
     Parameters
     ----------
