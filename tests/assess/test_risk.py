@@ -160,3 +160,13 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
     fraction = held / runs
     assert 0.85 < fraction < 0.95
     assert stats.binomtest(held, runs, 0.9).pvalue > 1e-4
+
+
+def test_all_of_the_motions_are_not_a_bit_less():
+    """At a level of the series the fraction is that counted there, whatever logarithms round to."""
+    rng = np.random.default_rng(0)
+    for _ in range(2000):
+        levels = np.unique(np.round(np.exp(rng.uniform(-3, 1, 60)), 3))
+        first = int(rng.integers(1, levels.size))
+        fractions = np.where(levels < levels[first], np.linspace(0, 0.9, levels.size), 1.0)
+        assert fraction_target(float(levels[first])).of(levels, fractions, 0.0) == 1

@@ -229,8 +229,9 @@ def fraction_target(level: float, *, state: str = OVERTURNS) -> Target:
         Name of the limit state.
     """
     return Target(
+        # over the level, so that one of the levels is met to the bit: all of the motions are not a bit less
         of=lambda levels, fractions, shift: float(
-            np.interp(math.log(level) - shift, np.log(levels), fractions)
+            np.interp(-shift, np.log(levels / level), fractions)
         ),
         forward=lambda fraction: float(special.logit(fraction)),
         back=lambda value: float(special.expit(value)),

@@ -374,7 +374,7 @@ def _limits(mitigation: Mitigation, sign: int) -> str:
     if not math.isfinite(mitigation.lower):
         return ""
     low, high = sorted(sign * 100 * (1 - limit) for limit in (mitigation.lower, mitigation.upper))
-    return f" ({low:.0f} to {high:.0f} %)".replace("-", "−")
+    return f" ({low:z.0f} to {high:z.0f} %)".replace("-", "−")
 
 
 def sure(found: Assessment) -> str:

@@ -24,7 +24,7 @@ class SpaceStudy:
     source
         The configuration file.
     every
-        Every so manieth record of FEMA P-695 shakes the bodies.
+        Records of FEMA P-695 that shake the bodies: every one for 1, every second one for 2.
     bases, slenderness, heights_m
         Bases by name, heights over the narrow side, and heights [m].
     sweep
