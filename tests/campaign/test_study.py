@@ -16,7 +16,7 @@ from rockfrag.campaign.validation import cross_validate
 from rockfrag.errors import InputError
 from rockfrag.rocking import overturns
 from rockfrag.stages import model_error
-from rockfrag.stages.campaign import campaign_with_motions, object_of
+from rockfrag.stages.campaign import campaign_with_motions, standing_object
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any
 from rockfrag.system.blocks import Block, Column
@@ -106,7 +106,9 @@ def test_a_column_of_three_bodies_is_reproduced_from_configuration_to_page(
     agreement = tables["agreement"].set_index("who")
     assert agreement.loc["rockfrag", "right"] > (alone == table["overturned"]).mean() + 0.05
     assert tables["rocking"]["right"].iloc[0] > 0.9
-    assert "Coefficient of friction" in (tmp_path / "report.html").read_text()
+    page = (tmp_path / "report.html").read_text()
+    assert "Coefficient of friction" in page
+    assert "stands on 2 blocks" in page
 
 
 def test_a_column_of_which_all_is_known_is_simulated_as_it_was(
@@ -117,7 +119,7 @@ def test_a_column_of_which_all_is_known_is_simulated_as_it_was(
     study = load_any(path)
     assert isinstance(study, CampaignStudy)
     _, motions = campaign_with_motions(study, logging.getLogger())
-    trials = sample_trials(object_of(study), study.unknowns, 1, 1)
+    trials = sample_trials(standing_object(study), study.unknowns, 1, 1)
     overturned, rocked = simulate_tests(trials, motions)
     assert (overturned[0] == table["overturned"]).all()
     assert (rocked[0] == table["rocked"]).all()
@@ -224,7 +226,7 @@ def test_the_granite_rock_in_space_under_few_guesses(tmp_path: Path, shared: Pat
     study = load_any(granite(tmp_path, shared, unknowns=unknowns, trials=32))
     assert isinstance(study, CampaignStudy)
     campaign, motions = campaign_with_motions(study, logging.getLogger())
-    trials = sample_trials(object_of(study), study.unknowns, study.trials, study.seed)
+    trials = sample_trials(standing_object(study), study.unknowns, study.trials, study.seed)
     fallen, _ = simulate_tests(trials, motions[::3], 1)
     tests = campaign.tests.iloc[::3]
     measured, groups = tests["overturned"].to_numpy(), pd.factorize(tests["group"])[0]

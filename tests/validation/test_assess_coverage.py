@@ -24,7 +24,7 @@ from rockfrag.assess.risk import amplitude_target, fraction_target
 from rockfrag.assess.scan import make_scan
 from rockfrag.assess.sources import SPACE
 from rockfrag.campaign.standing import Unknown, unknowns_of, ways_to_stand
-from rockfrag.campaign.trials import block_of
+from rockfrag.campaign.trials import body_of
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions import bandpass, scale_to_pga
 from rockfrag.records.motion import Motion
@@ -102,7 +102,7 @@ def _true_scan(shape: Shape, told: Objects, seed: int, outside: float) -> Object
     unknowns[name] = _stretched(unknowns[name], outside)
     table = ways_to_stand(shape, unknowns, 64, seed).table
     way = dict(table.iloc[0])
-    return replace(told, statue=block_of(shape, way), livelier=way["restitution_ratio"])
+    return replace(told, statue=body_of(shape, way), livelier=way["restitution_ratio"])
 
 
 def _true_place(place: Place, random: np.random.Generator) -> Place:

@@ -24,7 +24,7 @@ from rockfrag.campaign.standing import (
     unknowns_of,
     ways_to_stand,
 )
-from rockfrag.campaign.trials import block_of
+from rockfrag.campaign.trials import body_of
 from rockfrag.fragility.model_error import SCAN
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import RigidBody
@@ -89,7 +89,7 @@ class Scan:
         fraction
             As in :meth:`row_at`.
         """
-        return block_of(self.shape, self.row_at(fraction))
+        return body_of(self.shape, self.row_at(fraction))
 
     def body(self, fraction: float = 0.5, turned_deg: float = 0.0) -> RigidBody:
         """The body in space of such a way.

@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 from scipy.stats import norm, qmc
 
-from rockfrag.campaign.trials import Trials, block_of, possible_restitution
+from rockfrag.campaign.trials import Trials, body_of, possible_restitution
 from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.rocking.options import system_of
@@ -151,7 +151,7 @@ def ways_to_stand(
             for (name, unknown), u in zip(unknowns.items(), point, strict=True)
         }
         try:
-            block = block_of(thing, way)
+            block = body_of(thing, way)
         except InputError:
             continue
         angle = math.degrees(min(block.critical_angle(+1), block.critical_angle(-1)))

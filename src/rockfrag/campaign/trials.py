@@ -7,8 +7,8 @@ evenly (scrambled Sobol points).
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, overload
 
 import numpy as np
 import pandas as pd
@@ -86,16 +86,11 @@ def sample_trials(
     for point in points:
         guess = {name: _value(name, ranges[name], u) for name, u in zip(names, point, strict=True)}
         try:
-            if isinstance(thing, Column):
-                blocks = [block_of(block, guess) for block in thing.blocks]
-                column = Column(tuple(blocks), thing.offsets)
-                block = blocks[-1]
-                systems.append(system_of(column, friction=guess["friction"]))
-            else:
-                block = block_of(thing, guess)
-                systems.append(_standing(thing, block, guess))
+            body = body_of(thing, guess)
+            systems.append(_standing(thing, body, guess))
         except InputError:
             continue
+        block = body.blocks[-1]
         angle = min(block.critical_angle(+1), block.critical_angle(-1))
         rows.append(
             {
@@ -113,13 +108,18 @@ def sample_trials(
     return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows))
 
 
-def _standing(thing: Shape | Block, block: Block, guess: Mapping[str, float]) -> System:
-    """What stands on the table: a planar block, or the shape in space on the points that carry."""
-    if isinstance(thing, Shape) and "friction" in guess:
+def _standing(
+    thing: Shape | Block | Column, planar: Block | Column, guess: Mapping[str, float]
+) -> System:
+    """What stands on the table: planar blocks, or the shape in space on the points that carry."""
+    if "friction" not in guess:
+        restitution = possible_restitution(planar.blocks[-1], guess["restitution"])
+        return system_of(planar, restitution=restitution)
+    if isinstance(thing, Shape):
         tolerance, retreat = guess["contact_tolerance_mm"] / 1e3, guess["edge_retreat_mm"] / 1e3
         body = thing.body(guess["direction_deg"], tolerance, retreat)
         return System((body,), (Contact(friction=Friction(guess["friction"], guess["friction"])),))
-    return system_of(block, restitution=possible_restitution(block, guess["restitution"]))
+    return system_of(planar, friction=guess["friction"])
 
 
 OUTER, CROWDED = 0.1, 0.25
@@ -161,13 +161,21 @@ def preferred_edges(
     return found
 
 
-def block_of(thing: Shape | Block, guess: Mapping[str, float]) -> Block:
-    """The planar block of a guess.
+@overload
+def body_of(thing: Shape | Block, guess: Mapping[str, float]) -> Block: ...
+
+
+@overload
+def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block | Column: ...
+
+
+def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block | Column:
+    """The planar block of a guess, or blocks on each other.
 
     Parameters
     ----------
     thing
-        A shape, or the planar block itself.
+        A shape, or the planar block or blocks themselves.
     guess
         Its unknowns.
 
@@ -179,7 +187,7 @@ def block_of(thing: Shape | Block, guess: Mapping[str, float]) -> Block:
     retreat = guess["edge_retreat_mm"] / 1e3
     if isinstance(thing, Shape):
         return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
-    return replace(thing, width=thing.width - 2 * retreat)
+    return thing.narrowed(retreat)
 
 
 def _value(name: str, limits: tuple[float, float], fraction: float) -> float:

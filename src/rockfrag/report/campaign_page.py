@@ -520,11 +520,21 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
         [
             "A trial is plausible if its predictions are as right as the best within two standard errors. It "
             "is chosen on all tests and therefore judges nothing.",
+            *_on_a_pedestal(len(study.object.get("pedestal", ()))),
             *_few_voters(len(likely)),
             *_edges(study, trials, likely, titles),
         ],
         parts,  # type: ignore[arg-type]
     )
+
+
+def _on_a_pedestal(blocks: int) -> list[str]:
+    if not blocks:
+        return []
+    return [
+        f"The object stands on {counted(blocks, 'block')}; retreat and friction are the same at every contact, "
+        "and the distances of the edges and the critical angle are those of the object alone."
+    ]
 
 
 def _few_voters(count: int) -> list[str]:

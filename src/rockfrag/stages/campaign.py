@@ -54,7 +54,7 @@ def run(job: Job[CampaignStudy]) -> Results:
     """Yield the tables of the campaign (``TABLES``), each as soon as it is there."""
     study = job.study
     campaign, motions = campaign_with_motions(study, job.log)
-    thing = object_of(study)
+    thing = standing_object(study)
     trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
     outcomes, rocked = simulate_tests(trials, motions, job.threads)
     tests = campaign.tests
@@ -144,8 +144,17 @@ def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> lis
     ]
 
 
-def object_of(study: CampaignStudy) -> Shape | Block | Column:
-    """Return the object: a shape from its mesh, the planar block given by hand, or this on its pedestal."""
+def standing_object(study: CampaignStudy) -> Shape | Block | Column:
+    """Return the object, and what is under it if it has a pedestal."""
+    if "pedestal" not in study.object:
+        return object_of(study)
+    return Column(
+        tuple(_block(given) for given in (*reversed(study.object["pedestal"]), study.object))
+    )
+
+
+def object_of(study: CampaignStudy) -> Shape | Block:
+    """Return the object: a shape from its mesh, or the planar block given by hand."""
     given = study.object
     if study.mesh is not None:
         return read_shape(
@@ -154,8 +163,7 @@ def object_of(study: CampaignStudy) -> Shape | Block | Column:
             density=given.get("density_kg_m3"),
             metres_per_unit=given.get("metres_per_unit", 1.0),
         )
-    blocks = [_block(block) for block in (given, *given.get("pedestal", ()))]
-    return Column(tuple(reversed(blocks))) if len(blocks) > 1 else blocks[0]
+    return _block(given)
 
 
 def _block(given: Mapping[str, Any]) -> Block:
