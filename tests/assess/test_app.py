@@ -277,44 +277,23 @@ def _places(text: str) -> list[str]:
     return re.findall(r"\{(\w+)\}", text)
 
 
-def test_the_command_writes_a_page(tmp_path, own_records):
+@pytest.fixture
+def command(own_records) -> list[str]:
+    """The command of a page with records of one's own."""
+    records = str(own_records / "catalogue.csv")
+    return ["app", "--record", records, "--width", "20cm", "--height", "1m", "--pga", "0.3g"]
+
+
+def test_the_command_writes_a_page(tmp_path, command):
     path = tmp_path / "assess.html"
-    assert (
-        main(
-            [
-                "app",
-                "--record",
-                str(own_records / "catalogue.csv"),
-                "--width",
-                "20cm",
-                "--height",
-                "1m",
-                "--pga",
-                "0.3g",
-                "--output",
-                str(path),
-            ]
-        )
-        == 0
-    )
+    assert main([*command, "--output", str(path)]) == 0
     page = path.read_text()
     assert len(page) < 6_000_000
     assert "http:" not in page.replace("http-equiv", "") and "https:" not in page
 
 
-def test_what_the_page_cannot_say_is_refused(tmp_path, own_records, capsys):
-    options = [
-        "app",
-        "--record",
-        str(own_records / "catalogue.csv"),
-        "--width",
-        "20cm",
-        "--height",
-        "1m",
-        "--pga",
-        "0.3g",
-    ]
+def test_what_the_page_cannot_say_is_refused(tmp_path, command, capsys):
     for more in (["--round"], ["--friction", "0.5"], ["--pga", "0.4g"], ["--pgv", "20cm/s"]):
-        assert main([*options, *more, "--output", str(tmp_path / "a.html")]) == 2
+        assert main([*command, *more, "--output", str(tmp_path / "a.html")]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
     assert not Path(tmp_path / "a.html").exists()

@@ -1,12 +1,13 @@
 """The worst direction: how much worse it is to be shaken along the worst direction of each record."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
-from rockfrag.assess.outcomes import IntensityLevels, believable_scales, simulated
+from rockfrag.assess.outcomes import IntensityLevels, believable_scales, fraction_at, simulated
 from rockfrag.motions.rotation import rotate
 from rockfrag.system.system import System
 
@@ -76,11 +77,11 @@ def find_directions(
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
     x = np.log(intensity_levels.levels)
-    at = np.nan if level is None else np.log(level)
+    at = (math.nan if level is None else level, intensity_levels.levels)
     return Directions(
         factor=float(np.exp(_half(x, worst) - _half(x, anyhow))),
-        fraction=float(np.interp(at, x, anyhow)),
-        worst_fraction=float(np.interp(at, x, worst)),
+        fraction=fraction_at(*at, anyhow),
+        worst_fraction=fraction_at(*at, worst),
         records=len(motions.pairs),
     )
 

@@ -280,7 +280,7 @@ def outcomes_of_each(
     systems = [object_.system_of(body) for object_, body in every]
     solids = [object_.solid(body) for object_, body in every]
     worst = any(object_.round for object_ in objects)
-    spread = max(object_.base_spread for object_ in objects)
+    spreads = [object_.base_spread for object_, _ in every]
     most = max(1, MOST_TESTS // intensity_levels.scales.size)
     found: list[ObjectOutcomes] = []
     for i in range(0, len(systems), most):
@@ -289,8 +289,8 @@ def outcomes_of_each(
             solids[i : i + most],
             motions,
             intensity_levels,
+            spreads[i : i + most],
             worst=worst,
-            spread=spread,
         )
     each = iter(found)
     return [{name: next(each) for name in named} for named in bodies]
@@ -301,9 +301,9 @@ def _shaken(
     solids: Sequence[System | None],
     motions: MotionSet,
     intensity_levels: IntensityLevels,
+    spreads: Sequence[float],
     *,
     worst: bool,
-    spread: float,
 ) -> list[ObjectOutcomes]:
     """Outcomes in space where both components act and a body is known in space, in a plane elsewhere.
 
@@ -318,7 +318,7 @@ def _shaken(
     found = dict(zip(planar, fallen, strict=True))
     for i, body in enumerate(solids):
         if body is not None:
-            solid = in_space(body, motions, intensity_levels, spread)
+            solid = in_space(body, motions, intensity_levels, spreads[i])
             found[i] = found[i].joined(solid) if i in found else solid
     return [found[i] for i in range(len(systems))]
 
@@ -333,15 +333,14 @@ def _shaken_in_plane(
     scales = np.minimum(scales, believable_scales(motions.base))
     result, light = simulated(systems, motions.base, scales)
     states = _reached(result)
-    # more than two bodies leave the ground where they have to
     return [
         _object_outcomes(
             {name: cases[i] for name, cases in states.items()},
             motions,
             intensity_levels,
-            light and system.count < 3,
+            light[i],
         )
-        for i, system in enumerate(systems)
+        for i in range(len(systems))
     ]
 
 
@@ -387,10 +386,28 @@ def flip_rate(
     return float((first != other).mean())
 
 
+def fraction_at(level: float, levels: Floats, fractions: Floats, shift: float = 0.0) -> float:
+    """Fraction of the motions at a level, between levels by the logarithm.
+
+    Parameters
+    ----------
+    level
+        The level.
+    levels
+        Levels of the series, rising.
+    fractions
+        The fraction at each of them [-].
+    shift
+        By how much all levels lie higher in the logarithm.
+    """
+    # relative to the asked level: where it is one of the series its logarithm is 0 to the bit
+    return float(np.interp(-shift, np.log(levels / level), fractions))
+
+
 def simulated(
     systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
-) -> tuple[Outcomes, bool]:
-    """What happened, and whether a body may have left the ground, which an assessment says in its own words.
+) -> tuple[Outcomes, list[bool]]:
+    """What happened, and for which systems an assessment warns that a body may have left the ground.
 
     Parameters
     ----------
@@ -415,7 +432,8 @@ def simulated(
             warnings.warn_explicit(
                 warning.message, warning.category, warning.filename, warning.lineno
             )
-    return result, any(light)
+    # more than two bodies leave the ground where they have to
+    return result, [any(light) and system.count < 3 for system in systems]
 
 
 def in_space(
@@ -477,9 +495,9 @@ def _shaken_from_all_sides(
             {name: cases[i][place] for name, cases in states.items()},
             motions,
             intensity_levels,
-            light and system.count < 3,
+            light[i],
         )
-        for i, system in enumerate(systems)
+        for i in range(len(systems))
     ]
 
 

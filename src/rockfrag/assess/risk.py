@@ -22,14 +22,14 @@ bound; for the rate only where one earthquake holds every toppling.
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import special, stats
 
 from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.outcomes import ObjectOutcomes
+from rockfrag.assess.outcomes import ObjectOutcomes, fraction_at
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 Floats = NDArray[np.float64]
@@ -229,10 +229,7 @@ def fraction_target(level: float, *, state: str = OVERTURNS) -> Target:
         Name of the limit state.
     """
     return Target(
-        # over the level, so that one of the levels is met to the bit: all of the motions are not a bit less
-        of=lambda levels, fractions, shift: float(
-            np.interp(-shift, np.log(levels / level), fractions)
-        ),
+        of=partial(fraction_at, level),
         forward=lambda fraction: float(special.logit(fraction)),
         back=lambda value: float(special.expit(value)),
         state=state,

@@ -453,8 +453,8 @@ def assumptions(found: Assessment) -> list[str]:
         )
     if math.isfinite(found.flip_rate):
         lines.append(
-            f"A base whose corners lie elsewhere by a millionth of its size turns "
-            f"{fraction_words(found.flip_rate)} of the outcomes in space at that level round."
+            "If the corners of its base lie elsewhere by a millionth of its size, "
+            f"{fraction_words(found.flip_rate)} of the outcomes in space at that level change."
         )
     if math.isfinite(found.sliding_fraction) and found.fraction is not None:
         lines.append(

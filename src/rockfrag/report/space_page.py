@@ -50,8 +50,8 @@ def write_space_report(
             "A level is the geometric mean of the peaks of both components; nothing slides, bodies are uniform."
         ],
         could_change=[
-            f"A perturbation of 1e-6 turns up to {100 * medians['flip_rate'].max():.0f} % of the outcomes in "
-            "space next to the median round."
+            f"A perturbation of 1e-6 changes up to {100 * medians['flip_rate'].max():.0f} % of the outcomes in "
+            "space next to the median."
         ],
     )
     sections = [

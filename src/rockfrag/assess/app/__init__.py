@@ -11,7 +11,7 @@ from scipy import special, stats
 
 from rockfrag.assess import mitigations, narrowing, objects, place, risk, sources, words
 from rockfrag.assess.conversion import MOST_LEVELS, OF_DISPLACEMENT, VelocityRelation
-from rockfrag.assess.hazard.curve import DAMAGING, EC8_SLOPE, EC8_SLOPE_SD, HIGHEST
+from rockfrag.assess.hazard.curve import DAMAGING, EC8_SLOPE, EC8_SLOPE_SD, FLANKS, HIGHEST
 from rockfrag.assess.hazard.measure import PGA, PGV
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import (
@@ -43,10 +43,6 @@ from rockfrag.units import DIMENSIONS, EXAMPLES, GRAVITY
 
 SCRIPTS = ("statistics", "risk", "conversion", "building", "objects", "answer")
 """Scripts that compute, in the order in which they need each other."""
-
-_FLANK = 0.84
-"""Quantile of a level that is continued with the upper exponent (:func:`curve_of_one_level`)."""
-
 
 TABLED_STOREYS = 8
 """Storeys up to which floors of the usual building have the bits of the package: their modes stand in the page."""
@@ -164,7 +160,7 @@ def _constants() -> dict[str, Any]:
         "LEVEL": risk.LEVEL,
         "HALF": risk.HALF,
         "Z": float(stats.norm.ppf(0.5 + risk.LEVEL / 2)),
-        "FLANK_Z": float(special.ndtri(_FLANK)),
+        "FLANK_Z": float(special.ndtri(FLANKS[1])),
         "EC8_SLOPE": EC8_SLOPE,
         "EC8_SLOPE_SD": EC8_SLOPE_SD,
         "LIKELY": narrowing.LIKELY,

@@ -28,6 +28,9 @@ EC8_SLOPE = 3.0
 EC8_SLOPE_SD = 0.6
 """Standard deviation of that exponent: 2 to 4 are seen in Europe and America."""
 
+FLANKS = (0.16, 0.84)
+"""Quantiles that a level continued with the exponents one standard deviation away stands for."""
+
 
 @dataclass(frozen=True, eq=False)
 class HazardCurve:
@@ -212,7 +215,7 @@ def curve_of_one_level(
         f"{measure.imt} of {level:.3g} {measure.unit} every {years:g} years, continued with the exponent "
         f"{slope:g} of EN 1998-1"
     )
-    flanks = {0.16: slope + EC8_SLOPE_SD, 0.84: slope - EC8_SLOPE_SD}
+    flanks = {FLANKS[0]: slope + EC8_SLOPE_SD, FLANKS[1]: slope - EC8_SLOPE_SD}
     main = curve(slope, source)
     main.quantiles.update({q: curve(k, source) for q, k in flanks.items()})
     return main
