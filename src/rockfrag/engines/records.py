@@ -27,11 +27,6 @@ def body_record(system: System, linear: bool = False, g: float = GRAVITY) -> np.
         Use the linearised equations: eq. 2.9 for one body, eq. 2.60-2.65 for two.
     g
         Acceleration of gravity [m/s²].
-
-    Raises
-    ------
-    InputError
-        If ``g`` is not positive.
     """
     positive_number("g", g, "m/s²")
     p: np.void = np.zeros(1, BODY)[0]

@@ -73,13 +73,7 @@ class Single:
         return outcomes
 
     def history(self, case: Case) -> Response:
-        """Return the response of a case.
-
-        Raises
-        ------
-        InputError
-            If its samples are more than are admitted.
-        """
+        """Return the response of a case."""
         from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
         from rockfrag.engines.records import body_record
         from rockfrag.engines.steps import MOST_SAMPLES

@@ -19,13 +19,7 @@ from rockfrag.records.motion import Motion
 
 
 def scale_power(measure: str) -> int:
-    """Power of the amplitude with which a measure grows: 1 for peaks, 2 for Arias, 0 for periods.
-
-    Raises
-    ------
-    InputError
-        If it is not known how the measure scales.
-    """
+    """Power of the amplitude with which a measure grows: 1 for peaks, 2 for Arias, 0 for periods."""
     found = measure_of(measure)
     if found is None:
         known = ", ".join(dict.fromkeys(measure.name for measure in declared()))

@@ -229,11 +229,6 @@ def resampled_interval(
     Returns
     -------
     The :class:`Interval`.
-
-    Raises
-    ------
-    InputError
-        If the level does not lie between 0 and 1.
     """
     if not 0.0 < level < 1.0:
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")

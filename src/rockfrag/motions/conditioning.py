@@ -51,11 +51,6 @@ def despike(motion: Motion, times: float = 50.0) -> Motion:
     ----------
     times
         How far a sample must stand out [standard deviations].
-
-    Raises
-    ------
-    InputError
-        If ``times`` is not above zero or the motion has fewer than five samples.
     """
     times = positive("step despike", "times", times, "standard deviations")
     _enough_samples("despike", motion, 5)

@@ -43,11 +43,6 @@ def motion_of_row(row: dict[str, Any], folder: Path, records: Path) -> Motion:
         Folder of the catalogue.
     records
         Folder of fetched records.
-
-    Raises
-    ------
-    InputError
-        If a record is wrong, or the direction cannot be read or reached.
     """
     motion = load_motion(row, folder, records)
     direction = str(row.get("direction") or "")
@@ -69,11 +64,6 @@ def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tup
     -------
     The motion as :func:`motion_of_row` returns it, and the vertical one with its name and its factor, both over
     the time that they have in common.
-
-    Raises
-    ------
-    InputError
-        As :func:`motion_of_row`, if the row names no vertical component, or they have no time in common.
     """
     if not row.get("vertical"):
         raise InputError(f"{row['name']}: the catalogue names no vertical component of it.")
@@ -98,13 +88,7 @@ def _scaled(motion: Motion, row: dict[str, Any]) -> Motion:
 
 
 def turned(first: Motion, second: Motion, direction: str) -> Motion:
-    """Return two components in a direction of a catalogue; see :func:`motion_of_row`.
-
-    Raises
-    ------
-    InputError
-        If the direction cannot be read, or the components not be turned into it.
-    """
+    """Return two components in a direction of a catalogue; see :func:`motion_of_row`."""
     if direction == "stronger":
         return stronger_direction(first, second)
     match = _DIRECTION.match(direction)
@@ -123,11 +107,6 @@ def components_of_row(row: dict[str, Any], folder: Path, records: Path) -> dict[
     """Read the components that a row names, at common times: ``first``, ``second``, ``vertical``.
 
     Those that the row does not name are not there; none is scaled.
-
-    Raises
-    ------
-    InputError
-        If a record is wrong, or the components have no time in common.
     """
     named = {"first": row["file"], "second": row.get("second"), "vertical": row.get("vertical")}
     files = {role: str(file) for role, file in named.items() if file}
@@ -160,11 +139,6 @@ def measure_records(
     DataFrame
         ``name`` of the row, then the measures of :func:`rockfrag.motions.measure_pair`: RotD50 and
         RotD100 of PGA, PGV and spectral accelerations. No column where no row names a second component.
-
-    Raises
-    ------
-    InputError
-        If a record is wrong, or two components are no pair.
     """
     # the measures are compiled, which the checks of a study need not wait for
     from rockfrag.motions.measures import measure_pair

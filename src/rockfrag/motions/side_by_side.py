@@ -76,11 +76,6 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
     Returns
     -------
     Peak relative displacement [m], shape (k,).
-
-    Raises
-    ------
-    InputError
-        If the damping is negative.
     """
     damping = checked_damping(damping)
     peaks = np.empty(periods.size)

@@ -89,12 +89,6 @@ def fit_censored(tests: pd.DataFrame) -> CensoredFit:
     ----------
     tests
         See `rockfrag.pedestal.paired_tests.check_tests`; lower_g and upper_g of a step protocol are used.
-
-    Raises
-    ------
-    InputError
-        As `check_tests`; if all tests of one side are censored, so that the likelihood
-        grows without bound.
     """
     clean = check_tests(pedestals_apart(tests)[0])
     for side, rows in clean.groupby("pedestal"):

@@ -142,11 +142,6 @@ def t_estimate(
         The half-width is that of t, and at least the resolution; the standard error is at least that
         of the mean of k values uniform within ± the resolution, resolution/√(3 k). Units that all
         agree, with no resolution known, have neither interval nor p value (NaN).
-
-    Raises
-    ------
-    TooFewUnitsError
-        If there are no values or one is not finite.
     """
     x = np.asarray(values, dtype=float)
     if x.size == 0 or not np.all(np.isfinite(x)):

@@ -273,13 +273,7 @@ def with_counterparts(
 
 
 def slenderness_of(clean: pd.DataFrame, slenderness: Mapping[str, float]) -> pd.Series:
-    """Slenderness of each row's object [-].
-
-    Raises
-    ------
-    InputError
-        If an object is not in the mapping.
-    """
+    """Slenderness of each row's object [-]."""
     unknown = sorted(set(clean["object"]) - set(slenderness))
     if unknown:
         raise InputError(

@@ -248,11 +248,6 @@ def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
         Folder of the catalogue.
     records
         Folder of fetched records.
-
-    Raises
-    ------
-    InputError
-        As :func:`load_motions`.
     """
     motion = load_component(row, row["file"], folder, records)
     facts = {
@@ -278,11 +273,6 @@ def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) 
     """Read one component of a row's record: that of ``file``, of its ``second`` or its ``vertical``.
 
     All are of the row's source, unit and interval; the SHA-256 is that of ``file`` alone.
-
-    Raises
-    ------
-    InputError
-        As :func:`load_motions`.
     """
     source = row["source"]
     name, channel = _file_and_channel(file)

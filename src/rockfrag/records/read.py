@@ -204,13 +204,7 @@ def read_motion(
 
 
 def choose_channel(record: Record, wanted: str | None) -> Channel:
-    """Return the channel of a record with a name, orientation or number.
-
-    Raises
-    ------
-    InputError
-        If none or several channels answer to it, listing those there are.
-    """
+    """Return the channel of a record with a name, orientation or number."""
     channels = record.channels
     if wanted is None:
         if len(channels) == 1:
@@ -241,12 +235,6 @@ def motion_of(
         What was read, and which channel of it.
     unit, force
         As of :func:`read_motion`.
-
-    Raises
-    ------
-    InputError
-        If the unit is neither stated nor given, or given otherwise than stated, or would make the peak
-        larger than those of records.
     """
     samples = channel.samples()
     stored = _settled_unit(record, channel, samples, unit)

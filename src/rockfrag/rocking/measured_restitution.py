@@ -86,11 +86,6 @@ def impact_laws(
         As :data:`Restitution`; or a mapping ``{"ground": …, "interface": …}``.
     name
         What messages call it.
-
-    Raises
-    ------
-    InputError
-        If the restitution does not fit the system or would add energy.
     """
     law, given = "position", restitution
     if isinstance(restitution, MeasuredRestitution):

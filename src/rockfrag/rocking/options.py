@@ -45,11 +45,6 @@ def system_of(
         Rotations [rad] and angular velocities [rad/s] at the start, likewise.
     name
         What messages add to the name of an option, such as ``[3]``.
-
-    Raises
-    ------
-    InputError
-        If an option does not fit the body.
     """
     system = as_system(body)
     contacts = list(system.contacts)
@@ -89,11 +84,6 @@ def systems_of(
         or one mapping for all.
     restitution, theta0, omega0
         Lists with one entry per body.
-
-    Raises
-    ------
-    InputError
-        If there is not one entry for each body, or one does not fit its body.
     """
     count = len(bodies)
     each = _friction_of_each(friction, count)
@@ -137,14 +127,7 @@ def _friction_of_each(friction: Any, count: int) -> list[Any]:
 
 
 def frictions_of(count: int, friction: object, name: str = "friction") -> list[Friction | None]:
-    """Return the friction of each contact of a body, the ground's first.
-
-    Raises
-    ------
-    InputError
-        If the numbers do not fit the body, one is negative or none, or a static coefficient is less than the
-        kinetic one.
-    """
+    """Return the friction of each contact of a body, the ground's first."""
     places = (
         ["ground", "interface"]
         if count == 2

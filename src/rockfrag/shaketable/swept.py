@@ -67,11 +67,6 @@ def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swe
         Files of IDA curves, each of one configuration or of some motions of it.
     state
         Name of the limit state that is asked for, which the IDA curves count.
-
-    Raises
-    ------
-    InputError
-        If a part does not hold whole motions that rose through the same amplitudes.
     """
     reached = limit_state_named(state).column
     columns = [*ABOUT, "amplitude_g", reached, "overturned_body"]

@@ -62,11 +62,6 @@ def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Chann
         The file; ``.gz`` is unpacked.
     cut_short
         Whether to read what there is of a file with fewer samples than its header promises.
-
-    Raises
-    ------
-    InputError
-        If ObsPy knows no format for the file or cannot read it, or it holds no acceleration.
     """
     head = read_head(path, HEAD_BYTES)
     kind = foreign_kind(head)

@@ -141,14 +141,7 @@ is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:
-    """Write one trace as a Path series with its unit in a comment; OpenSees can ``source`` the file.
-
-    Raises
-    ------
-    InputError
-        If the stream has more or fewer than one trace, a sample is not finite, or the trace does not
-        state a unit of acceleration.
-    """
+    """Write one trace as a Path series with its unit in a comment; OpenSees can ``source`` the file."""
     trace, samples = one_trace(stream, filename)
     unit = stated_unit(trace, filename)
     dt = float(f"{trace.stats.delta:.12g}")

@@ -546,11 +546,6 @@ def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
     """Write one trace as CSV, time and acceleration, that read back to the same samples.
 
     The titles state the unit where ``stats.rockfrag.unit`` has it.
-
-    Raises
-    ------
-    InputError
-        If the stream has more or fewer than one trace, or a sample is not finite.
     """
     trace, samples = one_trace(stream, filename)
     unit = trace.stats.get("rockfrag", {}).get("unit", "")

@@ -75,11 +75,6 @@ class Channel:
         ----------
         name
             Name of the file, for the message.
-
-        Raises
-        ------
-        InputError
-            If they are not, with the one that is wrong.
         """
         if self.npts < 1:
             raise InputError(f"{name}: the header promises {self.npts} samples.")

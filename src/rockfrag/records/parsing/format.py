@@ -71,11 +71,6 @@ class Format:
         cut_short
             Whether to read what there is of a file with fewer samples than its header promises; a
             step of the channel says so.
-
-        Raises
-        ------
-        InputError
-            If the file is broken, or holds something other than acceleration.
         """
         text = read_text(source, self.encoding)
         try:
@@ -116,13 +111,7 @@ class Format:
         dt: float | None = None,
         **_: Any,
     ) -> Stream:
-        """Return the acceleration channels of a file as an ObsPy stream, in the unit of the file.
-
-        Raises
-        ------
-        InputError
-            If the file is broken, or holds something other than acceleration.
-        """
+        """Return the acceleration channels of a file as an ObsPy stream, in the unit of the file."""
         stream = Stream([channel.trace(headonly) for channel in self.channels(source, dt)])
         if not headonly and (starttime is not None or endtime is not None):
             stream.trim(starttime, endtime, nearest_sample=nearest_sample)

