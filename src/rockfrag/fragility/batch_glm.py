@@ -75,16 +75,12 @@ def fit_batch(
     start: Floats | None = None,
     tolerance: float = 1e-9,
 ) -> BatchFit:
-    """Fit ``batch`` binomial regressions that share their predictors.
+    """Fit ``batch`` binomial regressions that share their predictors, the ``design`` of shape (rows, k) with ones.
 
     Parameters
     ----------
-    design
-        Predictors with the column of ones, shape (rows, k).
     failures, trials
         Counts, shape (batch, rows); a row with 0 trials takes no part.
-    link
-        ``"probit"`` or ``"logit"``.
     penalised
         Add half the logarithm of the determinant of the information to the log-likelihood (Firth,
         1993, Biometrika 80: 27-38). The maximum is then finite under separation also (Kosmidis and
@@ -144,17 +140,10 @@ def fit_batch(
 
 
 def separated(log_im: Floats, failures: Floats, trials: Floats) -> NDArray[np.bool_]:
-    """Tell for each replicate whether one value of the measure parts survival from overturning.
+    """Tell for each replicate, a row of counts, whether one value of the measure parts survival from overturning.
 
     Then (complete or quasi-complete separation, in either direction) the likelihood has no finite
     maximum. Replicates in which all tests agree count as separated.
-
-    Parameters
-    ----------
-    log_im
-        Logarithm of the intensity measure, shape (rows,).
-    failures, trials
-        Shape (batch, rows).
     """
     fell, stood = failures > 0, trials - failures > 0
 

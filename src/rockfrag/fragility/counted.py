@@ -102,15 +102,7 @@ class CountedObservations(Observations):
         return count, float(count)
 
     def drawn(self, capacity: Floats, cell: NDArray[np.intp]) -> Floats:
-        """Outcomes by cell where each motion has one capacity [ln IM], shape (replicates, cells).
-
-        Parameters
-        ----------
-        capacity
-            Shape (replicates, motions).
-        cell
-            Cell of each row, rising with the measure.
-        """
+        """See :class:`Observations`; ``cell`` rises with the measure."""
         assert self.scale is not None and self.rise is not None and self.edges is not None
         values, first = np.unique(self.im, return_index=True)
         starts = np.flatnonzero(np.diff(cell[first], prepend=-1))

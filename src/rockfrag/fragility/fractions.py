@@ -100,17 +100,7 @@ class Fractions:
 def fractions_of_outcomes(
     outcomes: Observations, groups: NDArray[np.object_], level: float
 ) -> Fractions:
-    """Fractions of tests with outcomes, with limits over groups.
-
-    Parameters
-    ----------
-    outcomes
-        The tests.
-    groups
-        Label of each test's motion or earthquake, shape (n,).
-    level
-        Of the limits [-], 0 to 1.
-    """
+    """Fractions of tests with outcomes, with limits over groups: labels of motion or earthquake, shape (n,)."""
     codes = pd.factorize(pd.Series(groups))[0]
     column, values = cells(outcomes.log_im)
     fell = counts(codes, column, outcomes.overturned)
@@ -123,14 +113,9 @@ def fractions_of_outcomes(
 def fractions_of_capacities(
     log_capacity: Floats, groups: NDArray[np.object_], level: float
 ) -> Fractions:
-    """Fractions of capacities, one a motion, with limits over groups.
+    """Fractions of logarithms of capacities, one a motion, with limits over groups.
 
-    Parameters
-    ----------
-    log_capacity
-        Logarithms, -∞ and ∞ where a capacity lies below or above all that was tried, shape (n,).
-    groups, level
-        As of :func:`fractions_of_outcomes`.
+    They are -∞ and ∞ where a capacity lies below or above all that was tried, shape (n,).
     """
     codes, names = pd.factorize(pd.Series(groups))
     finite = np.isfinite(log_capacity)

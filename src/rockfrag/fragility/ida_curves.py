@@ -257,19 +257,7 @@ def tables_of_ida_curves(
     record_set: str = "",
     level: float = 0.90,
 ) -> FragilityTables:
-    """Fit as :func:`fragility_table` does, to IDA curves in any form, and keep what figures draw too.
-
-    Parameters
-    ----------
-    ida_curves
-        Labels of the curves and IDA curves of each configuration.
-    columns, earthquake, record_set, level
-        As of :func:`fragility_table`.
-
-    Returns
-    -------
-    The :class:`FragilityTables`.
-    """
+    """Fit as :func:`fragility_table` does, to labelled IDA curves in any form, and keep what figures draw too."""
     rows: list[dict[str, Any]] = []
     bands, bins, fractions = [], [], []
     for labels, ida in ida_curves:

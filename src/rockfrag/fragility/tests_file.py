@@ -145,15 +145,7 @@ def read_columns(
     positive: Sequence[str] = (),
     outcomes: Sequence[str] = (),
 ) -> pd.DataFrame:
-    """Read single columns of a table of tests.
-
-    Parameters
-    ----------
-    path
-        Text file with a header.
-    labels, positive, outcomes
-        Columns of text, of numbers above zero, and of outcomes (0 and 1 in the result).
-    """
+    """Read columns of a table of tests: of text, of numbers above zero, and of outcomes (0 and 1)."""
 
     def columns(read: _Numbers) -> dict[str, object]:
         return {

@@ -61,27 +61,10 @@ def vector_tables(
     level: float = 0.90,
     seed: int = 0,
 ) -> VectorTables:
-    """Fit every pair of measures to every table of tests.
+    """Fit every pair of measures to every table of tests, by name; ``warnings`` say which fits are not possible.
 
-    Parameters
-    ----------
-    tests
-        Tables with a row a test, by name.
-    pairs
-        Pairs of columns.
-    label
-        Column in which names of the tables stand.
-    earthquake, motion
-        Columns of earthquake and motion; None where each test is one of its own.
-    level
-        Two-sided confidence level of limits [-].
-    seed
-        Of the test of fit.
-
-    Returns
-    -------
-    VectorTables
-        Without rows of fits that the tests do not allow; ``warnings`` of ``fits`` says why.
+    ``label`` is the column in which names of the tables stand; ``earthquake`` and ``motion`` are None where each
+    test is one of its own; ``seed`` is of the test of fit.
     """
     fits: list[dict[str, object]] = []
     contours, cells = [], []

@@ -28,21 +28,12 @@ _TURNS = {"fault-normal": fault_normal, "radial": radial}
 
 
 def motion_of_row(row: dict[str, Any], folder: Path, records: Path) -> Motion:
-    """Read the motion of one row of a catalogue, in the direction that the row asks for.
+    """Read the motion of one row of a catalogue in ``folder``, in the direction that the row asks for.
 
     The column ``direction`` may have an azimuth (``45``), ``fault-normal`` or ``fault-parallel`` with
     the strike, ``radial`` or ``transverse`` with the azimuth from the station to the source, or
     ``stronger``: the direction of the largest acceleration. Where it is empty the motion is the
     component of ``file`` itself.
-
-    Parameters
-    ----------
-    row
-        Cells by column, as :func:`rockfrag.records.catalogue.read_catalogue` gives them.
-    folder
-        Folder of the catalogue.
-    records
-        Folder of fetched records.
     """
     motion = load_motion(row, folder, records)
     direction = str(row.get("direction") or "")
@@ -53,17 +44,9 @@ def motion_of_row(row: dict[str, Any], folder: Path, records: Path) -> Motion:
 
 
 def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tuple[Motion, Motion]:
-    """Read the motion of a row and the vertical one of the same record, at the same times.
+    """Read the motion of a row, and the vertical one that its column ``vertical`` names.
 
-    Parameters
-    ----------
-    row, folder, records
-        As of :func:`motion_of_row`; the column ``vertical`` names the vertical component.
-
-    Returns
-    -------
-    The motion as :func:`motion_of_row` returns it, and the vertical one with its name and its factor, both over
-    the time that they have in common.
+    Both are over the time that they have in common; the vertical one has name and factor of the other.
     """
     if not row.get("vertical"):
         raise InputError(f"{row['name']}: the catalogue names no vertical component of it.")
@@ -123,22 +106,9 @@ def measure_records(
 ) -> pd.DataFrame:
     """Measure the records of which both horizontal components are known, whatever their directions.
 
-    Parameters
-    ----------
-    rows
-        Rows of a catalogue; those without ``second`` are passed over.
-    folder
-        Folder of the catalogue.
-    records
-        Folder of fetched records.
-    processing
-        Steps that both components go through first, as in :func:`rockfrag.motions.process`.
-
-    Returns
-    -------
-    DataFrame
-        ``name`` of the row, then the measures of :func:`rockfrag.motions.measure_pair`: RotD50 and
-        RotD100 of PGA, PGV and spectral accelerations. No column where no row names a second component.
+    Both go through the steps of ``processing`` first (:func:`rockfrag.motions.process`). The columns are ``name``
+    of the row, then the measures of :func:`rockfrag.motions.measure_pair`: RotD50 and RotD100 of PGA, PGV and
+    spectral accelerations. There is no column where no row names a second component.
     """
     # the measures are compiled, which the checks of a study need not wait for
     from rockfrag.motions.measures import measure_pair

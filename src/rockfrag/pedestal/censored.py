@@ -79,16 +79,10 @@ class _Design:
 
 
 def fit_censored(tests: pd.DataFrame) -> CensoredFit:
-    """Estimate the pedestal's effect from exact, interval- and right-censored tests.
+    """Estimate the pedestal's effect from exact, interval- and right-censored tests (`check_tests`).
 
-    Fixed effects are the object, the floor, and the pedestal.  The
-    interval of the effect comes from leaving out one earthquake at a time, since earthquakes were sampled, not
-    tests.
-
-    Parameters
-    ----------
-    tests
-        See `rockfrag.pedestal.paired_tests.check_tests`; lower_g and upper_g of a step protocol are used.
+    Fixed effects are the object, the floor, and the pedestal.  The interval of the effect comes from leaving out
+    one earthquake at a time, since earthquakes were sampled, not tests.
     """
     clean = check_tests(pedestals_apart(tests)[0])
     for side, rows in clean.groupby("pedestal"):

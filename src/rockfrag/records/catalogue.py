@@ -238,17 +238,7 @@ def load_motions(
 
 
 def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
-    """Read the motion of one checked row of a catalogue: the component that ``file`` names.
-
-    Parameters
-    ----------
-    row
-        Cells by column, as :func:`read_catalogue` gives them.
-    folder
-        Folder of the catalogue.
-    records
-        Folder of fetched records.
-    """
+    """Read the motion of one checked row of a catalogue in ``folder``: the component that ``file`` names."""
     motion = load_component(row, row["file"], folder, records)
     facts = {
         key: value

@@ -227,15 +227,7 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
 def motion_of(
     record: Record, channel: Channel, unit: str | None = None, force: bool = False
 ) -> Motion:
-    """Return one channel of a record as a motion in m/s².
-
-    Parameters
-    ----------
-    record, channel
-        What was read, and which channel of it.
-    unit, force
-        As of :func:`read_motion`.
-    """
+    """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
     samples = channel.samples()
     stored = _settled_unit(record, channel, samples, unit)
     factor = TO_SI[stored]

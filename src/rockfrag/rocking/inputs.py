@@ -275,15 +275,8 @@ class UnitWarning(UserWarning):
 def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     """Warn of what looks like a mistake of unit: of accelerations, of times, of gravity.
 
-    Parameters
-    ----------
-    cases
-        Systems, motions and scales.
-    given
-        Motions as the user gave them. Only of an array, which has no unit of its own, is it a reason for doubt
-        that it lifts nothing and would lift something if it were in g.
-    stacklevel
-        Callers between the warning and the user's line.
+    Of motions as ``given`` only an array, which has no unit of its own, is a reason for doubt where it lifts
+    nothing and would lift something if it were in g. There are ``stacklevel`` callers up to the user's line.
     """
     if not cases.systems or not cases.motions:
         return

@@ -31,20 +31,9 @@ def system_of(
     omega0: StartInput = None,
     name: str = "",
 ) -> System:
-    """Return the system that a body and its options are.
+    """Return the system that a body and its options, as of :func:`rockfrag.rocking.simulate`, are.
 
-    Parameters
-    ----------
-    body
-        What stands.
-    friction
-        Friction of its contacts; None as the body has it.
-    restitution
-        Restitution of its contacts, likewise.
-    theta0, omega0
-        Rotations [rad] and angular velocities [rad/s] at the start, likewise.
-    name
-        What messages add to the name of an option, such as ``[3]``.
+    ``name`` is what messages add to the name of an option, such as ``[3]``.
     """
     system = as_system(body)
     contacts = list(system.contacts)
@@ -73,18 +62,7 @@ def systems_of(
     theta0: Sequence[StartInput] | None = None,
     omega0: Sequence[StartInput] | None = None,
 ) -> tuple[System, ...]:
-    """Return the systems that bodies and their options are.
-
-    Parameters
-    ----------
-    bodies
-        What stands.
-    friction
-        A list with one entry per body, each as in :func:`system_of`; or one coefficient, one :class:`Friction`
-        or one mapping for all.
-    restitution, theta0, omega0
-        Lists with one entry per body.
-    """
+    """Return the systems that bodies and their options, as of :func:`rockfrag.rocking.overturns`, are."""
     count = len(bodies)
     each = _friction_of_each(friction, count)
     for name, given in (("restitution", restitution), ("theta0", theta0), ("omega0", omega0)):

@@ -59,15 +59,7 @@ def fallen_names(system: System) -> tuple[str, ...]:
 
 
 def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swept]:
-    """Yield the outcomes of IDA curves in parts of some motions, so that memory holds one part.
-
-    Parameters
-    ----------
-    paths
-        Files of IDA curves, each of one configuration or of some motions of it.
-    state
-        Name of the limit state that is asked for, which the IDA curves count.
-    """
+    """Yield the outcomes of IDA curves in a limit state, some motions at a time, so that memory holds one part."""
     reached = limit_state_named(state).column
     columns = [*ABOUT, "amplitude_g", reached, "overturned_body"]
     texts = [*ABOUT, "overturned_body"]
@@ -97,17 +89,7 @@ def _swept(part: pa.Table, reached: str, path: Path) -> Swept:
 
 
 def swept_of(ida: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:
-    """Yield each IDA curve of a table by itself, in the order in which they first appear.
-
-    Parameters
-    ----------
-    ida
-        Rows in any order, with ``amplitude_g`` and ``overturned_body``.
-    keys
-        Columns that tell IDA curves apart.
-    about
-        Columns to keep.
-    """
+    """Yield each IDA curve of a table, told apart by ``keys``, in the order in which they first appear."""
     number, bodies = pd.factorize(ida["overturned_body"])
     overturned = ida["overturned"].to_numpy(dtype=bool)
     amplitude = ida["amplitude_g"].to_numpy(dtype=np.float64)

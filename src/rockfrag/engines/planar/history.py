@@ -77,23 +77,10 @@ def contact_run(
     step: float = STEP,
     closing: float = CLOSING,
 ) -> ContactRun:
-    """Integrate one planar system that may slide, rock and fly.
+    """Integrate one planar system that may slide, rock and fly; :func:`response_of` makes a response of it.
 
-    Parameters
-    ----------
-    system, motion
-        What is shaken, and by what.
-    g
-        Acceleration of gravity [m/s²].
-    step
-        Largest product of the frequency parameter and the step [-].
-    closing
-        Parting speed over √(g b) below which a contact that would fall shut again stays closed after an
-        impact [-].
-
-    Returns
-    -------
-    What the kernels wrote; :func:`response_of` makes a response of it.
+    ``step`` is the largest product of the frequency parameter and the step [-], ``closing`` the parting speed over
+    √(g b) below which a contact that would fall shut again stays closed after an impact [-].
     """
     values, interval = motion.x.acceleration, motion.dt
     up = np.zeros(0) if motion.z is None else motion.z.acceleration

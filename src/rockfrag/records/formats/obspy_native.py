@@ -51,17 +51,10 @@ _SHOWN = 60
 
 
 def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Channel]]:
-    """Return the format name and the channels of a file by ObsPy's own readers.
+    """Return the format name and the channels of a file, ``.gz`` unpacked, by ObsPy's own readers.
 
     MiniSEED needs a StationXML file (``.xml``) in the same folder that describes its channels;
     without one the samples have no unit.
-
-    Parameters
-    ----------
-    path
-        The file; ``.gz`` is unpacked.
-    cut_short
-        Whether to read what there is of a file with fewer samples than its header promises.
     """
     head = read_head(path, HEAD_BYTES)
     kind = foreign_kind(head)

@@ -69,13 +69,7 @@ class Channel:
             object.__setattr__(self, "start_time", None)
 
     def check(self, name: str) -> None:
-        """Check that number of samples and interval can be those of a record.
-
-        Parameters
-        ----------
-        name
-            Name of the file, for the message.
-        """
+        """Check that number of samples and interval can be those of a record; ``name`` is its file's."""
         if self.npts < 1:
             raise InputError(f"{name}: the header promises {self.npts} samples.")
         if not SHORTEST_STEP <= self.dt <= LONGEST_STEP:

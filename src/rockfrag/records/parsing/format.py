@@ -62,15 +62,8 @@ class Format:
     ) -> list[Channel]:
         """Return the acceleration channels of a file.
 
-        Parameters
-        ----------
-        source
-            Path or file object.
-        dt
-            Sampling interval [s] for plain text that does not state its own.
-        cut_short
-            Whether to read what there is of a file with fewer samples than its header promises; a
-            step of the channel says so.
+        ``dt`` [s] is for plain text that does not state its own. With ``cut_short`` a file with fewer samples than
+        its header promises is read all the same, and a step of the channel says so.
         """
         text = read_text(source, self.encoding)
         try:

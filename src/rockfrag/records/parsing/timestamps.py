@@ -45,20 +45,11 @@ _LAST_YEAR_OF_2000S = 30
 def step_of_times(
     times: NDArray[np.float64], text: TextFile, first_line: int, seconds: float = 1.0
 ) -> float:
-    """Return the sampling interval [s] of a column of equally spaced times.
+    """Return the sampling interval [s] of a column of equally spaced times, in units of ``seconds`` [s].
 
     The times may be rounded to the digits they are printed with, be that decimals or significant
     digits: each must be within half a unit of its last digit (and a ten-thousandth of a step) of
     ``t0 + i dt``.
-
-    Parameters
-    ----------
-    times
-        Times as the file has them, in units of ``seconds`` [s].
-    text, first_line
-        The file and the line (from zero) of the first time, for messages.
-    seconds
-        Seconds of a unit of the times: 0.001 for milliseconds.
     """
     if times.size < 2:
         text.fail("one time alone says nothing about the sampling interval", first_line)
