@@ -185,7 +185,7 @@ def find_resurrections(
 
 
 def resurrections_of(parts: Iterable[Swept]) -> pd.DataFrame:
-    """Structural resurrections of parts of IDA curves, as :func:`find_resurrections` has them, by the names below."""
+    """Structural resurrections of parts of IDA curves, as :func:`find_resurrections` has those of a table."""
     keys = ["configuration", "earthquake", "floor", "motion"]
     rows = [
         {**about, **_resurrections(part.amplitude_g, overturned)}

@@ -10,9 +10,9 @@ MOST_VALUES = 1000
 
 
 def cells(log_im: Floats, most: int = MOST_VALUES) -> tuple[NDArray[np.intp], Floats]:
-    """Put each row into a cell of equal or neighbouring values: its number, (n,), and the mean of each cell, rising.
+    """Put each row into a cell of equal or neighbouring values; its number, (n,), and the mean of each cell.
 
-    Up to ``most`` different values have a cell each.
+    Means rise.  Up to ``most`` different values have a cell each.
     """
     values, cell = np.unique(log_im, return_inverse=True)
     if values.size <= most:
