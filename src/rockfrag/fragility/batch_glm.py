@@ -25,24 +25,12 @@ _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
 
 @dataclass(frozen=True)
 class BatchFit:
-    """Coefficients of a batch of regressions of the same predictors.
+    """Coefficients of a batch of regressions of the same predictors."""
 
-    Attributes
-    ----------
-    coefficients
-        Shape (batch, k); NaN where all tests of a replicate agree.
-    log_likelihood
-        Without binomial coefficients and without the penalty, shape (batch,).
-    information
-        Expected (Fisher) information, shape (batch, k, k).
-    converged
-        Shape (batch,).
-    """
-
-    coefficients: Floats
-    log_likelihood: Floats
-    information: Floats
-    converged: NDArray[np.bool_]
+    coefficients: Floats  # shape (batch, k); NaN where all tests of a replicate agree
+    log_likelihood: Floats  # without binomial coefficients and without the penalty, shape (batch,)
+    information: Floats  # expected (Fisher) information, shape (batch, k, k)
+    converged: NDArray[np.bool_]  # shape (batch,)
 
 
 @dataclass(frozen=True)

@@ -10,23 +10,13 @@ ESTIMATES = ("theta", "beta")
 
 
 class Compared(NamedTuple):
-    """Curves that may be compared.
+    """Curves that may be compared."""
 
-    Attributes
-    ----------
-    rows
-        Rows of the table with ``theta`` and ``beta``, and their limits, all by the same estimator; theta is
-        missing
-        where that estimator gives none.
-    nonparametric
-        Whether the estimator is the monotone curve without an assumed form.
-    rejected
-        Configurations whose lognormal curve is rejected.
-    """
-
+    # rows of the table with ``theta`` and ``beta``, and their limits, all by the same estimator;
+    # theta is missing where that estimator gives none
     rows: pd.DataFrame
-    nonparametric: bool
-    rejected: list[str]
+    nonparametric: bool  # whether the estimator is the monotone curve without an assumed form
+    rejected: list[str]  # configurations whose lognormal curve is rejected
 
 
 def compared_curves(rows: pd.DataFrame, nonparametric: bool | None = None) -> Compared:

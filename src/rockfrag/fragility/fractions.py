@@ -38,30 +38,19 @@ UNKNOWN: Limits = (float("nan"), float("nan"))
 
 @dataclass(frozen=True)
 class Fractions:
-    """Never-falling fraction of overturned tests, without a form.
+    """Never-falling fraction of overturned tests, without a form."""
 
-    Attributes
-    ----------
-    im
-        Values of the measure, rising, shape (n,).
-    fraction
-        Fraction at each of them, never falling, shape (n,).
-    lower, upper
-        Pointwise limits, shape (n,); NaN where there is but one group.
-    theta, theta_limits
-        Median, and its limits: 0 and infinite where the data set none; NaN where the fraction does not pass one
-        half.
-    beta, beta_limits
-        Half the logarithmic distance from the 16 % to the 84 % point, and its limits; NaN where the fraction does
-        not reach them.
-    """
-
-    im: Floats
-    fraction: Floats
+    im: Floats  # values of the measure, rising, shape (n,)
+    fraction: Floats  # fraction at each of them, never falling, shape (n,)
+    # lower, upper: pointwise limits, shape (n,); NaN where there is but one group
     lower: Floats
     upper: Floats
+    # theta, theta_limits: median, and its limits: 0 and infinite where the data set none; NaN where
+    # the fraction does not pass one half
     theta: float
     theta_limits: Limits
+    # beta, beta_limits: half the logarithmic distance from the 16 % to the 84 % point, and its
+    # limits; NaN where the fraction does not reach them
     beta: float
     beta_limits: Limits
 

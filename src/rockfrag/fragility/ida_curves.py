@@ -176,23 +176,15 @@ def fragility_row(
 
 @dataclass(frozen=True)
 class FragilityTables:
-    """Fragility of every configuration, as tables.
+    """Fragility of every configuration, as tables."""
 
-    Attributes
-    ----------
-    curves
-        See :func:`fragility_table`.
-    bands, bins
-        What figures draw of the curves of mean probability, see
-        :mod:`rockfrag.fragility.drawn_curves`.
-    fractions
-        Points of the non-parametric fragility function of those that are rejected, see
-        :func:`rockfrag.fragility.drawn_curves.fraction_points`.
-    """
-
-    curves: pd.DataFrame
+    curves: pd.DataFrame  # see :func:`fragility_table`
+    # bands, bins: what figures draw of the curves of mean probability, see
+    # :mod:`rockfrag.fragility.drawn_curves`
     bands: pd.DataFrame
     bins: pd.DataFrame
+    # points of the non-parametric fragility function of those that are rejected, see
+    # :func:`rockfrag.fragility.drawn_curves.fraction_points`
     fractions: pd.DataFrame
 
 

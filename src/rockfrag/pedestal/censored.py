@@ -36,24 +36,14 @@ FAR = 9.0
 
 @dataclass(frozen=True)
 class CensoredFit:
-    """Maximum of the interval likelihood.
+    """Maximum of the interval likelihood."""
 
-    Parameters
-    ----------
-    effect
-        δ = ln(P/NP) with the interval of the jackknife over earthquakes [-].
-    sd_pair, sd_test
-        τ and σ [-].
-    loglik
-        Log-likelihood at the maximum.
-    tests, censored
-        Numbers of tests used and of those that never overturned.
-    """
-
-    effect: Estimate
+    effect: Estimate  # δ = ln(P/NP) with the interval of the jackknife over earthquakes [-]
+    # sd_pair, sd_test: τ and σ [-]
     sd_pair: float
     sd_test: float
-    loglik: float
+    loglik: float  # log-likelihood at the maximum
+    # tests, censored: numbers of tests used and of those that never overturned
     tests: int
     censored: int
 

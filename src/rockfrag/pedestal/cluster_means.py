@@ -199,18 +199,10 @@ def effect_of(units: "Units") -> Estimate:
 
 
 class Units(NamedTuple):
-    """What was sampled: the earthquakes of some pairs, or the motions of their single earthquake.
+    """What was sampled: the earthquakes of some pairs, or the motions of their single earthquake."""
 
-    Attributes
-    ----------
-    d
-        Mean of d over each one's pairs [-], shape (k,).
-    hidden
-        What the steps of these pairs hide of it [-], shape (k,).
-    """
-
-    d: Array
-    hidden: Array
+    d: Array  # mean of d over each one's pairs [-], shape (k,)
+    hidden: Array  # what the steps of these pairs hide of it [-], shape (k,)
 
 
 def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:

@@ -28,24 +28,13 @@ WITHOUT_COLUMNS = ["without", "ratio", "lower", "upper", "p", "largest_change"]
 
 @dataclass(frozen=True)
 class SignFlips:
-    """Permutation test by flipping the signs of whole units.
+    """Permutation test by flipping the signs of whole units."""
 
-    Parameters
-    ----------
-    p
-        Two-sided p value [-].
-    smallest_p
-        The smallest p value that so many units can give, 2^(1-k) [-].
-    units
-        Number of units, k.
-    exact
-        Whether all 2^k patterns were enumerated; otherwise they were drawn from the seed, or are so many
-        that their mean is normal.
-    """
-
-    p: float
-    smallest_p: float
-    units: int
+    p: float  # two-sided p value [-]
+    smallest_p: float  # the smallest p value that so many units can give, 2^(1-k) [-]
+    units: int  # number of units, k
+    # whether all 2^k patterns were enumerated; otherwise they were drawn from the seed, or are so
+    # many that their mean is normal
     exact: bool
 
 

@@ -24,27 +24,14 @@ ABOUT = ("configuration", "object", "pedestal", "earthquake", "floor", "motion")
 
 @dataclass(frozen=True)
 class Swept:
-    """Outcomes of some motions, each at the same amplitudes.
+    """Outcomes of some motions, each at the same amplitudes."""
 
-    Attributes
-    ----------
-    about
-        One row a motion: the columns ``ABOUT``.
-    amplitude_g
-        Amplitudes [g], rising, shape (n,).
-    overturned
-        Whether the limit state that was asked for was reached, shape (motions, n).
-    fallen
-        Place in ``bodies`` of what overturned, shape (motions, n).
-    bodies
-        Names of what overturned in any of them, empty for nothing.
-    """
-
-    about: pd.DataFrame
-    amplitude_g: NDArray[np.float64]
+    about: pd.DataFrame  # one row a motion: the columns ``ABOUT``
+    amplitude_g: NDArray[np.float64]  # amplitudes [g], rising, shape (n,)
+    # whether the limit state that was asked for was reached, shape (motions, n)
     overturned: NDArray[np.bool_]
-    fallen: NDArray[np.intp]
-    bodies: Sequence[str]
+    fallen: NDArray[np.intp]  # place in ``bodies`` of what overturned, shape (motions, n)
+    bodies: Sequence[str]  # names of what overturned in any of them, empty for nothing
 
 
 def labels_of(system: System) -> dict[str, str]:

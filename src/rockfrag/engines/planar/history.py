@@ -41,27 +41,18 @@ _STATES = np.array([FLIGHT, -1, +1, 0])
 
 
 class ContactRun(NamedTuple):
-    """What the contact kernels wrote of one system under one motion.
+    """What the contact kernels wrote of one system under one motion."""
 
-    Attributes
-    ----------
-    system, motion
-        What was shaken, and by what.
-    body, work
-        The records ``BODY`` and ``WORK``.
-    history, contact_events
-        Rows of the columns that the kernels write.
-    fall
-        Time of the fall [s], NaN if there was none.
-    """
-
+    # system, motion: what was shaken, and by what
     system: System
     motion: GroundMotion
+    # body, work: the records ``BODY`` and ``WORK``
     body: np.void
     work: np.void
+    # history, contact_events: rows of the columns that the kernels write
     history: Array
     contact_events: Array
-    fall: float
+    fall: float  # time of the fall [s], NaN if there was none
 
     @property
     def loose(self) -> bool:

@@ -26,25 +26,16 @@ _LONGEST = 1_000
 
 @dataclass(frozen=True)
 class Format:
-    """One record format.
+    """One record format."""
 
-    Attributes
-    ----------
-    name
-        Name of the ObsPy plugin.
-    recognise
-        Tells from the first lines of a file (and its name) whether it is of this format.
-    parse
-        Gives the channels of a file of this format; with ``wants_dt`` also told the sampling
-        interval that the user named.
-    encoding
-        Encoding of text that is not UTF-8, where the format's network writes in one.
-    """
-
-    name: str
+    name: str  # name of the ObsPy plugin
+    # tells from the first lines of a file (and its name) whether it is of this format
     recognise: Callable[[list[str], str], bool]
+    # gives the channels of a file of this format; with ``wants_dt`` also told the sampling interval
+    # that the user named
     parse: Callable[..., list[Channel]]
     wants_dt: bool = False
+    # encoding of text that is not UTF-8, where the format's network writes in one
     encoding: str = ""
 
     def is_format(self, source: Source) -> bool:

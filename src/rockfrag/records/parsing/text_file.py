@@ -83,23 +83,13 @@ def read_head(source: Source, size: int = HEAD_BYTES) -> bytes:
 
 @dataclass(frozen=True)
 class TextFile:
-    r"""The bytes of a text file with Unix line ends, read through numbered lines.
+    r"""The bytes of a text file with Unix line ends, read through numbered lines."""
 
-    Attributes
-    ----------
-    name
-        Name for messages.
-    data
-        All bytes, ``\n`` line ends.
-    encoding
-        Encoding of lines that are not UTF-8, where the format has another; empty if it has none.
-    cut_short
-        Whether fewer samples than the header promises are to be read and not refused.
-    """
-
-    name: str
-    data: bytes
+    name: str  # name for messages
+    data: bytes  # all bytes, ``\n`` line ends
+    # encoding of lines that are not UTF-8, where the format has another; empty if it has none
     encoding: str = ""
+    # whether fewer samples than the header promises are to be read and not refused
     cut_short: bool = False
 
     @cached_property
