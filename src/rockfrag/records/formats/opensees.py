@@ -38,19 +38,14 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
-    at_series = text.find(_SERIES_BYTES)
-    if at_series < 0:
+    if text.find(_SERIES_BYTES) < 0:
         text.fail("no timeSeries Path in this script")
     unit = _UNIT.search(text.data)
     stated = canonical_unit(unit["unit"].decode("ascii", errors="replace")) if unit else ""
     promised = int(unit["count"]) if unit and unit["count"] else None
-    channels = []
-    while at_series >= 0:
-        following = text.find(_SERIES_BYTES, at_series + 1)
-        stop = len(text) if following < 0 else following
-        channels.append(_series(text, at_series, stop, stated, promised))
-        at_series = following
-    return channels
+    return [
+        _series(text, first, stop, stated, promised) for first, stop in text.parts(_SERIES_BYTES)
+    ]
 
 
 def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | None) -> Channel:

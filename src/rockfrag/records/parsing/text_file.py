@@ -4,6 +4,7 @@ import gzip
 import os
 import re
 import zlib
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -145,9 +146,30 @@ class TextFile:
         found = self.find(pattern, start)
         return len(self) if found < 0 else found
 
+    def parts(
+        self, head: re.Pattern[bytes], end: re.Pattern[bytes] | None = None
+    ) -> Iterator[tuple[int, int]]:
+        """Yield first line and end of each part that a ``head`` begins: up to its ``end`` or the next one."""
+        first = self.find(head)
+        while first >= 0:
+            stop = self.until(head, first + 1) if end is None else self.until(end, first)
+            yield first, stop
+            first = self.find(head, stop)
+
     def fail(self, what: str, line: int | None = None) -> NoReturn:
         """Raise an :class:`InputError` about a line (from zero) or the whole file."""
         raise InputError(self._sentence(what, line))
+
+    def check_count(
+        self, promised: int, found: int, line: int, noun: str = "samples", each: int = 1
+    ) -> None:
+        """Check that as many numbers were found, ``each`` of them a sample, as the header promises."""
+        if found != promised * each and not (self.cut_short and 0 < found < promised * each):
+            self.fail(
+                f"the header promises {promised} {noun} but {found / each:g} follow; "
+                "the file is cut short, or its header is wrong",
+                line,
+            )
 
     def refuse(self, what: str, line: int | None = None) -> NoReturn:
         """Raise :class:`NotAcceleration`: the file is in order, but holds something else."""
@@ -190,12 +212,7 @@ class TextFile:
             # columns that are not where the format puts them may still be separated numbers
             separated = self._separated(start, stop)
             values = separated if separated.size == count else values
-        if values.size != count and not (self.cut_short and 0 < values.size < count):
-            self.fail(
-                f"the header promises {count} samples but {values.size} follow; "
-                "the file is cut short, or its header is wrong",
-                start,
-            )
+        self.check_count(count, values.size, start)
         return values
 
     def _separated(self, start: int, stop: int | None) -> NDArray[np.float64]:

@@ -134,10 +134,5 @@ def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float
             values = parse_columns([line[shift:] for line in lines], _FIELD)
         except NumberError as error:
             text.fail(str(error), start + error.line)
-    if values.size != count and not (text.cut_short and 0 < values.size < count):
-        text.fail(
-            f"the header promises {count // 2} points but {values.size / 2:g} follow; "
-            "the file is cut short, or its header is wrong",
-            start,
-        )
+    text.check_count(count // 2, values.size, start, "points", each=2)
     return values
