@@ -20,7 +20,7 @@ from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
 from rockfrag.errors import InputError
 from rockfrag.records.foreign_files import foreign_kind
-from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.channel import Channel, cut_short_step
 from rockfrag.records.parsing.format import head_lines
 from rockfrag.records.parsing.number_table import first_odd_row
 from rockfrag.records.parsing.quantities import canonical_unit
@@ -222,13 +222,7 @@ def _shortness(trace: Trace, format_name: str, path: Path, cut_short: bool) -> l
     if found == promised:
         return []
     if cut_short and found < promised:
-        return [
-            {
-                "step": "read a file that is cut short",
-                "samples_promised": promised,
-                "samples_read": found,
-            }
-        ]
+        return [cut_short_step(promised, found)]
     raise InputError(
         f"{path}: the header promises {promised} samples ({float(duration):g} s) but {found} follow; "
         "the file is cut short, or its header is wrong."

@@ -16,6 +16,15 @@ from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 _FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
 
 
+def cut_short_step(promised: int, found: int) -> dict[str, Any]:
+    """Return the step of the provenance of a file with fewer samples than its header promises."""
+    return {
+        "step": "read a file that is cut short",
+        "samples_promised": promised,
+        "samples_read": found,
+    }
+
+
 @dataclass(frozen=True)
 class Channel:
     """One acceleration history as a file stores it."""

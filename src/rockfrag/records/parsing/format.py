@@ -9,7 +9,7 @@ from typing import Any
 from obspy import Stream, UTCDateTime
 
 from rockfrag.errors import InputError
-from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.channel import Channel, cut_short_step
 from rockfrag.records.parsing.text_file import (
     HEAD_BYTES,
     NotAcceleration,
@@ -107,11 +107,7 @@ def _shortened(channel: Channel) -> Channel:
     samples = channel.samples()
     if samples.size == channel.npts:
         return channel
-    step = {
-        "step": "read a file that is cut short",
-        "samples_promised": channel.npts,
-        "samples_read": int(samples.size),
-    }
+    step = cut_short_step(channel.npts, int(samples.size))
     details = {**channel.details, "steps": (*channel.details.get("steps", ()), step)}
     return replace(channel, npts=int(samples.size), samples=samples.copy, details=details)
 

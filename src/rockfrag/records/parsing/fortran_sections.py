@@ -51,6 +51,17 @@ def reals(text: TextFile, start: int, stop: int, width: int, count: int) -> list
     return [float(value) for value in values]
 
 
+def in_rows(
+    text: TextFile, values: NDArray[np.float64], columns: int, start: int
+) -> NDArray[np.float64]:
+    """Return the values from line ``start`` on as whole rows, shape (rows, columns)."""
+    if values.size == 0 or values.size % columns:
+        text.fail(
+            f"{values.size} values do not fill rows of {columns}; the file is cut short", start
+        )
+    return values.reshape(-1, columns)
+
+
 def field_width(words: str) -> int | None:
     """Return the field width that a Fortran format such as ``(8F10.5)`` gives, or None."""
     match = _FORTRAN.search(words)

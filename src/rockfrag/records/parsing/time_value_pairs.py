@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.plausibility import LONGEST_STEP
-from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.channel import Channel, cut_short_step
 from rockfrag.records.parsing.fortran_sections import reals
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 from rockfrag.records.parsing.quantities import canonical_unit
@@ -46,13 +46,7 @@ class Pairs:
         """Return them as a channel of equally spaced samples."""
         steps: tuple[dict[str, Any], ...] = ()
         if self.promised > self.values.size:
-            steps = (
-                {
-                    "step": "read a file that is cut short",
-                    "samples_promised": self.promised,
-                    "samples_read": int(self.values.size),
-                },
-            )
+            steps = (cut_short_step(self.promised, int(self.values.size)),)
         if self.even:
             values, unit = self.values, self.unit
             return Channel(values.size, self.dt, values.copy, unit, details={"steps": steps})

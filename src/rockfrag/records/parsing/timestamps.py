@@ -162,15 +162,4 @@ _AMERICAN = re.compile(
 def american_time(words: str) -> UTCDateTime | None:
     """Return the time in words as ``05/02/83, 16:42:48.2 PDT``, or None."""
     match = _AMERICAN.search(words)
-    if match is None:
-        return None
-    parts = match.groupdict()
-    return clock_time(
-        parts["year"],
-        parts["month"],
-        parts["day"],
-        parts["hour"],
-        parts["minute"],
-        parts["second"],
-        parts["zone"] or "",
-    )
+    return None if match is None else clock_time(**match.groupdict(default=""))
