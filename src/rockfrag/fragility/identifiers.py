@@ -4,8 +4,7 @@ import hashlib
 from collections import Counter
 from collections.abc import Iterable
 
-LONGEST = 75
-"""Characters of an identifier that OpenQuake takes."""
+LONGEST = 75  # characters of an identifier that OpenQuake takes
 
 
 def identifiers(names: Iterable[str], others: str = "") -> dict[str, str]:

@@ -28,9 +28,7 @@ MOST_ROWS = 100_000
 """Rows beyond which tests are fitted in 10 000 cells of nearly equal values, which moves θ by less than 1e-6."""
 
 Covariance = tuple[tuple[float, float], tuple[float, float]]
-Curve = tuple[float, float, Covariance]
-"""θ, β and the covariance of (ln θ, β)."""
-
+Curve = tuple[float, float, Covariance]  # θ, β and the covariance of (ln θ, β)
 _NAN = float("nan")
 NO_COVARIANCE: Covariance = ((_NAN, _NAN), (_NAN, _NAN))
 NO_CURVE: Curve = (_NAN, _NAN, NO_COVARIANCE)

@@ -22,8 +22,7 @@ from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_s
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 
-STEP = 0.01
-"""β with which an exact threshold, a step, is written [-]; the formats take no step."""
+STEP = 0.01  # β with which an exact threshold, a step, is written [-]; the formats take no step
 CROSSING = 1e-9
 """Levels are written where a state would be more probable than the state before it by more than rounding [-]."""
 

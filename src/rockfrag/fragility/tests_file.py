@@ -21,9 +21,7 @@ from rockfrag.plain_text import table_encoding
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.units import DIMENSIONS, convert
 
-ROWS = 100_000
-"""Rows that are read at a time."""
-
+ROWS = 100_000  # rows that are read at a time
 Measures = Mapping[str, Sequence[str | float]] | Sequence[str]
 """Columns with measures, or for each new column the columns and numbers whose product it is."""
 

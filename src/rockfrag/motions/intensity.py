@@ -315,8 +315,7 @@ def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) 
     return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
 
 
-HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)
-"""Periods of the Housner intensity [s]."""
+HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)  # periods of the Housner intensity [s]
 
 
 def housner_intensity(motion: Motion, damping: float = 0.05) -> float:

@@ -22,16 +22,12 @@ from rockfrag.pedestal.paired_tests import KEY, check_tests, pedestals_apart
 
 Rows = npt.NDArray[np.intp]
 
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
-"""Gauss-Legendre quadrature on (-1, 1)."""
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)  # gauss-Legendre quadrature on (-1, 1)
 MOST_REFITTED = 50
 """Earthquakes up to which the likelihood is fitted anew without each; of more, each one's pull is linear."""
-MOST_PAIRS = 2_000
-"""More pairs than this are put together where they are alike."""
-STEP = 1e-4
-"""Step of parameters for derivatives [-]."""
-FAR = 9.0
-"""Standard deviations beyond which the normal density is nothing."""
+MOST_PAIRS = 2_000  # more pairs than this are put together where they are alike
+STEP = 1e-4  # step of parameters for derivatives [-]
+FAR = 9.0  # standard deviations beyond which the normal density is nothing
 
 
 @dataclass(frozen=True)

@@ -43,8 +43,7 @@ EFFECT_COLUMNS = [
     *("detectable_ratio", "resolution_ratio", "tied", "at_bound"),
 ]
 WHOLE_COLUMNS = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
-EQUIVALENCE_LEVEL = 0.05
-"""Equivalence is shown below this p value [-]."""
+EQUIVALENCE_LEVEL = 0.05  # equivalence is shown below this p value [-]
 _UNITS = {"earthquake": "earthquake"}
 STEPS_DECIDE = "; the limits are the width of the steps, not of the scatter"
 """Said of a method whose own interval is narrower than what the steps of the amplitudes leave open."""

@@ -44,8 +44,7 @@ _FACTS = (
     *("earthquake", "date", "station", "component", "magnitude", "distance_km"),
     *("second", "vertical", "direction", "licence"),
 )
-_MOST_SHOWN = 400
-"""Characters of the list of wrong cells in a message."""
+_MOST_SHOWN = 400  # characters of the list of wrong cells in a message
 
 
 def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:

@@ -28,8 +28,7 @@ from rockfrag.units import GRAVITY
 _GRAVITY_FRACTION = 0.05
 """A mean within this fraction of g is the weight of the sensor's mass, not motion."""
 
-_SAME_STEP = 1e-9
-"""Fraction of an interval by which the user's may differ from the stated one."""
+_SAME_STEP = 1e-9  # fraction of an interval by which the user's may differ from the stated one
 
 
 @dataclass(frozen=True)

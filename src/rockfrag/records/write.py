@@ -25,9 +25,7 @@ WRITERS = {
 }
 """Ending and writer of each text format."""
 
-FORMATS = (*WRITERS, "MSEED")
-"""Formats that a motion can be written in."""
-
+FORMATS = (*WRITERS, "MSEED")  # formats that a motion can be written in
 _USUAL_UNITS = {"AT2": "g", "SEISMOSOFT": "g"}
 _ENDINGS = {ending.lower(): name for name, (ending, _) in WRITERS.items()} | {".mseed": "MSEED"}
 

@@ -21,9 +21,7 @@ from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
-FILTER_ORDER = 4
-"""Order of the zero-phase Butterworth high-pass that makes room for a motion."""
-
+FILTER_ORDER = 4  # order of the zero-phase Butterworth high-pass that makes room for a motion
 CORNERS_HZ = tuple(float(corner) for corner in np.round(np.arange(0.02, 5.001, 0.02), 2))
 """Corners tried, from the mildest on [Hz]."""
 

@@ -27,8 +27,7 @@ from rockfrag.engines.kernels.equations import (
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.laws import moves_impulse, rate
 
-GAIN = 1e-9
-"""Relative growth of the kinetic energy in an impact that counts as rounding."""
+GAIN = 1e-9  # relative growth of the kinetic energy in an impact that counts as rounding
 
 
 @kernel
