@@ -31,12 +31,7 @@ ROCKING_MODES = {
 
 FLIGHT = 2  # contact state of an interface that is open at both ends
 
-MODES = {
-    0: "stands",
-    +1: "rocks right",
-    -1: "rocks left",
-    FLIGHT: "flies",
-}
+MODES = {0: "stands", +1: "rocks right", -1: "rocks left", FLIGHT: "flies"}
 """What an interface does in each contact state."""
 
 

@@ -141,10 +141,7 @@ def write_nrml(
 
 
 def model_text(
-    description: str,
-    states: Sequence[str],
-    functions: Sequence[Any],
-    identifier: str = "rockfrag",
+    description: str, states: Sequence[str], functions: Sequence[Any], identifier: str = "rockfrag"
 ) -> str:
     """NRML 0.5 of a fragility model with some limit states and functions."""
     root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})

@@ -4,19 +4,10 @@ import pandas as pd
 
 from rockfrag.fragility.censored import Brackets
 from rockfrag.fragility.estimators import Fragility, fragility_of_brackets
-from rockfrag.fragility.observations import (
-    labels,
-    name_and_unit,
-    positive,
-)
+from rockfrag.fragility.observations import labels, name_and_unit, positive
 
 
-def fit_uplift(
-    motions: pd.DataFrame,
-    im: str,
-    *,
-    level: float = 0.90,
-) -> Fragility:
+def fit_uplift(motions: pd.DataFrame, im: str, *, level: float = 0.90) -> Fragility:
     """Curve of P(rock | IM) from motions scaled to the peak acceleration at which rocking starts.
 
     That peak is exact, so each motion (a row with ``motion``, ``earthquake`` and the measure ``im`` at that scale)

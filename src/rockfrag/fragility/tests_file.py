@@ -29,10 +29,7 @@ _YES = {
     *("1", "true", "yes", "y", "overturned", "toppled", "fell"),
     *("ja", "wahr", "oui", "vrai", "si", "sì", "vero", "sí", "verdadero"),
 }
-_NO = {
-    *("0", "false", "no", "n", "survived", "stood"),
-    *("nein", "falsch", "non", "faux", "falso"),
-}
+_NO = {*("0", "false", "no", "n", "survived", "stood"), *("nein", "falsch", "non", "faux", "falso")}
 _DIMENSIONLESS = ("uplift_ratio", "velocity_ratio")
 
 

@@ -168,9 +168,7 @@ def declared() -> tuple[IntensityMeasure, ...]:
     return tuple(_MEASURES.values())
 
 
-def intensity_measures(
-    periods: Sequence[float] = SPECTRAL_PERIODS,
-) -> tuple[IntensityMeasure, ...]:
+def intensity_measures(periods: Sequence[float] = SPECTRAL_PERIODS) -> tuple[IntensityMeasure, ...]:
     """Return the measures that a table of motions has, in its order, spectral ones at these periods [s]."""
     found: list[IntensityMeasure] = []
     spectral = [measure for measure in declared() if measure.spectral]

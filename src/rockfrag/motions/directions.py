@@ -11,12 +11,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.motions.processing import process
-from rockfrag.motions.rotation import (
-    fault_normal,
-    radial,
-    rotate_to_azimuth,
-    stronger_direction,
-)
+from rockfrag.motions.rotation import fault_normal, radial, rotate_to_azimuth, stronger_direction
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.catalogue import load_component, load_motion
 from rockfrag.records.motion import Motion

@@ -202,12 +202,7 @@ def _d5_75(motion: Motion) -> float:
 
 
 @intensity_measure(
-    "s",
-    power=0,
-    label="D5-95",
-    name="d5_95",
-    decimals=1,
-    title="Significant duration, 5–95 %",
+    "s", power=0, label="D5-95", name="d5_95", decimals=1, title="Significant duration, 5–95 %"
 )
 def _d5_95(motion: Motion) -> float:
     return significant_duration(motion, 0.05, 0.95)

@@ -248,11 +248,7 @@ def _log_density(z: Array) -> Array:
 def _log_single(low: Array, high: Array, sd: float) -> Array:
     """Log of the normal density (exact figures) or of the probability of an interval."""
     exact = low == high
-    probability = np.where(
-        low > 0,
-        ndtr(-low) - ndtr(-high),
-        ndtr(high) - ndtr(low),
-    )
+    probability = np.where(low > 0, ndtr(-low) - ndtr(-high), ndtr(high) - ndtr(low))
     interval = np.log(np.maximum(probability, 1e-300))
     density = _log_density(low) - math.log(sd)
     return np.asarray(np.where(exact, density, interval), dtype=np.float64)

