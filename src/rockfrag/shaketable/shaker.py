@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.motions.checks import positive
 from rockfrag.motions.conditioning import pad
 from rockfrag.motions.filtering import highpass
 from rockfrag.motions.scaling import scale_to_pga
@@ -69,8 +70,7 @@ class Shaker:
         if self.velocity is not None:
             limits["velocity"] = self.velocity
         for name, value in limits.items():
-            if not (math.isfinite(value) and value > 0):
-                raise InputError(f"shaker: {name} must be a positive number, got {value}.")
+            positive("shaker", name, value)
         if not self.lowest_hz < self.highest_hz:
             raise InputError(
                 f"shaker: the band from {self.lowest_hz} to {self.highest_hz} Hz is empty."
