@@ -150,11 +150,9 @@ def compare(
 
     Returns
     -------
-    A :class:`Mitigation` for each change, the most helpful first.
+    A :class:`Mitigation` for each change.
     """
-    found = [_mitigation(target, name, now, outcomes) for name, outcomes in changed.items()]
-    found.sort(key=lambda mitigation: mitigation.value)
-    return found
+    return [_mitigation(target, name, now, outcomes) for name, outcomes in changed.items()]
 
 
 def _mitigation(
