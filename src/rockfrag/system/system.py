@@ -209,20 +209,8 @@ def uplift_ratios(system: System) -> tuple[float, ...]:
 def each_contact(name: str, given: object, count: int) -> tuple[object, ...]:
     """Return what is given for each contact of a system, from the ground up.
 
-    Parameters
-    ----------
-    name
-        What messages call it.
-    given
-        One value for all contacts; or a mapping with ``ground`` and ``interface``, the latter one value for all
-        contacts above the ground or a list with one for each.
-    count
-        Number of contacts.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown, or the number of values is not that of the contacts.
+    It is one value for all contacts; or a mapping with ``ground`` and ``interface``, the latter one value for all
+    contacts above the ground or a list with one for each.
     """
     if not isinstance(given, dict):
         return (given,) * count
