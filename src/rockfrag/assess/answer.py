@@ -152,33 +152,18 @@ class Assessment:
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Under which levels of which motions objects are compared; the same for all in one place.
+    """Under which levels of which motions objects are compared; the same for all in one place."""
 
-    Attributes
-    ----------
-    motions
-        The motions.
-    fewer
-        Those under which changes are compared.
-    curves
-        The hazard that counts, and that of PGV beside it if there is one.
-    level
-        Level of shaking at the site.
-    intensity_levels, fewer_intensity_levels
-        Levels of both sets.
-    brief
-        Whether directions, and ways to stand other than its own, are left out.
-    compares_few
-        Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space.
-    """
-
-    motions: MotionSet
-    fewer: MotionSet
+    motions: MotionSet  # The motions
+    fewer: MotionSet  # Those under which changes are compared
+    # The hazard that counts, and that of PGV beside it if there is one
     curves: tuple[HazardCurve, ...]
-    level: Level | None
+    level: Level | None  # Level of shaking at the site
+    # Levels of both sets
     intensity_levels: IntensityLevels
     fewer_intensity_levels: IntensityLevels
-    brief: bool
+    brief: bool  # Whether directions, and ways to stand other than its own, are left out
+    # Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space
     compares_few: bool
 
     @property
@@ -189,28 +174,19 @@ class Plan:
 
 @dataclass(frozen=True, eq=False)
 class Shaken:
-    """What motions as recorded do to an object.
+    """What motions as recorded do to an object."""
 
-    Attributes
-    ----------
-    arrangements
-        Outcomes of each way in which it can stand, as it stands first.
-    moved
-        Outcomes with each property moved to both sides.
-    before, changed
-        Outcomes as it stands, and with each mitigation, under the same motions.
-    alike
-        Mitigations that leave it as it stands in one of the arrangements, and the name of that.
-    planar
-        Outcomes as it stands in one plane, along one component at a time; None where that is the answer.
-    """
-
+    # Outcomes of each way in which it can stand, as it stands first
     arrangements: Mapping[str, ObjectOutcomes]
-    moved: Sequence[Moved[ObjectOutcomes]]
+    moved: Sequence[Moved[ObjectOutcomes]]  # Outcomes with each property moved to both sides
+    # Outcomes as it stands, and with each mitigation, under the same motions
     before: ObjectOutcomes
+    # Outcomes as it stands in one plane, along one component at a time; None where that is the answer
     planar: ObjectOutcomes | None
     changed: Mapping[str, ObjectOutcomes]
-    alike: Mapping[str, str]
+    alike: Mapping[
+        str, str
+    ]  # Mitigations that leave it in one of the arrangements, and the name of that
 
 
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
@@ -240,33 +216,13 @@ def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = Fal
 
 
 def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) -> Assessment:
-    """Assess one object with motions that are at hand.
-
-    Parameters
-    ----------
-    request
-        What is asked.
-    motions
-        The motions at the place.
-    brief
-        Leave out directions, and compare changes with few motions and levels.
-    """
+    """Assess one object with motions that are at hand; ``brief`` leaves out as :func:`assess` does."""
     plan = plan_for(request, motions, brief=brief)
     return assessed(request, plan, shake_all([request], plan)[0])
 
 
 def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
-    """Return under which levels of which motions an object is shaken.
-
-    Parameters
-    ----------
-    request
-        What is asked.
-    motions
-        The motions at the place.
-    brief
-        Compare changes with few motions and levels.
-    """
+    """Return under which levels of which motions an object is shaken; ``brief`` takes few motions and levels."""
     objects = request.objects
     if objects.round or (objects.in_space and motions.pairs):
         motions = motions.with_both_components()
@@ -292,15 +248,7 @@ def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
 
 
 def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
-    """Shake objects in one place at once; of each the same results as alone, to the bit.
-
-    Parameters
-    ----------
-    requests
-        Objects in places that shake alike.
-    plan
-        Motions and levels.
-    """
+    """Shake objects in one place at once; of each the same results as alone, to the bit."""
     objects = [request.objects for request in requests]
     ways = [dict(object_.arrangements) for object_ in objects]
     if plan.brief:
@@ -358,17 +306,7 @@ def _pad_words(
 
 
 def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
-    """Say what follows from an object's outcomes.
-
-    Parameters
-    ----------
-    request
-        What is asked.
-    plan
-        Motions and levels.
-    shaken
-        What the motions do to it.
-    """
+    """Say what follows from what the motions of a plan do to an object."""
     objects, motions, level = request.objects, plan.motions, plan.level
     hazard = plan.curves[0] if plan.curves else None
     measure = plan.intensity_levels.measure

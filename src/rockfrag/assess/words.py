@@ -98,13 +98,7 @@ def value_words(found: Assessment, value: float) -> str:
 
 
 def five_lines(found: Assessment) -> list[str]:
-    """Return the answer in five lines.
-
-    Parameters
-    ----------
-    found
-        The assessment.
-    """
+    """Return the answer in five lines."""
     return [
         f"Result: {at_the_site(found)}",
         f"Risk: {risk(found)}",
