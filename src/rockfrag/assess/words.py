@@ -229,7 +229,7 @@ def _would_narrow(found: Assessment) -> str:
 
 
 def _narrowing(estimate: Estimate) -> str:
-    """Such as ``Knowing the ground velocity (PGV) of the site would narrow the interval to 2 to 19 %.``, or nothing."""
+    """``Knowing the ground velocity (PGV) of the site would narrow the interval to 2 to 19 %.`` or nothing."""
     better = narrowed(estimate)
     if better is None or _range(better.estimate) == _range(estimate):
         return ""
