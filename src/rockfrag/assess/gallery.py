@@ -48,14 +48,7 @@ def write_inventory(
 ) -> Path:
     """Write ranking and joint risk as tables and a page; return the path of the ranking.
 
-    Parameters
-    ----------
-    inventory
-        The objects.
-    folder
-        Where to write; made if absent.
-    pages
-        Whether to assess each object in full and write its page.
+    With ``pages`` each object is assessed in full and has a page of its own.
     """
     place = Path(folder) / "inventory.csv"
     write_table(inventory_table(inventory), place)
@@ -72,15 +65,7 @@ def write_inventory(
 
 
 def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
-    """Return the page as HTML, which loads nothing from outside.
-
-    Parameters
-    ----------
-    inventory
-        The objects, assessed.
-    joint
-        What topples together.
-    """
+    """Return the page as HTML, which loads nothing from outside."""
     first = inventory.found[0].request
     years, valued = first.years, math.isfinite(first.value)
     numbers = FigureSpec(

@@ -54,15 +54,7 @@ FURTHEST = 3.0
 
 
 def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
-    """Write page, JSON and the fragility for OpenQuake into a folder, and return the path of the page.
-
-    Parameters
-    ----------
-    found
-        The assessment.
-    folder
-        Where to write them; made if absent.
-    """
+    """Write page, JSON and the fragility for OpenQuake into a folder, and return the path of the page."""
     stem = Path(folder) / file_name(found.request.name)
     write_text(as_json(found), f"{stem}.json")
     write_text(as_nrml(found), f"{stem}.xml")
@@ -72,13 +64,7 @@ def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
 
 
 def page_of(found: Assessment) -> str:
-    """Return the page as HTML, which loads nothing from outside.
-
-    Parameters
-    ----------
-    found
-        The assessment.
-    """
+    """Return the page as HTML, which loads nothing from outside."""
     answer, sections = _answer(found), _sections(found)
     specs = [part for section in sections for part in section.parts if isinstance(part, FigureSpec)]
     return render(

@@ -33,13 +33,7 @@ def fastest_frequency(system: System | Body, g: float) -> float:
 
 
 def slowest_frequency(system: System | Body, g: float) -> float:
-    """Smallest frequency parameter p of the ways in which a system rocks [1/s].
-
-    Raises
-    ------
-    InputError
-        If it is too small for a number.
-    """
+    """Smallest frequency parameter p of the ways in which a system rocks [1/s]."""
     system = as_system(system)
     shapes = list(system.carried)
     if system.count == 2:
@@ -51,13 +45,7 @@ def slowest_frequency(system: System | Body, g: float) -> float:
 
 
 def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.int64]:
-    """Return the most samples of free rocking that are followed after a motion, for every interval.
-
-    Raises
-    ------
-    InputError
-        If they would not fit into memory.
-    """
+    """Return the most samples of free rocking that are followed after a motion, for every interval."""
     samples = np.ceil(FREE_TIME / slowest_frequency(system, g) / np.asarray(dt))
     if samples.max(initial=0) > MOST_SAMPLES:
         raise InputError(
@@ -68,13 +56,7 @@ def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.i
 
 
 def step_count(system: System | Body, dt: ArrayLike, g: float, step: float) -> NDArray[np.int64]:
-    """Return the steps per sample for which p h does not exceed ``step``, for every sampling interval.
-
-    Raises
-    ------
-    InputError
-        If ``step`` is not positive, or an interval is far too long for the body.
-    """
+    """Return the steps per sample for which p h does not exceed ``step``, for every sampling interval."""
     positive_number("step", step)
     frequency = fastest_frequency(system, g)
     steps = np.ceil(frequency * np.asarray(dt) / step - 1e-9)

@@ -86,14 +86,7 @@ def fraction_points(labels: Mapping[str, Any], curve: Fragility) -> pd.DataFrame
 def outcome_bins(
     labels: Mapping[str, Any], curve: Fragility, outcomes: Observations
 ) -> pd.DataFrame:
-    """Fractions of overturned tests in bins, under the labels of their curve.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``labels``, ``im``, ``unit``, and the columns of
-        :func:`rockfrag.fragility.empirical.fraction_in_bins`, where the measure is called ``x``.
-    """
+    """Fractions of overturned tests in bins under the labels of their curve, where the measure is called ``x``."""
     names = {"im": "x", "im_lower": "x_lower", "im_upper": "x_upper"}
     table = fraction_in_bins(outcomes).rename(columns=names)
     about = pd.DataFrame({**labels, "im": curve.fit.im, "unit": curve.fit.unit}, index=table.index)

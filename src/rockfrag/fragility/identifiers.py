@@ -9,19 +9,9 @@ LONGEST = 75
 
 
 def identifiers(names: Iterable[str], others: str = "") -> dict[str, str]:
-    """Return an identifier for each name.
+    """Return an identifier for each name: ASCII letters, digits and ``others``; all else becomes ``_``.
 
-    Parameters
-    ----------
-    names
-        Names as users gave them; each may come several times.
-    others
-        What the other program takes beside ASCII letters and digits; all else becomes ``_``.
-
-    Returns
-    -------
-    Identifier of each name. Where two would be equal, or one would be too long, a digest of the name
-    follows.
+    Where two would be equal, or one would be too long, a digest of the name follows.
     """
     plain = {
         name: "".join(c if c.isascii() and (c.isalnum() or c in others) else "_" for c in name)

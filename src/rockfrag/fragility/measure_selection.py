@@ -203,20 +203,10 @@ def ranked(
     seed: int,
     efficiency: str = "beta",
 ) -> pd.DataFrame:
-    """Sort measures: best held-out score first, equals of it by efficiency, those without a curve last.
+    """Sort measures, a row each: best held-out score first, equals by efficiency, those without a curve last.
 
-    Parameters
-    ----------
-    compared
-        One row per measure.
-    scores
-        Log scores by group (:mod:`rockfrag.fragility.held_out`), shape (measures, groups).
-    tests
-        Number of tests scored.
-    replicates, seed
-        Of the bootstrap over groups.
-    efficiency
-        Column that orders equals.
+    ``scores`` are log scores by group (:mod:`rockfrag.fragility.held_out`), shape (measures, groups), of so many
+    ``tests``; the column ``efficiency`` orders equals.
     """
     rising = compared["theta"].notna().to_numpy()
     known = rising & np.isfinite(scores).all(axis=1)

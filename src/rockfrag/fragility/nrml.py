@@ -35,13 +35,7 @@ _FACTORS = {"g": {"g": 1.0, "m/s²": 1.0 / constants.g}, "cm/s": {"cm/s": 1.0, "
 
 
 def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
-    """OpenQuake's name of a measure and the factor to its unit (g, cm/s).
-
-    Raises
-    ------
-    InputError
-        If OpenQuake has no such ground measure.
-    """
+    """OpenQuake's name of a measure and the factor to its unit (g, cm/s)."""
     measure = measure_labelled(name)
     if measure is None or not measure.openquake or name == measure.floor_label:
         known = ", ".join(

@@ -155,13 +155,7 @@ def name_and_unit(column: str) -> tuple[str, str]:
 
 
 def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
-    """Return a column as finite numbers, shape (n,).
-
-    Raises
-    ------
-    InputError
-        If the column is absent or a value is missing or no number; the row counts from 1.
-    """
+    """Return a column as finite numbers, shape (n,)."""
     if column not in table:
         check_names(source, table.columns, [column])
         known = ", ".join(map(str, table.columns))
@@ -179,13 +173,7 @@ def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
 
 
 def positive(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
-    """Return a column as numbers above zero, shape (n,), because they enter by their logarithm.
-
-    Raises
-    ------
-    InputError
-        As :func:`numbers`, and where a value is zero or less.
-    """
+    """Return a column as numbers above zero, shape (n,), because they enter by their logarithm."""
     values = numbers(table, column, source)
     bad = np.flatnonzero(values <= 0)
     if bad.size:
@@ -197,13 +185,7 @@ def positive(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
 
 
 def read_observations(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
-    """Return a column of yes/no outcomes as 0 and 1, shape (n,).
-
-    Raises
-    ------
-    InputError
-        If a value is neither 0/1 nor false/true.
-    """
+    """Return a column of yes/no outcomes as 0 and 1, shape (n,)."""
     values = numbers(table, column, source)
     bad = np.flatnonzero((values != 0) & (values != 1))
     if bad.size:
@@ -215,13 +197,7 @@ def read_observations(table: pd.DataFrame, column: str, source: str = "table") -
 
 
 def labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.object_]:
-    """Return a column of labels, shape (n,); one label per row where ``column`` is None.
-
-    Raises
-    ------
-    InputError
-        If the column is absent or a label is missing.
-    """
+    """Return a column of labels, shape (n,); one label per row where ``column`` is None."""
     if column is None:
         return np.array([f"row {row + 1}" for row in range(len(table))], dtype=object)
     if column not in table:

@@ -19,17 +19,9 @@ def fit_uplift(
 ) -> Fragility:
     """Curve of P(rock | IM) from motions scaled to the peak acceleration at which rocking starts.
 
-    That peak is exact, so each motion gives its measure at uplift exactly; in the peak acceleration
-    itself the curve is a step, given as a β of next to nothing.
-
-    Parameters
-    ----------
-    motions
-        One row per motion, scaled to the threshold: ``motion``, ``earthquake`` and measures.
-    im
-        Column of the measure at that scale.
-    level
-        As of :func:`rockfrag.fragility.estimators.fit_step_tests`.
+    That peak is exact, so each motion (a row with ``motion``, ``earthquake`` and the measure ``im`` at that scale)
+    gives its measure at uplift exactly; in the peak acceleration itself the curve is a step, given as a β of
+    next to nothing.
     """
     at = positive(motions, im)
     names = labels(motions, "motion", "table")

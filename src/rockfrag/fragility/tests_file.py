@@ -145,20 +145,7 @@ def read_columns(
     positive: Sequence[str] = (),
     outcomes: Sequence[str] = (),
 ) -> pd.DataFrame:
-    """Read single columns of a table of tests.
-
-    Parameters
-    ----------
-    path
-        Text file with a header.
-    labels, positive, outcomes
-        Columns of text, of numbers above zero, and of outcomes (0 and 1 in the result).
-
-    Raises
-    ------
-    InputError
-        As :func:`read_tests`.
-    """
+    """Read columns of a table of tests: of text, of numbers above zero, and of outcomes (0 and 1)."""
 
     def columns(read: _Numbers) -> dict[str, object]:
         return {
@@ -188,13 +175,7 @@ def _read(
 
 
 def read_titles(path: str | os.PathLike[str]) -> list[str]:
-    """Return the titles of the columns of a table of tests.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read or has no header.
-    """
+    """Return the titles of the columns of a table of tests."""
     source = Path(path).name
     encoding = table_encoding(path)
     head = _head(path, encoding)[1]

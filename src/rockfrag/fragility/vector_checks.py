@@ -160,16 +160,7 @@ def monotone_probability(overturned: Floats, tests: Floats) -> Floats:
     """Probability of overturning by cell that rises along rows and columns and is closest to what was observed.
 
     Weighted least squares under both orders, by alternating projections (Dykstra and Robertson 1982, Annals of
-    Statistics 10: 708-716).
-
-    Parameters
-    ----------
-    overturned, tests
-        Numbers by cell, shape (rows, columns); cells without tests follow their neighbours.
-
-    Returns
-    -------
-    Array of shape (rows, columns).
+    Statistics 10: 708-716). Arrays have the shape (rows, columns); cells without tests follow their neighbours.
     """
     weight = np.maximum(tests, 1e-9)
     value = np.where(tests > 0, overturned / weight, overturned.sum() / tests.sum())

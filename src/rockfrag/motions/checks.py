@@ -16,13 +16,7 @@ MOST_SAMPLES = 10_000_000
 
 
 def number(owner: str, name: str, value: Any, unit: str = "") -> float:
-    """Return ``value`` as a float if it is a finite number.
-
-    Raises
-    ------
-    InputError
-        If it is anything else, a truth value or a text that looks like a number included.
-    """
+    """Return ``value`` as a float if it is a finite number."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise InputError(f"{owner}: {name} must be a finite number{_of(unit)}, got {value!r}.")
     try:

@@ -104,15 +104,7 @@ class IntensityMeasure:
         return self.openquake if self.period is None else f"{self.openquake}({self.period:g})"
 
     def of_motion(self, motion: Motion, damping: float = 0.05) -> float:
-        """Return its value of a motion, in its unit.
-
-        Parameters
-        ----------
-        motion
-            What to measure.
-        damping
-            Damping of what is spectral [-].
-        """
+        """Return its value of a motion, in its unit; ``damping`` [-] is that of what is spectral."""
         if self.period is not None:
             from rockfrag.motions.spectra import response_spectrum
 
@@ -209,13 +201,7 @@ def split_column(column: str) -> tuple[str, str]:
 
 
 def measure_of(column: str) -> IntensityMeasure | None:
-    """Return the measure of a column, in the unit that its name has; None if none is declared.
-
-    Parameters
-    ----------
-    column
-        Such as ``pga_g``, ``sa_0_3s_g``, ``pgv_m_s``, or ``pfa_g`` of a floor.
-    """
+    """Return the measure of a column such as ``pga_g`` or ``sa_0_3s_g``, in the unit of its name; None if none."""
     _load_built_in()
     name, unit = split_column(column)
     if name in _PEAKS:

@@ -186,13 +186,7 @@ def stronger_direction(first: Motion, second: Motion) -> Motion:
 
 
 def azimuth(motion: Motion) -> float:
-    """Azimuth of a component [degrees from north], stated or named by its component.
-
-    Raises
-    ------
-    InputError
-        If it is not known, or the component is a vertical one.
-    """
+    """Azimuth of a component [degrees from north], stated or named by its component."""
     stated = motion.metadata.get("azimuth_deg")
     name = str(motion.metadata.get("component") or "")
     found = float(stated) if stated is not None else azimuth_of(name)

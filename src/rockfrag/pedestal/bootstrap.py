@@ -22,18 +22,14 @@ def rank_probabilities(
     *,
     within: bool = False,
 ) -> pd.DataFrame:
-    """How often each level has the largest and the smallest mean in resampled data.
+    """How often each level of a factor has the largest and the smallest mean of d in resampled data.
 
     Parameters
     ----------
     table
         Rows with the columns ``factor``, ``cluster``, ``d``.
-    factor
-        Levels that are ranked: object, floor or earthquake.
     cluster
         What is drawn with replacement: ``earthquake`` or ``motion``; all rows of a drawn cluster come.
-    seed
-        Of the resampling.
     within
         Draw clusters separately inside each level (the motions of each earthquake); otherwise the same
         clusters for all levels, which keeps what the levels share.

@@ -36,24 +36,14 @@ FAR = 9.0
 
 @dataclass(frozen=True)
 class CensoredFit:
-    """Maximum of the interval likelihood.
+    """Maximum of the interval likelihood."""
 
-    Parameters
-    ----------
-    effect
-        δ = ln(P/NP) with the interval of the jackknife over earthquakes [-].
-    sd_pair, sd_test
-        τ and σ [-].
-    loglik
-        Log-likelihood at the maximum.
-    tests, censored
-        Numbers of tests used and of those that never overturned.
-    """
-
-    effect: Estimate
+    effect: Estimate  # δ = ln(P/NP) with the interval of the jackknife over earthquakes [-]
+    # sd_pair, sd_test: τ and σ [-]
     sd_pair: float
     sd_test: float
-    loglik: float
+    loglik: float  # log-likelihood at the maximum
+    # tests, censored: numbers of tests used and of those that never overturned
     tests: int
     censored: int
 
@@ -79,22 +69,10 @@ class _Design:
 
 
 def fit_censored(tests: pd.DataFrame) -> CensoredFit:
-    """Estimate the pedestal's effect from exact, interval- and right-censored tests.
+    """Estimate the pedestal's effect from exact, interval- and right-censored tests (`check_tests`).
 
-    Fixed effects are the object, the floor, and the pedestal.  The
-    interval of the effect comes from leaving out one earthquake at a time, since earthquakes were sampled, not
-    tests.
-
-    Parameters
-    ----------
-    tests
-        See `rockfrag.pedestal.paired_tests.check_tests`; lower_g and upper_g of a step protocol are used.
-
-    Raises
-    ------
-    InputError
-        As `check_tests`; if all tests of one side are censored, so that the likelihood
-        grows without bound.
+    Fixed effects are the object, the floor, and the pedestal.  The interval of the effect comes from leaving out
+    one earthquake at a time, since earthquakes were sampled, not tests.
     """
     clean = check_tests(pedestals_apart(tests)[0])
     for side, rows in clean.groupby("pedestal"):

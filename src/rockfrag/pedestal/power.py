@@ -13,17 +13,7 @@ MOST_UNITS = 100_000
 
 
 def power_of_t(ratio: float, sd: float, n: int) -> float:
-    """Power of the two-sided one-sample t test on n values of ln ratio.
-
-    Parameters
-    ----------
-    ratio
-        True ratio [-].
-    sd
-        Standard deviation of one value [-], above zero.
-    n
-        Number of values, at least 2.
-    """
+    """Power of the two-sided one-sample t test on n ≥ 2 values of ln ratio with a standard deviation [-]."""
     from statsmodels.stats.power import TTestPower
 
     if n < 2 or sd <= 0:

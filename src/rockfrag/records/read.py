@@ -204,13 +204,7 @@ def read_motion(
 
 
 def choose_channel(record: Record, wanted: str | None) -> Channel:
-    """Return the channel of a record with a name, orientation or number.
-
-    Raises
-    ------
-    InputError
-        If none or several channels answer to it, listing those there are.
-    """
+    """Return the channel of a record with a name, orientation or number."""
     channels = record.channels
     if wanted is None:
         if len(channels) == 1:
@@ -233,21 +227,7 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
 def motion_of(
     record: Record, channel: Channel, unit: str | None = None, force: bool = False
 ) -> Motion:
-    """Return one channel of a record as a motion in m/s².
-
-    Parameters
-    ----------
-    record, channel
-        What was read, and which channel of it.
-    unit, force
-        As of :func:`read_motion`.
-
-    Raises
-    ------
-    InputError
-        If the unit is neither stated nor given, or given otherwise than stated, or would make the peak
-        larger than those of records.
-    """
+    """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
     samples = channel.samples()
     stored = _settled_unit(record, channel, samples, unit)
     factor = TO_SI[stored]

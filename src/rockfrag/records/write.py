@@ -118,13 +118,7 @@ def write_motions(
 
 
 def motions_of_study(path: str | os.PathLike[str]) -> list[Motion]:
-    """Read the motions that a study keeps in a Parquet file, such as ``motions/floors.parquet``.
-
-    Raises
-    ------
-    InputError
-        If it is no such file.
-    """
+    """Read the motions that a study keeps in a Parquet file, such as ``motions/floors.parquet``."""
     try:
         return read_motion_set(path)
     except (OSError, ValueError, KeyError) as error:

@@ -41,15 +41,7 @@ from rockfrag.study.campaign import CampaignStudy
 
 
 def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
-    """Draw the figures of a campaign and write its page, ``report.html``.
-
-    Parameters
-    ----------
-    study
-        The configuration.
-    folder
-        Folder of the results, with the tables of :data:`rockfrag.stages.campaign.TABLES`.
-    """
+    """Draw the figures of a campaign and write its page, ``report.html``, beside the tables of its stages."""
     tables = {name: pd.read_parquet(folder / f"{name}.parquet") for name in TABLES}
     sections = [
         _agreement(study, tables),

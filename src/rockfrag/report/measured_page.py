@@ -74,17 +74,7 @@ def figure_specs(study: MeasuredTable, found: UserFragility) -> dict[str, Figure
 
 
 def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Path) -> None:
-    """Draw the figures and write the page, ``report.html``.
-
-    Parameters
-    ----------
-    study
-        The configuration.
-    found
-        What the table says.
-    folder
-        Folder of the results.
-    """
+    """Draw the figures and write the page, ``report.html``."""
     tables = result_tables(found)
     specs = figure_specs(study, found)
     tests = found.tests

@@ -28,17 +28,7 @@ _FRACTIONS = (
 def write_space_report(
     study: SpaceStudy, medians: pd.DataFrame, fractions: pd.DataFrame, folder: Path
 ) -> None:
-    """Draw the figures of a study of bodies in space and write its page, ``report.html``.
-
-    Parameters
-    ----------
-    study
-        The configuration.
-    medians, fractions
-        Its tables.
-    folder
-        Folder of the results.
-    """
+    """Draw the figures of a study of bodies in space and write its page, ``report.html``."""
     ratios = FigureSpec("ratios", _RATIOS, _RATIOS, lambda: ratios_figure(medians))
     levels = FigureSpec("fractions", _FRACTIONS, _FRACTIONS, lambda: fractions_figure(fractions))
     findings = [_finding(base, medians) for base in study.bases]

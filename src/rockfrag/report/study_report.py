@@ -33,20 +33,10 @@ def write_report(
     folder: Path,
     processes: int = 1,
 ) -> None:
-    """Draw the figures of a study and write its page, ``report.html``.
+    """Draw the figures of a study and write its page, ``report.html``, into the folder of its results.
 
-    Parameters
-    ----------
-    study
-        The study.
-    parts
-        What its report may have; those that it did not ask for are left out.
-    answer
-        Says what stands first.
-    folder
-        Folder of its results, with the tables that its parts name, the IDA curves, and the motions.
-    processes
-        How many may draw at once.
+    Of the parts those that the study did not ask for are left out; their tables, the IDA curves and the motions
+    are in the folder. ``answer`` says what stands first, and several processes may draw at once.
     """
     results = Results(study, folder)
     asked = [part for part in parts if part.asked(study)]
@@ -63,12 +53,7 @@ def write_report(
 def write_captions(answer: Answer, sections: Sequence[Section], folder: Path) -> None:
     """Write what the page says of each figure into the folder of the figures, for Snakemake's report.
 
-    Parameters
-    ----------
-    answer, sections
-        What stands on the page.
-    folder
-        Folder of the figures; ``captions.json`` has chapter and caption of each by name.
+    ``captions.json`` has chapter and caption of each by name.
     """
     found = [(answer.figure, "The answer")] if answer.figure else []
     found += [

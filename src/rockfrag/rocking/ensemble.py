@@ -166,13 +166,7 @@ def prepared(
     scales: ArrayLike,
     options: Options,
 ) -> Cases:
-    """Return the checked cases of a door.
-
-    Raises
-    ------
-    InputError
-        If an argument cannot be used, or two wishes cannot be met together.
-    """
+    """Return the checked cases of a door."""
     body_list = listed_bodies(bodies)
     shaking = listed_motions(motions, dt, options.vertical)
     factors = checked_scales(scales, shaking)

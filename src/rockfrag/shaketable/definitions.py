@@ -199,15 +199,7 @@ def tests_from_swept(
     definitions: Sequence[str] = DEFINITIONS,
     limits_g: Mapping[str, float] | None = None,
 ) -> pd.DataFrame:
-    """Read IDA curves as tests, part after part, as :func:`tests_from_ida` does those of a table.
-
-    Parameters
-    ----------
-    parts
-        IDA curves, see :func:`rockfrag.shaketable.swept.read_swept`.
-    protocol, definitions, limits_g
-        As of :func:`tests_from_ida`.
-    """
+    """Read IDA curves as tests, part after part, as :func:`tests_from_ida` does those of a table."""
     rows: list[dict[str, object]] = []
     for part in parts:
         level_series: dict[tuple[float | None, int], NDArray[np.intp]] = {}

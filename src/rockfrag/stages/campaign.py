@@ -84,20 +84,7 @@ def run(job: Job[CampaignStudy]) -> Results:
 def campaign_with_motions(
     study: CampaignStudy, log: logging.Logger
 ) -> tuple[Campaign, list[Motion]]:
-    """Read the table of tests and the motion of each, scaled where the table says so.
-
-    Parameters
-    ----------
-    study
-        The configuration.
-    log
-        Where it is said how many tests are left out.
-
-    Raises
-    ------
-    InputError
-        If the table or a motion cannot be used.
-    """
+    """Read the tests and the motion of each, scaled where the table says so; log how many are left out."""
     for public in study.fetch:
         fetch_url(public.url, public.sha256, public.path)
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)

@@ -29,56 +29,37 @@ class PublicFile:
 
 @dataclass(frozen=True)
 class CampaignStudy:
-    """Everything that the configuration of a campaign says, checked.
+    """Everything that the configuration of a campaign says, checked."""
 
-    Attributes
-    ----------
-    name, title, seed
-        Folder under ``results/``, heading of the report, seed of every random number.
-    source
-        The configuration file.
-    fetch
-        Public files that are fetched if they are not there.
-    tests, columns, other_codes
-        Table of tests, its columns, and a table of other programs' outcomes or None.
-    motions, unit, dt_s, channel
-        Where the table's motions are, and what their files do not state.
-    pulse_cycles
-        Cycles of the cosine that the table was told to make, where ``motions`` is empty because PGA and PGV/PGA of
-        each test tell its motion; 0 for measured motions.
-    leave_out
-        Whether tests without a motion are left out; otherwise they are refused.
-    measures
-        For each intensity measure the columns and numbers whose product it is; empty to measure the motions.
-    object
-        Either ``mesh`` with its mass or density, or the planar block by hand, on those of ``pedestal`` if any.
-    conditioning, varied_conditioning
-        Steps that each motion goes through, and other lists of steps by name that are tried beside.
-    unknowns
-        Range of each thing that nobody measured.
-    trials, folds, repeats, confidence
-        Number of guesses, folds and divisions into folds, and the level of the intervals.
-    """
-
+    # Folder under ``results/``, heading of the report, seed of every random number
     name: str
     title: str
     seed: int
-    source: Path
-    fetch: tuple[PublicFile, ...]
+    source: Path  # The configuration file
+    fetch: tuple[PublicFile, ...]  # Public files that are fetched if they are not there
+    # Table of tests, its columns, and a table of other programs' outcomes or None
     tests: Path
     columns: Mapping[str, str]
     other_codes: Path | None
+    # Where the table's motions are, and what their files do not state
     motions: str
+    # Cycles of the cosine that the table was told to make, where ``motions`` is empty because PGA
+    # and PGV/PGA of each test tell its motion; 0 for measured motions
     pulse_cycles: int
     unit: str | None
     dt_s: float | None
     channel: str | None
-    leave_out: bool
+    leave_out: bool  # Whether tests without a motion are left out; otherwise they are refused
+    # For each intensity measure the columns and numbers whose product it is; empty to measure the motions
     measures: Mapping[str, tuple[str | float, ...]]
+    # Either ``mesh`` with its mass or density, or the planar block by hand, on those of
+    # ``pedestal`` if any
     object: Mapping[str, Any]
+    # Steps that each motion goes through, and other lists of steps by name that are tried beside
     conditioning: Steps
     varied_conditioning: Mapping[str, Steps]
-    unknowns: Mapping[str, tuple[float, float]]
+    unknowns: Mapping[str, tuple[float, float]]  # Range of each thing that nobody measured
+    # Number of guesses, folds and divisions into folds, and the level of the intervals
     trials: int
     folds: int
     repeats: int
@@ -106,13 +87,7 @@ def is_campaign(content: Mapping[str, Any]) -> bool:
 
 
 def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> CampaignStudy:
-    """Make the study of a campaign from a configuration that was read from ``path``.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key, what was expected and what was found.
-    """
+    """Make the study of a campaign from a configuration that was read from ``path``."""
     source = Path(path)
     content = checked(content, "campaign", str(source))
     campaign, thing = content[CAMPAIGN_KEY], content["object"]

@@ -57,24 +57,12 @@ AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 
 
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
-    """Read a configuration of any kind: a simulated study, a measured table, a campaign, bodies in space.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key or row, what was expected and what was found.
-    """
+    """Read a configuration of any kind: a simulated study, a measured table, a campaign, bodies in space."""
     return any_study(read_yaml(path), path)
 
 
 def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnyStudy:
-    """Make a study of any kind of a configuration that was read from ``path``.
-
-    Raises
-    ------
-    InputError
-        As :func:`load_any`.
-    """
+    """Make a study of any kind of a configuration that was read from ``path``."""
     if is_measured_table(content):
         return measured_table_from(content, path)
     if is_campaign(content):
@@ -85,13 +73,7 @@ def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnySt
 
 
 def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
-    """Make a study of a configuration that was read from ``path``, and check what it refers to.
-
-    Raises
-    ------
-    InputError
-        As :func:`load_any`.
-    """
+    """Make a study of a configuration that was read from ``path``, and check what it refers to."""
     source = Path(path)
     content = checked(content, "study", str(source))
     bodies, motions = content["bodies"], content["motions"]

@@ -17,38 +17,23 @@ TABLE_KEY = "table"
 
 @dataclass(frozen=True)
 class MeasuredTable:
-    """Everything that the configuration of a measured table says, checked.
+    """Everything that the configuration of a measured table says, checked."""
 
-    Attributes
-    ----------
-    name, title, seed
-        Folder under ``results/``, heading of the report, seed of every random number.
-    source
-        The configuration file.
-    table
-        CSV with one row per test.
-    measures
-        For each intensity measure the columns and numbers whose product it is.
-    overturned, motion, earthquake, given
-        Columns: outcome, input motion, earthquake, and those against which sufficiency is tested.
-    confidence
-        Level of the intervals.
-    replicates
-        Number of bootstrap samples.
-    """
-
+    # Folder under ``results/``, heading of the report, seed of every random number
     name: str
     title: str
     seed: int
-    source: Path
-    table: Path
+    source: Path  # The configuration file
+    table: Path  # CSV with one row per test
+    # For each intensity measure the columns and numbers whose product it is
     measures: Mapping[str, tuple[str | float, ...]]
+    # Columns: outcome, input motion, earthquake, and those against which sufficiency is tested
     overturned: str
     motion: str | None
     earthquake: str | None
     given: tuple[str, ...]
-    confidence: float
-    replicates: int
+    confidence: float  # Level of the intervals
+    replicates: int  # Number of bootstrap samples
 
     @property
     def summary(self) -> str:
@@ -62,13 +47,7 @@ def is_measured_table(content: Mapping[str, Any]) -> bool:
 
 
 def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> MeasuredTable:
-    """Make a study of a measured table from a configuration that was read from ``path``.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key, what was expected and what was found.
-    """
+    """Make a study of a measured table from a configuration that was read from ``path``."""
     source = Path(path)
     content = checked(content, "measured_table", str(source))
     table = Path(os.path.normpath(source.parent / content[TABLE_KEY]))

@@ -15,31 +15,20 @@ SPACE_KEY = "space"
 
 @dataclass(frozen=True)
 class SpaceStudy:
-    """Everything that the configuration of a study in space says, checked.
+    """Everything that the configuration of a study in space says, checked."""
 
-    Attributes
-    ----------
-    name, title, seed
-        Folder under ``results/``, heading of the report, seed of every random number.
-    source
-        The configuration file.
-    every
-        Records of FEMA P-695 that shake the bodies: every one for 1, every second one for 2.
-    bases, slenderness, heights_m
-        Bases by name, heights over the narrow side, and heights [m].
-    sweep
-        Levels and directions.
-    """
-
+    # Folder under ``results/``, heading of the report, seed of every random number
     name: str
     title: str
     seed: int
-    source: Path
+    source: Path  # The configuration file
+    # Records of FEMA P-695 that shake the bodies: every one for 1, every second one for 2
     every: int
+    # Bases by name, heights over the narrow side, and heights [m]
     bases: tuple[str, ...]
     slenderness: tuple[float, ...]
     heights_m: tuple[float, ...]
-    sweep: Sweep
+    sweep: Sweep  # Levels and directions
 
     @property
     def summary(self) -> str:
@@ -59,13 +48,7 @@ def is_space_study(content: Mapping[str, Any]) -> bool:
 
 
 def space_study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> SpaceStudy:
-    """Make a study of bodies in space from a configuration that was read from ``path``.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key, what was expected and what was found.
-    """
+    """Make a study of bodies in space from a configuration that was read from ``path``."""
     content = checked(content, "space", str(path))
     space = content[SPACE_KEY]
     return SpaceStudy(

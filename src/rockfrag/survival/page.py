@@ -17,21 +17,10 @@ from rockfrag.survival.figures import curves_figure, weights_figure
 
 
 def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Path:
-    """Write page, JSON and tables of a site into a folder.
+    """Write page, JSON and tables of a site into a folder, and return the path of the page.
 
-    Files: ``<site>.html``, ``<site>.json``, ``<site>-weights.csv`` (``rlz_id``, ``branch_path`` and ``weight``
-    as in OpenQuake's realizations, and the weight before) and ``<site>-curves.csv``.
-
-    Parameters
-    ----------
-    found
-        The reweighted hazard.
-    folder
-        Where to write them; made if absent.
-
-    Returns
-    -------
-    Path of the page.
+    Files: ``<site>.html``, ``<site>.json``, ``<site>-weights.csv`` (``rlz_id``, ``branch_path`` and ``weight`` as
+    in OpenQuake's realizations, and the weight before) and ``<site>-curves.csv``.
     """
     stem = Path(folder) / file_name(found.site.name)
     write_table(weights_table(found), Path(f"{stem}-weights.csv"))
@@ -135,13 +124,7 @@ def _sensitivity_sentence(found: Constrained) -> str:
 
 
 def page_of(found: Constrained) -> str:
-    """Return the page as HTML, which loads nothing from outside.
-
-    Parameters
-    ----------
-    found
-        The reweighted hazard.
-    """
+    """Return the page as HTML, which loads nothing from outside."""
     curves = FigureSpec(
         "curves",
         f"Mean hazard before and after survival. {_level_sentence(found)}",

@@ -35,16 +35,10 @@ from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
 
 class ChatterTolerance(NamedTuple):
-    """How long chatter is followed before it is closed.
+    """How long chatter is followed before it is closed."""
 
-    Attributes
-    ----------
-    closing_speed : a contact that comes off slower than this stays closed [rad/s]
-    drop : flights higher than this are followed even if they are sure to end at rest [rad]
-    """
-
-    closing_speed: float
-    drop: float
+    closing_speed: float  # a contact that comes off slower than this stays closed [rad/s]
+    drop: float  # flights higher than this are followed even if they are sure to end at rest [rad]
 
 
 HISTORY = ChatterTolerance(closing_speed=1e-6, drop=1e-9)
@@ -226,22 +220,15 @@ def block_dies_out(w, side, here, there, ahead):
 
 
 class Hop(NamedTuple):
-    """A contact that has come down and off again while the other is open, with rates per sample.
+    """A contact that has come down and off again while the other is open, with rates per sample."""
 
-    Attributes
-    ----------
-    ground : whether it is the ground's contact, not the interface's
-    side : sign of its opening now
-    old : its relative velocity before the impact
-    cosine, sine : of the statue's rotation
-    omega1, omega2 : velocities after the impact
-    """
-
-    ground: bool
-    side: int
-    old: float
+    ground: bool  # whether it is the ground's contact, not the interface's
+    side: int  # sign of its opening now
+    old: float  # its relative velocity before the impact
+    # cosine, sine: of the statue's rotation
     cosine: float
     sine: float
+    # omega1, omega2: velocities after the impact
     omega1: float
     omega2: float
 

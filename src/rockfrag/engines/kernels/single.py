@@ -65,24 +65,16 @@ MAX_CONTACT_EVENTS_PER_STEP = 400
 
 
 class Shaking(NamedTuple):
-    """What a body is shaken with.
+    """What a body is shaken with."""
 
-    Attributes
-    ----------
-    samples : acceleration of the ground [m/s²], linear between samples, zero after the last
-    vertical : likewise upwards, over gravity [-]; as many, or none where it is zero
-    scale : factor on them
-    dt : sampling interval [s]
-    substeps : steps per sample
-    free_samples : samples that the integration goes on after the last one, at most
-    """
-
+    # acceleration of the ground [m/s²], linear between samples, zero after the last
     samples: NDArray[np.float64]
+    # likewise upwards, over gravity [-]; as many, or none where it is zero
     vertical: NDArray[np.float64]
-    scale: float
-    dt: float
-    substeps: int
-    free_samples: int
+    scale: float  # factor on them
+    dt: float  # sampling interval [s]
+    substeps: int  # steps per sample
+    free_samples: int  # samples that the integration goes on after the last one, at most
 
 
 class Scratch(NamedTuple):

@@ -51,19 +51,12 @@ SERIES = np.dtype(
 
 
 class Step(NamedTuple):
-    """A step of an integration.
+    """A step of an integration."""
 
-    Attributes
-    ----------
-    length : its length [s]
-    ground : acceleration of the ground at its beginning [m/s²]
-    rise : what that grows by until its end [m/s²]
-    gravity, lift : gravity and the ground's upward acceleration likewise [m/s²]
-    """
-
-    length: float
-    ground: float
-    rise: float
+    length: float  # its length [s]
+    ground: float  # acceleration of the ground at its beginning [m/s²]
+    rise: float  # what that grows by until its end [m/s²]
+    # gravity, lift: gravity and the ground's upward acceleration likewise [m/s²]
     gravity: float
     lift: float
 

@@ -69,23 +69,16 @@ Array = NDArray[np.float64]
 
 
 class Shaking(NamedTuple):
-    """One motion, and in what steps it is integrated.
+    """One motion, and in what steps it is integrated."""
 
-    Attributes
-    ----------
-    horizontal, vertical : samples [m/s²], zero after the last; an empty ``vertical`` is zero throughout
-    dt : sampling interval [s]
-    scale : factor on the samples
-    substeps : steps per sample
-    free_samples : samples that the integration goes on after the last one at most
-    """
-
+    # horizontal, vertical: samples [m/s²], zero after the last; an empty ``vertical`` is zero
+    # throughout
     horizontal: Array
     vertical: Array
-    dt: float
-    scale: float
-    substeps: int
-    free_samples: int
+    dt: float  # sampling interval [s]
+    scale: float  # factor on the samples
+    substeps: int  # steps per sample
+    free_samples: int  # samples that the integration goes on after the last one at most
 
 
 class Book(NamedTuple):
@@ -102,26 +95,17 @@ class Book(NamedTuple):
 
 
 class Cases(NamedTuple):
-    """Bodies × motions × scales, the scale running fastest.
+    """Bodies × motions × scales, the scale running fastest."""
 
-    Attributes
-    ----------
-    bodies : (bodies,) BODY
-    starts : (bodies, 2, 3 MOST) coordinates and velocities
-    horizontal, vertical : all motions end to end; ``vertical`` may be empty
-    offsets : (motions + 1,) where each begins
-    dts : (motions,) sampling intervals [s]
-    factors : (motions, scales)
-    substeps, free_samples : (bodies, motions)
-    """
-
-    bodies: NDArray[Any]
-    starts: Array
+    bodies: NDArray[Any]  # (bodies,) BODY
+    starts: Array  # (bodies, 2, 3 MOST) coordinates and velocities
+    # horizontal, vertical: all motions end to end; ``vertical`` may be empty
     horizontal: Array
     vertical: Array
-    offsets: NDArray[np.int64]
-    dts: Array
-    factors: Array
+    offsets: NDArray[np.int64]  # (motions + 1,) where each begins
+    dts: Array  # (motions,) sampling intervals [s]
+    factors: Array  # (motions, scales)
+    # substeps, free_samples: (bodies, motions)
     substeps: NDArray[np.int64]
     free_samples: NDArray[np.int64]
 

@@ -29,18 +29,13 @@ FRICTION, FALL = 4, 5
 
 
 class Stretch(NamedTuple):
-    """A stretch of time over which the accelerations of the ground are linear.
+    """A stretch of time over which the accelerations of the ground are linear."""
 
-    Attributes
-    ----------
-    length : [s]
-    ah, av : horizontal and vertical acceleration at its beginning [m/s²]
-    rise_h, rise_v : by which they rise over it
-    """
-
-    length: float
+    length: float  # [s]
+    # ah, av: horizontal and vertical acceleration at its beginning [m/s²]
     ah: float
     av: float
+    # rise_h, rise_v: by which they rise over it
     rise_h: float
     rise_v: float
 

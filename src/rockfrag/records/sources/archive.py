@@ -61,11 +61,6 @@ def unpacked(path: str | os.PathLike[str]) -> Iterator[list[Member]]:
     """Give the files of an archive, in order of name, unpacked into a folder that is then removed.
 
     An archive within the archive is unpacked as well, one within that is not.
-
-    Raises
-    ------
-    InputError
-        If the archive is damaged, locked, an Excel workbook, or unpacks to too much.
     """
     with TemporaryDirectory(prefix="rockfrag.") as scratch:
         room = _Room(Path(scratch), MAX_TOTAL, MAX_MEMBERS)

@@ -25,11 +25,6 @@ def read_component(path: str | os.PathLike[str], member: str) -> Motion:
     """Read one component, ``record/component`` such as ``1/a``, as recorded and unscaled.
 
     The files store acceleration in g and the time of every sample.
-
-    Raises
-    ------
-    InputError
-        If the file is not readable, has no such member, or its times are not equally spaced.
     """
     file = Path(path)
     digest = sha256_of(file)

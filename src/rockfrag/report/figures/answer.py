@@ -27,17 +27,7 @@ _BOUNDS = {"up": 5, "down": 4}  # carets to the right and to the left
 
 
 def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[str]) -> Figure:
-    """Draw a row for each configuration.
-
-    Parameters
-    ----------
-    tests
-        Tests of one definition, see :mod:`rockfrag.shaketable.tests_table`.
-    curves
-        Rows of :func:`rockfrag.fragility.fragility_table` with medians of peak acceleration [g]; may be empty.
-    names
-        Configurations in order.
-    """
+    """Draw a row for each configuration: its tests, and its curves with medians of PGA [g], if any."""
     shown = list(names)[:MOST_ROWS]
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 0.8 + 0.33 * len(shown))

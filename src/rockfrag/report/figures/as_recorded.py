@@ -18,13 +18,7 @@ _OVERTURNED = "#8c2d04"
 
 
 def recorded_map(recorded: pd.DataFrame) -> Figure:
-    """Draw a row for each motion and a column for each configuration, shaded by the largest rotation.
-
-    Parameters
-    ----------
-    recorded
-        As :func:`rockfrag.stages.ida.as_recorded` returns it, of every configuration.
-    """
+    """Draw a row for each motion and a column for each configuration, shaded by the largest rotation."""
     names = list(dict.fromkeys(recorded["configuration"]))
     motions = recorded.drop_duplicates("motion")
     if len(motions) > MOST_ROWS:

@@ -44,17 +44,7 @@ def agreement_figure(agreement: pd.DataFrame) -> Figure:
 
 
 def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label: str) -> Figure:
-    """Draw measured and simulated fragility in one measure: curves, and fractions of tests in bins.
-
-    Parameters
-    ----------
-    tests
-        Tests with the measure, ``overturned`` and ``simulated``.
-    curves
-        Rows of the measure with ``who``, ``theta`` and ``beta``.
-    measure, label
-        Column of the measure, and what the axis says.
-    """
+    """Draw measured and simulated fragility in one measure: curves, and fractions of tests in bins."""
     values = tests[measure].to_numpy()
     x = np.geomspace(values.min(), values.max(), 200)
     edges = np.unique(np.quantile(values, np.linspace(0, 1, _BINS + 1)))

@@ -24,15 +24,7 @@ _LEAST_APART = 0.11
 
 
 def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure:
-    """Ratio of amplitudes of every scope with its 95 % interval, and the ±10 % that counts as none.
-
-    Parameters
-    ----------
-    effects
-        Rows of :func:`rockfrag.pedestal.effects_table`, of one definition.
-    sides
-        What is compared.
-    """
+    """Ratio of amplitudes of every scope with its 95 % interval, and the ±10 % that counts as none."""
     scope = effects["scope"].to_numpy()
     # room for one empty line between the scopes
     place = np.arange(len(effects)) + 0.7 * np.cumsum(np.r_[False, scope[1:] != scope[:-1]])

@@ -43,16 +43,10 @@ def fragility_figure(
 ) -> Figure:
     """Draw fragility curves of one measure, a panel per configuration, with bands and the outcomes behind them.
 
-    Parameters
-    ----------
-    curves
-        Rows of :func:`rockfrag.fragility.fragility_table`, a row per curve: ``configuration``,
-        ``im``, ``unit``, ``theta``, ``beta``; theta is missing where there is no curve.
-    bands, bins
-        Their points and outcomes, see :mod:`rockfrag.fragility.drawn_curves`.
-    nonparametric
-        Whether all have the nonparametric curve, with the lognormal one dotted. By default where the lognormal
-        curve of one of them is rejected; figures that are compared with each other need the same.
+    ``curves`` are rows of :func:`rockfrag.fragility.fragility_table`; theta is missing where there is no curve.
+    For bands and bins see :mod:`rockfrag.fragility.drawn_curves`. By default all panels have the nonparametric
+    curve, with the lognormal one dotted, where the lognormal curve of one of them is rejected; figures that are
+    compared with each other need the same.
     """
     compared = compared_curves(curves, nonparametric)
     first = curves.iloc[0]

@@ -24,16 +24,7 @@ _TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
 
 
 def outcome_map(ida: pd.DataFrame, configurations: Sequence[str]) -> Figure:
-    """Draw for one object, per motion, the amplitudes that overturn it.
-
-    Parameters
-    ----------
-    ida
-        Rows of IDA curves: ``configuration``, ``motion``, ``amplitude_g``, ``overturned``.
-    configurations
-        Configurations of the object, such as alone and on its pedestal; they share a row of the
-        figure.
-    """
+    """Draw the amplitudes that overturn one object per motion, its configurations in one row of the figure."""
     rows = ida[ida["configuration"].isin(list(configurations))]
     motions = list(dict.fromkeys(rows["motion"]))[:MOST_ROWS]
     height = 0.8 / len(configurations)

@@ -12,16 +12,7 @@ from rockfrag.report.wording import label, shortened
 
 
 def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
-    """Draw the amplitude at which each motion leaves the shaker's limits beside what objects need.
-
-    Parameters
-    ----------
-    limits
-        As :func:`rockfrag.shaketable.shaker.shaker_table` returns it.
-    tests
-        Tests of one definition without the shaker's limits; those of lone objects are drawn, if there
-        are any.
-    """
+    """Draw the amplitude at which each motion leaves the shaker's limits beside what lone objects need, if any."""
     motions = list(limits["motion"])[:MOST_ROWS][::-1]
     place = {motion: number for number, motion in enumerate(motions)}
     lone = tests[tests["pedestal"] == "NP"]

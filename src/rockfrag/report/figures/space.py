@@ -32,13 +32,7 @@ def words_of(row: pd.Series) -> str:
 
 
 def ratios_figure(medians: pd.DataFrame) -> Figure:
-    """Draw medians in space over the planar ones, with their limits.
-
-    Parameters
-    ----------
-    medians
-        Table of :func:`rockfrag.rocking.space_medians.medians`, a row each.
-    """
+    """Draw medians in space over the planar ones, with their limits."""
     with figure_style():
         figure = new_figure(PAGE_WIDTH, 0.6 + 0.2 * len(medians))
         panel = figure.subplots()
@@ -65,13 +59,7 @@ def ratios_figure(medians: pd.DataFrame) -> Figure:
 
 
 def fractions_figure(fractions: pd.DataFrame) -> Figure:
-    """Draw the fraction of records that topple each body in space and in the plane, one panel a body.
-
-    Parameters
-    ----------
-    fractions
-        Table of :func:`rockfrag.rocking.space_medians.medians`, a row each level.
-    """
+    """Draw the fraction of records that topple each body in space and in the plane, one panel a body."""
     bodies = list(fractions.groupby(["base", "slenderness", "height_m"], sort=False))
     columns = min(len(bodies), 6)
     rows = -(-len(bodies) // columns)

@@ -23,14 +23,7 @@ MEDIAN = 0.5
 def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
     """Draw contours of the fitted probability of overturning over cells of tests.
 
-    Parameters
-    ----------
-    contours, cells
-        Of one fit, as :class:`rockfrag.fragility.vector_tables.VectorTables` has them.
-
-    Returns
-    -------
-    Figure with the first measure across and the second one up; the band holds the median's limits.
+    The first measure is across, the second one up; the band holds the median's limits.
     """
     first, second = str(cells["first"].iloc[0]), str(cells["second"].iloc[0])
     x, y = cells["at_first"].to_numpy(), cells["at_second"].to_numpy()

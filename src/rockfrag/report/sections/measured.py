@@ -83,13 +83,7 @@ def _words(beside: pd.DataFrame) -> str:
 
 
 def measured_beside(beside: pd.DataFrame) -> Figure:
-    """Draw measured against simulated amplitudes.
-
-    Parameters
-    ----------
-    beside
-        As :func:`rockfrag.stages.measured_tests.beside` returns it.
-    """
+    """Draw measured against simulated amplitudes."""
     known = drawn_tests(beside.dropna(subset=["simulated_g"]))
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 3.2)

@@ -96,16 +96,10 @@ LANE = np.dtype(
 
 @by_reference
 class Worker(NamedTuple):
-    """Memory that a thread works in: ``worker()``.
+    """Memory that a thread works in: ``worker()``."""
 
-    Attributes
-    ----------
-    lane : LANE
-    tallies : (LANES,) of OUTCOME, of the lanes' cases so far; the pedestal's part stays zero
-    """
-
-    lane: Any
-    tallies: Any
+    lane: Any  # LANE
+    tallies: Any  # (LANES,) of OUTCOME, of the lanes' cases so far; the pedestal's part stays zero
 
 
 def worker() -> Worker:

@@ -35,55 +35,40 @@ OUTCOME = np.dtype(
 
 @by_reference
 class Motions(NamedTuple):
-    """All motions end to end, sampled as densely as the bodies need.
+    """All motions end to end, sampled as densely as the bodies need."""
 
-    Attributes
-    ----------
-    samples : accelerations of the ground [m/s²]; each motion ends with a sample of zero
-    vertical : likewise upwards, such that factors make of it parts of gravity; none if the ground does not move so
-    highest, lowest : extremes of each BLOCK of ``samples``
-    ahead_high, ahead_low : likewise from the beginning of each BLOCK to the end of its motion
-    upward_high, upward_low : likewise of ``vertical``
-    offsets : (sampled motions + 1,) where each begins
-    lasts : (sampled motions,) its last sample
-    """
-
+    # accelerations of the ground [m/s²]; each motion ends with a sample of zero
     samples: NDArray[np.float64]
+    # likewise upwards, such that factors make of it parts of gravity; none if the ground does not
+    # move so
     vertical: NDArray[np.float64]
+    # highest, lowest: extremes of each BLOCK of ``samples``
     highest: NDArray[np.float64]
     lowest: NDArray[np.float64]
+    # ahead_high, ahead_low: likewise from the beginning of each BLOCK to the end of its motion
     ahead_high: NDArray[np.float64]
     ahead_low: NDArray[np.float64]
+    # upward_high, upward_low: likewise of ``vertical``
     upward_high: NDArray[np.float64]
     upward_low: NDArray[np.float64]
-    offsets: NDArray[np.int64]
-    lasts: NDArray[np.int64]
+    offsets: NDArray[np.int64]  # (sampled motions + 1,) where each begins
+    lasts: NDArray[np.int64]  # (sampled motions,) its last sample
 
 
 @by_reference
 class Ensemble(NamedTuple):
-    """Bodies × motions × scales, the scale running fastest.
+    """Bodies × motions × scales, the scale running fastest."""
 
-    Attributes
-    ----------
-    counter : (1,) the next case to take, shared by all threads
-    count : number of cases
-    bodies : (bodies,) of BODY, or (bodies, motions, 2) of ``block.PIVOT`` for lone blocks
-    factors : (motions, scales) on the samples
-    rows : (bodies, motions) which of the sampled motions to use
-    intervals : (bodies, motions) sampling interval of that [s]
-    parts : (bodies, motions) largest part of it that a step of two rotations may take
-    free : (bodies, motions) samples of free rocking after it, at most
-    """
-
-    counter: NDArray[np.int64]
-    count: int
+    counter: NDArray[np.int64]  # (1,) the next case to take, shared by all threads
+    count: int  # number of cases
+    # (bodies,) of BODY, or (bodies, motions, 2) of ``block.PIVOT`` for lone blocks
     bodies: NDArray[Any]
-    factors: NDArray[np.float64]
-    rows: NDArray[np.int64]
-    intervals: NDArray[np.float64]
+    factors: NDArray[np.float64]  # (motions, scales) on the samples
+    rows: NDArray[np.int64]  # (bodies, motions) which of the sampled motions to use
+    intervals: NDArray[np.float64]  # (bodies, motions) sampling interval of that [s]
+    # (bodies, motions) largest part of it that a step of two rotations may take
     parts: NDArray[np.float64]
-    free: NDArray[np.int64]
+    free: NDArray[np.int64]  # (bodies, motions) samples of free rocking after it, at most
 
 
 @inlined_kernel

@@ -95,32 +95,23 @@ CASE = np.dtype(
 
 @by_reference
 class Worker(NamedTuple):
-    """Memory that a thread works in: ``worker()``.
+    """Memory that a thread works in: ``worker()``."""
 
-    Attributes
-    ----------
-    one, two : lanes of either kind
-    cases : (SLOTS,) of CASE
-    waiting : (2, SLOTS) slots that wait for a lane of either kind
-    waits, busy : (2,) how many wait, and how many lanes are taken
-    ones, twos, impacts : (SLOTS, 9) constants of the slots' bodies in every contact state
-    restoring : (SLOTS,)
-    series : (LANES,) of the steps that contact events are looked for in
-    state : of a case, with rates per second, for what the constants do not cover
-    """
-
+    # one, two: lanes of either kind
     one: Any
     two: Any
-    cases: Any
-    waiting: Any
+    cases: Any  # (SLOTS,) of CASE
+    waiting: Any  # (2, SLOTS) slots that wait for a lane of either kind
+    # waits, busy: (2,) how many wait, and how many lanes are taken
     waits: Any
     busy: Any
+    # ones, twos, impacts: (SLOTS, 9) constants of the slots' bodies in every contact state
     ones: Any
     twos: Any
     impacts: Any
-    restoring: Any
-    series: Any
-    state: Any
+    restoring: Any  # (SLOTS,)
+    series: Any  # (LANES,) of the steps that contact events are looked for in
+    state: Any  # of a case, with rates per second, for what the constants do not cover
 
 
 def worker() -> Worker:
