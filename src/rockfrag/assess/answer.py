@@ -184,6 +184,9 @@ class Shaken:
     # Outcomes as it stands in one plane, along one component at a time; None where that is the answer
     planar: ObjectOutcomes | None
     changed: Mapping[str, ObjectOutcomes]
+    alike: Mapping[
+        str, str
+    ]  # Mitigations that leave it in one of the arrangements, and the name of that
 
 
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
@@ -253,6 +256,14 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     arrangements = outcomes_of_each(objects, ways, plan.motions, plan.intensity_levels)
     under = (plan.motions, plan.intensity_levels)
     changes = [mitigations_of(object_) for object_ in objects]
+    alike = [
+        {name: way for name, body in change.items() for way in bodies if bodies[way] == body}
+        for change, bodies in zip(changes, ways, strict=True)
+    ]
+    changes = [
+        {name: body for name, body in change.items() if name not in known}
+        for change, known in zip(changes, alike, strict=True)
+    ]
     if plan.compares_few:
         # of few motions the object as it stands comes first, then with each mitigation
         under = (plan.fewer, plan.fewer_intensity_levels)
@@ -262,7 +273,9 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     compared = outcomes_of_each(objects, changes, *under)
     moved = _moved(requests, plan)
     found = []
-    for object_, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
+    for object_, way, change, sides, known in zip(
+        objects, arrangements, compared, moved, alike, strict=True
+    ):
         before = change.pop("") if plan.compares_few else next(iter(way.values()))
         if object_.pad_friction is not None:
             outcomes, slip = on_pad(object_, object_.pad_friction, *under)
@@ -271,7 +284,7 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
         if plan.motions.both and not plan.brief:
             flat = object_.in_plane()
             planar = outcomes_of(flat, {"": object_.body}, plan.motions, plan.intensity_levels)[""]
-        found.append(Shaken(way, sides, before, planar, change))
+        found.append(Shaken(way, sides, before, planar, change, known))
     return found
 
 
@@ -380,15 +393,16 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
         return shaken
     few = conversion.of(plan.fewer)
     compared = few if plan.compares_few else conversion
-    return Shaken(
-        {
+    return replace(
+        shaken,
+        arrangements={
             name: conversion.at_site(arrangement)
             for name, arrangement in shaken.arrangements.items()
         },
-        [change.turned(few.at_site) for change in shaken.moved],
-        compared.at_site(shaken.before),
-        None if shaken.planar is None else conversion.at_site(shaken.planar),
-        {name: compared.at_site(changed) for name, changed in shaken.changed.items()},
+        moved=[change.turned(few.at_site) for change in shaken.moved],
+        before=compared.at_site(shaken.before),
+        planar=None if shaken.planar is None else conversion.at_site(shaken.planar),
+        changed={name: compared.at_site(changed) for name, changed in shaken.changed.items()},
     )
 
 
@@ -506,7 +520,12 @@ def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
 
 
 def _mitigations(request: Request, target: Target, shaken: Shaken) -> tuple[Mitigation, ...]:
-    found = compare(target, shaken.before, shaken.changed)
+    ways = shaken.arrangements
+    now = next(iter(ways.values()))
+    known = {name: ways[way] for name, way in shaken.alike.items()}
+    found = [*compare(target, shaken.before, shaken.changed), *compare(target, now, known)]
+    # changes are ranked by what they do to the same motions, and by what is left where none topples the object
+    found.sort(key=lambda each: (math.isnan(each.factor), np.nan_to_num(each.factor), each.value))
     # an amplitude helps by growing, a probability by shrinking
     grows = request.level is None and not request.hazard
     return tuple(reversed(found) if grows else found)

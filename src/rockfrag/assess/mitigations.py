@@ -119,10 +119,8 @@ def _fixed(objects: Objects) -> dict[str, Body]:
 def compare(
     target: Target, now: ObjectOutcomes, changed: Mapping[str, ObjectOutcomes]
 ) -> list[Mitigation]:
-    """Estimate again with each change of the object, the most helpful first."""
-    found = [_mitigation(target, name, now, outcomes) for name, outcomes in changed.items()]
-    found.sort(key=lambda mitigation: mitigation.value)
-    return found
+    """Estimate again with each change of the object."""
+    return [_mitigation(target, name, now, outcomes) for name, outcomes in changed.items()]
 
 
 def _mitigation(

@@ -174,10 +174,10 @@ const objects = (data) => {
     for (const floor of Object.keys(place.floors).filter(Boolean))
       runs.push({ role: "moved", name: floor.slice(0, -1), few: true, floor, body: body(statue) });
     if (pedestal) {
-      runs.push({ role: "arrangement", name: "fixed_to_pedestal", body: body(joined(statue, pedestal), null) });
-      runs.push({ role: "arrangement", name: "on_the_floor", body: body(statue, null) });
+      runs.push({ role: "arrangement", name: "fixed_to_pedestal", change: "fix_to_pedestal", values: {}, body: body(joined(statue, pedestal), null) });
+      runs.push({ role: "arrangement", name: "on_the_floor", change: "fix_pedestal", values: {}, body: body(statue, null) });
     }
-    const helps = (name, what, values = {}) => runs.push({ role: "mitigation", name, body: what, values });
+    const helps = (name, what, values = {}) => runs.push({ role: "mitigation", change: name, body: what, values });
     const onPlate = (block) => joined(block, { width: WIDER * block.width, height: PLATE, mass: STEEL * PLATE * (WIDER * block.width) ** 2 });
     const plate = (block) => ({ width: 100 * WIDER * block.width, thick: 100 * PLATE });
     if (!pedestal) helps("plate_it", body(onPlate(statue)), plate(statue));
@@ -190,8 +190,6 @@ const objects = (data) => {
     if (pedestal) {
       const half = { ...pedestal, height: PEDESTAL_HEIGHT * pedestal.height, mass: PEDESTAL_HEIGHT * pedestal.mass };
       helps("lower_pedestal", body(statue, half), { height: 100 * half.height });
-      helps("fix_to_pedestal", body(joined(statue, pedestal), null));
-      helps("fix_pedestal", body(statue, null));
     }
     for (const { body: each } of runs) stands(each, ensemble);
     return runs;

@@ -3,7 +3,11 @@
 "use strict";
 const find = (id) => document.getElementById(id);
 const data = JSON.parse(find("data").textContent);
-const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+function bytesOf(text) {
+  const letters = atob(text), bytes = new Uint8Array(letters.length);
+  for (let i = 0; i < bytes.length; i++) bytes[i] = letters.charCodeAt(i);
+  return bytes;
+}
 const make = (tag, attributes = {}, ...children) => {
   const element = Object.assign(document.createElement(tag), attributes);
   element.append(...children);
@@ -164,15 +168,16 @@ async function compute(run, told, only = Infinity) {
   const starts = Array.from({ length: Math.ceil(count / PART) }, (_, i) => i * PART);
   const needed = (role) => roles.map(({ role: own }, i) => (own === role ? i : -1)).filter((i) => i >= 0);
   const moments = [[0], [...needed("now"), ...needed("moved")], roles.map((_, i) => i)].slice(0, only === 1 ? 1 : 3);
-  let done = 0, latest = 0;
+  let done = 0, latest = 0, earlier = null;
   const ready = (i) => parts[i].length === starts.length;
   const answerNow = async () => {
     const stage = moments.findLastIndex((all) => all.every(ready));
     if (stage < latest) return;
     latest = stage + 1;
-    const message = { kind: "answer", id, request, parts: parts.map((each, i) => (ready(i) && moments[stage].includes(i) ? each : null)) };
+    const message = { kind: "answer", id, request, earlier, parts: parts.map((each, i) => (ready(i) && moments[stage].includes(i) ? each : null)) };
     const found = await ask(run, message, true);
     if (found.failure) return refused(found.failure);
+    earlier = found.told;
     if (stage + 1 < latest) return; // a later one was asked for since, and may have come first
     told({ run, found: found.told, last: stage === moments.length - 1 });
   };

@@ -34,6 +34,7 @@ const words = (data, texts) => {
   function end(part) {
     const value = 100 * part;
     if (value < 5e-4) return "0";
+    if (value >= 99.5 && value <= 100 - 5e-4) return local(value.toFixed(-Math.floor(Math.log10(100 - value))));
     if (value >= 10) return whole(value);
     return value >= 1 ? g(value, 2) : g(value, 1);
   }
@@ -69,7 +70,7 @@ const words = (data, texts) => {
       return say(number === 1 ? "one_of" : "some_of", { number, total, verb: verb(number !== 1) });
     }
     function narrowing() {
-      if (!found.narrowed) return "";
+      if (!found.narrowed || range(found.narrowed) === range(main)) return "";
       return say("narrowing", { what: listed(found.narrowed.known.map((key) => texts.measurements[key])), range: range(found.narrowed) });
     }
     function result() {
@@ -83,7 +84,7 @@ const words = (data, texts) => {
       }
       const said = say("said", { topples: counted(1), interval: interval(fraction), rocks: counted(0) });
       if (fraction && found.wide) {
-        const more = found.narrowed && main === fraction ? ` ${capital(narrowing())}.` : "";
+        const more = main === fraction && narrowing() ? ` ${capital(narrowing())}.` : "";
         return say("not_decidable", { name, where, at, said }) + more;
       }
       const may = value >= MANY ? "likely" : value === 0 ? "unlikely" : "may";
@@ -134,7 +135,7 @@ const words = (data, texts) => {
       const ranked = Number.isFinite(total) && total > 0 ? Object.entries(main.sources).map(([key, s]) => [key, (s * s) / total]).sort((a, b) => b[1] - a[1]) : [];
       const named = ranked.filter(([, part]) => part >= LEAST_PART).slice(0, MOST_SOURCES);
       if (named.length) lines.push(say("variance", { all: listed(named.map(([key, part]) => say("part_from", { part: whole(100 * part), what: texts.sources[key] }))) }));
-      if (found.narrowed && !(found.wide && main === fraction)) lines.push(`${capital(narrowing())}.`);
+      if (narrowing() && !(found.wide && main === fraction)) lines.push(`${capital(narrowing())}.`);
       const size = (keys) => keys.reduce((sum, key) => sum + (main.sources[key] ?? 0) ** 2, 0);
       const assumed = assumptions(request).map(([id, values, keys]) => [say(id, values), size(keys)]);
       const order = assumed.map((item, i) => [...item, i]).sort((a, b) => b[1] - a[1] || a[2] - b[2]).map(([text]) => text);
