@@ -57,8 +57,7 @@ def with_slips(table: pd.DataFrame, states: Ints, slides: Ints, slip: Floats) ->
     pairs = np.stack([states, slides], axis=-1).tolist()
     modes = [tuple(mode_name(*pair) for pair in each) for each in pairs]
     return table.assign(
-        modes=pd.Series(modes, dtype=object),
-        slip=pd.Series(_tuples(slip), dtype=object),
+        modes=pd.Series(modes, dtype=object), slip=pd.Series(_tuples(slip), dtype=object)
     )
 
 

@@ -139,8 +139,7 @@ def _write_summaries(
         into.least_normal_force[rows, ..., k] = summaries["demand"]["normal" + number]
 
 
-BLOCKS = ("1", "2")
-"""What the kernels call the two bodies."""
+BLOCKS = ("1", "2")  # what the kernels call the two bodies
 
 
 def initial_state(system: System) -> np.void:

@@ -9,16 +9,12 @@ from rockfrag.system import geometry
 from rockfrag.system.blocks import Body, as_system
 from rockfrag.system.system import System
 
-STEP = 0.1
-"""Largest p h of a step: frequency parameter of the fastest body times step."""
-
+STEP = 0.1  # largest p h of a step: frequency parameter of the fastest body times step
 STACK_STEP = 0.35
 """Fraction of that step that two bodies of an ensemble take while both rotate: they are chaotic, and keep the
 memory of smaller errors."""
 
-FREE_TIME = 60.0
-"""Free rocking after the motion is followed for at most this long, in units of 1/p."""
-
+FREE_TIME = 60.0  # free rocking after the motion is followed for at most this long, in units of 1/p
 MOST_SAMPLES = 20_000_000
 """Samples of a history, the motion and the free rocking after it, that are admitted."""
 

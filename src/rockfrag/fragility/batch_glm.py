@@ -16,9 +16,7 @@ from rockfrag.fragility.observations import Floats
 
 Link = Literal["probit", "logit"]
 
-MOST_STEPS = 100
-"""Steps after which a regression that has not converged is left as it is."""
-
+MOST_STEPS = 100  # steps after which a regression that has not converged is left as it is
 _LARGEST_PREDICTOR = 30.0
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
 

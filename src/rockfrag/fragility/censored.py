@@ -350,8 +350,7 @@ def _newton(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats,
     return coefficients, -hessian, value
 
 
-_AT_ONCE = 50_000
-"""Brackets times weightings in memory at a time; no result depends on it."""
+_AT_ONCE = 50_000  # brackets times weightings in memory at a time; no result depends on it
 
 
 def _likelihood(

@@ -26,8 +26,7 @@ TAILS = (
 REJECTION = re.compile(r"The lognormal curve is rejected \(p = .*?\.(?= [A-Z]|$)")
 """Finds the sentence about a rejected curve among its warnings."""
 
-FEWEST_MOTIONS = 10
-"""Below so many motions every table and export says how few they are."""
+FEWEST_MOTIONS = 10  # below so many motions every table and export says how few they are
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ from rockfrag.fragility.observations import Floats, Observations, name_and_unit,
 from rockfrag.machine_code import cached_njit
 from rockfrag.shaketable.swept import Swept
 
-CELLS = 2000
-"""Cells of equal width in the logarithm of a measure."""
+CELLS = 2000  # cells of equal width in the logarithm of a measure
 
 
 @dataclass(frozen=True)

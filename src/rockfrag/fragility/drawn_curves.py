@@ -10,9 +10,7 @@ from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility
 from rockfrag.fragility.observations import Observations
 
-POINTS = 120
-"""Points of a curve, in equal ratios."""
-
+POINTS = 120  # points of a curve, in equal ratios
 _TAIL = 2.6
 """Standard deviations on either side of the median within which a curve is drawn: 0.5 to 99.5 %."""
 

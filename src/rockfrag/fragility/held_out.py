@@ -14,11 +14,8 @@ from rockfrag.fragility.censored import Brackets, bracket_log_scores
 from rockfrag.fragility.observations import Floats
 from rockfrag.fragility.pooling import MOST_VALUES, cells, counts
 
-FOLDS = 20
-"""Groups are held out one by one up to so many, and beyond in so many blocks."""
-
-WORST_SCORE = -20.0
-"""Log score of an outcome that a curve calls impossible [-]."""
+FOLDS = 20  # groups are held out one by one up to so many, and beyond in so many blocks
+WORST_SCORE = -20.0  # log score of an outcome that a curve calls impossible [-]
 
 
 def folds_of(groups: int) -> NDArray[np.intp]:

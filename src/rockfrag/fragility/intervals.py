@@ -20,9 +20,7 @@ from rockfrag.fragility.observations import Floats, Grouped, Observations, Over
 from rockfrag.fragility.pooling import cells, counts
 from rockfrag.short_repr import short_repr
 
-FEWEST_GROUPS = 4
-"""Fewest groups for which the jackknife's coverage was validated."""
-
+FEWEST_GROUPS = 4  # fewest groups for which the jackknife's coverage was validated
 MOST_BLOCKS = 100
 """More groups than this are left out in random blocks, which costs little and changes little."""
 

@@ -13,9 +13,7 @@ from rockfrag.motions.declared import measure_of, split_column
 from rockfrag.renamed_keys import check_names
 from rockfrag.short_repr import short_repr
 
-Floats = NDArray[np.float64]
-"""An array of floating-point numbers."""
-
+Floats = NDArray[np.float64]  # an array of floating-point numbers
 Over = Literal["motion", "earthquake"]
 """What tests are grouped by: those of a group are not independent."""
 

@@ -21,9 +21,7 @@ from rockfrag.plain_text import table_encoding
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.units import DIMENSIONS, convert
 
-ROWS = 100_000
-"""Rows that are read at a time."""
-
+ROWS = 100_000  # rows that are read at a time
 Measures = Mapping[str, Sequence[str | float]] | Sequence[str]
 """Columns with measures, or for each new column the columns and numbers whose product it is."""
 
@@ -31,10 +29,7 @@ _YES = {
     *("1", "true", "yes", "y", "overturned", "toppled", "fell"),
     *("ja", "wahr", "oui", "vrai", "si", "sì", "vero", "sí", "verdadero"),
 }
-_NO = {
-    *("0", "false", "no", "n", "survived", "stood"),
-    *("nein", "falsch", "non", "faux", "falso"),
-}
+_NO = {*("0", "false", "no", "n", "survived", "stood"), *("nein", "falsch", "non", "faux", "falso")}
 _DIMENSIONLESS = ("uplift_ratio", "velocity_ratio")
 
 

@@ -18,12 +18,7 @@ from scipy import special, stats
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.held_out import outcome_scores
-from rockfrag.fragility.intervals import (
-    FEWEST_GROUPS,
-    all_but_one,
-    jackknife_error,
-    student,
-)
+from rockfrag.fragility.intervals import FEWEST_GROUPS, all_but_one, jackknife_error, student
 from rockfrag.fragility.observations import Floats, labels, name_and_unit, positive
 from rockfrag.fragility.observations import read_observations as read_observations
 from rockfrag.fragility.surface import FragilitySurface, design_of, fit_surface

@@ -17,17 +17,12 @@ from rockfrag.fragility.pooling import cells
 from rockfrag.fragility.surface import design_of
 from rockfrag.fragility.vector import VectorFragility
 
-BINS = 10
-"""Bins of the fitted probability in which observed and fitted numbers are compared."""
-
-MOST_CELLS = 12
-"""Cells of each measure in the non-parametric surface."""
-
+BINS = 10  # bins of the fitted probability in which observed and fitted numbers are compared
+MOST_CELLS = 12  # cells of each measure in the non-parametric surface
 TOLERANCE = 1e-9
 """Change of a probability at which the alternating projections of the surface end [-]."""
 
-MOST_CYCLES = 5_000
-"""Cycles of alternating projections; some hundreds are usual."""
+MOST_CYCLES = 5_000  # cycles of alternating projections; some hundreds are usual
 
 
 @dataclass(frozen=True)

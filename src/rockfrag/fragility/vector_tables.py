@@ -11,12 +11,8 @@ from rockfrag.fragility.observations import Floats, name_and_unit
 from rockfrag.fragility.vector import VectorFragility, fit_vector
 from rockfrag.fragility.vector_checks import VectorChecks, check_vector
 
-PROBABILITIES = (0.1, 0.5, 0.9)
-"""Probabilities of overturning of which contours are given [-]."""
-
-POINTS = 40
-"""Points of a contour, over the values of the second measure."""
-
+PROBABILITIES = (0.1, 0.5, 0.9)  # probabilities of overturning of which contours are given [-]
+POINTS = 40  # points of a contour, over the values of the second measure
 MOST_TESTS = 100_000
 """Tests of one fit; of more every so many-th is taken, which changes limits over earthquakes little."""
 

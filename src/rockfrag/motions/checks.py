@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 
-MOST_SAMPLES = 10_000_000
-"""More samples than this are taken for a mistake in a unit."""
+MOST_SAMPLES = 10_000_000  # more samples than this are taken for a mistake in a unit
 
 
 def number(owner: str, name: str, value: Any, unit: str = "") -> float:

@@ -26,9 +26,7 @@ SUFFIXES = {
 _UNITS = {suffix: unit for unit, suffix in SUFFIXES.items()}
 _COLUMN = re.compile(rf"(?P<name>.+?)_(?P<unit>{'|'.join(sorted(_UNITS, key=len, reverse=True))})")
 _SPECTRAL = re.compile(r"(?P<name>.+?)_(?P<whole>\d+)(_(?P<part>\d+))?s")
-_PEAKS = ("amplitude", "input")
-"""What else tables call the peak acceleration."""
-
+_PEAKS = ("amplitude", "input")  # what else tables call the peak acceleration
 Shared = Callable[[Motion, float], Any]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -170,9 +168,7 @@ def declared() -> tuple[IntensityMeasure, ...]:
     return tuple(_MEASURES.values())
 
 
-def intensity_measures(
-    periods: Sequence[float] = SPECTRAL_PERIODS,
-) -> tuple[IntensityMeasure, ...]:
+def intensity_measures(periods: Sequence[float] = SPECTRAL_PERIODS) -> tuple[IntensityMeasure, ...]:
     """Return the measures that a table of motions has, in its order, spectral ones at these periods [s]."""
     found: list[IntensityMeasure] = []
     spectral = [measure for measure in declared() if measure.spectral]

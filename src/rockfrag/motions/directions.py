@@ -1,6 +1,5 @@
 """The motion that a row of a catalogue asks for: one component, or a direction of two."""
 
-import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -11,14 +10,9 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.motions.processing import process
-from rockfrag.motions.rotation import (
-    fault_normal,
-    radial,
-    rotate_to_azimuth,
-    stronger_direction,
-)
+from rockfrag.motions.rotation import fault_normal, radial, rotate_to_azimuth, stronger_direction
 from rockfrag.motions.time_base import common_time
-from rockfrag.records.catalogue import load_component, load_motion
+from rockfrag.records.catalogue import load_component, load_motion, scaled
 from rockfrag.records.motion import Motion
 
 _DIRECTION = re.compile(
@@ -39,7 +33,7 @@ def motion_of_row(row: dict[str, Any], folder: Path, records: Path) -> Motion:
     direction = str(row.get("direction") or "")
     if not direction:
         return motion
-    second = _scaled(load_component(row, row["second"], folder, records), row)
+    second = scaled(load_component(row, row["second"], folder, records), row)
     return replace(turned(motion, second, direction), name=motion.name)
 
 
@@ -54,20 +48,12 @@ def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tup
     others = [row["vertical"], *([row["second"]] if direction else [])]
     components = [
         load_motion(row, folder, records),
-        *(_scaled(load_component(row, other, folder, records), row) for other in others),
+        *(scaled(load_component(row, other, folder, records), row) for other in others),
     ]
     motion, vertical, *second = common_time(components, verticals=(1,))
     if second:
         motion = replace(turned(motion, second[0], direction), name=motion.name)
     return motion, replace(vertical, name=motion.name)
-
-
-def _scaled(motion: Motion, row: dict[str, Any]) -> Motion:
-    """Return a component with the factor of its row."""
-    factor = row.get("scale_factor", math.nan)
-    if math.isnan(factor) or factor == 1:
-        return motion
-    return motion.after("scale", motion.acceleration * factor, factor=factor)
 
 
 def turned(first: Motion, second: Motion, direction: str) -> Motion:
@@ -121,14 +107,8 @@ def measure_records(
         pair = frozenset((row["file"], row["second"]))
         if pair not in known:
             components = components_of_row({**row, "vertical": ""}, folder, records)
-            factor = row.get("scale_factor", math.nan)
-            scale = 1.0 if math.isnan(factor) else factor
             first, second = (
-                process(
-                    component.after("scale", component.acceleration * scale, factor=scale),
-                    processing,
-                )
-                for component in components.values()
+                process(scaled(component, row), processing) for component in components.values()
             )
             known[pair] = measure_pair(first, second)
         table.append({"name": row["name"], **known[pair]})

@@ -12,9 +12,7 @@ from rockfrag.motions.time_base import common_time
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.orientation import azimuth_of, is_vertical
 
-_RIGHT_ANGLE = 5.0
-"""Degrees by which two components may be off a right angle."""
-
+_RIGHT_ANGLE = 5.0  # degrees by which two components may be off a right angle
 DIRECTIONS_DEG = range(180)
 """Directions that are looked in [degrees]; the other half of the circle sees the same."""
 

@@ -47,8 +47,7 @@ _HIGHEST = 20 * LANES
 _FREE, _PER_A, _PER_S = range(14 * LANES, 17 * LANES, LANES)
 _ROWS = 21
 
-LOOK_EVERY = 32
-"""Samples of a stretch, after which is asked whether anything larger can still come."""
+LOOK_EVERY = 32  # samples of a stretch, after which is asked whether anything larger can still come
 
 
 class _Group(NamedTuple):

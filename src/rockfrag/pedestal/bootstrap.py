@@ -15,12 +15,7 @@ DRAWN_AT_ONCE = 2_000_000
 
 
 def rank_probabilities(
-    table: pd.DataFrame,
-    factor: str,
-    cluster: str,
-    seed: int,
-    *,
-    within: bool = False,
+    table: pd.DataFrame, factor: str, cluster: str, seed: int, *, within: bool = False
 ) -> pd.DataFrame:
     """How often each level of a factor has the largest and the smallest mean of d in resampled data.
 

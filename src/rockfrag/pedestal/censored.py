@@ -22,16 +22,12 @@ from rockfrag.pedestal.paired_tests import KEY, check_tests, pedestals_apart
 
 Rows = npt.NDArray[np.intp]
 
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
-"""Gauss-Legendre quadrature on (-1, 1)."""
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)  # gauss-Legendre quadrature on (-1, 1)
 MOST_REFITTED = 50
 """Earthquakes up to which the likelihood is fitted anew without each; of more, each one's pull is linear."""
-MOST_PAIRS = 2_000
-"""More pairs than this are put together where they are alike."""
-STEP = 1e-4
-"""Step of parameters for derivatives [-]."""
-FAR = 9.0
-"""Standard deviations beyond which the normal density is nothing."""
+MOST_PAIRS = 2_000  # more pairs than this are put together where they are alike
+STEP = 1e-4  # step of parameters for derivatives [-]
+FAR = 9.0  # standard deviations beyond which the normal density is nothing
 
 
 @dataclass(frozen=True)
@@ -252,11 +248,7 @@ def _log_density(z: Array) -> Array:
 def _log_single(low: Array, high: Array, sd: float) -> Array:
     """Log of the normal density (exact figures) or of the probability of an interval."""
     exact = low == high
-    probability = np.where(
-        low > 0,
-        ndtr(-low) - ndtr(-high),
-        ndtr(high) - ndtr(low),
-    )
+    probability = np.where(low > 0, ndtr(-low) - ndtr(-high), ndtr(high) - ndtr(low))
     interval = np.log(np.maximum(probability, 1e-300))
     density = _log_density(low) - math.log(sd)
     return np.asarray(np.where(exact, density, interval), dtype=np.float64)

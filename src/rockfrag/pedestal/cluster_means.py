@@ -28,8 +28,7 @@ from scipy import special
 Array = npt.NDArray[np.float64]
 
 CONFIDENCE = 0.95
-ROUNDING = 1e-12
-"""Differences of logarithms below this are rounding, not scatter [-]."""
+ROUNDING = 1e-12  # differences of logarithms below this are rounding, not scatter [-]
 
 
 class TooFewUnitsError(ValueError):

@@ -4,8 +4,7 @@ import math
 
 from rockfrag.pedestal.cluster_means import Estimate
 
-MARGIN = 0.10
-"""Largest change of the overturning amplitude that counts as none, ±10 % [-]."""
+MARGIN = 0.10  # largest change of the overturning amplitude that counts as none, ±10 % [-]
 
 
 def equivalence(effect: Estimate, margin: float = MARGIN) -> float:

@@ -17,9 +17,7 @@ from rockfrag.errors import InputError
 from rockfrag.renamed_keys import check_names
 from rockfrag.short_repr import short_repr
 
-MOST_NAMED = 100
-"""Pairs and tests that notes call by their names; of more the number."""
-
+MOST_NAMED = 100  # pairs and tests that notes call by their names; of more the number
 KEY = ["object", "earthquake", "floor", "motion"]
 _NEEDED = ("object", "pedestal", "earthquake", "floor", "amplitude_g")
 

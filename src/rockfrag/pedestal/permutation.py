@@ -16,12 +16,8 @@ DRAWS = 9_999
 """Up to so many sign patterns (13 units) all are enumerated; of more, so many are drawn."""
 
 
-MOST_DRAWN = 500
-"""Units beyond which the mean under flipped signs has the normal distribution."""
-
-MOST_LEFT_OUT = 100
-"""Earthquakes up to which each is left out in turn; of more, none says much."""
-
+MOST_DRAWN = 500  # units beyond which the mean under flipped signs has the normal distribution
+MOST_LEFT_OUT = 100  # earthquakes up to which each is left out in turn; of more, none says much
 WITHOUT_COLUMNS = ["without", "ratio", "lower", "upper", "p", "largest_change"]
 """Columns of `leave_one_earthquake_out`."""
 

@@ -79,7 +79,6 @@ def power_note(effect: Estimate, unit: str = "earthquake") -> str:
     if not effect.se > 0:
         return f"all {unit}s agree and their steps are not known, so the power is not known"
     detectable = 100 * (detectable_ratio(effect) - 1)
-    unit = {"earthquake": "earthquake"}.get(unit, unit)
     seen = f"{effect.units} {unit}s can detect a change of {detectable:.1f} % or more (80 % power)"
     if abs(effect.mean) <= effect.resolution:
         finest = 100 * math.expm1(effect.resolution)

@@ -44,8 +44,7 @@ _FACTS = (
     *("earthquake", "date", "station", "component", "magnitude", "distance_km"),
     *("second", "vertical", "direction", "licence"),
 )
-_MOST_SHOWN = 400
-"""Characters of the list of wrong cells in a message."""
+_MOST_SHOWN = 400  # characters of the list of wrong cells in a message
 
 
 def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
@@ -227,10 +226,15 @@ def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
     }
     facts |= {"source": row["source"], "file": row["file"]}
     named = replace(motion, name=row["name"], metadata={**motion.metadata, **facts})
+    return scaled(named, row)
+
+
+def scaled(motion: Motion, row: dict[str, Any]) -> Motion:
+    """Return a motion with the factor of its row."""
     factor = row.get("scale_factor", math.nan)
     if math.isnan(factor) or factor == 1:
-        return named
-    return named.after("scale", named.acceleration * factor, factor=factor)
+        return motion
+    return motion.after("scale", motion.acceleration * factor, factor=factor)
 
 
 def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) -> Motion:

@@ -21,8 +21,7 @@ from rockfrag.records.read import Record, motion_of, read_record
 from rockfrag.records.sources.archive import is_archive, unpacked
 from rockfrag.records.sources.folder import files_of
 
-_PERPENDICULAR = 5.0
-"""Degrees by which two components may be off a right angle and still be a pair."""
+_PERPENDICULAR = 5.0  # degrees by which two components may be off a right angle and still be a pair
 
 _SUFFIXES = tuple(
     re.compile(pattern, re.IGNORECASE)

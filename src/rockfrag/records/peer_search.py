@@ -12,9 +12,7 @@ from pathlib import Path
 
 from rockfrag.errors import InputError
 
-FILE_NAME = "_SearchResults.csv"
-"""Name of the file in every download."""
-
+FILE_NAME = "_SearchResults.csv"  # name of the file in every download
 _SECTION = re.compile(r"Summary of Metadata of Selected Records", re.IGNORECASE)
 _TITLES = {
     "record sequence number": "number",

@@ -44,8 +44,7 @@ on a warning is given: rocking adds to it (19 of 27 blocks of h/b 0.5 to 1.2 at 
 contact, while slender ones need several g)."""
 
 
-LEAST_LIFTING = 0.8
-"""Acceleration over g below which no uniform block both rocks and is warned of."""
+LEAST_LIFTING = 0.8  # acceleration over g below which no uniform block both rocks and is warned of
 
 
 class LightBodies(UserWarning):

@@ -26,12 +26,8 @@ from rockfrag.records.motion import Motion
 from rockfrag.system.blocks import SystemLike, as_system, is_system
 from rockfrag.system.system import uplift_ratios
 
-MOST_CASES = 50_000_000
-"""Cases of an ensemble whose results are held in memory."""
-
-STRONGEST = 1e4
-"""Peak acceleration [m/s²] beyond any earthquake."""
-
+MOST_CASES = 50_000_000  # cases of an ensemble whose results are held in memory
+STRONGEST = 1e4  # peak acceleration [m/s²] beyond any earthquake
 MotionLike = Motion | GroundMotion | ArrayLike
 """A motion, or the accelerations of its horizontal component [m/s²], shape (n,)."""
 

@@ -234,12 +234,7 @@ def restitution_from_impacts(
 
 
 def restitution_from_history(
-    block: Block,
-    time: ArrayLike,
-    theta: ArrayLike,
-    *,
-    confidence: float = 0.95,
-    g: float = GRAVITY,
+    block: Block, time: ArrayLike, theta: ArrayLike, *, confidence: float = 0.95, g: float = GRAVITY
 ) -> RestitutionFit:
     """Fit e to a sampled history of free rocking, by least squares on the rotations.
 

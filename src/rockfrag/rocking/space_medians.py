@@ -120,11 +120,7 @@ def _in_plane(
 
 
 def _ratios(
-    found: dict[str, Floats],
-    earthquakes: Sequence[str],
-    levels: Floats,
-    sweep: Sweep,
-    seed: int,
+    found: dict[str, Floats], earthquakes: Sequence[str], levels: Floats, sweep: Sweep, seed: int
 ) -> dict[str, float]:
     """Median in space, and over each planar one, with limits of resampled earthquakes."""
     names = np.asarray(earthquakes)

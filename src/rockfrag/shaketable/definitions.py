@@ -25,15 +25,8 @@ DEFINITION = "step_protocol"
 """The definition that resembles a laboratory's: statistics rest on it, the others stand beside."""
 
 _NEEDED = (
-    "configuration",
-    "object",
-    "pedestal",
-    "motion",
-    "earthquake",
-    "floor",
-    "amplitude_g",
-    "overturned",
-    "overturned_body",
+    *("configuration", "object", "pedestal", "motion", "earthquake", "floor"),
+    *("amplitude_g", "overturned", "overturned_body"),
 )
 
 

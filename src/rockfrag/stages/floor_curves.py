@@ -58,7 +58,7 @@ def floor_curves(
     """
     from rockfrag.fragility import fragility_of, fragility_row, with_measures
     from rockfrag.fragility.drawn_curves import fraction_points
-    from rockfrag.fragility.states import fit_uplift
+    from rockfrag.fragility.estimators import fit_uplift
 
     floor_labels = {measure.label: measure.floor_label for measure in intensity_measures()}
     fractions = []

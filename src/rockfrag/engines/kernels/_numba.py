@@ -122,8 +122,7 @@ def _one_of(typing_context: Any, pair: Any, comparison: Any) -> Any:
     return signature(common, *pair), generate
 
 
-_OF_TWO = {min: _smaller, max: _larger}
-"""What numba would compile a function of a tuple for."""
+_OF_TWO = {min: _smaller, max: _larger}  # what numba would compile a function of a tuple for
 
 
 class _Prepare:

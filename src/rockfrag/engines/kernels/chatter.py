@@ -41,21 +41,14 @@ class ChatterTolerance(NamedTuple):
     drop: float  # flights higher than this are followed even if they are sure to end at rest [rad]
 
 
-HISTORY = ChatterTolerance(closing_speed=1e-6, drop=1e-9)
-"""Where the history is kept."""
-OUTCOME = ChatterTolerance(closing_speed=1e-4, drop=1e-2)
-"""Where only the outcome matters."""
-
+HISTORY = ChatterTolerance(closing_speed=1e-6, drop=1e-9)  # where the history is kept
+OUTCOME = ChatterTolerance(closing_speed=1e-4, drop=1e-2)  # where only the outcome matters
 CHATTER_ERROR = 1e-7
 """Largest w² T [rad²/s] of a chatter that is closed at once on a body that rocks on."""
-FASTEST_CHATTER = 0.1
-"""Speed [rad/s] above which it is not."""
-CHATTER_TIME = 0.08
-"""Time [s] over which the ground is looked at, at most, before it is."""
-LONGEST_FRACTION = 0.999
-"""Fraction of the speed left by impacts above which no end is foreseen."""
-MOST_AHEAD = 32
-"""Samples of the ground that are looked at, at most."""
+FASTEST_CHATTER = 0.1  # speed [rad/s] above which it is not
+CHATTER_TIME = 0.08  # time [s] over which the ground is looked at, at most, before it is
+LONGEST_FRACTION = 0.999  # fraction of the speed left by impacts above which no end is foreseen
+MOST_AHEAD = 32  # samples of the ground that are looked at, at most
 
 
 class Ahead(NamedTuple):

@@ -18,17 +18,11 @@ Every outcome of every impact is worked out here, so a contact law has its place
 - ``block_impact``: the lone block of an ensemble.
 """
 
-from rockfrag.engines.kernels.equations import (
-    kinetic_energy,
-    metric,
-    pivot,
-    turn_between,
-)
+from rockfrag.engines.kernels.equations import kinetic_energy, metric, pivot, turn_between
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.laws import moves_impulse, rate
 
-GAIN = 1e-9
-"""Relative growth of the kinetic energy in an impact that counts as rounding."""
+GAIN = 1e-9  # relative growth of the kinetic energy in an impact that counts as rounding
 
 
 @kernel

@@ -44,9 +44,7 @@ from rockfrag.system import geometry
 TESTED_NUMBA = ("0.68.",)
 """Versions of numba whose private parts are known to be as this module takes them to be."""
 
-PATIENCE_S = 300.0
-"""How long a process waits for another one that compiles the same [s]."""
-
+PATIENCE_S = 300.0  # how long a process waits for another one that compiles the same [s]
 KNOWN = numba.__version__.startswith(TESTED_NUMBA)
 
 if KNOWN:

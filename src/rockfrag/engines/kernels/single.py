@@ -58,8 +58,7 @@ from rockfrag.engines.kernels.roots import (
 )
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series
 
-GRAZING_SPEED = 1e-3
-"""Relative speed [rad/s] below which a contact grazes."""
+GRAZING_SPEED = 1e-3  # relative speed [rad/s] below which a contact grazes
 MAX_CONTACT_EVENTS_PER_STEP = 400
 """Contact events of a sample after which its contacts are made to stay closed."""
 

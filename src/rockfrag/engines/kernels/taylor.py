@@ -28,8 +28,7 @@ from rockfrag.engines.kernels.equations import (
 )
 from rockfrag.engines.kernels.jit import fma, inlined_kernel, kernel
 
-ORDER = 7
-"""Order of the series: with p h ≤ 0.1 the remainder is below 1e-13 rad."""
+ORDER = 7  # order of the series: with p h ≤ 0.1 the remainder is below 1e-13 rad
 
 ROTATION = np.dtype(
     [

@@ -22,8 +22,7 @@ from rockfrag.system.system import System
 COARSE_CLOSING = 1e-4
 """Parting speed over √(g b) below which a contact stays closed after an impact, where only the outcome matters."""
 
-CHUNK = 4
-"""Cases that a thread takes at once."""
+CHUNK = 4  # cases that a thread takes at once
 
 
 def contact_outcomes(

@@ -33,9 +33,7 @@ from rockfrag.engines.planar.step import (
 MOST_CONTACT_EVENTS = 300
 """Contact events within a sample after which accumulating ones are ended ten times as coarsely, and again."""
 
-MOST_IDLE = 30
-"""Contact events on the spot after which a step is taken without looking for more."""
-
+MOST_IDLE = 30  # contact events on the spot after which a step is taken without looking for more
 MOST_JOLTS = 60
 """Impulses on the spot after which a step is taken in any case, so that time goes on; fewer lose energy where
 ever coarser impacts (``MOST_CONTACT_EVENTS``) end what repeats."""

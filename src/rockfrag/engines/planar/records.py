@@ -20,11 +20,8 @@ from rockfrag.system.system import System
 F, INT = np.float64, np.int64
 Array = NDArray[np.float64]
 
-MOST = 12
-"""Bodies of the longest column."""
-
-TRIES = 1024
-"""Modes that a search tries at most: more than three interfaces have."""
+MOST = 12  # bodies of the longest column
+TRIES = 1024  # modes that a search tries at most: more than three interfaces have
 
 BODY = np.dtype(
     [

@@ -15,8 +15,7 @@ CONSISTENT = 2e-13
 slack of contact events, so that a mode that has just failed is not."""
 UNSOLVED = 1e-6
 """Relative motion of a closed end beyond which the equations of a mode were singular but for rounding."""
-ROUNDING = 1e-10
-"""Violation up to which a mode is taken where none is consistent."""
+ROUNDING = 1e-10  # violation up to which a mode is taken where none is consistent
 LEFT, RIGHT, SLIP = 0, 1, 2
 """What changes between modes: whether an end is closed, or how an interface slides."""
 

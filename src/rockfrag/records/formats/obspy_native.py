@@ -45,8 +45,7 @@ _WATER_LEVEL = 60.0
 MOST_SAMPLES = 20_000_000
 """Samples of a file, all channels together: a day at 200 Hz has 17 million."""
 
-_SMALL = 2**20
-"""Bytes of a file that cannot have so many."""
+_SMALL = 2**20  # bytes of a file that cannot have so many
 _SHOWN = 60
 
 

@@ -36,11 +36,8 @@ _PEAK = re.compile(
 _COUNT_IN_WORDS = re.compile(r"(?P<count>\d+)\s+INSTRUMENT\s+AND\s+BASELINE\s+CORRECTED", re.I)
 _STEP_IN_WORDS = re.compile(r"SPACED\s+INTERVALS?\s+OF\s+(?P<dt>[\d.]+)\s*SEC", re.IGNORECASE)
 _WHOLE_NUMBERS = re.compile(rb"^[ \t]*(?:-?\d+[ \t]+){9,}-?\d+[ \t]*$", re.M)
-_AS_STATED = 0.01
-"""Share by which the largest value may be off the stated peak."""
-
-_NUMBER_LINES = 7 + 13
-"""Lines of 100 integers (16I5) and of 100 reals (8F10) above the samples."""
+_AS_STATED = 0.01  # share by which the largest value may be off the stated peak
+_NUMBER_LINES = 7 + 13  # lines of 100 integers (16I5) and of 100 reals (8F10) above the samples
 _QUANTITIES = {"ACC": "acceleration", "VEL": "velocity", "DIS": "displacement"}
 _MAX_HEADER = 60
 _SECOND_LINES = 6

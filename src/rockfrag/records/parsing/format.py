@@ -20,8 +20,7 @@ from rockfrag.records.parsing.text_file import (
     read_text,
 )
 
-_LONGEST = 1_000
-"""Characters of a line that are looked at to recognise a format."""
+_LONGEST = 1_000  # characters of a line that are looked at to recognise a format
 
 
 @dataclass(frozen=True)

@@ -14,11 +14,8 @@ _NEARLY_A_NUMBER = re.compile(
 )
 _DATE = re.compile(r"\d{1,4}-\d{1,2}-\d{1,4}")
 _MARKS = " \t#%!/\"'"
-_RUN = 4
-"""Rows of one width, one below the other, that are samples and not a header of numbers."""
-
-LOOKED_AT = 300
-"""First lines of a file from which its layout is told."""
+_RUN = 4  # rows of one width, one below the other, that are samples and not a header of numbers
+LOOKED_AT = 300  # first lines of a file from which its layout is told
 
 
 @dataclass(frozen=True)

@@ -16,29 +16,17 @@ from numpy.typing import NDArray
 from rockfrag.errors import InputError
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 
-HEAD_BYTES = 16_384
-"""How much of a file is looked at to recognise its format."""
-
+HEAD_BYTES = 16_384  # how much of a file is looked at to recognise its format
 MAX_BYTES = 256 * 2**20
 """No record is larger: three components of a day at 200 Hz are a third of it."""
 
-MAX_TEXT = 96 * 2**20
-"""Bytes of a text file: three components of a day at 200 Hz have as many."""
-
-MOST_NUMBERS = 20_000_000
-"""Numbers of a table: more than memory should hold beside the text."""
-
-MAX_LINE = 8_192
-"""No line of a known format is longer, comments and citations included."""
-
-MAX_LINES = 6_000_000
-"""No record has more: eight hours of samples at 200 Hz, one a line."""
-
+MAX_TEXT = 96 * 2**20  # bytes of a text file: three components of a day at 200 Hz have as many
+MOST_NUMBERS = 20_000_000  # numbers of a table: more than memory should hold beside the text
+MAX_LINE = 8_192  # no line of a known format is longer, comments and citations included
+MAX_LINES = 6_000_000  # no record has more: eight hours of samples at 200 Hz, one a line
 _BLOCK = 2**20
 _PIECE = 4 * _BLOCK
-_MOST_ZEROS = 4 * _BLOCK
-"""Bytes after which a file that has only zeros is given up."""
-
+_MOST_ZEROS = 4 * _BLOCK  # bytes after which a file that has only zeros is given up
 _TOUCHING = re.compile(rb"(?<=[\d.])([+-])(?=\d*\.)")
 """A sign that begins a number right behind another one, as in Fortran's ``-.12E-01-.13E-01``."""
 

@@ -16,8 +16,7 @@ _FINEST_DIGITS = 9
 _EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)
 """Sampling intervals [s] that unevenly digitised film records are interpolated to."""
 
-_COARSEST = 1.25
-"""Largest ratio of that interval to the mean distance of the digitised points."""
+_COARSEST = 1.25  # largest ratio of that interval to the mean distance of the digitised points
 
 _HOURS_BEHIND = {
     "UTC": 0,

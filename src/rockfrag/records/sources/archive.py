@@ -18,12 +18,8 @@ from rockfrag.errors import InputError
 from rockfrag.plain_text import printable
 from rockfrag.records.parsing.text_file import MAX_BYTES, read_head
 
-MAX_MEMBERS = 5_000
-"""Files of an archive; a download of a data centre has some hundred."""
-
-MAX_TOTAL = 2 * MAX_BYTES
-"""Bytes that an archive may unpack to."""
-
+MAX_MEMBERS = 5_000  # files of an archive; a download of a data centre has some hundred
+MAX_TOTAL = 2 * MAX_BYTES  # bytes that an archive may unpack to
 _BLOCK = 2**20
 _TAR_NAMES = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
 _UNREADABLE = (

@@ -14,9 +14,7 @@ from rockfrag.records.digest import sha256_of
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 
-_EQUAL = 1e-9
-"""Largest difference [s] between the time steps of one record."""
-
+_EQUAL = 1e-9  # largest difference [s] between the time steps of one record
 SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")
 """Record sets, each a file: ordinary motions, and near-fault ones with and without a pulse."""
 

@@ -10,9 +10,7 @@ from rockfrag.files import whole_file
 from rockfrag.records.digest import sha256_of
 from rockfrag.records.parsing.text_file import MAX_BYTES
 
-_PATIENCE = 60.0
-"""Seconds that a server may keep silent."""
-
+_PATIENCE = 60.0  # seconds that a server may keep silent
 _BLOCK = 2**20
 
 

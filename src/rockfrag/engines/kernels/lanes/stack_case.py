@@ -61,8 +61,7 @@ from rockfrag.engines.kernels.roots import slope, value
 from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP, resolve_impact
 from rockfrag.engines.kernels.taylor import SERIES, quick_sine_cosine
 
-SLOTS = 2 * LANES
-"""Cases in flight, so that lanes of one kind or the other can always be filled."""
+SLOTS = 2 * LANES  # cases in flight, so that lanes of one kind or the other can always be filled
 
 CASE = np.dtype(
     [
@@ -141,8 +140,7 @@ def worker() -> Worker:
 
 # --------------------------------------------------------------------------- phases of a case
 
-NO_CASE, ONE_ROTATES, BOTH_ROTATE = -1, 0, 1
-"""What lane a case needs."""
+NO_CASE, ONE_ROTATES, BOTH_ROTATE = -1, 0, 1  # what lane a case needs
 
 
 @inlined_kernel
