@@ -47,7 +47,8 @@ begin({ data, modules: unpacked, samples: bytes(packed) }).then(() => {
         { first, ...TASKS.count({ id, request, run, first, last }) })));
       const answer = TASKS.answer({ id, request, parts });
       const { place } = request, computed = Boolean(place.computed);
-      const floor = computed ? tools.motions.map((motion) => [...building.floorMotion(place.floors[""], motion).samples]) : [];
+      const shaken = (motion) => [...building.floorMotion(place.floors[""], motion).samples];
+      const floor = computed ? tools.motions.map(shaken) : [];
       return { answer: plain(answer), lines: lines(request, answer), computed, floor };
     } catch (error) {
       if (!error.field) return { failed: error.stack };

@@ -91,7 +91,7 @@ new Promise(done => {{
 
 
 def compare_with_command(browser, own_records, folder, capsys, count) -> None:
-    """The page that a command writes gives the shares of ``rockfrag assess --json`` to the bit, and its intervals."""
+    """The page that a command writes gives the shares of ``assess --json`` to the bit, and its intervals."""
     records, rng = ["--record", str(own_records / "catalogue.csv")], random.Random(11)
     page = folder / "assess.html"
     assert main(["app", *records, *options_of(FORM), "--output", str(page)]) == 0
