@@ -3,7 +3,6 @@
 import os
 import tempfile
 from collections.abc import Mapping
-from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from rockfrag.assess.as_json import as_json
 from rockfrag.assess.as_nrml import as_nrml
 from rockfrag.assess.figures import fractions_figure, sources_figure
 from rockfrag.assess.glossary import words_used
+from rockfrag.assess.live import live_of
 from rockfrag.assess.mitigations import without_simulation
 from rockfrag.assess.scale import SCALE_WORDS
 from rockfrag.assess.sources import SOURCES, parts_of
@@ -38,16 +38,12 @@ from rockfrag.assess.words import (
 )
 from rockfrag.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
-from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.page import Column, Picture, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import draw
 
 MOTIONS_SHOWN = 15
 """Rows of the table of motions that topple the object first."""
-
-LIVE = (0.0, 0.1, 0.25, 0.5, 0.75)
-"""Motions that may be chosen in the live part, by how many topple the object at less shaking [-]."""
 
 FURTHEST = 3.0
 """Return periods are given up to so many times what the hazard curve reaches; beyond, its slope is a guess."""
@@ -74,35 +70,8 @@ def page_of(found: Assessment) -> str:
         sections=sections,
         pictures=_drawn([*([answer.figure] if answer.figure else []), *specs]),
         provenance=_provenance(found),
-        live=_live(found),
+        live=live_of(found),
     )
-
-
-def _live(found: Assessment) -> Markup:
-    """The object under some motions, live: that which topples it first, and others by how soon they do.
-
-    The page's kernel rocks on edges, so that a round base has none.
-    """
-    if found.request.objects.round:
-        return Markup("")
-    order = np.argsort(found.counted.first_levels(), kind="stable")
-    places = dict.fromkeys(int(order[int(part * (order.size - 1))]) for part in LIVE)
-    chosen = [replace(found.motions.base[i], name=_name_of(found, i)) for i in places]
-    motions = carried([motion for motion in chosen if motion.pga > 0])
-    if not motions:
-        return Markup("")
-    objects = found.request.objects
-    bodies = {name: objects.system_of(body) for name, body in objects.arrangements.items()}
-    return live_kernel(bodies, motions)
-
-
-def _name_of(found: Assessment, i: int) -> str:
-    """A motion as a reader knows it: earthquake, station and component."""
-    motion = found.motions.ground[i]
-    earthquake, station = (str(motion.metadata.get(key, "")) for key in ("earthquake", "station"))
-    if not (earthquake and station):
-        return motion.name
-    return f"{earthquake}, {station} ({motion.name})"
 
 
 def _drawn(specs: list[FigureSpec]) -> Mapping[str, Picture]:
