@@ -166,6 +166,12 @@ def test_one_sine_overturns_after_an_impact_then_not_then_without(
     assert shaken(8.0).impacts == 0
 
 
+def test_rocking_starts_exactly_where_the_ground_reaches_b_over_h() -> None:
+    response = simulate(T2, np.linspace(0.0, -4.0, 3), 1.0)
+    start = response.contact_events["time"].iloc[0]
+    assert start == pytest.approx(G * T2.b / T2.h / 2.0, rel=1e-9)
+
+
 def test_no_simulated_block_overturns_below_ishiyamas_bounds() -> None:
     rng = np.random.default_rng(14)
     fallen = 0
