@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +21,7 @@ from rockfrag.report.figures.campaign import (
 )
 from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, opened
+from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.two_measures import two_measures_section
 from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import (
@@ -35,7 +35,6 @@ from rockfrag.report.wording import (
     sentence,
 )
 from rockfrag.stages.campaign import OURS, TABLES, VOTES
-from rockfrag.stages.digest import package_digest
 from rockfrag.study.campaign import CampaignStudy
 
 
@@ -59,12 +58,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         lead=f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, "
         f"{int(tests['overturned'].sum())} of them overturned; each is simulated with the motion "
         f"{_said(study)} the table.",
-        provenance={
-            "Configuration": study.source.name,
-            "Tests": study.tests.name,
-            "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
-        },
+        provenance=provenance(study, {"Tests": study.tests.name}),
         basis="measured",
     )
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +13,10 @@ from rockfrag.fragility.user_table import UserFragility
 from rockfrag.report.figures.fragility import calibration_figure, measures_figure
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.two_measures import two_measures_section
 from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import counted, estimates, listed, probability
-from rockfrag.stages.digest import package_digest
 from rockfrag.study.measured_table import MeasuredTable
 
 _CAPTIONS = {
@@ -86,6 +85,8 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
     both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
     if both:
         sections.append(both)
+    digest = tables["fragility"]["record_set_sha256"].iloc[0]
+    values = f"{study.table.name}, SHA-256 of the values used {digest}"
     write_page(
         folder,
         answer,
@@ -93,13 +94,7 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
         title=study.title,
         lead=f"{counted(len(tests), 'measured test')} with {counted(motions, 'motion')}, "
         f"{fell} of them overturned.",
-        provenance={
-            "Configuration": study.source.name,
-            "Table": f"{study.table.name}, SHA-256 of the values used "
-            f"{tables['fragility']['record_set_sha256'].iloc[0]}",
-            "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
-        },
+        provenance=provenance(study, {"Table": values}),
         basis="measured",
     )
 

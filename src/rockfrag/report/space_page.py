@@ -1,6 +1,5 @@
 """The report of a study of bodies in space: medians over planar ones, and what they come from."""
 
-from importlib.metadata import version
 from pathlib import Path
 
 import pandas as pd
@@ -9,10 +8,10 @@ from markupsafe import Markup
 from rockfrag.report.figures.space import WORDS, fractions_figure, ratios_figure, words_of
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.provenance import provenance
 from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import counted, estimates
 from rockfrag.rocking.space_medians import LOSS, PLANAR
-from rockfrag.stages.digest import package_digest
 from rockfrag.study.space import SpaceStudy
 
 _RATIOS = (
@@ -55,11 +54,7 @@ def write_space_report(
         title=study.title,
         lead=f"{counted(len(fractions.groupby(['base', 'slenderness', 'height_m'])), 'body', 'bodies')} under "
         f"both components of {records} of FEMA P-695 at {study.sweep.levels} levels.",
-        provenance={
-            "Configuration": study.source.name,
-            "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
-        },
+        provenance=provenance(study, {}),
     )
 
 

@@ -20,7 +20,7 @@ from rockfrag.report.part import (
     Results,
     Section,
 )
-from rockfrag.report.provenance import provenance
+from rockfrag.report.provenance import study_provenance
 from rockfrag.report.wording import counted
 from rockfrag.study.study import Study
 
@@ -50,7 +50,7 @@ def write_report(
         processes,
         title=study.title,
         lead=_lead(results),
-        provenance=provenance(results),
+        provenance=study_provenance(results),
         live=_live(results),
     )
 
