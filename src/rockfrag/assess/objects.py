@@ -250,6 +250,7 @@ def stretched(body: RigidBody, width: float, height: float, mass: float) -> Rigi
 
 
 def _stretched(objects: Objects, *factors: float) -> RigidBody | None:
+    """The scan in space, if there is one, by the factors of :func:`stretched`."""
     return None if objects.scanned is None else stretched(objects.scanned, *factors)
 
 

@@ -70,6 +70,14 @@ def _percent(row: Row) -> str:
     return estimate(100 * row["right"], 100 * row["lower"], 100 * row["upper"], 1) + " %"
 
 
+def _better(row: Row) -> str:
+    """By how many percentage points the simulation is better, with limits."""
+    middle, low, high = (
+        number(100 * row[name], 1) for name in ("better", "better_lower", "better_upper")
+    )
+    return f"{middle} [{low}, {high}]"
+
+
 def _who(name: str) -> str:
     """Who predicted the outcomes, in words: thresholds by their measure, codes by their name."""
     if name == OURS:
@@ -157,10 +165,7 @@ def _against_rivals(others: Sequence[Row]) -> list[Finding]:
         f"{counted(len(rivals), 'alternative')}"
     )
     if best["better_lower"] <= 0:  # an estimate with a negative limit is not written as a ratio is
-        more = (
-            f"{number(100 * best['better'], 1)} [{number(100 * best['better_lower'], 1)}, "
-            f"{number(100 * best['better_upper'], 1)}]"
-        )
+        more = _better(best)
     return [
         Finding(
             headline,
@@ -209,7 +214,7 @@ def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
 
 
 def _ordering(fragility: pd.DataFrame) -> str:
-    """The measure that orders the tests best is the one in which a curve says most."""
+    """Return the measure in which the measured curve has the least dispersion."""
     measured = fragility[fragility["who"] == "measured"]
     return str(measured.set_index("measure")["beta"].fillna(math.inf).idxmin())
 
@@ -229,11 +234,7 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         who=[_who(name) for name in agreement["who"]],
         right_text=[_percent(row) for row in agreement.to_dict("records")],
         better_text=[
-            "–"
-            if not pd.notna(row["better"])
-            else f"{number(100 * row['better'], 1)} [{number(100 * row['better_lower'], 1)}, "
-            f"{number(100 * row['better_upper'], 1)}]"
-            for row in agreement.to_dict("records")
+            _better(row) if pd.notna(row["better"]) else "–" for row in agreement.to_dict("records")
         ],
         p_text=[probability(p) for p in agreement["p"]],
     )
