@@ -203,7 +203,7 @@ class Objects:
             "cg_height": partial(_higher, self),
         }
         if not self.round:  # of a body in space that of the planar answer
-            moves["restitution"] = partial(_livelier, self)
+            moves["restitution"] = lambda factor: replace(self, livelier=self.livelier * factor)
         if self.pedestals:
             moves["mass"] = partial(_heavier, self)
         found = moved_to_both_sides(moves, self.tolerances)
@@ -282,10 +282,6 @@ def higher(block: Block, factor: float) -> Block:
         cg_height=min(block.h * factor, block.height),
         inertia=block.centroidal_inertia,
     )
-
-
-def _livelier(objects: Objects, factor: float) -> Objects:
-    return replace(objects, livelier=objects.livelier * factor)
 
 
 def _heavier(objects: Objects, factor: float) -> Objects:
