@@ -172,7 +172,7 @@ class Objects:
             return System((self._changed(self.scanned, top),), (Contact(),))
         if self.round:
             across = top.centroidal_inertia
-            along = top.mass * top.width**2 / 8
+            along = top.mass * top.width * top.width / 8
             return replace(top, round=True, inertia=diagonal(across, across, along)).system()
         return turned_about_vertical(self._box(top, whole=whole).system(), self.facing_deg)
 
@@ -189,10 +189,10 @@ class Objects:
         width, depth, mass = self.statue.width, self.depth, self.statue.mass
         across = top.centroidal_inertia
         # moments of uniform boxes about x and y differ by what their sides do
-        aside = mass * (depth**2 - width**2) / 12
-        along = mass * (width**2 + depth**2) / 12
+        aside = mass * (depth * depth - width * width) / 12
+        along = mass * (width * width + depth * depth) / 12
         if whole:
-            along += (top.mass - mass) * top.width**2 / 6
+            along += (top.mass - mass) * top.width * top.width / 6
             depth = max(depth, top.width)
         return replace(top, depth=depth, inertia=diagonal(across + aside, across, along))
 

@@ -13,6 +13,7 @@ from rockfrag.assess import mitigations, narrowing, objects, place, risk, source
 from rockfrag.assess.conversion import MOST_LEVELS, OF_DISPLACEMENT, VelocityRelation
 from rockfrag.assess.hazard.curve import DAMAGING, EC8_SLOPE, EC8_SLOPE_SD, FLANKS, HIGHEST
 from rockfrag.assess.hazard.measure import PGA, PGV
+from rockfrag.assess.app.space import in_space
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import (
     AT_REST,
@@ -41,7 +42,7 @@ from rockfrag.plausibility import (
 from rockfrag.rocking.browser import driver_text
 from rockfrag.units import DIMENSIONS, EXAMPLES, GRAVITY
 
-SCRIPTS = ("statistics", "risk", "conversion", "building", "objects", "answer")
+SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
 """Scripts that compute, in the order in which they need each other."""
 
 TABLED_STOREYS = 8
@@ -55,7 +56,7 @@ def script(name: str) -> str:
 
 def computing() -> str:
     """Return the script that computes an answer, in a worker of a page or in Node."""
-    return "\n".join([driver_text("ensemble"), *(script(f"{name}.js") for name in SCRIPTS)])
+    return "\n".join([driver_text("ensemble", "space"), *(script(f"{name}.js") for name in SCRIPTS)])
 
 
 def data_of(motions: MotionSet, *, on_floor: bool = False) -> dict[str, Any]:
@@ -74,6 +75,7 @@ def data_of(motions: MotionSet, *, on_floor: bool = False) -> dict[str, Any]:
         "motions": motions.words,
         "names": [motion.name for motion in motions.ground],
         "onFloor": on_floor,
+        "both": in_space(motions),
         "measures": {measure.imt: _measure(motions, measure) for measure in (PGA, PGV)},
         "measurements": {
             name: measurement.left for name, measurement in narrowing.MEASUREMENTS.items()

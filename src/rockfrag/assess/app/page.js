@@ -15,7 +15,7 @@ const make = (tag, attributes = {}, ...children) => {
 };
 const FIELDS = {
   object: ["name", "width", "height", "mass"],
-  more: ["depth", "round", "cg_height", "cg_offset", "restitution"],
+  more: ["depth", "facing", "round", "cg_height", "cg_offset", "restitution"],
   pedestal: ["pedestal_width", "pedestal_height", "pedestal_mass"],
   place: ["floor", "storey_height", "material", "period"],
   shaking: ["measure", "level", "years", "hazard"],

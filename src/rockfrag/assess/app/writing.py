@@ -74,7 +74,7 @@ def write_app(
 def page_of(motions: MotionSet, form: Mapping[str, str], *, on_floor: bool, made: bool) -> str:
     """Return the page as HTML, which loads nothing."""
     packed, about = packed_samples(motions.ground)
-    modules = {"fused": "ensemble-fused", "plain": "ensemble", "history": "integrate"}
+    modules = {"fused": "ensemble-fused", "plain": "ensemble", "history": "integrate", "space": "space"}
     data = {
         **data_of(motions, on_floor=on_floor),
         "form": dict(form),
