@@ -10,6 +10,7 @@ from scipy import stats
 from rockfrag.assess.objects import Objects, higher
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
+from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.system.blocks import Block, Body, Stack, stacked
 
 WIDER = 1.25
@@ -145,8 +146,7 @@ def _limits(
     if groups < 2 or not np.isfinite(pairs).all() or (pairs <= 0).any():
         return math.nan, math.nan
     ratios = np.log(pairs[:, 0] / pairs[:, 1])
-    error = np.sqrt((groups - 1) / groups * ((ratios - ratios.mean()) ** 2).sum())
-    half = float(stats.t.ppf(0.5 + LEVEL / 2, groups - 1) * error)
+    half = float(stats.t.ppf(0.5 + LEVEL / 2, groups - 1) * jackknife_error(ratios))
     return factor * math.exp(-half), factor * math.exp(half)
 
 

@@ -30,6 +30,7 @@ from scipy import special, stats
 
 from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.outcomes import ObjectOutcomes, fraction_at
+from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 Floats = NDArray[np.float64]
@@ -230,7 +231,7 @@ def estimate(
 
     sources: dict[str, float] = {}
     left_out = target.without_each(outcomes)
-    sources["motions"] = _jackknife(left_out, middle)
+    sources["motions"] = _jackknife(left_out)
     for name, (lower, upper) in moved.items():
         sources[name] = _half_width(near(lower), near(upper), near(outcomes))
     for name, spread in shifts.items():
@@ -265,16 +266,12 @@ def _shifted(
     return max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
 
 
-def _jackknife(left_out: Floats, middle: float) -> float:
+def _jackknife(left_out: Floats) -> float:
     """Standard error from values without one earthquake each (Tukey); infinite where one carries it all."""
-    groups = len(left_out)
-    if groups < 2:
+    # where nothing rocks without one of them, what others would say is open
+    if len(left_out) < 2 or not np.isfinite(left_out).all():
         return math.inf
-    finite = np.isfinite(left_out)
-    if not finite.all():
-        # nothing rocks without one of them: what others would say is open
-        return math.inf
-    return float(np.sqrt((groups - 1) / groups * ((left_out - left_out.mean()) ** 2).sum()))
+    return float(jackknife_error(left_out))
 
 
 def _half_width(low: float, high: float, middle: float) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.schema import checked
+from rockfrag.study.heading import Heading, heading_of
 from rockfrag.study.steps import Steps, checked_steps
 
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
@@ -28,14 +29,9 @@ class PublicFile:
 
 
 @dataclass(frozen=True)
-class CampaignStudy:
+class CampaignStudy(Heading):
     """Everything that the configuration of a campaign says, checked."""
 
-    # Folder under ``results/``, heading of the report, seed of every random number
-    name: str
-    title: str
-    seed: int
-    source: Path  # The configuration file
     fetch: tuple[PublicFile, ...]  # Public files that are fetched if they are not there
     # Table of tests, its columns, and a table of other programs' outcomes or None
     tests: Path
@@ -67,6 +63,11 @@ class CampaignStudy:
     mesh: Path | None = field(default=None)
 
     @property
+    def division(self) -> dict[str, Any]:
+        """How tests are divided into folds: their number, that of divisions, and the seed."""
+        return {"folds": self.folds, "repeats": self.repeats, "seed": self.seed}
+
+    @property
     def summary(self) -> str:
         """What it computes, in a line."""
         return f"the campaign {self.tests}, {self.trials} trials"
@@ -79,11 +80,6 @@ class CampaignStudy:
         paths += [Path(self.motions)] if self.motions.endswith(".npz") else []
         fetched = {source.path for source in self.fetch}
         return [str(path) for path in paths if path not in fetched]
-
-
-def is_campaign(content: Mapping[str, Any]) -> bool:
-    """Say whether a configuration is one of a campaign on a shake table."""
-    return CAMPAIGN_KEY in content
 
 
 def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> CampaignStudy:
@@ -120,10 +116,7 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     other = campaign.get("other_codes")
     mesh = thing.get("mesh")
     return CampaignStudy(
-        name=content["study"],
-        title=content["title"],
-        seed=content["seed"],
-        source=source,
+        **heading_of(content, path),
         fetch=fetch,
         tests=_existing(source, "campaign.tests", _beside(source, campaign["tests"]), fetched),
         columns=dict(campaign["columns"]),

@@ -3,25 +3,20 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from rockfrag.rocking.space_sweep import Sweep
 from rockfrag.schema import checked
+from rockfrag.study.heading import Heading, heading_of
 
 SPACE_KEY = "space"
 """Key that only a study of bodies in space has."""
 
 
 @dataclass(frozen=True)
-class SpaceStudy:
+class SpaceStudy(Heading):
     """Everything that the configuration of a study in space says, checked."""
 
-    # Folder under ``results/``, heading of the report, seed of every random number
-    name: str
-    title: str
-    seed: int
-    source: Path  # The configuration file
     # Records of FEMA P-695 that shake the bodies: every one for 1, every second one for 2
     every: int
     # Bases by name, heights over the narrow side, and heights [m]
@@ -42,20 +37,12 @@ class SpaceStudy:
         return []
 
 
-def is_space_study(content: Mapping[str, Any]) -> bool:
-    """Say whether a configuration is one of bodies in space."""
-    return SPACE_KEY in content
-
-
 def space_study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> SpaceStudy:
     """Make a study of bodies in space from a configuration that was read from ``path``."""
     content = checked(content, "space", str(path))
     space = content[SPACE_KEY]
     return SpaceStudy(
-        name=content["study"],
-        title=content["title"],
-        seed=content["seed"],
-        source=Path(path),
+        **heading_of(content, path),
         every=space["every"],
         bases=tuple(space["bases"]),
         slenderness=tuple(float(value) for value in space["slenderness"]),

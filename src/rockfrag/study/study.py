@@ -13,6 +13,7 @@ from rockfrag.files import file_name, is_file
 from rockfrag.plausibility import size_warning
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.study.amplitudes import Amplitudes
+from rockfrag.study.heading import Heading
 from rockfrag.study.supplementary import Supplementary
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
@@ -43,14 +44,9 @@ class FragilitySettings:
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(Heading):
     """Everything that a study's configuration says, checked; see :mod:`rockfrag.study.loading`."""
 
-    # Folder under ``results/``, heading of the report, seed of every random number
-    name: str
-    title: str
-    seed: int
-    source: Path  # The configuration file
     # Path of the table of motions, and its rows that are used, in order
     catalogue_file: Path
     catalogue: pd.DataFrame

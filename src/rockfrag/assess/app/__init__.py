@@ -2,18 +2,25 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from scipy import special, stats
 
 from rockfrag.assess import mitigations, narrowing, objects, place, risk, sources, words
-from rockfrag.assess.conversion import MOST_LEVELS, OF_DISPLACEMENT, VelocityRelation
-from rockfrag.assess.hazard.curve import DAMAGING, EC8_SLOPE, EC8_SLOPE_SD, FLANKS, HIGHEST
+from rockfrag.assess.app.space import in_space, ratios_of
+from rockfrag.assess.conversion import MOST_LEVELS, OF_DISPLACEMENT
+from rockfrag.assess.hazard.curve import (
+    DAMAGING,
+    EC8_SLOPE,
+    EC8_SLOPE_SD,
+    FLANKS,
+    HIGHEST,
+    HazardCurve,
+)
 from rockfrag.assess.hazard.measure import PGA, PGV
-from rockfrag.assess.app.space import in_space
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import (
     AT_REST,
@@ -22,7 +29,8 @@ from rockfrag.assess.outcomes import (
     LEVELS,
     make_intensity_levels,
 )
-from rockfrag.assess.request import LONGEST_PERIOD, Records
+from rockfrag.assess.place import Place
+from rockfrag.assess.request import LONGEST_PERIOD, Request
 from rockfrag.assess.scale import STEPS
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.modes import find_modes
@@ -56,32 +64,39 @@ def script(name: str) -> str:
 
 def computing() -> str:
     """Return the script that computes an answer, in a worker of a page or in Node."""
-    return "\n".join([driver_text("ensemble", "space"), *(script(f"{name}.js") for name in SCRIPTS)])
+    return "\n".join(
+        [driver_text("ensemble", "space"), *(script(f"{name}.js") for name in SCRIPTS)]
+    )
 
 
-def data_of(motions: MotionSet, *, on_floor: bool = False) -> dict[str, Any]:
+def data_of(motions: MotionSet, request: Request | None = None) -> dict[str, Any]:
     """Return what the page computes with, but for the samples of the motions.
 
     Parameters
     ----------
     motions
         The motions of the ground.
-    on_floor
-        Whether they were recorded on the floor of the object.
+    request
+        Where they were recorded, and the building and hazard that the form does not tell; nothing if None.
     """
+    asked = [] if request is None else [item for item in (request.level, *request.hazard) if item]
+    measures = dict.fromkeys((PGA, PGV, *(item.measure for item in asked)))
+    intervals = sorted({motion.dt for motion in motions.ground})
     names = list(dict.fromkeys(motions.earthquakes))
     return {
         "earthquakes": [names.index(name) for name in motions.earthquakes],
         "motions": motions.words,
         "names": [motion.name for motion in motions.ground],
-        "onFloor": on_floor,
-        "both": in_space(motions),
-        "measures": {measure.imt: _measure(motions, measure) for measure in (PGA, PGV)},
+        "measures": {measure.imt: _measure(motions, measure) for measure in measures},
+        "both": in_space(motions, measures),
+        "onFloor": request is not None and request.records.on_floor,
+        "quantiles": [] if request is None else _quantiles(request.hazard),
         "measurements": {
             name: measurement.left for name, measurement in narrowing.MEASUREMENTS.items()
         },
         "constants": _constants(),
-        "floors": _floors(sorted({motion.dt for motion in motions.ground})),
+        "floors": _floors(intervals),
+        "own": request and _own(request.place, intervals),
         "steps": [{"name": step.name, "below": _finite(step.below)} for step in STEPS],
         "limits": {"storey": STOREY_HEIGHTS, "period": FIRST_PERIODS},
         "units": {
@@ -97,21 +112,12 @@ def _measure(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any]:
         make_intensity_levels(motions, measure, (), count).levels.tolist()
         for count in (LEVELS, FEW_LEVELS)
     )
-    ratios = None
-    if measure != PGV:
-        logs = motions.log_ratios(measure)
-        relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
-        ratios = {
-            "logs": logs.tolist(),
-            "median": float(np.median(logs)),
-            "spread": relation.unknown(Records()),
-        }
     return {
         "unit": measure.unit,
         "levels": levels,
         "few": few,
         "values": motions.values(measure).tolist(),
-        "ratios": ratios,
+        "ratios": ratios_of(motions, measure),
         "highest": HIGHEST[measure.openquake],
         "damaging": DAMAGING[measure.openquake],
     }
@@ -125,12 +131,46 @@ def _floors(intervals: Sequence[float]) -> dict[int, Any]:
     """Modes of buildings of which only the storeys are known, as they are and with each property moved."""
     found = {}
     for storeys in range(1, TABLED_STOREYS + 1):
-        usual = place.make_place({"floor": f"1/{storeys}"}, Path())
-        each = {"": usual}
-        for moved in usual.variants():
-            each |= {f"{moved.name}{sign}": at for sign, at in zip("-+", moved.sides, strict=True)}
-        found[storeys] = {name: _modes(at.building, intervals) for name, at in each.items()}
+        found[storeys] = _with_variants(
+            place.make_place({"floor": f"1/{storeys}"}, Path()), intervals
+        )
     return found
+
+
+def _with_variants(at: Place, intervals: Sequence[float]) -> dict[str, Any]:
+    each = {"": at}
+    for moved in at.variants():
+        each |= {f"{moved.name}{sign}": side for sign, side in zip("-+", moved.sides, strict=True)}
+    return {name: _modes(side.building, intervals) for name, side in each.items()}
+
+
+def _own(at: Place, intervals: Sequence[float]) -> dict[str, Any] | None:
+    """A building that was given: its modes, the levels of its floors, and what is said of it."""
+    building = at.building
+    if building is None:
+        return None
+    usual = place.make_place({"floor": f"{building.level(at.floor)}/{building.storeys}"}, Path())
+    if building == usual.building:
+        return None
+    top = replace(building, floors={**building.floors, "": building.storeys})
+    return {
+        "storeys": building.storeys,
+        "levels": dict(building.floors),
+        "modes": _with_variants(replace(at, building=top, floor=""), intervals),
+        "total": sum(building.heights),
+        "period": float(find_modes(building).period[0]),
+        # all of it is given; of one made of what is known of it the floor is called so
+        "whole": at.floor != "floor",
+    }
+
+
+def _quantiles(hazard: Sequence[HazardCurve]) -> list[dict[str, Any]]:
+    """Curves of the hazard's quantiles, by the standard normal score of each."""
+    return [
+        {"z": float(special.ndtri(q)), "levels": each.levels.tolist(), "rates": each.rates.tolist()}
+        for curve in hazard
+        for q, each in curve.quantiles.items()
+    ]
 
 
 def _modes(model: ShearBuilding | None, intervals: Sequence[float]) -> list[dict[str, Any]]:

@@ -1,13 +1,14 @@
 """What the page computes with where an object moves in space: both components of each record at once."""
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from rockfrag.assess import objects, outcomes
 from rockfrag.assess.conversion import VelocityRelation
-from rockfrag.assess.hazard.measure import PGA, PGV
+from rockfrag.assess.hazard.measure import PGV
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.outcomes import FEW_LEVELS, make_intensity_levels
 from rockfrag.assess.request import Records
@@ -15,7 +16,7 @@ from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.records.motion import Motion
 
 
-def in_space(motions: MotionSet) -> dict[str, Any]:
+def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[str, Any]:
     """Return records, levels and constants of bodies in space, of motions one component at a time."""
     both = motions.with_both_components()
     fewer = both.thinned()
@@ -28,7 +29,7 @@ def in_space(motions: MotionSet) -> dict[str, Any]:
             for pair in both.pairs
         ],
         "fewer": [names.index(motion.name) for motion in fewer.ground],
-        "measures": {measure.imt: _measure(both, fewer, measure) for measure in (PGA, PGV)},
+        "measures": {measure.imt: _measure(both, fewer, measure) for measure in measures},
         "turns": [[math.cos(angle), math.sin(angle)] for angle in turns],
         "aside": objects.ASIDE,
         "higher": objects.HIGHER,
@@ -59,15 +60,20 @@ def _measure(both: MotionSet, fewer: MotionSet, measure: IntensityMeasure) -> di
         make_intensity_levels(each, measure, (), FEW_LEVELS).levels.tolist()
         for each in (both, fewer)
     )
-    ratios = None
-    if measure != PGV:
-        logs = both.log_ratios(measure)
-        relation = VelocityRelation.of(both.about, both.log_ratios(measure, of_all=True))
-        ratios = {
-            "logs": logs.tolist(),
-            "median": float(np.median(logs)),
-            "spread": relation.unknown(Records()),
-        }
     return {
-        "levels": few, "fewer": fewest, "values": both.values(measure).tolist(), "ratios": ratios,
+        "levels": few, "fewer": fewest, "values": both.values(measure).tolist(),
+        "ratios": ratios_of(both, measure),
     }  # fmt: skip
+
+
+def ratios_of(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any] | None:
+    """Return what is known of PGV over a measure in the motions; None of PGV itself."""
+    if measure == PGV:
+        return None
+    logs = motions.log_ratios(measure)
+    relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
+    return {
+        "logs": logs.tolist(),
+        "median": float(np.median(logs)),
+        "spread": relation.unknown(Records()),
+    }

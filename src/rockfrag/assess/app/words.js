@@ -49,12 +49,13 @@ const words = (data, texts) => {
   const capital = (text) => text.slice(0, 1).toUpperCase() + text.slice(1);
   const listed = (all) => (all.length < 2 ? all.join("") : `${all.slice(0, -1).join(", ")} ${say("and")} ${all.at(-1)}`);
 
-  return function linesOf(request, found) {
+  const nameOf = (request) => (request.name === data.texts.en.the_object ? say("the_object") : request.name);
+  function linesOf(request, found) {
     const { measure, place, pedestal, statue } = request, { unit } = data.measures[measure];
-    const name = request.name === data.texts.en.the_object ? say("the_object") : request.name;
+    const name = nameOf(request);
     const ordinal = (n) => texts.ordinals[n] ?? `${n}${texts.ordinal_endings[n % 100 > 10 && n % 100 < 14 ? 0 : n % 10] ?? texts.ordinal_endings[0]}`;
     const floorName = place.level === place.storeys ? say("roof") : say("floor_name", { europe: ordinal(place.level), america: ordinal(place.level + 1) });
-    const where = place.storeys ? `${say("on_level", place)} (${floorName})` : say(data.onFloor ? "on_floor" : "on_ground");
+    const where = place.storeys ? `${say(place.label ? "on_named" : "on_level", place)} (${floorName})` : say(data.onFloor ? "on_floor" : "on_ground");
     const amount = (value) => `${measure} ${g(value, 3)} ${unit}`;
     const starts = Number.isFinite(found.rocksFrom) ? `${measure} ${g(found.rocksFrom, 2)} ${unit}` : say("more_than_tried");
     const at = say("at", { level: amount(found.level) }) + (request.level === null ? ` (${say("once_in_475")})` : "");
@@ -156,12 +157,14 @@ const words = (data, texts) => {
       return say(value >= MANY ? "head_likely" : value > FEW ? "head_may" : "head_unlikely", values);
     }
     return { headline: headline(), result: result(), risk: risk(), position: position(), helps: helps(), sure: sure(), mitigation };
-  };
+  }
+  return Object.assign(linesOf, { nameOf });
 
   // what was not given: text, what stands in it, and the sources that it widens; the place first
   function assumptions({ place, statue, pedestal, massGiven, restitution, solid, depthGiven }) {
     const found = [];
     if (place.assumed === "on_ground") found.push(["assumed_ground", {}, []]);
+    if (place.assumed === "elastic") found.push(["assumed_elastic", {}, ["period", "damping"]]);
     if (place.assumed === "building") found.push(["assumed_building", { total: g(place.total, 3), period: g(place.period, 2) }, ["period", "damping"]]);
     found.push([solid?.round ? "assumed_rolling" : "assumed_rectangular", {}, []]);
     if (restitution === null && !solid?.round) found.push(["assumed_momentum", {}, ["restitution"]]);

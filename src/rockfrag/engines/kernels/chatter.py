@@ -75,10 +75,8 @@ RESTORING = np.dtype(
         ("still", np.float64, 4),
         ("per_ground", np.float64, 4),
         ("frequency2", np.float64),  # p² of the statue
-        (
-            "fastest",
-            np.float64,
-        ),  # 0.2 D/p with the D of a still ground: above it no chatter is closed
+        # 0.2 D/p with the D of a still ground: above it no chatter is closed
+        ("fastest", np.float64),
     ]
 )
 """With what chatter of a body at θ1 = θ2 = 0 is closed."""
@@ -134,12 +132,8 @@ def weight_at(ahead, k):
 def dies_out(speed, fraction, safety, restoring, drop, ahead):
     """Whether the impacts that follow one at θ1 = θ2 = 0 end at rest before anything else can happen.
 
-    Parameters
-    ----------
-    speed : of the body after the impact [rad/s]
-    share : of the speed that an impact leaves, √ of that of the kinetic energy
-    safety : what T is taken longer by
-    drop : flights of more than this are followed [rad]
+    ``speed`` [rad/s] is the body's after the impact, ``fraction`` what an impact leaves of it, ``safety`` what T
+    is taken longer by; flights of more than ``drop`` [rad] are followed.
     """
     if fraction > LONGEST_FRACTION:
         return False
@@ -167,11 +161,8 @@ def dies_out(speed, fraction, safety, restoring, drop, ahead):
 def block_dies_out(w, side, here, there, ahead):
     """Whether the impacts after a launch of a lone block at speed ``w`` per sample end at rest.
 
-    Parameters
-    ----------
-    side : pivot on which it is launched
-    here, there : constants of that pivot and of the other (``block.PIVOT``)
-    ahead : the ground over g
+    ``here`` is the pivot of ``side``, on which it is launched, ``there`` the other (``block.PIVOT``); ``ahead`` is
+    the ground over g.
     """
     # gravity only ever grows D; the least of it is enough
     weight = weight_at(ahead, ahead.k)
@@ -263,10 +254,8 @@ def _opening(two, hop, side, g):
 def may_close(hop, before, after, longest, g, ahead):
     """Whether a contact that hops may stay closed at once, while the other is open.
 
-    Parameters
-    ----------
-    before, after : constants of the contact states before and after the impact (``stack_constants.TWO``)
-    longest : time that its hops may take at most [samples]
+    ``before`` and ``after`` are constants of the contact states (``stack_constants.TWO``); its hops may take
+    ``longest`` [samples].
     """
     h, k, tau, last, factor = ahead.dt, ahead.k, ahead.tau, ahead.last, ahead.factor
     samples = ahead.samples

@@ -381,11 +381,9 @@ def first_closing(c1, c2, series):
 
 @kernel
 def _next_contact_event(body, state, step, series, trial):
-    """Find the earliest contact event within a step.
+    """Find the earliest contact event within a step: its time, NEVER if there is none, and what it is.
 
-    Returns
-    -------
-    Its time (NEVER if there is none), which closed contact fails (0 none), and whether ground and interface close.
+    That is which closed contact fails (0 none), and whether ground and interface close.
     """
     c1, c2 = state.c1, state.c2
     when, closes1, closes2 = first_closing(c1, c2, series)

@@ -80,16 +80,10 @@ class Shaking(NamedTuple):
 
 
 class Book(NamedTuple):
-    """What is written down on the way.
+    """What is written down on the way."""
 
-    Attributes
-    ----------
-    history : (samples, history_columns), or of no rows
-    contact events : (capacity, contact_event_columns), or of no rows
-    """
-
-    history: Array
-    contact_events: Array
+    history: Array  # (samples, history_columns), or of no rows
+    contact_events: Array  # (capacity, contact_event_columns), or of no rows
 
 
 class Cases(NamedTuple):
@@ -118,17 +112,7 @@ class Instant(NamedTuple):
 
 @entry_kernel
 def integrate_cases(numbers, cases, closing, book, w, outcome):
-    """Integrate the cases of some ``numbers``, and keep their outcomes.
-
-    Parameters
-    ----------
-    numbers : of the cases to integrate
-    cases : Cases
-    closing : as of integrate
-    book : Book, of no rows
-    w : WORK
-    outcome : (all cases,) OUTCOME
-    """
+    """Integrate the cases of some ``numbers``, and keep their outcomes; ``book`` has no rows."""
     motions, scales = cases.factors.shape
     for number in numbers:
         b = number // (motions * scales)
@@ -298,16 +282,8 @@ def integrate(p, shaking, start, closing, book, w):
                 if w.met >= MOST_CONTACT_EVENTS:
                     w.forced += 1
                 ah, av = ground_at(sample, tau)
-                count = _handle(
-                    p,
-                    w,
-                    Instant((i + tau) * dt, ah, av),
-                    coarser,
-                    False,
-                    False,
-                    book.contact_events,
-                    count,
-                )
+                instant = Instant((i + tau) * dt, ah, av)
+                count = _handle(p, w, instant, coarser, False, False, book.contact_events, count)
                 fresh = True
                 if w.met > 10 * MOST_CONTACT_EVENTS:
                     tau = 1.0
@@ -402,14 +378,10 @@ def _contact_event_in_step(p, w, at_end, stretch):
 
 @kernel
 def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
-    """Change the mode at a contact event, whose failing channels are in ``w.fails``.
+    """Change the mode at a contact event, whose failing channels are in ``w.fails``; the number of them so far.
 
     ``all_ends``: the state is new (start, end of rest), and only ends that touch count.  ``exclude``: the old
     mode is known to fail.
-
-    Returns
-    -------
-    Number of contact events so far.
     """
     _remember(p, w)
     passes = False

@@ -27,6 +27,7 @@ from rockfrag.figure_style import (
     figure_style,
     letter_panels,
     new_figure,
+    one_panel,
 )
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import shortened
@@ -96,9 +97,7 @@ def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     known = means[means["by"] == "configuration"]
     objects = list(dict.fromkeys(tests["object"]))
     width = COLUMN_WIDTH if len(objects) <= 5 else PAGE_WIDTH
-    with figure_style():
-        figure = new_figure(width, 2.8)
-        axes = figure.subplots()
+    with one_panel(width, 2.8) as (figure, axes):
         rows = drawn_tests(tests)
         _sides_panel(axes, rows, "object", objects, known)
         axes.set_ylim(0, _top_of_sides(rows, "object"))
@@ -111,9 +110,7 @@ def amplitudes_by_floor(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     floors = list(dict.fromkeys(tests["floor"]))
     rows = drawn_tests(tests)
     known = means[means["by"] == "floor"]
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 2.8)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 2.8) as (figure, axes):
         _sides_panel(axes, rows, "floor", floors, known)
         axes.set_ylim(0, _top_of_sides(rows, "floor"))
         _finish_sides(figure, axes, tests, len(known.dropna(subset=["mean_g"])) > 0)
@@ -199,9 +196,7 @@ def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDEST
     pairs = rows[rows["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
     objects = list(dict.fromkeys(pairs["object"]))
     upper = 1.08 * float(pairs[["a_p", "a_np"]].to_numpy(dtype=float).max())
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 0.6 + COLUMN_WIDTH)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 0.6 + COLUMN_WIDTH) as (figure, axes):
         _scatter_panel(axes, pairs, objects, upper)
         # above the panel, where it hides no test
         axes.set_title(title, loc="left", pad=4)

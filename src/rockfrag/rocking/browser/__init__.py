@@ -31,7 +31,8 @@ def driver_text(*names: str) -> str:
     That of ``ensemble`` is ``rockfragEnsemble(bytes)``, that of ``space`` ``rockfragSpace(bytes)``.
     """
     return "\n".join(
-        (_FOLDER / f"{part}.js").read_text(encoding="utf-8") for part in ("module", *(names or ("integrate",)))
+        (_FOLDER / f"{part}.js").read_text(encoding="utf-8")
+        for part in ("module", *(names or ("integrate",)))
     )
 
 

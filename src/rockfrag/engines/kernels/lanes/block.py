@@ -175,18 +175,10 @@ def _advance(lane, upward):
 
 @entry_kernel
 def integrate_blocks(ensemble, motions, worker, outcomes):
-    """Integrate the cases of an ensemble of lone blocks until none is left.
+    """Integrate the cases of an ensemble of lone blocks until none is left; number of steps of lanes, in a tuple.
 
-    Parameters
-    ----------
-    ensemble : Ensemble, whose ``bodies`` are PIVOTs, right and left, and whose ``factors`` are over g
-    motions : Motions
-    worker : Worker, one for each thread; what two threads wrote side by side would cost them time
-    outcomes : (cases,) of OUTCOME
-
-    Returns
-    -------
-    Number of steps that lanes were advanced by, alone in a tuple.
+    The ensemble's ``bodies`` are PIVOTs, right and left, and its ``factors`` are over g.  Each thread has a worker
+    of its own: what two threads wrote side by side would cost them time.
     """
     lane, tallies = worker.lane, worker.tallies
     upward = motions.vertical.size > 0

@@ -95,12 +95,8 @@ def weights_ahead(motions, k, factor):
 def next_uplift(motions, k, tau, last, factor, interval):
     """Sample and time within it at which a body at rest rises, and acceleration and weight then; -1 if it stays.
 
-    Parameters
-    ----------
-    k, tau : the time: ``tau`` after sample k
-    last : last sample of the motion
-    factor : on its samples
-    interval : (low, high), which holds 0, that the acceleration over the weight has to leave (Kirkpatrick, 1927)
+    The time is ``tau`` after sample k; ``interval`` is (low, high), which holds 0, that the acceleration over the
+    weight has to leave (Kirkpatrick, 1927).
     """
     samples = motions.samples
     low, high = interval
@@ -156,14 +152,8 @@ def _first_outside(motions, k, last, low, high):
 def next_samples(lane, factor, lanes, motions):
     """Give the lanes that have reached the end of their sample the next one; the bits of those that must stop.
 
-    A lane stops for a contact event, and at the end of its motion and after it.
-
-    Parameters
-    ----------
-    lane : the lanes, of any kind
-    factor : the row of factors on the samples
-    lanes : number of lanes
-    motions : Motions
+    A lane stops for a contact event, and at the end of its motion and after it.  ``factor`` is the row of factors
+    on the samples.
     """
     samples, vertical = motions.samples, motions.vertical
     stops = 0

@@ -273,9 +273,7 @@ def _ahead(case, motions):
 def contact_event_of_one(i, case, worker, ensemble, motions, g):
     """Take a case in lane i of those of one rotation through its contact event, or to the step's end.
 
-    Returns
-    -------
-    Whether ground and interface close and ``general_impact`` has to say what comes of it.
+    Returned is whether ground and interface close and ``general_impact`` has to say what comes of it.
     """
     lane, series = worker.one, worker.series[i]
     if lane.flag[i] == RELEASE and lane.has_before[i] == 1.0:
@@ -337,12 +335,7 @@ def find_contact_events_of_two(stops, worker):
 
 @kernel
 def contact_event_of_two(i, case, worker, ensemble, motions, g):
-    """Take a case in lane i of those of two rotations through the contact event found, or to the step's end.
-
-    Returns
-    -------
-    Whether ground and interface close and ``general_impact`` has to say what comes of it.
-    """
+    """Take a case in lane i of those of two rotations through the contact event found; see the one above."""
     lane, series = worker.two, worker.series[i]
     left = lane.was_left[i]
     span = stack_two.span_of(left, lane.part[i])
@@ -385,12 +378,8 @@ def general_impact(case, worker, body, closes, motions):
     _, gave_way = resolve_impact(body, state, closes, restoring, ahead, OUTCOME, _forced(case))
     case.given_way += gave_way
     h = case.interval
-    case.c1, case.c2, case.omega1, case.omega2 = (
-        state.c1,
-        state.c2,
-        state.omega1 * h,
-        state.omega2 * h,
-    )
+    case.c1, case.c2 = state.c1, state.c2
+    case.omega1, case.omega2 = state.omega1 * h, state.omega2 * h
 
 
 @inlined_kernel
