@@ -23,7 +23,6 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
     names = [motion.name for motion in both.ground]
     turns = [math.radians(angle) for angle in range(0, 180, outcomes.WORST_STEP_DEG)]
     return {
-        "motions": both.words,
         "records": [
             {"first": pair[0], "second": pair[1], "times": _times(both, pair)}
             for pair in both.pairs
