@@ -112,7 +112,7 @@ def _add_object(about: Any) -> None:
         action=_Once,
         type=float,
         metavar="FRACTION",
-        help="by how much corners of the base lie elsewhere in space, over its size: 0.001",
+        help="by how much corners of the base lie elsewhere in space, over its size, and it is turned: 0.001",
     )
     about.add_argument("--round", action="store_true", help="the base is round")
     about.add_argument(

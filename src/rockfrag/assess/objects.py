@@ -75,7 +75,8 @@ class Objects:
     faces_anywhere
         Whether nobody said how it faces the shaking, which counts in space.
     base_spread
-        By how much corners of the base lie elsewhere in space, over its extent, other for each record [-].
+        By how much corners of the base lie elsewhere in space, over its extent, and it is turned [rad], other for
+        each record [-].
     scan
         The scan and the ways in which it may stand; None where dimensions were given.
     scanned

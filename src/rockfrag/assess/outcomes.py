@@ -450,7 +450,7 @@ def in_space(
     intensity_levels
         The levels.
     spread
-        By how much corners of the base lie elsewhere, over its extent [-].
+        By how much corners of the base lie elsewhere, over its extent, and it is turned [rad].
     """
     paired = {i for pair in motions.pairs for i in pair}
     shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]

@@ -60,11 +60,14 @@ def write_space_report(
     ]
     pictures = {spec.name: draw(spec, folder / FIGURES) for spec in (ratios, levels)}
     write_captions(answer, sections, folder / FIGURES)
-    records = "all records" if study.every == 1 else f"one in {study.every} records"
+    if study.catalogue_file is not None:
+        records = f"the records of {study.catalogue_file.name}"
+    else:
+        records = f"{'all' if study.every == 1 else f'one in {study.every}'} records of FEMA P-695"
     page = render(
         title=study.title,
         lead=f"{counted(len(fractions.groupby(['base', 'slenderness', 'height_m'])), 'body', 'bodies')} under "
-        f"both components of {records} of FEMA P-695 at {study.sweep.levels} levels.",
+        f"both components of {records} at {study.sweep.levels} levels.",
         answer=answer,
         sections=sections,
         pictures=pictures,

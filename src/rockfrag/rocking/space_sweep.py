@@ -18,7 +18,7 @@ class Sweep:
     resamples
         Times that earthquakes are drawn again for intervals.
     spread
-        Largest displacement of each vertex of a base over its extent [-].
+        Largest displacement of each vertex of a base over its extent [-], and largest turn [rad].
     """
 
     lowest: float

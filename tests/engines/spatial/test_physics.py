@@ -275,3 +275,13 @@ def test_a_round_body_that_tips_and_slides_again_and_again_gains_nothing():
     assert outcome.slidings > 100
     assert outcome.gained < 1e-6
     assert abs(outcome.residual) < 1e-6
+
+
+def test_a_rim_that_rolls_near_flat_late_in_a_long_interval_gains_nothing():
+    # after a thousand short steps of a slip that hardly begins, it sticks and passes at a tilt of 1e-4 rad
+    rng = np.random.default_rng(74)
+    width, slenderness = rng.uniform(0.2, 0.8), 3.201039286321903
+    motion = synthetic_motion(rng, 3, 8.0) * (3.377270681190125 / slenderness)
+    outcome, _ = run_case(cylinder(width / 2, slenderness * width, 0.4938438887579878), motion, DT)
+    assert outcome.gained < 1e-7
+    assert abs(outcome.residual) < 1e-7
