@@ -39,10 +39,7 @@ def is_file(path: Path) -> bool:
 def check_name(name: str) -> None:
     """Check that a name which a user gave can stand in tables, figures and file names.
 
-    Raises
-    ------
-    InputError
-        If it is too long, cannot be printed, holds no letter or digit, or begins as a formula does.
+    It is short and printable, holds a letter or digit, and does not begin as a formula does.
     """
     if len(name) > LONGEST_NAME or not name.isprintable() or not any(c.isalnum() for c in name):
         raise InputError(
@@ -79,17 +76,7 @@ def file_name(name: str) -> str:
 def distinct_file_names(names: Iterable[str], found: dict[str, str] | None = None) -> None:
     """Check that names can be used, and made into files that stay apart where case is ignored too.
 
-    Parameters
-    ----------
-    names
-        The names.
-    found
-        Names that were checked before, by what they are compared as; these are added.
-
-    Raises
-    ------
-    InputError
-        As :func:`check_name`, or if a name is given twice, or two would share a file name.
+    They are added to ``found``, names that were checked before, by what they are compared as.
     """
     found = {} if found is None else found
     for name in names:

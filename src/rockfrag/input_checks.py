@@ -22,10 +22,7 @@ def shown(value: object) -> str:
 def real_number(name: str, value: object, unit: str = "") -> float:
     """Return a finite number as it is, or say in one sentence why it is none.
 
-    Raises
-    ------
-    InputError
-        For text, booleans, None, arrays, complex and infinite numbers.
+    Text, booleans, None, arrays, complex and infinite numbers are none.
     """
     is_number = isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_))
     if not is_number or not math.isfinite(value):  # type: ignore[arg-type]
@@ -34,13 +31,7 @@ def real_number(name: str, value: object, unit: str = "") -> float:
 
 
 def positive_number(name: str, value: object, unit: str = "") -> float:
-    """Return a positive number, or say in one sentence why it is none.
-
-    Raises
-    ------
-    InputError
-        For what is no finite number, zero and negative numbers.
-    """
+    """Return a finite number above 0, or say in one sentence why it is none."""
     is_number = isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_))
     if not is_number or not (math.isfinite(value) and value > 0):  # type: ignore[arg-type, operator]
         raise InputError(f"{name}: expected a positive number{_of(unit)}, got {shown(value)}.")
@@ -48,13 +39,7 @@ def positive_number(name: str, value: object, unit: str = "") -> float:
 
 
 def whole_number(name: str, value: object) -> int:
-    """Return a whole number, or say in one sentence why it is none.
-
-    Raises
-    ------
-    InputError
-        For all but integers; True and False are none.
-    """
+    """Return a whole number, or say in one sentence why it is none; True and False are none."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
         raise InputError(f"{name}: expected a whole number, got {shown(value)}.")
     return int(value)
@@ -67,10 +52,7 @@ def _of(unit: str) -> str:
 def real_array(name: str, data: object, unit: str = "") -> NDArray[np.float64]:
     """Return data as an array of floats, or say in one sentence why they cannot be used.
 
-    Raises
-    ------
-    InputError
-        For text, booleans, complex numbers, sets, mappings, ragged lists and arrays with a mask.
+    Text, booleans, complex numbers, sets, mappings, ragged lists and arrays with a mask cannot.
     """
     wanted = f"{name}: expected numbers{f' [{unit}]' if unit else ''}"
     if isinstance(data, np.ma.MaskedArray):

@@ -18,21 +18,11 @@ _LOOK_S = 0.05
 
 @contextmanager
 def locked(path: Path, patience_s: float = 0.0) -> Iterator[bool]:
-    """Hold the lock of a file while the block lasts, if it can be had.
+    """Hold the lock of a file while the block lasts, if it can be had within some seconds.
 
-    The kernel frees the lock when the process that holds it ends, however it ends; the file stays.
-
-    Parameters
-    ----------
-    path
-        The file; it is made if it is not there, and what is in it stays.
-    patience_s
-        How long to wait for a lock that another process holds [s].
-
-    Returns
-    -------
-    Whether no other process holds the lock; also true where the system or the folder knows no locks (on some
-    network drives), as nothing is known of another process there.
+    The kernel frees the lock when the process that holds it ends, however it ends; the file is made if it is not
+    there, and stays. Tells whether no other process holds the lock; also true where the system or the folder
+    knows no locks (on some network drives), as nothing is known of another process there.
     """
     file = None
     free = True

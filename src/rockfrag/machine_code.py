@@ -7,20 +7,12 @@ import numba
 
 
 def cached_njit(stamp: Callable[[], str] | None = None, **options: Any) -> Callable[[Any], Any]:
-    """Compile a function with numba and keep its machine code where that can be written.
+    """Compile a function with options of ``numba.njit`` and keep its machine code where that can be written.
 
-    Parameters
-    ----------
-    stamp
-        Gives a digest of all sources that the machine code is made of; numba looks at the function's own file
-        only, and would keep code with an old copy of another function.
-    **options
-        Options of ``numba.njit``.
-
-    Returns
-    -------
-    A decorator. A file of machine code that cannot be read is made anew, as if it were not there; without
-    a folder for it the function is compiled for this process alone.
+    ``stamp`` gives a digest of all sources that the machine code is made of; numba looks at the function's own
+    file only, and would keep code with an old copy of another function. A file of machine code that cannot be
+    read is made anew, as if it were not there; without a folder for it the function is compiled for this process
+    alone.
     """
 
     def decorate(function: Callable[..., Any]) -> Any:

@@ -35,18 +35,7 @@ def printable(text: str) -> str:
 def read_text(path: str | os.PathLike[str], most_bytes: int) -> str:
     """Read a file of text in UTF-8, or in UTF-16 with a byte order mark.
 
-    Parameters
-    ----------
-    path
-        The file.
-    most_bytes
-        Largest size.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, is too large, is a workbook, in another encoding, or holds characters
-        that no text has.
+    A file that is too large, a workbook, in another encoding, or with characters that no text has is refused.
     """
     file = Path(path)
     try:
@@ -86,13 +75,7 @@ def refuse_workbook(start: bytes, where: str) -> None:
 
 
 def table_encoding(path: str | os.PathLike[str]) -> str:
-    """Tell the encoding of a long table from its first bytes: UTF-8, UTF-16 or Western European.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read or is no text.
-    """
+    """Tell the encoding of a long table from its first bytes: UTF-8, UTF-16 or Western European."""
     source = Path(path).name
     try:
         with open(path, "rb") as file:

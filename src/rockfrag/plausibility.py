@@ -53,20 +53,7 @@ LEAST_PEAK = 0.05
 
 
 def check_density(width: float, height: float, mass: float) -> None:
-    """Refuse a block that no solid can have, whatever its depth, which is not known.
-
-    Parameters
-    ----------
-    width, height
-        Full width and height [m].
-    mass
-        Mass [kg].
-
-    Raises
-    ------
-    InputError
-        If the mass over width, height and any depth within ``DEPTHS`` is outside ``DENSITIES``.
-    """
+    """Refuse a block [m, m, kg] that no solid can have at any depth within ``DEPTHS``, which is not known."""
     thin = DEPTHS[0] * width
     thick = DEPTHS[1] * max(width, height)
     # the volume of a size of 1e-300 m is 0 in numbers
@@ -121,15 +108,10 @@ def size_warning(width: float, height: float) -> str:
 
 
 def peak_warning(peak: float, least_uplift: float | None = None) -> str:
-    """Say that a peak acceleration looks like one in g or cm/s², or return an empty text.
+    """Say that a peak acceleration [m/s²] looks like one in g or cm/s², or return an empty text.
 
-    Parameters
-    ----------
-    peak
-        Largest absolute acceleration [m/s²].
-    least_uplift
-        Least acceleration at which any of the bodies starts to rock [m/s²]. A motion that falls short
-        of it, and would not if it were in g, is doubtful too.
+    A motion that falls short of the least acceleration at which any of the bodies starts to rock, and would not
+    if it were in g, is doubtful too.
     """
     if peak > LARGEST_PEAK:
         return (

@@ -24,24 +24,15 @@ GROUP = "rockfrag.study"
 
 @dataclass(frozen=True)
 class Plugin:
-    """What a distribution adds to a study.
+    """What a distribution adds to a study."""
 
-    Attributes
-    ----------
-    schema
-        Its keys of a study's configuration, each with its JSON schema.
-    settings
-        Reads them out of the configuration, which has passed the schema, and checks them against the study.
-    rules
-        Its rules of the workflow, a file of Snakemake in the package's folder; what the report shows of their
-        outputs they append to the list ``ADDED``.
-    report
-        Returns the parts of the study's report, and what makes its first page, from those of any study.
-    """
-
-    schema: Mapping[str, Any]
+    schema: Mapping[str, Any]  # Its keys of a study's configuration, each with its JSON schema
+    # Reads them out of the configuration, which has passed the schema, and checks them against the study
     settings: Callable[[Mapping[str, Any], "Study"], Any]
+    # Its rules of the workflow, a file of Snakemake in the package's folder; what the report shows
+    # of their outputs they append to the list ``ADDED``
     rules: Path
+    # Returns the parts of the study's report, and what makes its first page, from those of any study
     report: "Callable[[Study, Parts, FirstPage], tuple[Parts, FirstPage]]"
 
 

@@ -20,26 +20,12 @@ _waiting: tuple[Callable[[Any], Any], Sequence[Any]] = (str, ())
 
 
 def in_processes(function: Callable[[T], R], things: Iterable[T], processes: int) -> list[R]:
-    """Call a function for each of several things and return the results in their order.
+    """Call a function for each of several things and return the results in their order, whatever the processes.
 
-    Parameters
-    ----------
-    function
-        What to call; it may be a local one, as the processes are copies of this one.
-    things
-        What to call it with; taken one at a time by one process, all at once by several.
-    processes
-        How many processes may work at once; the results do not depend on it.
-
-    Returns
-    -------
-    What the function returned. It should be small: a process that was killed while it handed over more than a
-    pipe takes at once would leave this one waiting for the rest.
-
-    Raises
-    ------
-    concurrent.futures.process.BrokenProcessPool
-        If one of them was killed.
+    The function may be a local one, as the processes are copies of this one. Things are taken one at a time by
+    one process, all at once by several. Results should be small: a process that was killed while it handed over
+    more than a pipe takes at once would leave this one waiting for the rest. One that was killed otherwise raises
+    ``BrokenProcessPool``.
     """
     if processes == 1 or "fork" not in multiprocessing.get_all_start_methods():
         return [function(thing) for thing in things]
@@ -61,13 +47,7 @@ def _call(number: int) -> Any:
 
 
 def end_with(process: int) -> None:
-    """End this process as soon as its parent, or another process that it belongs to, has ended.
-
-    Parameters
-    ----------
-    process
-        Number of the process that it belongs to, on the same machine.
-    """
+    """End this process as soon as its parent, or another process of that number on the same machine, has ended."""
     threading.Thread(target=_watch, args=(process, os.getppid()), daemon=True).start()
 
 

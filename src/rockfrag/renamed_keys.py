@@ -26,15 +26,7 @@ RENAMED = {
 
 
 def renamed(names: Iterable[object], known: Iterable[object]) -> str:
-    """Sentence on the first name of old whose new one belongs here, empty without one.
-
-    Parameters
-    ----------
-    names
-        Names that were given.
-    known
-        Names that are expected here.
-    """
+    """Sentence on the first name of old whose new one is among those known here, empty without one."""
     expected, given = set(known), set(names)
     for old, new in RENAMED.items():
         if old in given - expected and new in expected - given:
@@ -43,19 +35,6 @@ def renamed(names: Iterable[object], known: Iterable[object]) -> str:
 
 
 def check_names(where: str, names: Iterable[object], known: Iterable[object]) -> None:
-    """Refuse a name of old whose new one belongs here.
-
-    Parameters
-    ----------
-    where
-        File or table, for the message.
-    names, known
-        As for :func:`renamed`.
-
-    Raises
-    ------
-    InputError
-        For the first old name: where, the name, and what it is called now.
-    """
+    """Refuse a name of old whose new one is among those known here: where, the name, and what it is called now."""
     if said := renamed(names, known):
         raise InputError(f"{where}: {said}")

@@ -40,22 +40,11 @@ def read_schema(name: str) -> dict[str, Any]:
 
 
 def checked(content: object, name: str, where: str) -> dict[str, Any]:
-    """Check the content of a file against its schema, and return it with quantities in usual units.
+    """Check the content of a YAML file against a schema, and return it with quantities in usual units.
 
-    Parameters
-    ----------
-    content
-        The content as read from YAML.
-    name
-        Name of the schema, see :func:`read_schema`; ``description`` of a key says in words what is
-        expected. A key with ``quantity`` may be given in any unit of its dimension.
-    where
-        The file it came from, for the message.
-
-    Raises
-    ------
-    InputError
-        One sentence that names the file, the key, what was expected and what was found.
+    In the schema (:func:`read_schema`) the ``description`` of a key says in words what is expected, and a key
+    with ``quantity`` may be given in any unit of its dimension. The message names the file, the key, what was
+    expected and what was found.
     """
     schema = read_schema(name)
     try:

@@ -24,21 +24,13 @@ MOST_BYTES = 64 * 2**20
 
 @dataclass(frozen=True)
 class Row:
-    """One row of a table: its cells by column, and where it stands.
+    """One row of a table: its cells by column, and where it stands."""
 
-    Attributes
-    ----------
-    path, line
-        The file and the number of the line in it.
-    cells
-        Texts by the usual name of their column.
-    titles
-        Names of the columns as the file has them, where they differ.
-    """
-
+    # The file and the number of the line in it
     path: str
     line: int
-    cells: dict[str, str]
+    cells: dict[str, str]  # Texts by the usual name of their column
+    # Names of the columns as the file has them, where they differ
     titles: dict[str, str] = field(default_factory=dict)
 
     def error(self, column: str, what: str) -> InputError:
@@ -107,26 +99,9 @@ def read_rows(
 ) -> list[Row]:
     """Read a CSV file with a header line; lines that start with ``#`` are comments.
 
-    Parameters
-    ----------
-    path
-        The file; cells are separated by commas, semicolons or tabulators.
-    required, optional
-        Names of columns.
-    quantities
-        Those of them that may be given in any unit: ``width_m`` stands for ``width_cm`` too, or for
-        ``width`` with the unit in each cell.
-    least
-        Least number of rows.
-    faults
-        List to which a sentence is added for every row with too few or too many cells, which is then left out;
-        None refuses the table at the first one.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, has too few rows, lacks a required column, has one that is not
-        known, or a row has more or fewer cells than the header.
+    Cells are separated by commas, semicolons or tabulators. Columns among ``quantities`` may be given in any
+    unit: ``width_m`` stands for ``width_cm`` too, or for ``width`` with the unit in each cell. A row with too few
+    or too many cells adds a sentence to ``faults`` and is left out; without that list the table is refused.
     """
     needed, known = list(required), [*required, *optional]
     lines = read_cells(path)
@@ -174,31 +149,12 @@ def _with_point(cell: str) -> str:
 
 
 def read_cells(path: str | os.PathLike[str]) -> list[tuple[int, list[str]]]:
-    """Cells of every line that is neither empty nor a comment, with the number of the line.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is larger than :data:`MOST_BYTES`, or is not CSV in UTF-8.
-    """
+    """Cells of every line of a CSV file that is neither empty nor a comment, with the number of the line."""
     return cells_of(read_text(path, MOST_BYTES), path)
 
 
 def cells_of(text: str, path: str | os.PathLike[str]) -> list[tuple[int, list[str]]]:
-    """Cells of every line of a text that is neither empty nor a comment, with the number of the line.
-
-    Parameters
-    ----------
-    text
-        The table.
-    path
-        Where it comes from, for messages.
-
-    Raises
-    ------
-    InputError
-        If it is not CSV.
-    """
+    """Cells of every line of a text that is neither empty nor a comment, with the number of the line."""
     numbered = [
         (number, line)
         for number, line in enumerate(text.splitlines(), start=1)
@@ -219,17 +175,10 @@ def cells_of(text: str, path: str | os.PathLike[str]) -> list[tuple[int, list[st
 
 
 def join_rows(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
-    """Put the rows of tables with the same columns below each other.
+    """Put the rows of tables with the same columns below each other, numbered anew.
 
-    Parameters
-    ----------
-    tables
-        At least one table. One without rows has columns without types, which columns of numbers would take over;
-        it counts only if none has any.
-
-    Returns
-    -------
-    A table with all rows, numbered anew.
+    A table without rows has columns without types, which columns of numbers would take over; it counts only if
+    none has any.
     """
     import pandas as pd
 

@@ -86,22 +86,10 @@ def convert(value: float, unit: str, to: str) -> float:
 
 
 def quantity(given: object, to: str, unit: str | None) -> float:
-    """Read a number, or a text with a number and a unit such as ``35 cm``.
+    """Read a number, or a text with a number and a unit such as ``35 cm``, in another unit.
 
-    Parameters
-    ----------
-    given
-        Number or text.
-    to
-        Unit of the result, such as ``m``.
-    unit
-        Unit of a number without one, or None where it must stand beside the number.
-
-    Raises
-    ------
-    InputError
-        If it is no finite number, or the unit is not one of that dimension. The message is to be
-        put behind the place where it was found.
+    ``unit`` is that of a number without one, or None where it must stand beside the number. A message is to be
+    put behind the place where the number was found.
     """
     dimension = dimension_of(to)
     units = DIMENSIONS[dimension]
@@ -142,17 +130,9 @@ def _as_written(unit: str) -> str:
 
 
 def other_names(name: str) -> dict[str, str | None]:
-    """Names under which a quantity may be given, and the unit that each states.
+    """Names under which a quantity such as ``width_cm`` may be given, and the unit that each states.
 
-    Parameters
-    ----------
-    name
-        The usual name with its unit, such as ``width_cm``.
-
-    Returns
-    -------
-    ``{"width": None, "width_m": "m", "width_cm": "cm", …}``; None where the unit stands beside the
-    number.
+    ``{"width": None, "width_m": "m", "width_cm": "cm", …}``; None where the unit stands beside the number.
     """
     stem, unit = split_name(name)
     units = DIMENSIONS[dimension_of(unit)]

@@ -104,14 +104,7 @@ for _name, _pattern, _first in (
 
 
 def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Read a YAML file whose top level is a mapping.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is not UTF-8 or not YAML, is too large or too deep, gives a key
-        twice, or is no mapping.
-    """
+    """Read a YAML file whose top level is a mapping."""
     text = read_text(path, MOST_BYTES)
     try:
         content = yaml.load(text, Loader=_StrictLoader)

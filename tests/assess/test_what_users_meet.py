@@ -21,7 +21,7 @@ from rockfrag.assess.place import PERIOD_FACTORS
 from rockfrag.assess.request import make_request, read_request
 from rockfrag.assess.risk import Estimate, estimate, fraction_target
 from rockfrag.assess.scale import step_of
-from rockfrag.assess.words import assumptions, five_lines
+from rockfrag.assess.words import assumptions, five_lines, helps, range_words
 from rockfrag.building.floors import floor_motions
 from rockfrag.cli import main
 from rockfrag.errors import InputError
@@ -106,6 +106,24 @@ def test_each_joint_of_a_column_may_be_fixed(motions):
     held = request.objects.body.rigidly_joined()
     assert held.mass == pytest.approx(request.objects.body.mass)
     assert found.fraction.lower <= found.fraction.value <= found.fraction.upper
+
+
+def test_what_helps_says_what_the_positions_say(motions):
+    """Changes of a column are compared by few motions; where none of these topples it, all of them still count."""
+    plinths = [{"width": "50 cm", "height": "40 cm"}, {"width": "70 cm", "height": "30 cm"}]
+    request = asked(width="30 cm", height="90 cm", pedestal=plinths, pga="0.38 g")
+    found = assess_with(request, motions)
+    _, _, toppled = found.counts
+    assert 0 < toppled < 0.2 * len(motions.ground)
+    assert found.by_arrangement["fixed to its pedestals"] == 0
+    assert helps(found).startswith(
+        "Fixing the object and its pedestals to each other leaves no motion that topples it"
+    )
+
+
+def test_limits_near_certainty_are_told_apart():
+    assert range_words(0.9963, 0.99998) == "99.6 to 99.998 %"
+    assert range_words(0.12, 1.0) == "12 to 100 %"
 
 
 def test_friction_and_a_measured_restitution_go_together(motions):

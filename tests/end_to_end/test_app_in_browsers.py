@@ -1,6 +1,7 @@
 """The page of ``rockfrag app`` as browsers show it: it answers, loads nothing, and refuses in sentences."""
 
 import json
+import random
 import time
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,7 +13,9 @@ from rockfrag.assess.app.writing import write_app
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import make_request, read_request
 from rockfrag.assess.words import five_lines
+from rockfrag.cli import main
 
+from ..app_forms import options_of, some_form
 from .browsers import Browser
 
 FORM = {"width": "25 cm", "height": "1 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
@@ -76,8 +79,72 @@ def test_it_answers_in_the_words_of_assess(browser, app_page, motions, width, da
     assert browser.console == []
 
 
-def test_it_loads_nothing(browser, app_page):
-    """There is no network in these tests, and the page asks for none."""
+ANSWER = """
+new Promise(done => {{
+  document.addEventListener('answer', ({{detail}}) => {{ if (detail.last) done(detail.found); }});
+  const form = {form}, names = [...document.querySelectorAll('#form [id^=field-]')];
+  for (const field of names.filter(one => !one.id.endsWith('-error')))
+    field.value = form[field.id.slice(6)] ?? (field.options ? field.options[0].value : '');
+  names[0].dispatchEvent(new Event('input'));
+}}).then(found => JSON.stringify(found, (key, v) => Number.isNaN(v) || v === Infinity ? null : v))
+"""
+
+
+def compare_with_command(browser, own_records, folder, capsys, count) -> None:
+    """The page that a command writes gives the shares of ``assess --json`` to the bit, and its intervals."""
+    records, rng = ["--record", str(own_records / "catalogue.csv")], random.Random(11)
+    page = folder / "assess.html"
+    assert main(["app", *records, *options_of(FORM), "--output", str(page)]) == 0
+    browser.open(page)
+    assert browser.run(STAGE)
+    compared = 0
+    while compared < count:
+        form = some_form(rng)
+        capsys.readouterr()
+        if main(["assess", *records, *options_of(form), "--json", "--output", str(folder)]) != 0:
+            continue
+        said = json.loads(capsys.readouterr().out)
+        found = json.loads(browser.run(ANSWER.format(form=json.dumps(form))))
+        assert found["shares"] == said["fragility"]["fraction"], form
+        for mine, his in (("fraction", "fraction_toppling"), ("probability", "probability")):
+            assert (found.get(mine) is None) == (said[his] is None), form
+            for key in ("value", "lower", "upper") if said[his] else ():
+                same = pytest.approx(said[his][key], rel=1e-9, abs=1e-12)
+                assert found[mine][key] == same, (form, mine, key)
+        compared += 1
+    assert browser.console == []
+
+
+def test_its_figures_are_those_of_the_command(browser, own_records, tmp_path, capsys):
+    compare_with_command(browser, own_records, tmp_path, capsys, 3)
+
+
+@pytest.mark.slow
+def test_its_figures_are_those_of_the_command_of_200_objects(
+    browser, own_records, tmp_path, capsys
+):
+    compare_with_command(browser, own_records, tmp_path, capsys, 200)
+
+
+REFUSED = """
+<script>
+window.asked = [];
+for (const name of ["fetch", "XMLHttpRequest", "WebSocket", "EventSource", "RTCPeerConnection", "Image"])
+  window[name] = function () { asked.push(name); throw new Error("refused"); };
+navigator.sendBeacon = () => { asked.push("sendBeacon"); throw new Error("refused"); };
+addEventListener("securitypolicyviolation", (event) => asked.push(event.blockedURI));
+</script>
+"""
+
+
+def test_it_loads_nothing(browser, app_page, tmp_path):
+    """There is no network in these tests, the page asks for none, and all ways to ask for one are refused."""
+    path = tmp_path / "refused.html"
+    path.write_text(app_page.read_text().replace("<head>", f"<head>{REFUSED}", 1))
+    browser.open(path)
+    assert browser.run(STAGE)
+    assert browser.run("location.protocol") == "file:"
+    assert browser.run("window.asked") == []
     browser.open(app_page)
     assert browser.run(STAGE)
     loaded = browser.run("performance.getEntriesByType('resource').map(entry => entry.name)")
@@ -200,15 +267,18 @@ def test_readers_of_every_kind_can_use_it(browser, app_page):
     if axe is None or axe.origin is None:
         pytest.skip("axe-core-python is not installed")
     script = (Path(axe.origin).parent / "axe.min.js").read_text(encoding="utf-8")
-    for dark in (False, True):
-        browser.open(app_page, 1400, 900, dark=dark)
+    for width, dark in ((1400, False), (1400, True), (390, False), (390, True)):
+        browser.open(app_page, width, 900, dark=dark)
         assert browser.run(STAGE)
+        browser.run("document.getElementById('keep').click()")
+        waited(browser, "document.querySelectorAll('#objects tr').length === 1")
         browser.run("document.querySelectorAll('details').forEach(one => { one.open = true; })")
         browser.run(f"(() => {{ {script} }})() || 1")
         found = browser.run(
             "axe.run().then(found => found.violations.map(one => [one.id, one.nodes[0].html]))"
         )
-        assert found == []
+        assert found == [], (width, dark)
+        assert browser.run("document.documentElement.scrollWidth <= innerWidth")
 
 
 def test_a_keyboard_is_enough(browser, app_page):

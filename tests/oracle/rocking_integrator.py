@@ -8,13 +8,13 @@ nothing is shared with the fast kernel but the bodies.
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
-from rockfrag.errors import InputError
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.units import GRAVITY
@@ -26,7 +26,6 @@ from .rocking_model import (
     Pair,
     State,
 )
-from .rocking_response import ReferenceContactEvent, ReferenceResponse
 
 RTOL, ATOL = 1e-10, 1e-14
 
@@ -54,6 +53,61 @@ _ENDS = np.array([1.0])
 
 Values = NDArray[np.float64]
 Watch = tuple[str, int]
+
+
+@dataclass(frozen=True)
+class ReferenceContactEvent:
+    """One change of the contact state.
+
+    ``kind`` is "opening", "impact", "closing" (an impact too weak to part again) or "overturning";
+    angular velocities in [rad/s], columns as in the response.
+    """
+
+    time: float
+    kind: str
+    before: tuple[int, ...]
+    after: tuple[int, ...]
+    theta: tuple[float, ...]
+    omega_before: tuple[float, ...]
+    omega_after: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class ReferenceResponse:
+    """Response at the samples of the motion and, if it goes on, every dt after its end.
+
+    Parameters
+    ----------
+    time
+        Time [s], shape (n,); the last sample before overturning is the last one.
+    theta, omega
+        Rotation [rad] and angular velocity [rad/s], shape (n, 1) or (n, 2): pedestal, statue.
+    state
+        Contact states, shape (n, 1) or (n, 2): ground, interface.
+    contact_events
+        Every contact event in order.
+    overturned
+        Whether a block passed π/2.
+    overturned_body
+        0 for none, 1 for the lone block or the pedestal, 2 for the statue.
+    overturning_time
+        When it passed π/2 [s]; NaN if none did.
+    at_rest
+        Whether everything stands in full contact at the end.
+    given_way
+        Impacts in which a measured restitution gave way, lest energy grow.
+    """
+
+    time: NDArray[np.float64]
+    theta: NDArray[np.float64]
+    omega: NDArray[np.float64]
+    state: NDArray[np.int8]
+    contact_events: tuple[ReferenceContactEvent, ...]
+    overturned: bool
+    overturned_body: int
+    overturning_time: float
+    at_rest: bool
+    given_way: int
 
 
 def simulate_reference(
@@ -98,36 +152,18 @@ def simulate_reference(
         When to stop at the latest [s]; by default when all is at rest or a block has overturned.
     chatter
         Parting speed after an impact, over p, below which a contact is closed [-].
-
-    Raises
-    ------
-    InputError
-        If the motion is not a finite sequence of two samples or more, a number is out of range, or
-        a restitution would create energy.
     """
     motion = np.asarray(acceleration, dtype=float)
-    if motion.ndim != 1 or motion.size < 2 or not np.all(np.isfinite(motion)):
-        raise InputError("acceleration: the motion must be two or more finite numbers of m/s².")
-    for name, value in (("dt", dt), ("g", g), ("duration", duration)):
-        if value is not None and not (math.isfinite(value) and value > 0):
-            raise InputError(f"{name}: must be a positive number, got {value}.")
     up = np.zeros(motion.size) if vertical is None else np.asarray(vertical, dtype=float)
-    if up.shape != motion.shape or not np.all(np.isfinite(up)):
-        raise InputError(f"vertical: needs {motion.size} finite numbers of m/s².")
     model = (LinearModel if linear else Model)(body, g, restitution)
-    theta = _start("theta0", body, theta0)
-    omega = _start("omega0", body, omega0)
+    theta, omega = _start(theta0), _start(omega0)
     return _Run(model, (motion, up), dt, theta, omega, chatter * model.frequency).response(duration)
 
 
-def _start(name: str, body: Block | Stack, value: ArrayLike | None) -> Pair:
-    if value is None:
-        return 0.0, 0.0
-    numbers = np.atleast_1d(np.asarray(value, dtype=float))
-    wanted = 1 if isinstance(body, Block) else 2
-    if numbers.shape != (wanted,) or not np.all(np.isfinite(numbers)):
-        raise InputError(f"{name}: needs {wanted} finite number(s), one per block, got {value!r}.")
-    return (0.0, float(numbers[0])) if wanted == 1 else (float(numbers[0]), float(numbers[1]))
+def _start(value: ArrayLike | None) -> Pair:
+    """Values of the lower and the upper body; a lone block is the upper one."""
+    numbers = np.atleast_1d(0.0 if value is None else np.asarray(value, dtype=float))
+    return (0.0 if numbers.size == 1 else float(numbers[0])), float(numbers[-1])
 
 
 def _sign(value: float) -> int:

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
-from rockfrag.errors import InputError
 from rockfrag.rocking.measured_restitution import MeasuredRestitution
 from rockfrag.system.blocks import Block, Stack, Vector
 
@@ -107,7 +106,7 @@ class Model:
         self.m2, self.i2, self.b2 = upper.mass, upper.centroidal_inertia, upper.b
         self._r2 = _affine(arms)
         self.frequency = max(upper.frequency(s, g) for s in (1, -1))
-        self._laws = _checked_laws(body, restitution)
+        self._laws = _laws_by_contact(body, restitution)
 
     # ---------------------------------------------------------------- motion
 
@@ -475,12 +474,6 @@ def impulse_place(block: Block, old_pivot: int, value: float) -> float:
     return (centre.x - lever) / block.b
 
 
-def largest_restitution(block: Block, new_pivot: int | None = None) -> float:
-    """Largest ratio of angular velocities that does not create energy, on one pivot or either [-]."""
-    ratios = {s: block.pivot_inertia(-s) / block.pivot_inertia(s) for s in (1, -1)}
-    return math.sqrt(min(ratios.values()) if new_pivot is None else ratios[new_pivot])
-
-
 @dataclass(frozen=True)
 class Law:
     """How one interface comes off impacts that end on one corner.
@@ -496,7 +489,7 @@ class Law:
 Laws = dict[int, Law | None]
 
 
-def _checked_laws(body: Block | Stack, restitution: object) -> tuple[Laws, Laws]:
+def _laws_by_contact(body: Block | Stack, restitution: object) -> tuple[Laws, Laws]:
     """Laws of ground and interface by the corner that comes down."""
     name = "position"
     if isinstance(restitution, MeasuredRestitution):
@@ -506,42 +499,23 @@ def _checked_laws(body: Block | Stack, restitution: object) -> tuple[Laws, Laws]
         return none, none
     if isinstance(body, Block):
         # every law is that of the lone block
-        return none, _laws_of("restitution", body, restitution, "ratio")
-    if not (isinstance(restitution, tuple | list) and len(restitution) == 2):
-        raise InputError(
-            f"restitution: a stack needs a pair (ground, interface), got {restitution!r}."
-        )
+        return none, _laws_of(body, restitution, "ratio")
     ground, interface = restitution
-    return (
-        _laws_of("restitution[0] (ground)", body.lower, ground, name),
-        _laws_of("restitution[1] (interface)", body.contact_upper, interface, name),
-    )
+    return _laws_of(body.lower, ground, name), _laws_of(body.contact_upper, interface, name)
 
 
-def _laws_of(where: str, block: Block, value: object, name: str) -> Laws:
+def _laws_of(block: Block, value: object, name: str) -> Laws:
     if value is None:
         return {1: None, -1: None}
     laws: Laws = {}
     for corner in (1, -1):
-        if isinstance(value, tuple | list):
-            number, largest = value[(1 - corner) // 2], largest_restitution(block, corner)
-        else:
-            number, largest = value, largest_restitution(block)
-        if not (isinstance(number, int | float) and 0 <= number <= largest * (1 + 1e-12)):
-            raise InputError(
-                f"{where}: a ratio of angular velocities must lie between 0 and {largest:.6g}, above "
-                f"which an impact would create energy, got {number!r}."
-            )
+        pair = isinstance(value, tuple | list)
+        number = float(value[(1 - corner) // 2] if pair else value)
         by_momentum = block.momentum_restitution(-corner)
         if name == "ratio":
-            laws[corner] = Law("ratio", float(number))
+            laws[corner] = Law("ratio", number)
         elif name == "position" and number >= by_momentum:
-            laws[corner] = Law("position", impulse_place(block, -corner, float(number)))
-        elif by_momentum <= 0:
-            raise InputError(
-                f"{where}: momentum leaves this block nothing to rock on with, so the law {name} has "
-                "nothing to multiply; choose the law position or ratio."
-            )
+            laws[corner] = Law("position", impulse_place(block, -corner, number))
         else:
-            laws[corner] = Law("couple", float(number) / by_momentum)
+            laws[corner] = Law("couple", number / by_momentum)
     return laws

@@ -10,9 +10,8 @@ from obspy import UTCDateTime
 from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
 from rockfrag.errors import InputError
-from rockfrag.records.identify import FORMATS
 from rockfrag.records.parsing.quantities import TO_SI
-from rockfrag.records.read import read_motion, read_record
+from rockfrag.records.read import FORMATS, read_motion, read_record
 
 
 def claims(source):

@@ -5,9 +5,8 @@ import pytest
 from obspy import Stream, Trace
 
 from rockfrag.errors import InputError
-from rockfrag.records.identify import FORMATS
 from rockfrag.records.parsing.text_file import NotAcceleration
-from rockfrag.records.read import read_motion, read_record
+from rockfrag.records.read import FORMATS, read_motion, read_record
 from rockfrag.units import GRAVITY
 
 N = 400

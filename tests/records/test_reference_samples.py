@@ -7,8 +7,7 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.motions import intensity
-from rockfrag.records.identify import FORMATS
-from rockfrag.records.read import read_motion, read_record
+from rockfrag.records.read import FORMATS, read_motion, read_record
 from rockfrag.units import GRAVITY
 
 # file, unit to give, format, station, start time, samples, dt [s], unit stored, PGA [g] of each

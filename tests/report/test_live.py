@@ -11,14 +11,17 @@ import pytest
 
 from rockfrag.engines.contract import Engine
 from rockfrag.errors import InputError
+from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.report.live import MOST_SAMPLES, Start, carried, live_kernel, swept
 from rockfrag.report.live.frames import frames_svg, outlines
+from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page
 from rockfrag.rocking import Block, Column, Stack, overturns
 from rockfrag.rocking.browser import ENGINE
 from rockfrag.rocking.options import system_of
+from rockfrag.system.system import turned_about_vertical
 
 STATUE = Block(0.3, 1.2, 110.0)
 BODIES = {
@@ -50,6 +53,29 @@ def test_no_name_ends_the_script():
     html = live_kernel(BODIES, [motion("</script><b>")])
     assert html.count("</script>") == 2
     assert "<b>" not in html
+
+
+def test_bodies_in_space_stand_in_a_small_page_with_both_components():
+    bodies = {
+        "a </script> vase": Standing(
+            Block(0.3, 1.0, 90.0, round=True).system(), Block(0.5, 0.6, 350.0)
+        ),
+        "turned": Standing(
+            turned_about_vertical(Block(0.3, 1.2, 110.0, depth=0.4, cg_offset=0.02).system(), 30.0)
+        ),
+    }
+    both = GroundMotion(motion(), motion("other"))
+    html = live_in_space(bodies, [both] * 100, ["the drums"])
+    assert html.count("</script>") == 2
+    assert "not here: the drums." in html and "The pedestal stays" in html
+    data = data_of(html)
+    sizes = data["bodies"][1]["sizes"]
+    assert [sizes[key] for key in ("width", "depth", "cgOffset")] == pytest.approx([0.3, 0.4, 0.02])
+    assert sizes["turn"] == pytest.approx(math.radians(30))
+    assert len(data["motions"]) == 50
+    assert data["motions"][0]["peak_g"] == pytest.approx(motion().pga / 9.81)
+    # what the simulation takes of the page
+    assert len(live_in_space(bodies, [both])) - len(data["motions"][0]["samples"]) * 6400 < 100_000
 
 
 def test_what_the_kernel_of_the_page_does_not_know_is_left_out_by_name():

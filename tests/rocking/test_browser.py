@@ -296,7 +296,8 @@ def test_outcomes_are_those_of_overturns(tmp_path, made_motions):
 
 
 @pytest.mark.parametrize(
-    ("name", "largest"), [("integrate", 60_000), ("ensemble", 270_000), ("ensemble-fused", 130_000)]
+    ("name", "largest"),
+    [("integrate", 60_000), ("space", 100_000), ("ensemble", 270_000), ("ensemble-fused", 130_000)],
 )
 def test_a_module_is_small_and_needs_nothing(name, largest):
     module = module_bytes(name)
@@ -321,7 +322,8 @@ def test_a_module_is_small_and_needs_nothing(name, largest):
     importlib.util.find_spec("ziglang") is None, reason="ziglang, the linker, is not installed"
 )
 @pytest.mark.parametrize(
-    ("name", "seed"), [("integrate", "1"), ("ensemble", "2"), ("ensemble-fused", "1")]
+    ("name", "seed"),
+    [("integrate", "1"), ("space", "2"), ("ensemble", "2"), ("ensemble-fused", "1")],
 )
 def test_a_module_is_that_of_the_kernels(name, seed, tmp_path):
     again = (

@@ -6,13 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.errors import InputError
 from rockfrag.rocking import Block, Stack, simulate
 
 from ..oracle.closed_forms import next_amplitude, quarter_period
-from ..oracle.rocking_integrator import simulate_reference
-from ..oracle.rocking_model import Model, largest_restitution
-from ..oracle.rocking_response import ReferenceResponse
+from ..oracle.rocking_integrator import ReferenceResponse, simulate_reference
+from ..oracle.rocking_model import Model
 from .reference_bodies import T2, TOWERS, P, random_motion, random_stack, uniform
 
 STILL = np.zeros(2)
@@ -84,16 +82,6 @@ def test_a_measured_restitution_holds_for_a_crooked_block_on_either_pivot() -> N
         assert contact_event.omega_after[0] == pytest.approx(
             0.8 * contact_event.omega_before[0], rel=1e-12
         )
-
-
-def test_a_restitution_that_would_create_energy_is_refused_with_the_largest_possible() -> None:
-    with pytest.raises(InputError, match="between 0 and 1,"):
-        simulate_reference(T2, STILL, 0.01, restitution=1.01)
-    crooked = Block(0.4, 1.2, 300.0, cg_offset=0.1)
-    largest = largest_restitution(crooked)
-    assert largest < 1
-    with pytest.raises(InputError, match=f"{largest:.6g}"):
-        simulate_reference(crooked, STILL, 0.01, restitution=largest + 1e-6)
 
 
 def test_rocking_starts_exactly_where_the_criterion_is_met() -> None:
@@ -240,19 +228,3 @@ def test_the_outcome_does_not_depend_on_the_chatter_threshold() -> None:
     n = min(len(r.time) for r in responses)
     assert responses[0].overturned == responses[1].overturned
     assert np.abs(responses[0].theta[:n] - responses[1].theta[:n]).max() < 1e-3
-
-
-@pytest.mark.parametrize(
-    ("motion", "dt"),
-    [([], 0.01), ([1.0], 0.01), ([0.0, np.nan], 0.01), ([0.0, 1.0], 0.0), ([0.0, 1.0], np.inf)],
-)
-def test_a_motion_that_is_none_is_refused(motion: list[float], dt: float) -> None:
-    with pytest.raises(InputError):
-        simulate_reference(T2, motion, dt)
-
-
-def test_a_start_that_does_not_fit_the_body_is_refused() -> None:
-    with pytest.raises(InputError, match="theta0"):
-        simulate_reference(Stack(P, T2), STILL, 0.01, theta0=0.1)
-    with pytest.raises(InputError, match="pair"):
-        simulate_reference(Stack(P, T2), STILL, 0.01, restitution=0.9)

@@ -242,6 +242,4 @@ def test_a_law_that_does_not_exist_and_one_with_nothing_to_multiply_are_refused(
     assert flat.lower.momentum_restitution() < 0
     with pytest.raises(InputError, match="nothing to multiply"):
         simulate(flat, STILL, 0.002, restitution=MeasuredRestitution((0.3, None), "couple"))
-    with pytest.raises(InputError, match="nothing to multiply"):
-        Model(flat, 9.81, MeasuredRestitution((0.3, None), "couple"))
     assert math.isfinite(simulate(flat, STILL, 0.002, restitution=(0.3, None)).theta.max())

@@ -152,33 +152,18 @@ class Assessment:
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Under which levels of which motions objects are compared; the same for all in one place.
+    """Under which levels of which motions objects are compared; the same for all in one place."""
 
-    Attributes
-    ----------
-    motions
-        The motions.
-    fewer
-        Those under which changes are compared.
-    curves
-        The hazard that counts, and that of PGV beside it if there is one.
-    level
-        Level of shaking at the site.
-    intensity_levels, fewer_intensity_levels
-        Levels of both sets.
-    brief
-        Whether directions, and ways to stand other than its own, are left out.
-    compares_few
-        Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space.
-    """
-
-    motions: MotionSet
-    fewer: MotionSet
+    motions: MotionSet  # The motions
+    fewer: MotionSet  # Those under which changes are compared
+    # The hazard that counts, and that of PGV beside it if there is one
     curves: tuple[HazardCurve, ...]
-    level: Level | None
+    level: Level | None  # Level of shaking at the site
+    # Levels of both sets
     intensity_levels: IntensityLevels
     fewer_intensity_levels: IntensityLevels
-    brief: bool
+    brief: bool  # Whether directions, and ways to stand other than its own, are left out
+    # Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space
     compares_few: bool
 
     @property
@@ -189,25 +174,19 @@ class Plan:
 
 @dataclass(frozen=True, eq=False)
 class Shaken:
-    """What motions as recorded do to an object.
+    """What motions as recorded do to an object."""
 
-    Attributes
-    ----------
-    arrangements
-        Outcomes of each way in which it can stand, as it stands first.
-    moved
-        Outcomes with each property moved to both sides.
-    before, changed
-        Outcomes as it stands, and with each mitigation, under the same motions.
-    planar
-        Outcomes as it stands in one plane, along one component at a time; None where that is the answer.
-    """
-
+    # Outcomes of each way in which it can stand, as it stands first
     arrangements: Mapping[str, ObjectOutcomes]
-    moved: Sequence[Moved[ObjectOutcomes]]
+    moved: Sequence[Moved[ObjectOutcomes]]  # Outcomes with each property moved to both sides
+    # Outcomes as it stands, and with each mitigation, under the same motions
     before: ObjectOutcomes
+    # Outcomes as it stands in one plane, along one component at a time; None where that is the answer
     planar: ObjectOutcomes | None
     changed: Mapping[str, ObjectOutcomes]
+    alike: Mapping[
+        str, str
+    ]  # Mitigations that leave it in one of the arrangements, and the name of that
 
 
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
@@ -237,33 +216,13 @@ def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = Fal
 
 
 def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) -> Assessment:
-    """Assess one object with motions that are at hand.
-
-    Parameters
-    ----------
-    request
-        What is asked.
-    motions
-        The motions at the place.
-    brief
-        Leave out directions, and compare changes with few motions and levels.
-    """
+    """Assess one object with motions that are at hand; ``brief`` leaves out as :func:`assess` does."""
     plan = plan_for(request, motions, brief=brief)
     return assessed(request, plan, shake_all([request], plan)[0])
 
 
 def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
-    """Return under which levels of which motions an object is shaken.
-
-    Parameters
-    ----------
-    request
-        What is asked.
-    motions
-        The motions at the place.
-    brief
-        Compare changes with few motions and levels.
-    """
+    """Return under which levels of which motions an object is shaken; ``brief`` takes few motions and levels."""
     objects = request.objects
     if objects.round or (objects.in_space and motions.pairs):
         motions = motions.with_both_components()
@@ -289,15 +248,7 @@ def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
 
 
 def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
-    """Shake objects in one place at once; of each the same results as alone, to the bit.
-
-    Parameters
-    ----------
-    requests
-        Objects in places that shake alike.
-    plan
-        Motions and levels.
-    """
+    """Shake objects in one place at once; of each the same results as alone, to the bit."""
     objects = [request.objects for request in requests]
     ways = [dict(object_.arrangements) for object_ in objects]
     if plan.brief:
@@ -305,6 +256,14 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     arrangements = outcomes_of_each(objects, ways, plan.motions, plan.intensity_levels)
     under = (plan.motions, plan.intensity_levels)
     changes = [mitigations_of(object_) for object_ in objects]
+    alike = [
+        {name: way for name, body in change.items() for way in bodies if bodies[way] == body}
+        for change, bodies in zip(changes, ways, strict=True)
+    ]
+    changes = [
+        {name: body for name, body in change.items() if name not in known}
+        for change, known in zip(changes, alike, strict=True)
+    ]
     if plan.compares_few:
         # of few motions the object as it stands comes first, then with each mitigation
         under = (plan.fewer, plan.fewer_intensity_levels)
@@ -314,7 +273,9 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     compared = outcomes_of_each(objects, changes, *under)
     moved = _moved(requests, plan)
     found = []
-    for object_, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
+    for object_, way, change, sides, known in zip(
+        objects, arrangements, compared, moved, alike, strict=True
+    ):
         before = change.pop("") if plan.compares_few else next(iter(way.values()))
         if object_.pad_friction is not None:
             outcomes, slip = on_pad(object_, object_.pad_friction, *under)
@@ -323,7 +284,7 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
         if plan.motions.both and not plan.brief:
             flat = object_.in_plane()
             planar = outcomes_of(flat, {"": object_.body}, plan.motions, plan.intensity_levels)[""]
-        found.append(Shaken(way, sides, before, planar, change))
+        found.append(Shaken(way, sides, before, planar, change, known))
     return found
 
 
@@ -345,17 +306,7 @@ def _pad_words(
 
 
 def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
-    """Say what follows from an object's outcomes.
-
-    Parameters
-    ----------
-    request
-        What is asked.
-    plan
-        Motions and levels.
-    shaken
-        What the motions do to it.
-    """
+    """Say what follows from what the motions of a plan do to an object."""
     objects, motions, level = request.objects, plan.motions, plan.level
     hazard = plan.curves[0] if plan.curves else None
     measure = plan.intensity_levels.measure
@@ -442,15 +393,16 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
         return shaken
     few = conversion.of(plan.fewer)
     compared = few if plan.compares_few else conversion
-    return Shaken(
-        {
+    return replace(
+        shaken,
+        arrangements={
             name: conversion.at_site(arrangement)
             for name, arrangement in shaken.arrangements.items()
         },
-        [change.turned(few.at_site) for change in shaken.moved],
-        compared.at_site(shaken.before),
-        None if shaken.planar is None else conversion.at_site(shaken.planar),
-        {name: compared.at_site(changed) for name, changed in shaken.changed.items()},
+        moved=[change.turned(few.at_site) for change in shaken.moved],
+        before=compared.at_site(shaken.before),
+        planar=None if shaken.planar is None else conversion.at_site(shaken.planar),
+        changed={name: compared.at_site(changed) for name, changed in shaken.changed.items()},
     )
 
 
@@ -568,7 +520,12 @@ def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
 
 
 def _mitigations(request: Request, target: Target, shaken: Shaken) -> tuple[Mitigation, ...]:
-    found = compare(target, shaken.before, shaken.changed)
+    ways = shaken.arrangements
+    now = next(iter(ways.values()))
+    known = {name: ways[way] for name, way in shaken.alike.items()}
+    found = [*compare(target, shaken.before, shaken.changed), *compare(target, now, known)]
+    # changes are ranked by what they do to the same motions, and by what is left where none topples the object
+    found.sort(key=lambda each: (math.isnan(each.factor), np.nan_to_num(each.factor), each.value))
     # an amplitude helps by growing, a probability by shrinking
     grows = request.level is None and not request.hazard
     return tuple(reversed(found) if grows else found)

@@ -13,13 +13,7 @@ from rockfrag.assess.words import assumptions, does_not_move, five_lines, qualit
 
 
 def as_json(found: Assessment) -> str:
-    """Return the answer as JSON; infinite and unknown numbers are null.
-
-    Parameters
-    ----------
-    found
-        The assessment.
-    """
+    """Return the answer as JSON; infinite and unknown numbers are null."""
     outcomes = found.outcomes
     request = found.request
     answer = {

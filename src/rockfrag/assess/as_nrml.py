@@ -12,11 +12,6 @@ def as_nrml(found: Assessment) -> str:
 
     OpenQuake joins levels by straight lines in the level, the assessment in its logarithm; at 80 levels the rates
     differ by less than 1 %.
-
-    Parameters
-    ----------
-    found
-        The assessment.
     """
     name, outcomes = found.request.name, found.outcomes
     reached = {*outcomes.others, OVERTURNS}

@@ -63,69 +63,35 @@ MOST_LEVELS = 8
 
 @dataclass(frozen=True)
 class SiteVelocity:
-    """PGV that comes with levels of another measure at a site: ln of their ratio [s] is normal.
+    """PGV that comes with levels of another measure at a site: ln of their ratio [s] is normal."""
 
-    Attributes
-    ----------
-    log_ratio
-        Mean of ln ratio at levels of the measure.
-    spread
-        Its standard deviation from one earthquake to the next [-].
-    """
-
-    log_ratio: Callable[[Floats], Floats]
-    spread: float
+    log_ratio: Callable[[Floats], Floats]  # Mean of ln ratio at levels of the measure
+    spread: float  # Its standard deviation from one earthquake to the next [-]
 
 
 @dataclass(frozen=True)
 class Conversion:
-    """What is known of the velocity at a site whose shaking is given in another measure.
+    """What is known of the velocity at a site whose shaking is given in another measure."""
 
-    Attributes
-    ----------
-    measure
-        The measure that is known.
-    fragility
-        P(topples | measure, PGV over the measure), columns ``im`` and ``ratio_s``.
-    weight
-        Effect of ln ratio over that of ln measure: 0 where PGV says nothing beside the measure, 1 where it says
-        all, up to 2 where displacement does [-].
-    logs
-        ln (PGV over the measure [s]) of each motion, shape (motions,).
-    known
-        What is known of the site; None if nothing is.
-    spread
-        Standard deviation of the mean of ln ratio at the site [-].
-    shift
-        Standard deviation of ln level that follows, with the error of the weight [-].
-    by_statics
-        Whether the level alone decides what rocks, as PGA does on the ground.
-    words
-        A sentence for the page.
-    """
-
-    measure: IntensityMeasure
+    measure: IntensityMeasure  # The measure that is known
+    # P(topples | measure, PGV over the measure), columns ``im`` and ``ratio_s``
     fragility: VectorFragility
+    # Effect of ln ratio over that of ln measure: 0 where PGV says nothing beside the measure, 1
+    # where it says all, up to 2 where displacement does [-]
     weight: float
-    logs: Floats
-    known: SiteVelocity | None
-    spread: float
-    shift: float
-    by_statics: bool
-    words: str
+    logs: Floats  # ln (PGV over the measure [s]) of each motion, shape (motions,)
+    known: SiteVelocity | None  # What is known of the site; None if nothing is
+    spread: float  # Standard deviation of the mean of ln ratio at the site [-]
+    shift: float  # Standard deviation of ln level that follows, with the error of the weight [-]
+    by_statics: bool  # Whether the level alone decides what rocks, as PGA does on the ground
+    words: str  # A sentence for the page
 
     def of(self, motions: MotionSet) -> "Conversion":
         """The same for other motions of the set."""
         return replace(self, logs=motions.log_ratios(self.measure))
 
     def beyond(self, level: Level | None) -> str:
-        """What to say where the velocity of the site is unlike that of any motion; empty where it is not.
-
-        Parameters
-        ----------
-        level
-            Level of shaking at the site.
-        """
+        """What to say where the velocity of the site is unlike that of any motion; empty where it is not."""
         if self.known is None or level is None:
             return ""
         mean = float(self.known.log_ratio(np.array([level.value]))[0])
@@ -137,13 +103,7 @@ class Conversion:
         return f"A PGV of {_per_unit(mean, self.measure)} is that of no motion ({ends}); check both levels."
 
     def at_site(self, outcomes: ObjectOutcomes) -> ObjectOutcomes:
-        """Outcomes under motions with the velocity of the site; as they are where nothing is known of it.
-
-        Parameters
-        ----------
-        outcomes
-            Outcomes under the motions as recorded.
-        """
+        """Outcomes under motions with the velocity of the site; as they are where nothing is known of it."""
         return outcomes if self.known is None else self._moved(outcomes, self.known)
 
     def sides(self, outcomes: ObjectOutcomes) -> tuple[ObjectOutcomes, ObjectOutcomes] | None:
@@ -202,26 +162,8 @@ def find_conversion(
 ) -> Conversion | None:
     """Fit the fragility in two measures, and gather what is known of the velocity at the site.
 
-    Parameters
-    ----------
-    outcomes
-        Of the object, in the measure that is known.
-    motions
-        The motions.
-    given
-        What is known of the earthquakes of the site; nothing if None.
-    level
-        Level of shaking, perhaps with its PGV.
-    curves
-        Hazard in the measure and, if known, in PGV; empty if there is none.
-    by_statics
-        Whether the level alone decides what rocks.
-    brief
-        Fit without an interaction, as for one of many objects.
-
-    Returns
-    -------
-    The conversion; None in PGV, or where the outcomes allow no fit.
+    Returns None in PGV, or where the outcomes allow no fit. ``curves`` are the hazard in the measure and, if
+    known, in PGV; with ``by_statics`` the level alone decides what rocks; ``brief`` fits without an interaction.
     """
     measure = outcomes.intensity_levels.measure
     if measure == PGV:
@@ -319,13 +261,9 @@ class OfTwoCurves(SiteVelocity):
     If ln PGV is normal about a line in ln measure with the standard deviation s, and the rate of PGV falls with
     the exponent k, the level of PGV at a rate lies k s²/2 above the mean of ln PGV at the measure's level of that
     rate.
-
-    Attributes
-    ----------
-    first, velocity
-        Hazard curves of the measure and of PGV.
     """
 
+    # Hazard curves of the measure and of PGV
     first: HazardCurve
     velocity: HazardCurve
 

@@ -17,47 +17,24 @@ STEP_DEG = 15
 
 @dataclass(frozen=True)
 class Directions:
-    """Fraction of the records that topple the object, by how it stands to them.
+    """Fraction of the records that topple the object, by how it stands to them."""
 
-    Attributes
-    ----------
-    factor
-        Level that topples half of the records in their worst direction over the one in any direction [-]; NaN
-        where neither reaches half.
-    fraction, worst_fraction
-        Fraction of records and directions, and of records in their worst direction, that topple the object at the
-        level asked about; NaN where none was.
-    records
-        Number of records with two components.
-    """
-
+    # Level that topples half of the records in their worst direction over the one in any direction
+    # [-]; NaN where neither reaches half
     factor: float
+    # Fraction of records and directions, and of records in their worst direction, that topple the
+    # object at the level asked about; NaN where none was
     fraction: float
     worst_fraction: float
-    records: int
+    records: int  # Number of records with two components
 
 
 def find_directions(
     objects: Objects, motions: MotionSet, intensity_levels: IntensityLevels, level: float | None
 ) -> Directions | None:
-    """Turn every record of two components through all directions.
+    """Turn every record of two components through all directions; None where no record has two.
 
     The level of a record is the geometric mean of its components, so that it does not turn with it.
-
-    Parameters
-    ----------
-    objects
-        The object, which rocks in one plane.
-    motions
-        The motions.
-    intensity_levels
-        Levels of the measure.
-    level
-        Level asked about, in the measure's unit; None if there is none.
-
-    Returns
-    -------
-    None where no record has two components.
     """
     if not motions.pairs:
         return None

@@ -31,13 +31,7 @@ _HAZARD = {
 
 
 def words_used(found: Assessment) -> list[tuple[str, str]]:
-    """Words of a page and what they mean, those that it uses, in alphabetical order.
-
-    Parameters
-    ----------
-    found
-        The assessment.
-    """
+    """Words of a page and what they mean, those that it uses, in alphabetical order."""
     words = dict(_ALWAYS)
     kinds = {"PGV", "PGA", found.measure.openquake}
     words |= {kind: meaning for kind, meaning in _MEASURES.items() if kind in kinds}

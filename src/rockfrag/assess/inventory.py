@@ -46,24 +46,12 @@ MOST_OBJECTS = 10_000
 
 @dataclass(frozen=True, eq=False)
 class Inventory:
-    """Objects of an inventory, assessed.
+    """Objects of an inventory, assessed."""
 
-    Attributes
-    ----------
-    found
-        Assessments, the one most at risk first.
-    motions
-        The motions on the ground that they share.
-    joint
-        What topples together; None without a hazard.
-    faults
-        What is wrong with the rows that were left out, a sentence each.
-    """
-
-    found: Sequence[Assessment]
-    motions: MotionSet
-    joint: JointRisk | None = None
-    faults: Sequence[str] = ()
+    found: Sequence[Assessment]  # Assessments, the one most at risk first
+    motions: MotionSet  # The motions on the ground that they share
+    joint: JointRisk | None = None  # What topples together; None without a hazard
+    faults: Sequence[str] = ()  # What is wrong with the rows that were left out, a sentence each
 
 
 class FaultyRows(InputError):
@@ -90,26 +78,11 @@ def assess_inventory(
 ) -> Inventory:
     """Assess every object of a table.
 
-    Parameters
-    ----------
-    path
-        CSV with ``name``, ``width``, ``height`` and, where known, ``depth``, ``mass``, ``cg_height``,
-        ``pedestal_width``, ``pedestal_height``, ``pedestal_depth``, ``pedestal_mass``, ``floor``,
-        ``restitution``, ``round`` and ``value`` (of all or of none); units stand in the titles or in the cells.
-        Several pedestals stand in a cell from above, ``60|80``.
-    shared
-        What holds for all, with the keys of ``statue.yaml``, such as the hazard.
-    records
-        Folder of fetched records.
-    keep_going
-        Rank the rows that can be used, and name the others.
-
-    Raises
-    ------
-    FaultyRows
-        If rows cannot be used; with ``keep_going`` only if none can.
-    InputError
-        If the table cannot be used.
+    The CSV has ``name``, ``width``, ``height`` and, where known, ``depth``, ``mass``, ``cg_height``,
+    ``pedestal_width``, ``pedestal_height``, ``pedestal_depth``, ``pedestal_mass``, ``floor``, ``restitution``,
+    ``round`` and ``value`` (of all or of none); units stand in the titles or in the cells. Several pedestals
+    stand in a cell from above, ``60|80``. ``shared`` holds for all, with the keys of ``statue.yaml``; with
+    ``keep_going`` :class:`FaultyRows` is raised only if no row can be used.
     """
     requests, faults = read_inventory(path, shared or {})
     if faults and not (keep_going and requests):
@@ -150,20 +123,7 @@ def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Asses
 def read_inventory(
     path: str | os.PathLike[str], shared: Mapping[str, Any]
 ) -> tuple[list[Request], list[str]]:
-    """Read the objects of a table: those that can be used, and what is wrong with the others.
-
-    Parameters
-    ----------
-    path
-        The table, see :func:`assess_inventory`.
-    shared
-        What holds for all.
-
-    Raises
-    ------
-    InputError
-        If the table cannot be used.
-    """
+    """Read the objects of a table: those that can be used, and what is wrong with the others."""
     if "friction" in shared:
         raise InputError("key friction: sliding takes long; assess the object alone.")
     needed = ["name", *SIZES[:2]]

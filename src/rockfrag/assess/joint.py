@@ -30,44 +30,24 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class JointRisk:
-    """What an inventory risks together, in earthquakes that shake all of it.
+    """What an inventory risks together, in earthquakes that shake all of it."""
 
-    Attributes
-    ----------
-    objects
-        A row an object: ``name``, ``annual_rate`` of toppling, ``value``, ``annual_loss`` (mean) and
-        ``contribution`` to that of all.
-    numbers
-        A row a number of objects: ``at_least``, ``annual_rate`` of earthquakes that topple so many,
-        ``probability`` of one in the years asked for with limits (``probability_lower``,
-        ``probability_upper``), and ``at_the_site``, the fraction of motions at the site's level.
-    losses
-        A row a loss: ``loss`` and ``annual_rate`` with which an earthquake exceeds it.
-    correlation
-        Correlation of the toppling of each two objects in time: the rate of earthquakes that topple both over the
-        geometric mean of the rates of each [-].  NaN where one never topples.
-    """
-
+    # A row an object: ``name``, ``annual_rate`` of toppling, ``value``, ``annual_loss`` (mean) and
+    # ``contribution`` to that of all
     objects: pd.DataFrame
+    # A row a number of objects: ``at_least``, ``annual_rate`` of earthquakes that topple so many,
+    # ``probability`` of one in the years asked for with limits (``probability_lower``,
+    # ``probability_upper``), and ``at_the_site``, the fraction of motions at the site's level
     numbers: pd.DataFrame
+    # A row a loss: ``loss`` and ``annual_rate`` with which an earthquake exceeds it
     losses: pd.DataFrame
+    # Correlation of the toppling of each two objects in time: the rate of earthquakes that topple
+    # both over the geometric mean of the rates of each [-].  NaN where one never topples
     correlation: pd.DataFrame
 
 
 def joint_risk(found: Sequence[Assessment], values: Mapping[str, float]) -> JointRisk | None:
-    """Count what topples together.
-
-    Parameters
-    ----------
-    found
-        Assessments under the same motions and hazard.
-    values
-        What each object is worth, by name.
-
-    Returns
-    -------
-    The :class:`JointRisk`; None without a hazard, or where objects are counted in different measures.
-    """
+    """Count what topples together; None without a hazard, or where objects are counted in different measures."""
     hazard = found[0].hazard
     if hazard is None or any(assessment.measure != found[0].measure for assessment in found):
         return None

@@ -10,6 +10,7 @@ from scipy import stats
 from rockfrag.assess.objects import Objects, higher
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
+from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.system.blocks import Block, Body, Stack, stacked
 
 WIDER = 1.25
@@ -30,38 +31,20 @@ PEDESTAL_HEIGHT = 0.5
 
 @dataclass(frozen=True)
 class Mitigation:
-    """What a change does.
+    """What a change does."""
 
-    Attributes
-    ----------
-    name
-        What is changed, in words.
-    value
-        The probability, share or amplitude with it.
-    factor
-        That over the one without it [-]; 0 where no motion topples the object any more.
-    lower, upper
-        Limits of the factor, of the same motions with and without it; NaN where there are none.
-    helps
-        Whether the object is better off with it: what is estimated shrinks, or an amplitude grows.
-    """
-
-    name: str
-    value: float
-    factor: float
+    name: str  # What is changed, in words
+    value: float  # The probability, share or amplitude with it
+    factor: float  # That over the one without it [-]; 0 where no motion topples the object any more
+    # Limits of the factor, of the same motions with and without it; NaN where there are none
     lower: float
     upper: float
+    # Whether the object is better off with it: what is estimated shrinks, or an amplitude grows
     helps: bool
 
 
 def mitigations_of(objects: Objects) -> dict[str, Body]:
-    """Bodies that result from each change.
-
-    Parameters
-    ----------
-    objects
-        The object as it is.
-    """
+    """Bodies that result from each change of the object."""
     statue, pedestals = objects.statue, objects.pedestals
     lower = {
         f"a centre of gravity {100 * (1 - LOWER):.0f} % lower": higher(statue, LOWER),
@@ -137,24 +120,8 @@ def _fixed(objects: Objects) -> dict[str, Body]:
 def compare(
     target: Target, now: ObjectOutcomes, changed: Mapping[str, ObjectOutcomes]
 ) -> list[Mitigation]:
-    """Estimate again with each change of the object.
-
-    Parameters
-    ----------
-    target
-        What is estimated.
-    now
-        Outcomes of the object as it is.
-    changed
-        Outcomes with each change, by its name.
-
-    Returns
-    -------
-    A :class:`Mitigation` for each change, the most helpful first.
-    """
-    found = [_mitigation(target, name, now, outcomes) for name, outcomes in changed.items()]
-    found.sort(key=lambda mitigation: mitigation.value)
-    return found
+    """Estimate again with each change of the object."""
+    return [_mitigation(target, name, now, outcomes) for name, outcomes in changed.items()]
 
 
 def _mitigation(
@@ -179,8 +146,7 @@ def _limits(
     if groups < 2 or not np.isfinite(pairs).all() or (pairs <= 0).any():
         return math.nan, math.nan
     ratios = np.log(pairs[:, 0] / pairs[:, 1])
-    error = np.sqrt((groups - 1) / groups * ((ratios - ratios.mean()) ** 2).sum())
-    half = float(stats.t.ppf(0.5 + LEVEL / 2, groups - 1) * error)
+    half = float(stats.t.ppf(0.5 + LEVEL / 2, groups - 1) * jackknife_error(ratios))
     return factor * math.exp(-half), factor * math.exp(half)
 
 

@@ -37,42 +37,25 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class MotionSet:
-    """Ground motions, and what they become on the floor of the object.
+    """Ground motions, and what they become on the floor of the object."""
 
-    Attributes
-    ----------
-    ground
-        Motions of the ground; those of the floor where they were recorded there.
-    base
-        What shakes the object, one a ground motion.
-    pairs
-        Positions of the two horizontal components of each record that has both.
-    words
-        What the set is, in a sentence.
-    warnings
-        Sentences that a reader must know.
-    floors
-        Motions of floors that were needed before, by :attr:`Place.key`.
-    halves
-        Those of the thinned set.
-    both
-        Whether both components of each record act at once: both stand for the record, and their level is the
-        geometric mean of theirs.
-    library
-        Motions of the set among which these were chosen; empty where all were taken.
-    measured
-        ln (PGV over a measure) of the library that were needed before.
-    """
-
+    # Motions of the ground; those of the floor where they were recorded there
     ground: tuple[Motion, ...]
-    base: tuple[Motion, ...]
+    base: tuple[Motion, ...]  # What shakes the object, one a ground motion
+    # Positions of the two horizontal components of each record that has both
     pairs: tuple[tuple[int, int], ...]
-    words: str
-    warnings: tuple[str, ...] = ()
+    words: str  # What the set is, in a sentence
+    warnings: tuple[str, ...] = ()  # Sentences that a reader must know
+    # Motions of floors that were needed before, by :attr:`Place.key`
     floors: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
+    # Those of the thinned set
     halves: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
+    # Whether both components of each record act at once: both stand for the record, and their level
+    # is the geometric mean of theirs
     both: bool = False
+    # Motions of the set among which these were chosen; empty where all were taken
     library: tuple[Motion, ...] = ()
+    # ln (PGV over a measure) of the library that were needed before
     measured: dict[IntensityMeasure, Floats] = field(default_factory=dict)
 
     @property
@@ -81,15 +64,7 @@ class MotionSet:
         return [motion.metadata for motion in self.library or self.ground]
 
     def log_ratios(self, measure: IntensityMeasure, *, of_all: bool = False) -> Floats:
-        """Return ln (PGV over a measure [s]) of each ground motion.
-
-        Parameters
-        ----------
-        measure
-            PGA or Sa.
-        of_all
-            Of all motions among which these were chosen.
-        """
+        """Return ln (PGV over a measure [s]) of each ground motion, or of all among which these were chosen."""
         if not (of_all and self.library):
             return np.log(self.values(PGV) / self.values(measure) / VELOCITY_PER_G)
         if measure not in self.measured:
@@ -129,10 +104,7 @@ class MotionSet:
     def turned(self, step_deg: int) -> list[tuple[int, list[Motion]]]:
         """Records at the object's base turned through all directions, each with the place of its first component.
 
-        Parameters
-        ----------
-        step_deg
-            Angle between directions [degrees], over half a turn: a round body falls either way alike.
+        Half a turn is enough: a round body falls either way alike.
         """
         found = []
         for pair in self.pairs:
@@ -163,13 +135,7 @@ class MotionSet:
         return replace(self, ground=ground, base=base, pairs=pairs, floors=self.halves)
 
     def at(self, place: Place) -> "MotionSet":
-        """The same motions on another floor; known floors are not shaken again.
-
-        Parameters
-        ----------
-        place
-            Where the object stands.
-        """
+        """The same motions on another floor; known floors are not shaken again."""
         key = place.key
         if key not in self.floors:
             self.floors[key] = tuple(place.shake(motion) for motion in self.ground)
@@ -177,22 +143,7 @@ class MotionSet:
 
 
 def motion_set(records: Records, place: Place, folder: Path) -> MotionSet:
-    """Gather the motions of a request.
-
-    Parameters
-    ----------
-    records
-        Where they come from.
-    place
-        Where the object stands.
-    folder
-        Folder of fetched records.
-
-    Raises
-    ------
-    InputError
-        If no motion can be had, or one cannot be read.
-    """
+    """Gather the motions of a request at its place."""
     found = _own(records, folder) if records.paths else _default(records, folder)
     return found.at(place)
 
@@ -324,14 +275,6 @@ def _pairs(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
 
 
 def common_pair(found: MotionSet, pair: tuple[int, int]) -> tuple[Motion, Motion]:
-    """The two components of a record at the object's base, sampled at the same times.
-
-    Parameters
-    ----------
-    found
-        The motions.
-    pair
-        Positions of the two.
-    """
+    """The two components of a record at the object's base, sampled at the same times."""
     first, other = common_time([found.base[pair[0]], found.base[pair[1]]])
     return first, other

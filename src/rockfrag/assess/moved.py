@@ -10,20 +10,11 @@ U = TypeVar("U")
 
 @dataclass(frozen=True)
 class Moved(Generic[T]):
-    """Something with one property moved by its standard deviation: an object, a place, outcomes, an answer.
+    """Something with one property moved by its standard deviation: an object, a place, outcomes, an answer."""
 
-    Attributes
-    ----------
-    name
-        The property.
-    spread
-        Its relative standard deviation [-].
-    lower, upper
-        What there is with the property smaller and larger by that.
-    """
-
-    name: str
-    spread: float
+    name: str  # The property
+    spread: float  # Its relative standard deviation [-]
+    # What there is with the property smaller and larger by that
     lower: T
     upper: T
 
@@ -33,28 +24,14 @@ class Moved(Generic[T]):
         return self.lower, self.upper
 
     def turned(self, change: Callable[[T], U]) -> "Moved[U]":
-        """Return what both sides become, by the same property and spread.
-
-        Parameters
-        ----------
-        change
-            What becomes of one side.
-        """
+        """Return what both sides become, by the same property and spread."""
         return Moved(self.name, self.spread, change(self.lower), change(self.upper))
 
 
 def moved_to_both_sides(
     moves: Mapping[str, Callable[[float], T]], spreads: Mapping[str, float]
 ) -> list[Moved[T]]:
-    """Move each property by its standard deviation; one that is known exactly is left out.
-
-    Parameters
-    ----------
-    moves
-        What there is with a property times a factor, by the name of the property.
-    spreads
-        Relative standard deviations of the properties [-].
-    """
+    """Move each property by its standard deviation; one that is known exactly is left out."""
     return [
         Moved(name, spread, move(1 - spread), move(1 + spread))
         for name, move in moves.items()

@@ -27,18 +27,10 @@ MEASUREMENTS: Mapping[str, Measurement] = {
 
 @dataclass(frozen=True)
 class Narrowed:
-    """An interval as it would be with more known.
+    """An interval as it would be with more known."""
 
-    Attributes
-    ----------
-    known
-        Sources that were measured, the most helpful first.
-    estimate
-        The same value with the narrower interval.
-    """
-
-    known: tuple[str, ...]
-    estimate: Estimate
+    known: tuple[str, ...]  # Sources that were measured, the most helpful first
+    estimate: Estimate  # The same value with the narrower interval
 
 
 def is_wide(estimate: Estimate) -> bool:
@@ -47,13 +39,7 @@ def is_wide(estimate: Estimate) -> bool:
 
 
 def narrowed(estimate: Estimate) -> Narrowed | None:
-    """Return the interval with the measurements that narrow it most; None where none is worth it.
-
-    Parameters
-    ----------
-    estimate
-        A probability or share with its sources.
-    """
+    """Return the interval with the measurements that narrow it most; None where none is worth it."""
     variances = {name: value**2 for name, value in estimate.sources.items()}
     total = sum(variances.values())
     if not (0 < estimate.value < 1 and math.isfinite(total) and total > 0):

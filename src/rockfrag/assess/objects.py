@@ -54,63 +54,36 @@ ALONE = "on the floor"
 
 @dataclass(frozen=True)
 class Objects:
-    """The object in the plane in which it rocks, and what it stands on.
+    """The object in the plane in which it rocks, and what it stands on."""
 
-    Attributes
-    ----------
-    statue
-        The object.
-    pedestals
-        What it stands on, from below; empty if it stands on the floor.
-    restitution
-        Measured ratio of angular velocities at an impact [-]; None conserves momentum.
-    friction
-        Coefficient of friction of all contacts [-]; None if nothing slides.
-    round
-        Whether the base of the object is round: it then rolls on its rim in space and loses nothing.
-    depth
-        Side of a rectangular base across that plane [m]; None where it is not known, or not to be used.
-    facing_deg
-        Direction of that plane, from the first component of each record towards the second [degrees].
-    faces_anywhere
-        Whether nobody said how it faces the shaking, which counts in space.
-    base_spread
-        By how much corners of the base lie elsewhere in space, over its extent, and it is turned [rad], other for
-        each record [-].
-    scan
-        The scan and the ways in which it may stand; None where dimensions were given.
-    scanned
-        The scan in space as it stands; None where dimensions were given, or it is not to be used.
-    livelier
-        Factor on every restitution, measured or not [-]; impacts never gain energy.
-    tolerances
-        Relative standard deviations of width, height of the centre of gravity, restitution and mass.
-    plane
-        In words, in which direction it rocks.
-    assumed
-        What was not given.
-    quality_flags
-        Sentences, one for each thing that looks wrong.
-    pad_friction
-        Coefficient of friction of a pad that is tried under the object [-]; None to try none.
-    """
-
-    statue: Block
-    pedestals: tuple[Block, ...]
+    statue: Block  # The object
+    pedestals: tuple[Block, ...]  # What it stands on, from below; empty if it stands on the floor
+    # Measured ratio of angular velocities at an impact [-]; None conserves momentum
     restitution: float | None
-    friction: float | None
+    friction: float | None  # Coefficient of friction of all contacts [-]; None if nothing slides
+    # Relative standard deviations of width, height of the centre of gravity, restitution and mass
     tolerances: Mapping[str, float]
-    plane: str
+    plane: str  # In words, in which direction it rocks
+    # Whether the base of the object is round: it then rolls on its rim in space and loses nothing
     round: bool = False
+    # Side of a rectangular base across that plane [m]; None where it is not known, or not to be used
     depth: float | None = None
+    # Direction of that plane, from the first component of each record towards the second [degrees]
     facing_deg: float = 0.0
+    # Whether nobody said how it faces the shaking, which counts in space
     faces_anywhere: bool = False
+    # By how much corners of the base lie elsewhere in space, over its extent, and it is turned [rad], other for
+    # each record [-]
     base_spread: float = 0.0
+    # The scan and the ways in which it may stand; None where dimensions were given
     scan: Scan | None = None
+    # The scan in space as it stands; None where dimensions were given, or it is not to be used
     scanned: RigidBody | None = None
+    # Factor on every restitution, measured or not [-]; impacts never gain energy
     livelier: float = 1.0
-    assumed: tuple[Assumption, ...] = ()
-    quality_flags: tuple[str, ...] = ()
+    assumed: tuple[Assumption, ...] = ()  # What was not given
+    quality_flags: tuple[str, ...] = ()  # Sentences, one for each thing that looks wrong
+    # Coefficient of friction of a pad that is tried under the object [-]; None to try none
     pad_friction: float | None = None
 
     @property
@@ -152,13 +125,7 @@ class Objects:
         return min(uplift_ratios(self.body.system()))
 
     def system_of(self, body: Body) -> System:
-        """Return what is shaken: a body whose impacts lose what was measured or assumed, and gain no energy.
-
-        Parameters
-        ----------
-        body
-            An arrangement of the object, with or without changes.
-        """
+        """Return what is shaken: a body whose impacts lose what was measured or assumed, and gain no energy."""
         system = body.system()
         if self.restitution is None and self.livelier == 1 and not self.round:
             return system
@@ -196,10 +163,7 @@ class Objects:
     def solid(self, body: Body) -> System | None:
         """The object in space where it is free to move in an arrangement; None where it is not known in space.
 
-        Parameters
-        ----------
-        body
-            An arrangement of the object, with or without changes; under it a pedestal stays where it is.
+        Under it a pedestal stays where it is.
         """
         top = body.blocks[-1]
         whole = top.height > self.statue.height * HIGHER
@@ -273,12 +237,7 @@ def _standing(objects: Objects, scan: Scan) -> list[Moved[Objects]]:
 def stretched(body: RigidBody, width: float, height: float, mass: float) -> RigidBody:
     """A body in space whose base is wider, whose centre of gravity is higher, and which is heavier, by factors.
 
-    Parameters
-    ----------
-    body
-        On a polygon whose origin lies below its centre of gravity.
-    width, height, mass
-        The factors; the inertia is as much larger as the mass.
+    Its polygon's origin lies below its centre of gravity; the inertia is as much larger as the mass.
     """
     assert isinstance(body.base, Polygon)
     x, y, z = body.centre
@@ -336,20 +295,7 @@ def _heavier(objects: Objects, factor: float) -> Objects:
 
 
 def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
-    """Make the object and what it stands on of checked settings.
-
-    Parameters
-    ----------
-    settings
-        Checked keys of ``statue.yaml``.
-    folder
-        Folder from which the path of a mesh is read.
-
-    Raises
-    ------
-    InputError
-        If they could be of no solid, cannot stand, or a dimension is missing.
-    """
+    """Make the object and what it stands on of checked keys of ``statue.yaml``."""
     assumed: list[Assumption] = []
     quality_flags: list[str] = []
     is_round = bool(settings.get("round", False))

@@ -53,24 +53,13 @@ WORST_STEP_DEG = 15
 
 @dataclass(frozen=True, eq=False)
 class IntensityLevels:
-    """Levels of a measure to which motions are scaled.
+    """Levels of a measure to which motions are scaled."""
 
-    Attributes
-    ----------
-    measure
-        The intensity measure of the ground.
-    levels
-        Levels in its unit, rising, shape (levels,).
-    scales
-        Factors on the motions, shape (motions, levels).
-    allowed
-        Whether a factor is within ``LARGEST_FACTOR`` and the motion at the base one that a floor may feel, shape
-        (motions, levels).
-    """
-
-    measure: IntensityMeasure
-    levels: Floats
-    scales: Floats
+    measure: IntensityMeasure  # The intensity measure of the ground
+    levels: Floats  # Levels in its unit, rising, shape (levels,)
+    scales: Floats  # Factors on the motions, shape (motions, levels)
+    # Whether a factor is within ``LARGEST_FACTOR`` and the motion at the base one that a floor may
+    # feel, shape (motions, levels)
     allowed: NDArray[np.bool_]
 
 
@@ -86,19 +75,7 @@ def believable_scales(base: Sequence[Motion]) -> Floats:
 def make_intensity_levels(
     motions: MotionSet, measure: IntensityMeasure, asked: Sequence[float] = (), count: int = LEVELS
 ) -> IntensityLevels:
-    """Make the levels for a set of motions.
-
-    Parameters
-    ----------
-    motions
-        The motions.
-    measure
-        Intensity measure in which they are scaled.
-    asked
-        Levels that are wanted exactly, in the measure's unit.
-    count
-        Number of other levels.
-    """
+    """Make ``count`` levels for a set of motions, and those that are asked for exactly, in the measure's unit."""
     values = motions.values(measure)
     middle = motions.median(measure)
     levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
@@ -111,41 +88,24 @@ def make_intensity_levels(
 
 @dataclass(frozen=True, eq=False)
 class ObjectOutcomes:
-    """What happened to one body.
+    """What happened to one body."""
 
-    Attributes
-    ----------
-    intensity_levels
-        The levels.
-    overturned, rocked
-        Outcomes, shape (motions, levels).
-    earthquakes
-        Earthquake of each motion, shape (motions,).
-    light
-        Whether a body that was simulated with it may have left the ground, which the model holds shut.
-    others
-        Which cases reached each other declared limit state, by its name, shape (motions, levels) each.
-    """
-
-    intensity_levels: IntensityLevels
+    intensity_levels: IntensityLevels  # The levels
+    # Outcomes, shape (motions, levels)
     overturned: NDArray[np.bool_]
     rocked: NDArray[np.bool_]
-    earthquakes: NDArray[np.object_]
+    earthquakes: NDArray[np.object_]  # Earthquake of each motion, shape (motions,)
+    # Whether a body that was simulated with it may have left the ground, which the model holds shut
     light: bool = False
+    # Which cases reached each other declared limit state, by its name, shape (motions, levels) each
     others: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
 
     def fractions(self, weights: Floats | None = None, *, state: str = OVERTURNS) -> Floats:
         """Fraction of the motions that bring the body into a limit state at each level, shape (levels,).
 
         A motion that cannot be scaled so far is left out of a level; where none can, the fraction of the nearest
-        level below is kept, and nothing happens below the lowest level.
-
-        Parameters
-        ----------
-        weights
-            Weight of each motion, shape (motions,); all alike if None.
-        state
-            Name of the limit state.
+        level below is kept, and nothing happens below the lowest level. Weights of the motions have the shape
+        (motions,); all alike if None.
         """
         w = np.ones(len(self.overturned)) if weights is None else weights
         allowed = self.intensity_levels.allowed
@@ -185,13 +145,7 @@ class ObjectOutcomes:
         return np.where(first >= 0, self.intensity_levels.levels[first], np.inf)
 
     def joined(self, other: "ObjectOutcomes") -> "ObjectOutcomes":
-        """What happens in one of two answers about the same motions.
-
-        Parameters
-        ----------
-        other
-            The other answer.
-        """
+        """What happens in one of two answers about the same motions."""
         return replace(
             self,
             overturned=self.overturned | other.overturned,
@@ -219,36 +173,14 @@ def outcomes_of(
     motions: MotionSet,
     intensity_levels: IntensityLevels,
 ) -> dict[str, ObjectOutcomes]:
-    """Shake bodies by every motion at every level.
-
-    Parameters
-    ----------
-    objects
-        Where their restitution comes from.
-    bodies
-        Bodies by name.
-    motions
-        The motions.
-    intensity_levels
-        The levels.
-    """
+    """Shake bodies of one object, by name, by every motion at every level."""
     return outcomes_of_each([objects], [bodies], motions, intensity_levels)[0]
 
 
 def outcomes_of_all(
     objects: Sequence[Objects], motions: MotionSet, intensity_levels: IntensityLevels
 ) -> list[ObjectOutcomes]:
-    """Shake several objects as they stand by every motion at every level.
-
-    Parameters
-    ----------
-    objects
-        The objects.
-    motions
-        The motions.
-    intensity_levels
-        The levels.
-    """
+    """Shake several objects as they stand by every motion at every level."""
     bodies = [{"": object_.body} for object_ in objects]
     return [found[""] for found in outcomes_of_each(objects, bodies, motions, intensity_levels)]
 
@@ -259,19 +191,7 @@ def outcomes_of_each(
     motions: MotionSet,
     intensity_levels: IntensityLevels,
 ) -> list[dict[str, ObjectOutcomes]]:
-    """Shake several bodies of each of several objects by every motion at every level.
-
-    Parameters
-    ----------
-    objects
-        The objects.
-    bodies
-        Bodies of each by name.
-    motions
-        The motions.
-    intensity_levels
-        The levels.
-    """
+    """Shake several bodies of each of several objects by every motion at every level."""
     every = [
         (object_, body)
         for object_, named in zip(objects, bodies, strict=True)
@@ -362,19 +282,7 @@ def _object_outcomes(
 def flip_rate(
     objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float
 ) -> float:
-    """Fraction of the outcomes in space at a level that a perturbation turns round [-]; NaN where there are none.
-
-    Parameters
-    ----------
-    objects
-        The object.
-    motions
-        The motions, both components at once.
-    measure
-        The intensity measure.
-    level
-        The level, in its unit.
-    """
+    """Fraction of the outcomes in space at a level that a perturbation turns round [-]; NaN without any."""
     solid = objects.solid(objects.body)
     here = _one_level(motions, measure, level)
     if solid is None or not here.allowed.any():
@@ -387,19 +295,7 @@ def flip_rate(
 
 
 def fraction_at(level: float, levels: Floats, fractions: Floats, shift: float = 0.0) -> float:
-    """Fraction of the motions at a level, between levels by the logarithm.
-
-    Parameters
-    ----------
-    level
-        The level.
-    levels
-        Levels of the series, rising.
-    fractions
-        The fraction at each of them [-].
-    shift
-        By how much all levels lie higher in the logarithm.
-    """
+    """Fraction of the motions at a level, between levels by the logarithm; all lie higher by ``shift`` in it."""
     # relative to the asked level: where it is one of the series its logarithm is 0 to the bit
     return float(np.interp(-shift, np.log(levels / level), fractions))
 
@@ -409,14 +305,7 @@ def simulated(
 ) -> tuple[Outcomes, list[bool]]:
     """What happened, and for which systems an assessment warns that a body may have left the ground.
 
-    Parameters
-    ----------
-    systems
-        What is shaken.
-    shaking
-        Motions of what it stands on.
-    scales
-        Factors on them, shape (motions, levels).
+    Factors on the motions have the shape (motions, levels).
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", LightBodies)
@@ -441,16 +330,7 @@ def in_space(
 ) -> ObjectOutcomes:
     """Outcomes of a body in space under both components of each record, where it has two.
 
-    Parameters
-    ----------
-    body
-        The body.
-    motions
-        The motions.
-    intensity_levels
-        The levels.
-    spread
-        By how much corners of the base lie elsewhere, over its extent, and it is turned [rad].
+    Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
     """
     paired = {i for pair in motions.pairs for i in pair}
     shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]
@@ -504,24 +384,7 @@ def _shaken_from_all_sides(
 def on_pad(
     objects: Objects, friction: float, motions: MotionSet, intensity_levels: IntensityLevels
 ) -> tuple[ObjectOutcomes, Floats]:
-    """Outcomes of the object on a pad on which it may slide, and how far it does.
-
-    Parameters
-    ----------
-    objects
-        The object as it is.
-    friction
-        Coefficient of friction of the pad, which lies between the object and what it stands on [-].
-    motions
-        The motions.
-    intensity_levels
-        The levels.
-
-    Returns
-    -------
-    outcomes, slip
-        The largest displacement on the pad [m] has the shape (motions, levels).
-    """
+    """Outcomes of the object on a pad on which it may slide, and how far it does [m], shape (motions, levels)."""
     system = objects.system_of(objects.body)
     *below, pad = system.contacts
     pad = replace(pad, friction=Friction(friction, friction))
@@ -544,19 +407,8 @@ def fraction_with_sliding(
 ) -> float:
     """Fraction of the motions at a level that topple the object as it stands if it may slide.
 
-    Simulations with friction take some hundred times as long as those without, so that they are made for
-    one level.
-
-    Parameters
-    ----------
-    objects
-        The object, with its friction.
-    motions
-        The motions.
-    measure
-        Intensity measure of the level.
-    level
-        The level, in the measure's unit.
+    Simulations with friction take some hundred times as long as those without, so that they are made for one
+    level.
     """
     at_level = _one_level(motions, measure, level)
     allowed, scales = at_level.allowed[:, 0], at_level.scales[:, 0]

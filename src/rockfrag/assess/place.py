@@ -60,27 +60,15 @@ _FLOOR = re.compile(r"\s*(\d+)\s*(?:/|of)\s*(\d+)\s*")
 
 @dataclass(frozen=True)
 class Place:
-    """A floor of a building, or the ground.
+    """A floor of a building, or the ground."""
 
-    Attributes
-    ----------
-    building
-        The elastic building; None on the ground.
-    floor
-        Label of the floor in the building; empty on the ground.
-    tolerances
-        Relative standard deviations of the building's first period and damping.
-    label
-        What the user calls the floor; empty where that is only a level over the number of storeys.
-    assumed
-        What was not given.
-    """
-
-    building: ShearBuilding | None = None
-    floor: str = ""
+    building: ShearBuilding | None = None  # The elastic building; None on the ground
+    floor: str = ""  # Label of the floor in the building; empty on the ground
+    # Relative standard deviations of the building's first period and damping
     tolerances: Mapping[str, float] | None = None
+    # What the user calls the floor; empty where that is only a level over the number of storeys
     label: str = ""
-    assumed: tuple[Assumption, ...] = ()
+    assumed: tuple[Assumption, ...] = ()  # What was not given
 
     @property
     def words(self) -> str:
@@ -114,13 +102,7 @@ class Place:
         return building.stiffnesses, building.masses, building.damping, building.level(self.floor)
 
     def shake(self, motion: Motion) -> Motion:
-        """Motion of the floor under a ground motion.
-
-        Parameters
-        ----------
-        motion
-            The ground's motion.
-        """
+        """Motion of the floor under a ground motion."""
         if self.building is None or self.shakes_as_ground:
             return motion
         return floor_motions(self.building, motion, [self.floor])[0]
@@ -143,20 +125,7 @@ class Place:
 
 
 def make_place(settings: Mapping[str, Any], folder: Path) -> Place:
-    """Make a place of checked settings.
-
-    Parameters
-    ----------
-    settings
-        Checked keys of ``statue.yaml``.
-    folder
-        Folder from which the path of a building is read.
-
-    Raises
-    ------
-    InputError
-        If the floor does not exist, or the building is not elastic.
-    """
+    """Make a place of checked keys of ``statue.yaml``; its floor must exist, and its building be elastic."""
     floor = settings.get("floor")
     if settings.get("records", {}).get("recorded_on") == "floor":
         if "building" in settings:

@@ -28,20 +28,11 @@ YEARS = 50.0
 
 @dataclass(frozen=True)
 class Level:
-    """A level of shaking of the ground.
+    """A level of shaking of the ground."""
 
-    Attributes
-    ----------
-    measure
-        The intensity measure.
-    value
-        Its value, in its unit.
-    pgv
-        Peak velocity that comes with it [cm/s]; NaN where it is not known, or the measure itself.
-    """
-
-    measure: IntensityMeasure
-    value: float
+    measure: IntensityMeasure  # The intensity measure
+    value: float  # Its value, in its unit
+    # Peak velocity that comes with it [cm/s]; NaN where it is not known, or the measure itself
     pgv: float = math.nan
 
     @property
@@ -53,24 +44,14 @@ class Level:
 
 @dataclass(frozen=True)
 class Records:
-    """Where the motions come from.
+    """Where the motions come from."""
 
-    Attributes
-    ----------
-    paths
-        The user's own records; empty for the default set.
-    on_floor
-        Whether they were recorded on the floor of the object.
-    unit, dt
-        Unit and sampling interval [s] of files that do not state theirs.
-    magnitude, distance_km
-        Of the earthquakes that matter most to the site; NaN where not known.
-    """
-
-    paths: tuple[Path, ...] = ()
-    on_floor: bool = False
+    paths: tuple[Path, ...] = ()  # The user's own records; empty for the default set
+    on_floor: bool = False  # Whether they were recorded on the floor of the object
+    # Unit and sampling interval [s] of files that do not state theirs
     unit: str | None = None
     dt: float | None = None
+    # Of the earthquakes that matter most to the site; NaN where not known
     magnitude: float = math.nan
     distance_km: float = math.nan
 
@@ -130,21 +111,9 @@ def read_request(path: str | os.PathLike[str]) -> Request:
 
 
 def make_request(settings: Mapping[str, Any], source: str, folder: Path | None = None) -> Request:
-    """Make a request of what a file or a command line says.
+    """Make a request of keys as in ``statue.yaml``, see ``docs/assess.md``.
 
-    Parameters
-    ----------
-    settings
-        Keys as in ``statue.yaml``, see ``docs/assess.md``.
-    source
-        Where they come from, for messages.
-    folder
-        Folder from which paths are read; the present one if None.
-
-    Raises
-    ------
-    InputError
-        If a key or value is not understood, or what they say does not fit together.
+    ``source`` says in messages where they come from; paths are read from ``folder``, or the present one.
     """
     known = _checked(settings, source)
     where = folder or Path()

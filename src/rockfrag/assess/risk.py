@@ -30,6 +30,7 @@ from scipy import special, stats
 
 from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.outcomes import ObjectOutcomes, fraction_at
+from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 Floats = NDArray[np.float64]
@@ -46,20 +47,10 @@ _Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
 def toppling_rate(
     levels: Floats, fractions: Floats, hazard: HazardCurve, shift: float = 0.0
 ) -> float:
-    """Annual rate of toppling [1/year].
+    """Annual rate of toppling [1/year], of the fraction of motions at each of rising levels, shape (n,) both.
 
-    Nothing topples below the first level, and above the last one the last fraction stays.
-
-    Parameters
-    ----------
-    levels
-        Levels of the series of levels, rising, shape (n,).
-    fractions
-        Fraction of motions that topple the object at each, shape (n,).
-    hazard
-        Hazard curve of the same measure.
-    shift
-        Logarithm of a factor on all levels: the object bears so much more.
+    Nothing topples below the first level, and above the last one the last fraction stays. ``shift`` is the
+    logarithm of a factor on all levels: the object bears so much more.
     """
     return float(fractions @ _rate_weights(levels.tobytes(), hazard, shift))
 
@@ -85,15 +76,7 @@ def _rate_weights(levels: bytes, hazard: HazardCurve, shift: float) -> Floats:
 
 
 def probability_in(rate: float, years: float) -> float:
-    """Probability of at least one earthquake in a time, 1 - exp(-rate × time), if they are a Poisson process.
-
-    Parameters
-    ----------
-    rate
-        Annual rate [1/year].
-    years
-        Time [year].
-    """
+    """Probability of one earthquake or more in some years, 1 - exp(-rate × years), in a Poisson process."""
     return float(-np.expm1(-years * rate))
 
 
@@ -124,27 +107,17 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Target:
-    """What is estimated from fractions of motions: the probability in some years, or the fraction at a level.
+    """What is estimated from fractions of motions: the probability in some years, or the fraction at a level."""
 
-    Attributes
-    ----------
-    of
-        Turns levels, shares and a shift of the levels into the number that is estimated.
-    forward, back
-        To the scale on which intervals are symmetric and back.
-    state
-        Name of the limit state whose fractions they are.
-    added
-        What is added of earthquakes for the widths of sources, see :meth:`on_scale`.
-    certain
-        The number where all motions agree that it happens; infinite for a level that none reaches.
-    """
-
+    # Turns levels, shares and a shift of the levels into the number that is estimated
     of: Callable[[Floats, Floats, float], float]
+    # To the scale on which intervals are symmetric and back
     forward: Callable[[float], float]
     back: Callable[[float], float]
-    state: str = OVERTURNS
+    state: str = OVERTURNS  # Name of the limit state whose fractions they are
+    # What is added of earthquakes for the widths of sources, see :meth:`on_scale`
     added: float = 0.0
+    # The number where all motions agree that it happens; infinite for a level that none reaches
     certain: float = 1.0
 
     def on_scale(
@@ -157,17 +130,9 @@ class Target:
     ) -> float:
         """Value on the scale of the interval; -∞ where nothing topples.
 
-        Parameters
-        ----------
-        outcomes
-            What happened.
-        weights
-            Weight of each motion, shape (motions,); all alike if None.
-        shift
-            Logarithm of a factor on all levels.
-        added
-            Earthquakes that are added, of which one topples the object wherever it rocks and one does not: a
-            part of each [-].
+        Weights of the motions have the shape (motions,); ``shift`` is the logarithm of a factor on all levels. Of
+        earthquakes that are added, a part ``added`` of one topples the object wherever it rocks, and as much does
+        not.
         """
         fractions = outcomes.fractions(weights, state=self.state)
         if added:
@@ -202,15 +167,7 @@ def _exp(value: float) -> float:
 
 
 def risk_target(hazard: HazardCurve, years: float) -> Target:
-    """The probability of toppling in some years.
-
-    Parameters
-    ----------
-    hazard
-        Hazard curve in the measure of the series of levels.
-    years
-        Time [year].
-    """
+    """The probability of toppling in some years."""
     return Target(
         of=lambda levels, fractions, shift: toppling_rate(levels, fractions, hazard, shift),
         forward=_log,
@@ -219,15 +176,7 @@ def risk_target(hazard: HazardCurve, years: float) -> Target:
 
 
 def fraction_target(level: float, *, state: str = OVERTURNS) -> Target:
-    """The fraction of motions that bring the object into a limit state at a level.
-
-    Parameters
-    ----------
-    level
-        Level in the unit of the series of levels.
-    state
-        Name of the limit state.
-    """
+    """The fraction of motions that bring the object into a limit state at a level."""
     return Target(
         of=partial(fraction_at, level),
         forward=lambda fraction: float(special.logit(fraction)),
@@ -238,13 +187,7 @@ def fraction_target(level: float, *, state: str = OVERTURNS) -> Target:
 
 
 def amplitude_target(fraction: float) -> Target:
-    """The level at which a fraction of the motions topples the object.
-
-    Parameters
-    ----------
-    fraction
-        Fraction of the motions [-].
-    """
+    """The level at which a fraction of the motions topples the object."""
 
     def level(levels: Floats, fractions: Floats, shift: float) -> float:
         reached = np.flatnonzero(fractions >= fraction)
@@ -275,18 +218,9 @@ def estimate(
 ) -> Estimate:
     """Estimate a probability with its interval.
 
-    Parameters
-    ----------
-    target
-        What is estimated.
-    outcomes
-        Of the object as it is.
-    moved
-        Of each property moved to both sides by its standard deviation.
-    fixed
-        Further standard deviations on the target's scale, such as of the hazard.
-    shifts
-        Standard deviations of ln level, such as of the model.
+    ``moved`` has outcomes with each property moved to both sides by its standard deviation, ``fixed`` further
+    standard deviations on the target's scale, such as of the hazard, ``shifts`` those of ln level, such as of the
+    model.
     """
     middle = target.on_scale(outcomes)
     if not math.isfinite(middle):
@@ -297,7 +231,7 @@ def estimate(
 
     sources: dict[str, float] = {}
     left_out = target.without_each(outcomes)
-    sources["motions"] = _jackknife(left_out, middle)
+    sources["motions"] = _jackknife(left_out)
     for name, (lower, upper) in moved.items():
         sources[name] = _half_width(near(lower), near(upper), near(outcomes))
     for name, spread in shifts.items():
@@ -332,16 +266,12 @@ def _shifted(
     return max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
 
 
-def _jackknife(left_out: Floats, middle: float) -> float:
+def _jackknife(left_out: Floats) -> float:
     """Standard error from values without one earthquake each (Tukey); infinite where one carries it all."""
-    groups = len(left_out)
-    if groups < 2:
+    # where nothing rocks without one of them, what others would say is open
+    if len(left_out) < 2 or not np.isfinite(left_out).all():
         return math.inf
-    finite = np.isfinite(left_out)
-    if not finite.all():
-        # nothing rocks without one of them: what others would say is open
-        return math.inf
-    return float(np.sqrt((groups - 1) / groups * ((left_out - left_out.mean()) ** 2).sum()))
+    return float(jackknife_error(left_out))
 
 
 def _half_width(low: float, high: float, middle: float) -> float:
@@ -418,19 +348,8 @@ def estimate_rocking(
 ) -> Estimate:
     """Estimate the fraction of motions at a level that make the object rock.
 
-    The error of the rocking model does not enter: a contact opens by statics.
-
-    Parameters
-    ----------
-    level
-        Level in the unit of the series of levels.
-    outcomes
-        Of the object as it is.
-    moved
-        Of each property moved to both sides by its standard deviation.
-    exact
-        Whether the level alone decides, as a peak acceleration of what it stands on does; other earthquakes then
-        say the same.
+    The error of the rocking model does not enter: a contact opens by statics. Where the level alone decides
+    (``exact``), as a peak acceleration of what it stands on does, other earthquakes say the same.
     """
     target = fraction_target(level, state=ROCKS)
     found = estimate(target, outcomes, moved, {}, {})

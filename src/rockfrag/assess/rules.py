@@ -20,45 +20,18 @@ from rockfrag.yaml_file import read_yaml
 
 @dataclass(frozen=True)
 class RuleCheck:
-    """A rule held against simulations of one object.
+    """A rule held against simulations of one object."""
 
-    Attributes
-    ----------
-    rule
-        Its name.
-    bias
-        Median of the amplitude at which it expects a motion to topple the object over the simulated one [-].
-    scatter
-        Standard deviation of the logarithm of that [-].
-    unsafe
-        Fraction of the motions that topple the object at less than the rule says [-].
-    motions
-        Number of motions that topple it at all.
-    """
-
-    rule: str
+    rule: str  # Its name
+    # Median of the amplitude at which it expects a motion to topple the object over the simulated one [-]
     bias: float
-    scatter: float
-    unsafe: float
-    motions: int
+    scatter: float  # Standard deviation of the logarithm of that [-]
+    unsafe: float  # Fraction of the motions that topple the object at less than the rule says [-]
+    motions: int  # Number of motions that topple it at all
 
 
 def check_rules(objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes) -> list[RuleCheck]:
-    """Hold every rule against the outcomes of an object.
-
-    Parameters
-    ----------
-    objects
-        The object.
-    motions
-        The motions, as they shake it.
-    outcomes
-        Its outcomes.
-
-    Returns
-    -------
-    A :class:`RuleCheck` for each rule that applies to the object.
-    """
+    """Hold every rule that applies to an object against its outcomes under the motions that shake it."""
     simulated = first_scales(outcomes)
     found = []
     for name, rule in RULES.items():
@@ -79,24 +52,9 @@ def first_scales(outcomes: ObjectOutcomes) -> np.ndarray:
 
 
 def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFrame:
-    """Hold the rules against the objects of a file, under the default motions.
+    """Hold the rules against objects of a file such as ``config/rules-of-thumb.yaml`` under the default motions.
 
-    Parameters
-    ----------
-    path
-        A file such as ``config/rules-of-thumb.yaml``.
-    records
-        Folder of fetched records.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A row for each object and rule, see :class:`RuleCheck`.
-
-    Raises
-    ------
-    InputError
-        If the file or an object cannot be used, or the motions cannot be had.
+    Returns a row for each object and rule, see :class:`RuleCheck`.
     """
     given = checked(read_yaml(path), "rules_of_thumb", str(path))
     requests = [

@@ -15,21 +15,11 @@ REFERENCE_YEARS = 50.0
 
 @dataclass(frozen=True)
 class Step:
-    """A step of the scale.
+    """A step of the scale."""
 
-    Attributes
-    ----------
-    name
-        What it is called.
-    below
-        Probability in 50 years below which it holds [-].
-    advice
-        What to do, in a sentence.
-    """
-
-    name: str
-    below: float
-    advice: str
+    name: str  # What it is called
+    below: float  # Probability in 50 years below which it holds [-]
+    advice: str  # What to do, in a sentence
 
 
 STEPS = (
@@ -48,30 +38,14 @@ SCALE_WORDS = (
 
 
 def step_of(probability: float, years: float) -> Step:
-    """Step of a probability in some years, by the rate that it stands for.
-
-    Parameters
-    ----------
-    probability
-        Probability [-].
-    years
-        Time [year].
-    """
+    """Step of a probability in some years, by the rate that it stands for."""
     rate = -math.log1p(-min(probability, 1 - 1e-15)) / years
     in_fifty = probability_in(rate, REFERENCE_YEARS)
     return next(step for step in STEPS if in_fifty < step.below)
 
 
 def classes(probability: Estimate, years: float) -> Step:
-    """Step of a probability, named with those that its interval reaches; the advice is that of the estimate.
-
-    Parameters
-    ----------
-    probability
-        Probability with its interval.
-    years
-        Its time [year].
-    """
+    """Step of a probability, named with those that its interval reaches; the advice is that of the estimate."""
     worst = step_of(probability.upper, years)
     if probability.value == 0:
         return Step(f"at most {worst.name}", worst.below, worst.advice)

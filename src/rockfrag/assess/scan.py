@@ -48,59 +48,28 @@ _BINS = 8
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """A scan, and the ways in which it may stand.
+    """A scan, and the ways in which it may stand."""
 
-    Attributes
-    ----------
-    shape
-        The scan.
-    ways
-        A row each, by rising angle at which it balances: that in its direction, or in space the least.
-    parts
-        Part of the variance of the order by source; the sum is 1.
-    order
-        Column of ``ways`` with that angle: ``alpha_deg``, or in space ``least_deg``.
-    space
-        The ways in the order that counts in space; None where it could stand in none of them.
-    """
-
-    shape: Shape
+    shape: Shape  # The scan
+    # A row each, by rising angle at which it balances: that in its direction, or in space the least
     ways: pd.DataFrame
-    parts: Mapping[str, float]
+    parts: Mapping[str, float]  # Part of the variance of the order by source; the sum is 1
+    # Column of ``ways`` with that angle: ``alpha_deg``, or in space ``least_deg``
     order: str = "alpha_deg"
+    # The ways in the order that counts in space; None where it could stand in none of them
     space: "Scan | None" = None
 
     def row_at(self, fraction: float) -> Mapping[str, float]:
-        """The way below which a fraction of all balances.
-
-        Parameters
-        ----------
-        fraction
-            From 0 to 1.
-        """
+        """The way below which a fraction of all balances."""
         place = min(int(fraction * len(self.ways)), len(self.ways) - 1)
         return {str(key): float(value) for key, value in self.ways.iloc[place].items()}
 
     def block(self, fraction: float = 0.5) -> Block:
-        """The planar block of such a way.
-
-        Parameters
-        ----------
-        fraction
-            As in :meth:`row_at`.
-        """
+        """The planar block of such a way."""
         return body_of(self.shape, self.row_at(fraction))
 
     def body(self, fraction: float = 0.5, turned_deg: float = 0.0) -> RigidBody:
-        """The body in space of such a way.
-
-        Parameters
-        ----------
-        fraction
-            As in :meth:`row_at`.
-        turned_deg
-            Angle by which it faces another way [degrees].
-        """
+        """The body in space of such a way."""
         way = self.row_at(fraction)
         tolerance, retreat = way["contact_tolerance_mm"] / 1e3, way["edge_retreat_mm"] / 1e3
         return self.shape.body(way["direction_deg"] - turned_deg, tolerance, retreat)
@@ -118,26 +87,10 @@ class Scan:
 def make_scan(
     shape: Shape, mesh: Mapping[str, Any], contact_spread: float | None
 ) -> tuple[Scan, list[Assumption]]:
-    """Draw the ways in which a scan may stand.
+    """Draw the ways in which a scan may stand; return them, and what was assumed.
 
-    Parameters
-    ----------
-    shape
-        The scan.
-    mesh
-        What was given of it: ``contact_tolerance_m``, ``edge_retreat_m``, ``direction_deg``, ``scan_accuracy_m``.
-    contact_spread
-        Relative standard deviation of the contact tolerance that was stated; None if none was.
-
-    Returns
-    -------
-    tuple
-        The scan, and what was assumed of it.
-
-    Raises
-    ------
-    InputError
-        If it cannot stand.
+    ``mesh`` may have ``contact_tolerance_m``, ``edge_retreat_m``, ``direction_deg`` and ``scan_accuracy_m``,
+    ``contact_spread`` is the relative standard deviation of the contact tolerance, if one was stated.
     """
     accuracy = mesh.get("scan_accuracy_m")
     unknowns = unknowns_of(SCAN, None if accuracy is None else 1e3 * accuracy)

@@ -17,37 +17,20 @@ them."""
 
 @dataclass(frozen=True)
 class Measurement:
-    """Something that a user could measure or find out.
+    """Something that a user could measure or find out."""
 
-    Attributes
-    ----------
-    words
-        What it is.
-    left
-        What it leaves of the standard deviation [-]: an estimate of ours, of a measurement made with care.
-    """
-
-    words: str
+    words: str  # What it is
+    # What it leaves of the standard deviation [-]: an estimate of ours, of a measurement made with care
     left: float
 
 
 @dataclass(frozen=True)
 class Source:
-    """A source of uncertainty.
+    """A source of uncertainty."""
 
-    Attributes
-    ----------
-    words
-        What it is, as a reader may know it.
-    basis
-        Where its size comes from.
-    measurement
-        What would make it smaller; None where no user can.
-    """
-
-    words: str
-    basis: str
-    measurement: Measurement | None = None
+    words: str  # What it is, as a reader may know it
+    basis: str  # Where its size comes from
+    measurement: Measurement | None = None  # What would make it smaller; None where no user can
 
 
 SOURCES: Mapping[str, Source] = {
@@ -138,13 +121,7 @@ SOURCES: Mapping[str, Source] = {
 
 
 def parts_of(sources: Mapping[str, float]) -> dict[str, float]:
-    """Part of each source in the variance of an interval, the largest first [-]; empty where one has no bound.
-
-    Parameters
-    ----------
-    sources
-        Standard deviations by name.
-    """
+    """Part of each source in the variance of an interval, the largest first [-]; empty where one has no bound."""
     total = sum(value**2 for value in sources.values())
     if not 0 < total < float("inf"):
         return {}

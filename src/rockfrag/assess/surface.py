@@ -28,14 +28,9 @@ _KEY = re.compile(
 
 
 def on_command_line(words: str, given: Collection[str] | None = None) -> str:
-    """A message with options in place of keys.
+    """A message that names keys of ``statue.yaml`` as ``key pga``, with options in place of those that were given.
 
-    Parameters
-    ----------
-    words
-        A message that names keys of ``statue.yaml`` as ``key pga``.
-    given
-        Keys that came from the command line; all of them if None.
+    All of them are taken as given if None.
     """
 
     def option(found: re.Match[str]) -> str:

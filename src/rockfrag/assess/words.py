@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.mitigations import Mitigation
-from rockfrag.assess.narrowing import MEASUREMENTS, Narrowed, is_wide, narrowed
+from rockfrag.assess.narrowing import MEASUREMENTS, is_wide, narrowed
 from rockfrag.assess.outcomes import LARGEST_FACTOR
 from rockfrag.assess.risk import LEVEL, Estimate
 from rockfrag.assess.scale import SCALE_WORDS, classes
 from rockfrag.assess.sources import SOURCES, parts_of
-from rockfrag.report.wording import counted
+from rockfrag.report.wording import counted, listed, sentence
 
 NAMES: Mapping[str, str] = {name: source.words for name, source in SOURCES.items()}
 """Sources of uncertainty and assumptions as a reader may know them."""
@@ -72,10 +72,12 @@ def range_words(lower: float, upper: float) -> str:
 
 
 def _limit(fraction: float) -> str:
-    """A limit in per cent: whole numbers from 10 on, two digits from 1 on, one below."""
+    """A limit in per cent: whole numbers from 10 on, two digits from 1 on, one below and as near to 100."""
     percent = 100 * fraction
     if percent < 5e-4:
         return "0"
+    if 99.5 <= percent <= 100 - 5e-4:
+        return f"{percent:.{-math.floor(math.log10(100 - percent))}f}"
     if percent >= 10:
         return f"{percent:.0f}"
     return f"{percent:.2g}" if percent >= 1 else f"{percent:.1g}"
@@ -96,13 +98,7 @@ def value_words(found: Assessment, value: float) -> str:
 
 
 def five_lines(found: Assessment) -> list[str]:
-    """Return the answer in five lines.
-
-    Parameters
-    ----------
-    found
-        The assessment.
-    """
+    """Return the answer in five lines."""
     return [
         f"Result: {at_the_site(found)}",
         f"Risk: {risk(found)}",
@@ -145,8 +141,7 @@ def not_decidable(found: Assessment) -> bool:
 
 
 def _subject(found: Assessment) -> str:
-    name = found.request.name
-    return name[:1].upper() + name[1:]
+    return sentence(found.request.name)
 
 
 def _where(found: Assessment) -> str:
@@ -229,14 +224,16 @@ def _interval(estimate: Estimate) -> str:
 
 
 def _would_narrow(found: Assessment) -> str:
-    better = narrowed(found.fraction) if found.fraction else None
-    return f"{_capital(_narrowing(better))}." if better else ""
+    return _narrowing(found.fraction) if found.fraction else ""
 
 
-def _narrowing(better: Narrowed) -> str:
-    """Such as ``knowing the ground velocity (PGV) of the site would narrow the interval to 2 to 19 %``."""
+def _narrowing(estimate: Estimate) -> str:
+    """``Knowing the ground velocity (PGV) of the site would narrow the interval to 2 to 19 %.`` or nothing."""
+    better = narrowed(estimate)
+    if better is None or _range(better.estimate) == _range(estimate):
+        return ""
     words = " and ".join(MEASUREMENTS[name].words for name in better.known)
-    return f"knowing {words} would narrow the interval to {_range(better.estimate)}"
+    return f"Knowing {words} would narrow the interval to {_range(better.estimate)}."
 
 
 def _amplitudes(found: Assessment) -> str:
@@ -347,9 +344,11 @@ def helps(found: Assessment) -> str:
             return "None of the motions topples it as it stands, so none can show what a change is worth."
         return "No change is needed for this: none of the motions topples it as it stands."
     best = [mitigation for mitigation in found.mitigations if mitigation.helps][:3]
+    if not best and all(math.isnan(mitigation.factor) for mitigation in found.mitigations):
+        return "Too few of the motions by which changes are compared topple it to show what a change is worth."
     if not best:
         return "None of the changes that were tried helps."
-    return _capital("; ".join(mitigation_words(found, mitigation) for mitigation in best)) + "."
+    return sentence("; ".join(mitigation_words(found, mitigation) for mitigation in best)) + "."
 
 
 def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
@@ -392,10 +391,10 @@ def uncertainty(found: Assessment) -> list[str]:
         if part >= LEAST_PART
     ]
     if named:
-        lines.append(f"The variance of the interval comes to {_listed(named[:MOST_SOURCES])}.")
-    better = narrowed(main) if found.probability or found.fraction else None
-    if better is not None and not (not_decidable(found) and main is found.fraction):
-        lines.append(f"{_capital(_narrowing(better))}.")
+        lines.append(f"The variance of the interval comes to {listed(named[:MOST_SOURCES])}.")
+    named_already = not_decidable(found) and main is found.fraction
+    if (found.probability or found.fraction) and not named_already and (said := _narrowing(main)):
+        lines.append(said)
     return lines
 
 
@@ -404,10 +403,6 @@ def main_assumptions(found: Assessment) -> list[str]:
     return [assumption.words for assumption in all_assumed(found) if assumption.short][
         :MOST_ASSUMPTIONS
     ]
-
-
-def _listed(words: list[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def _assumed(found: Assessment) -> list[str]:
@@ -525,7 +520,3 @@ def _influential(found: Assessment) -> list[tuple[str, float]]:
     names = outcomes.earthquakes[fell]
     counts = {name: (names == name).mean() for name in dict.fromkeys(names)}
     return [(str(name), float(fraction)) for name, fraction in counts.items() if fraction > 0.5]
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

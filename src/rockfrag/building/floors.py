@@ -43,16 +43,8 @@ def floor_motions(
 def vertical_motions(building: ShearBuilding, vertical: Motion) -> list[Motion]:
     """Vertical accelerations of all labelled floors: that of the ground times the building's factors.
 
-    Parameters
-    ----------
-    building
-        Building; storeys are taken as stiff in the vertical where it gives no factor.
-    vertical
-        Vertical acceleration of the ground.
-
-    Returns
-    -------
-    One motion a floor, named as those of :func:`floor_motions` where ``vertical`` has the name of the motion.
+    Storeys are taken as stiff in the vertical where the building gives no factor. The motions are named as those
+    of :func:`floor_motions` where ``vertical`` has the name of the motion.
     """
     moved = []
     for label in building.floors:

@@ -88,13 +88,7 @@ def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
 def law_parameters(law: MasonryLaw) -> Floats:
     """Parameters of the law as the kernels take them, shape (5,)."""
     return np.array(
-        [
-            law.pinch_force,
-            law.pinch_drift,
-            law.damage_ductility,
-            law.damage_energy,
-            law.unloading,
-        ]
+        [law.pinch_force, law.pinch_drift, law.damage_ductility, law.damage_energy, law.unloading]
     )
 
 

@@ -13,9 +13,7 @@ from rockfrag.errors import InputError
 
 Floats = NDArray[np.float64]
 
-MOST_STOREYS = 100
-"""More storeys than this are a slip of the keyboard and not a masonry building."""
-
+MOST_STOREYS = 100  # more storeys than this are a slip of the keyboard and not a masonry building
 _LEAST, _MOST = 1e-9, 1e21
 
 

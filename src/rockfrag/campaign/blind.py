@@ -22,26 +22,16 @@ _Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
 
 @dataclass(frozen=True)
 class BlindAnswer:
-    """Median of the fragility, blind and measured.
+    """Median of the fragility, blind and measured."""
 
-    Attributes
-    ----------
-    measured
-        Measured median.
-    median, lower, upper
-        Median over the ways in which the object may stand, with 5 and 95 % of them.
-    sampling
-        Standard error of ln(simulated over measured), from resampled input motions [-].
-    dispersion
-        Middle dispersion of the ways [-].
-    """
-
-    measured: float
+    measured: float  # Measured median
+    # Median over the ways in which the object may stand, with 5 and 95 % of them
     median: float
     lower: float
     upper: float
+    # Standard error of ln(simulated over measured), from resampled input motions [-]
     sampling: float
-    dispersion: float
+    dispersion: float  # Middle dispersion of the ways [-]
 
     @property
     def error(self) -> float:
@@ -56,10 +46,7 @@ class BlindAnswer:
     def interval(self, model: float = 0.0) -> tuple[float, float]:
         """Limits of the median with what is not known of the body, of the motions and of the model (90 %).
 
-        Parameters
-        ----------
-        model
-            Standard deviation of ln median that stands for the model [-].
+        ``model`` is the standard deviation of ln median that stands for the model [-].
         """
         other = _Z * math.hypot(self.sampling, model)
         low = math.hypot(math.log(self.median / self.lower), other)
@@ -72,23 +59,8 @@ def blind_answer(
 ) -> BlindAnswer:
     """Hold the ways in which an object may stand against what was measured; no way is chosen by it.
 
-    Parameters
-    ----------
-    measure
-        Intensity measure of each test, shape (tests,).
-    measured
-        Whether each test overturned, shape (tests,).
-    simulated
-        Whether each would in each way, shape (ways, tests).
-    groups
-        Input motion of each test, from 0 up, shape (tests,).
-    seed
-        Of the resampling.
-
-    Raises
-    ------
-    InputError
-        If outcomes do not rise with the measure.
+    ``measure``, ``measured`` and ``groups`` (input motion from 0 up) are of each test, shape (tests,), and
+    ``simulated`` has the shape (ways, tests). Outcomes that do not rise with the measure are refused.
     """
     table = fragility_beside(
         measure, measured, {"blind": simulated.mean(axis=0)}, groups,
@@ -111,21 +83,11 @@ def blind_answer(
 
 
 def model_error(answers: Sequence[BlindAnswer]) -> tuple[float, float]:
-    """Standard deviation of ln median that blind answers of one kind of body show [-].
+    """Standard deviation of ln median that blind answers show [-], and what of it is beyond the ways to stand.
 
     The mean square error, and what of it exceeds the variance of the ways to stand (the moment estimate of a
     variance between studies, DerSimonian and Laird 1986, with equal weights). To each the variance of sampling is
     added: agreement by chance is no proof of a model without error.
-
-    Parameters
-    ----------
-    answers
-        Of at least one campaign.
-
-    Returns
-    -------
-    tuple of float
-        All of it, and what is beyond the ways to stand.
     """
     square = float(np.mean([answer.error**2 for answer in answers]))
     sampling = float(np.mean([answer.sampling**2 for answer in answers]))

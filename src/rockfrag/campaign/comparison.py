@@ -17,18 +17,9 @@ NEAR_CRITICAL = (0.1, 0.9)
 def agreement_row(
     name: str, outcomes: Bools, measured: Bools, groups: NDArray[np.int64], level: float
 ) -> dict[str, object]:
-    """Fraction of right outcomes with an interval over motions, and both kinds of error.
+    """Fraction of right outcomes with an interval (Student's t over the groups), and both kinds of error.
 
-    Parameters
-    ----------
-    name
-        Who gave the outcomes.
-    outcomes
-        Shape (repeats, tests) or (tests,); repeats are divisions into folds and are averaged.
-    measured, groups
-        What the laboratory saw, and the group of each test.
-    level
-        Of the interval: Student's t over the groups.
+    Outcomes have the shape (repeats, tests) or (tests,); repeats are divisions into folds and are averaged.
     """
     each = np.atleast_2d(outcomes)
     right = (each == measured).mean(axis=0)
@@ -51,9 +42,7 @@ def paired_row(
 ) -> dict[str, float]:
     """How many more tests are right than by a rival, on the same tests.
 
-    Returns
-    -------
-    ``better`` (difference of the fractions of right outcomes) with ``better_lower`` and ``better_upper``
+    Returns ``better`` (difference of the fractions of right outcomes) with ``better_lower`` and ``better_upper``
     (Student's t over the groups) and ``p``: two-sided, by changing the sign of whole groups at random (McNemar's
     test for tests that are not independent).
     """
@@ -90,20 +79,8 @@ def fragility_beside(
 ) -> pd.DataFrame:
     """Lognormal fragility of the measured and of simulated outcomes, with their ratio.
 
-    Parameters
-    ----------
-    measure
-        Intensity measure of each test.
-    simulated
-        Outcomes by name, or the part of votes to overturn, shape (tests,) each.
-    groups
-        Motions; the bootstrap draws them whole.
-    level, replicates, seed
-        Of the intervals.
-
-    Returns
-    -------
-    A row per set of outcomes: ``who``, ``theta`` and ``beta`` with limits, and, for simulated ones,
+    ``simulated`` has outcomes by name, or the part of votes to overturn, shape (tests,) each; the bootstrap draws
+    groups whole. A row per set of outcomes: ``who``, ``theta`` and ``beta`` with limits, and, for simulated ones,
     ``theta_ratio`` and ``beta_ratio`` to the measured curve with limits.
     """
     rng = np.random.default_rng(seed)
@@ -140,20 +117,9 @@ def _limits(values: Floats, tails: Sequence[float]) -> Floats:
 
 
 def curves_of(measure: Floats, outcomes: Bools | Floats, weights: Floats) -> Floats:
-    """Fit a lognormal curve for each row of weights.
+    """Fit a lognormal curve for each row of weights: θ and β, shape (rows, 2); NaN where no curve rises.
 
-    Parameters
-    ----------
-    measure
-        Intensity measure of each test, shape (tests,).
-    outcomes
-        Whether, or in which part of its votes, each overturned, shape (tests,) or (rows, tests).
-    weights
-        Weight of each test, shape (rows, tests).
-
-    Returns
-    -------
-    θ and β, shape (rows, 2); NaN where no curve rises.
+    Weights have the shape (rows, tests). Outcomes, or parts of votes, have the shape (tests,) or (rows, tests).
     """
     design = np.column_stack([np.ones(len(measure)), np.log(measure)])
     coefficients = fit_batch(design, weights * outcomes, weights).coefficients
@@ -166,8 +132,6 @@ def by_region(
 ) -> pd.DataFrame:
     """Fraction of right outcomes in thirds of two measures.
 
-    Returns
-    -------
     A row per region: limits of both measures, ``tests``, ``overturned``, ``simulated`` and ``right``.
     """
     thirds = {name: _thirds(tests[name].to_numpy()) for name in (first, second)}

@@ -25,13 +25,7 @@ _CAUSES = {
 
 
 def measured_peaks(motions: Sequence[Motion]) -> pd.DataFrame:
-    """Peak acceleration and velocity of motions, ``pga_g`` and ``pgv_cm_s``.
-
-    Parameters
-    ----------
-    motions
-        The motions.
-    """
+    """Peak acceleration and velocity of motions, ``pga_g`` and ``pgv_cm_s``."""
     return pd.DataFrame(
         {
             "pga_g": [pga(motion) / GRAVITY for motion in motions],
@@ -41,21 +35,9 @@ def measured_peaks(motions: Sequence[Motion]) -> pd.DataFrame:
 
 
 def check_peaks(tests: pd.DataFrame, motions: Sequence[Motion], source: str) -> None:
-    """Refuse motions whose peaks are not those that the table of tests lists.
+    """Refuse motions whose peaks are not those that the table of tests lists, and say the factor between them.
 
-    Parameters
-    ----------
-    tests
-        The tests, with ``pga_g`` and ``pgv_cm_s`` or ``pgv_over_pga_s`` as far as they are listed.
-    motions
-        Motion of each.
-    source
-        File of the motions.
-
-    Raises
-    ------
-    InputError
-        With the factor between them.
+    The table has ``pga_g`` and ``pgv_cm_s`` or ``pgv_over_pga_s`` as far as they are listed.
     """
     listed = tests.filter(items=list(_CAUSES))
     if "pgv_cm_s" not in listed and {"pga_g", "pgv_over_pga_s"} <= set(tests):

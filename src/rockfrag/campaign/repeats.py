@@ -13,21 +13,10 @@ REPEATS = "majority of repeated tests (ceiling)"
 
 
 def majority_of_repeats(settings: NDArray[Any], measured: Bools) -> Bools | None:
-    """Outcome that most tests at the same setting had.
+    """Outcome that most tests at the same setting had, shape (tests,); None where no setting is repeated.
 
     A model whose answer follows from the setting alone gives one outcome for all repeats, so it is right in no
-    more tests than the majority.  Tests whose setting is not repeated count as right.
-
-    Parameters
-    ----------
-    settings
-        Name of each test's setting, shape (tests,).
-    measured
-        Whether each test overturned, shape (tests,).
-
-    Returns
-    -------
-    Array of shape (tests,); None where no setting is repeated.
+    more tests than the majority. Tests whose setting is not repeated count as right.
     """
     code = pd.factorize(settings)[0]
     tests = np.bincount(code)

@@ -31,21 +31,11 @@ floor out of level and a push reach."""
 
 @dataclass(frozen=True)
 class Unknown:
-    """Something about how an object stands that nobody measured.
+    """Something about how an object stands that nobody measured."""
 
-    Attributes
-    ----------
-    words
-        What it is.
-    source
-        Where its distribution comes from.
-    quantile
-        Its quantile function.
-    """
-
-    words: str
-    source: str
-    quantile: Callable[[float], float]
+    words: str  # What it is
+    source: str  # Where its distribution comes from
+    quantile: Callable[[float], float]  # Its quantile function
 
 
 def _uniform(low: float, high: float, fraction: float) -> float:
@@ -53,27 +43,14 @@ def _uniform(low: float, high: float, fraction: float) -> float:
 
 
 def lognormal(median: float, spread: float, fraction: float) -> float:
-    """Quantile of a lognormal distribution.
-
-    Parameters
-    ----------
-    median, spread
-        Median, and standard deviation of the logarithm.
-    fraction
-        Probability below it, between 0 and 1.
-    """
+    """Quantile of a lognormal distribution by its median and the standard deviation of the logarithm."""
     return median * math.exp(spread * float(norm.ppf(fraction)))
 
 
 def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, Unknown]:
-    """Distributions of what nobody measured.
+    """Distributions of what nobody measured of a ``scan`` or a ``cut block``.
 
-    Parameters
-    ----------
-    kind
-        ``scan`` or ``cut block``.
-    scan_accuracy_mm
-        Standard deviation of the height of a scanned point [mm]; None if it is not known.
+    The accuracy of a scan is the standard deviation of the height of a point [mm]; None if it is not known.
     """
     if kind == CUT:
         return {
@@ -123,25 +100,9 @@ def ways_to_stand(
 ) -> Trials:
     """Draw ways in which an object may stand, evenly over the distributions (scrambled Sobol points).
 
-    Ways in which it would not have been set up (:data:`LEAST_ANGLE_DEG`) are left out.
-
-    Parameters
-    ----------
-    thing
-        A shape, or the planar block of a cut one.
-    unknowns
-        Distributions, as :func:`unknowns_of` gives them.
-    count
-        Number of draws; a power of two fills the distributions most evenly.
-    seed
-        Of the scrambling.
-    known
-        What was measured, by the name of the unknown; its restitution conserves momentum if it is in neither.
-
-    Raises
-    ------
-    InputError
-        If it could stand in none of them.
+    Ways in which it would not have been set up (:data:`LEAST_ANGLE_DEG`) are left out. ``thing`` is a shape, or
+    the planar block of a cut one; a power of two fills the distributions most evenly. ``known`` is what was
+    measured, by the name of the unknown; restitution conserves momentum if it is in neither.
     """
     points = qmc.Sobol(len(unknowns), scramble=True, rng=np.random.default_rng(seed)).random(count)
     rows, systems = [], []

@@ -73,13 +73,7 @@ def table_motions(
 
 
 def missing_motions(source: str | os.PathLike[str], names: Sequence[str]) -> list[str]:
-    """Return the names of which there is no motion.
-
-    Raises
-    ------
-    InputError
-        If the archive does not exist or cannot be read.
-    """
+    """Return the names of which there is no motion."""
     if not _is_archive(str(source)):
         return [name for name in names if not is_file(Path(_path(str(source), name)))]
     with _archive(str(source)) as content:

@@ -143,21 +143,9 @@ _NOTHING_BEYOND = (("edge_retreat_mm", 0.0), ("restitution", 1.0))
 def preferred_edges(
     trials: pd.DataFrame, plausible: Any, ranges: Mapping[str, tuple[float, float]]
 ) -> dict[str, str]:
-    """Say at which ends of their ranges plausible trials crowd.
+    """Say at which ends of their ranges plausible trials crowd: ``low end`` or ``high end`` by unknown.
 
-    Parameters
-    ----------
-    trials
-        Table of :class:`Trials`.
-    plausible
-        Labels of its plausible rows.
-    ranges
-        Lowest and highest value of each unknown; directions all around have no end.
-
-    Returns
-    -------
-    dict
-        ``low end`` or ``high end`` by unknown.
+    Directions all around have no end.
     """
     found = {}
     for name, limits in ranges.items():
@@ -181,20 +169,7 @@ def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block 
 
 
 def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block | Column:
-    """The planar block of a guess, or blocks on each other.
-
-    Parameters
-    ----------
-    thing
-        A shape, or the planar block or blocks themselves.
-    guess
-        Its unknowns.
-
-    Raises
-    ------
-    InputError
-        If it could not stand.
-    """
+    """The planar block of a guess at the unknowns of a shape or block, or blocks on each other."""
     retreat = guess["edge_retreat_mm"] / 1e3
     if isinstance(thing, Shape):
         return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
@@ -209,13 +184,5 @@ def _value(name: str, limits: tuple[float, float], fraction: float) -> float:
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:
-    """Return a restitution that gains no energy: as given, or None, which conserves momentum, where it would.
-
-    Parameters
-    ----------
-    block
-        The block.
-    restitution
-        Ratio of angular velocities [-].
-    """
+    """Return a restitution that gains no energy: as given, or None, which conserves momentum, where it would."""
     return restitution if restitution < largest_restitution(block) else None

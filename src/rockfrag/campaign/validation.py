@@ -60,15 +60,7 @@ class Validated:
 def folds_by_group(
     groups: NDArray[np.int64], count: int, rng: np.random.Generator
 ) -> NDArray[np.int64]:
-    """Assign each test to a fold such that tests of one group share it.
-
-    Parameters
-    ----------
-    groups
-        Number of each test's group, from 0 up, shape (tests,).
-    count
-        Number of folds.
-    """
+    """Assign each test to a fold such that tests of one group, a number from 0 up, share it."""
     order = rng.permutation(int(groups.max()) + 1)
     return np.asarray(order[groups] % count)
 
@@ -89,12 +81,7 @@ def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:
 def plausible_trials(right: Bools, groups: NDArray[np.int64]) -> Bools:
     """Say which trials agree with tests about as well as the best one.
 
-    Parameters
-    ----------
-    right
-        Whether each trial's outcome is the measured one, shape (trials, tests).
-    groups
-        Group of each test.
+    ``right`` tells of each trial's outcomes whether they are the measured ones, shape (trials, tests).
     """
     fraction = right.mean(axis=1)
     best = int(fraction.argmax())

@@ -98,25 +98,14 @@ class Case:
 
 @dataclass(frozen=True)
 class Cases:
-    """Systems × motions × scales, and what is asked of each.
+    """Systems × motions × scales, and what is asked of each."""
 
-    Attributes
-    ----------
-    systems, motions
-        What is shaken, and by what.
-    scales
-        Factors on the motions, shape (motions, scales).
-    request
-        What is asked.
-    threads
-        Threads to use; outcomes do not depend on it.
-    """
-
+    # systems, motions: what is shaken, and by what
     systems: tuple[System, ...]
     motions: tuple[GroundMotion, ...]
-    scales: Floats
-    request: Request = field(default_factory=Request)
-    threads: int = 1
+    scales: Floats  # factors on the motions, shape (motions, scales)
+    request: Request = field(default_factory=Request)  # what is asked
+    threads: int = 1  # threads to use; outcomes do not depend on it
 
     @property
     def shape(self) -> tuple[int, int, int]:

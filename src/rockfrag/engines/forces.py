@@ -36,17 +36,7 @@ def _acceleration(arm: Pair, turning: _Turning) -> tuple[Array, Array]:
 
 
 def centres(system: System, state: NDArray[np.int64], theta: Array) -> Array:
-    """Centres of gravity of a body that rocks without sliding, relative to the moving ground [m].
-
-    Parameters
-    ----------
-    state, theta
-        As in :class:`Response`, shape (n, blocks).
-
-    Returns
-    -------
-    x and y, shape (n, blocks, 2).
-    """
+    """Centres of gravity of bodies that rock without sliding, relative to the ground [m], shape (n, blocks, 2)."""
     found = np.zeros((*theta.shape, 2))
     sine, cosine = _sines(theta)
     signs = np.where(state == 0, 1, state)
@@ -91,19 +81,10 @@ def contact_forces(
     alpha: Array,
     gravity: Array,
 ) -> tuple[Array, Array]:
-    """Normal and friction force of each interface on what stands on it.
+    """Normal and friction force of each interface on what stands on it [N], each of shape (n, blocks).
 
-    Parameters
-    ----------
-    ground, gravity
-        Ground acceleration, and gravity with the ground's upward acceleration [m/s²], shape (n,).
-    state, theta, omega, alpha
-        As in :class:`Response`, shape (n, blocks).
-
-    Returns
-    -------
-    Normal force and friction force across and along the face that carries, up and to the right [N], each of
-    shape (n, blocks).
+    They act across and along the face that carries, up and to the right. ``gravity`` has the ground's upward
+    acceleration in it [m/s²], shape (n,).
     """
     normal = np.zeros_like(theta)
     friction = np.zeros_like(theta)

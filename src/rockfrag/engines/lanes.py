@@ -121,14 +121,7 @@ def _refined(values: Array, times: int) -> Array:
 def write_rocking(into: Outcomes, rows: Sequence[int], found: NDArray[np.void]) -> None:
     """Write what the kernels of pure rocking tell of cases into outcomes of one or two bodies.
 
-    Parameters
-    ----------
-    into
-        Outcomes.
-    rows
-        Positions of the systems in them, which all have as many bodies.
-    found
-        ``OUTCOME`` of each case of these systems, shape (rows, motions, scales).
+    ``found`` has the ``OUTCOME`` of each case of the systems in these rows, which all have as many bodies.
     """
     count, place = into.counts[rows[0]], np.asarray(rows, dtype=np.intp)
     # a lone body is the kernels' block 2

@@ -19,19 +19,7 @@ FIELDS = ("after1r", "after1l", "after2r", "after2l")
 def body_record(system: System, linear: bool = False, g: float = GRAVITY) -> np.void:
     """Return the record of a system of one or two bodies that the kernels read (``kernels.equations.BODY``).
 
-    Parameters
-    ----------
-    system
-        One or two planar bodies.
-    linear
-        Use the linearised equations: eq. 2.9 for one body, eq. 2.60-2.65 for two.
-    g
-        Acceleration of gravity [m/s²].
-
-    Raises
-    ------
-    InputError
-        If ``g`` is not positive.
+    ``linear`` uses the linearised equations: eq. 2.9 for one body, eq. 2.60-2.65 for two.
     """
     positive_number("g", g, "m/s²")
     p: np.void = np.zeros(1, BODY)[0]

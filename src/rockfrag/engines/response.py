@@ -29,15 +29,9 @@ ROCKING_MODES = {
 }
 """Names of the contact states (ground, interface): the modes of Psycharis (1990) to both sides."""
 
-FLIGHT = 2
-"""Contact state of an interface that is open at both ends."""
+FLIGHT = 2  # contact state of an interface that is open at both ends
 
-MODES = {
-    0: "stands",
-    +1: "rocks right",
-    -1: "rocks left",
-    FLIGHT: "flies",
-}
+MODES = {0: "stands", +1: "rocks right", -1: "rocks left", FLIGHT: "flies"}
 """What an interface does in each contact state."""
 
 

@@ -19,9 +19,7 @@ from rockfrag.system import geometry
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
-MOST_ROCKING_MODES = len(OKABE_ITO)
-"""Rows of patterns; more are counted."""
-
+MOST_ROCKING_MODES = len(OKABE_ITO)  # rows of patterns; more are counted
 _ROCKING_MODES = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 
 

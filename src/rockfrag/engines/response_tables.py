@@ -20,26 +20,10 @@ def contact_event_table(
     theta: Floats,
     kinetic: tuple[Floats, Floats],
 ) -> pd.DataFrame:
-    """Make the table of contact events of a response.
+    """Make the columns of ``Response.contact_events`` that a response without friction has.
 
-    Parameters
-    ----------
-    time
-        When they happened [s], shape (n,).
-    kind
-        What happened, n of them.
-    states
-        Contact states before and after, each of shape (n, contacts).
-    omega
-        Angular velocities before and after [rad/s], each of shape (n, bodies).
-    theta
-        Rotations [rad], shape (n, bodies).
-    kinetic
-        Kinetic energies before and after [J], each of shape (n,).
-
-    Returns
-    -------
-    A row per contact event, with the columns of ``Response.contact_events`` without friction.
+    ``states`` and ``omega`` [rad/s] are those before and after, each of shape (n, contacts), ``kinetic`` energies
+    before and after [J], each of shape (n,).
     """
     return pd.DataFrame(
         {
@@ -73,8 +57,7 @@ def with_slips(table: pd.DataFrame, states: Ints, slides: Ints, slip: Floats) ->
     pairs = np.stack([states, slides], axis=-1).tolist()
     modes = [tuple(mode_name(*pair) for pair in each) for each in pairs]
     return table.assign(
-        modes=pd.Series(modes, dtype=object),
-        slip=pd.Series(_tuples(slip), dtype=object),
+        modes=pd.Series(modes, dtype=object), slip=pd.Series(_tuples(slip), dtype=object)
     )
 
 
@@ -88,24 +71,10 @@ def energy_table(
     *,
     contacts: int,
 ) -> pd.DataFrame:
-    """Make the balance of energy by cause over time [J].
+    """Make the balance of energy by cause over time [J], with the columns of ``Response.energy``.
 
-    Parameters
-    ----------
-    time
-        Times of the samples [s], shape (n,).
-    kinetic, potential, work
-        Energies and the work of the ground so far at these times [J], each of shape (n,).
-    losses
-        Of each impact its time [s], its contact from 0 and what it lost [J].
-    friction
-        What friction has taken so far [J], shape (n,); None where nothing slides.
-    contacts
-        Number of contacts.
-
-    Returns
-    -------
-    The columns of ``Response.energy``.
+    ``losses`` are of each impact its time [s], its contact from 0 and what it lost [J]; ``friction`` is what
+    friction has taken so far [J], shape (n,), None where nothing slides.
     """
     when, contact, lost = losses
     at = np.searchsorted(time, when - 1e-12 * max(1.0, time[-1]))

@@ -73,13 +73,7 @@ class Single:
         return outcomes
 
     def history(self, case: Case) -> Response:
-        """Return the response of a case.
-
-        Raises
-        ------
-        InputError
-            If its samples are more than are admitted.
-        """
+        """Return the response of a case."""
         from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
         from rockfrag.engines.records import body_record
         from rockfrag.engines.steps import MOST_SAMPLES
@@ -111,12 +105,7 @@ class Single:
 
 
 def samples_of(case: Case) -> tuple[Array, Array, Array, NDArray[Any]]:
-    """Return times [s], rotations [rad], velocities [rad/s] and contact states of a case, without what follows.
-
-    Returns
-    -------
-    Times of shape (n,), and the others as in :class:`Response`, shape (n, bodies).
-    """
+    """Return times [s], (n,), and rotations, velocities and contact states of a case as of :class:`Response`."""
     from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
     from rockfrag.engines.records import body_record
 
@@ -150,8 +139,7 @@ def _write_summaries(
         into.least_normal_force[rows, ..., k] = summaries["demand"]["normal" + number]
 
 
-BLOCKS = ("1", "2")
-"""What the kernels call the two bodies."""
+BLOCKS = ("1", "2")  # what the kernels call the two bodies
 
 
 def initial_state(system: System) -> np.void:

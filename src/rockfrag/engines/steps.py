@@ -9,16 +9,12 @@ from rockfrag.system import geometry
 from rockfrag.system.blocks import Body, as_system
 from rockfrag.system.system import System
 
-STEP = 0.1
-"""Largest p h of a step: frequency parameter of the fastest body times step."""
-
+STEP = 0.1  # largest p h of a step: frequency parameter of the fastest body times step
 STACK_STEP = 0.35
 """Fraction of that step that two bodies of an ensemble take while both rotate: they are chaotic, and keep the
 memory of smaller errors."""
 
-FREE_TIME = 60.0
-"""Free rocking after the motion is followed for at most this long, in units of 1/p."""
-
+FREE_TIME = 60.0  # free rocking after the motion is followed for at most this long, in units of 1/p
 MOST_SAMPLES = 20_000_000
 """Samples of a history, the motion and the free rocking after it, that are admitted."""
 
@@ -33,13 +29,7 @@ def fastest_frequency(system: System | Body, g: float) -> float:
 
 
 def slowest_frequency(system: System | Body, g: float) -> float:
-    """Smallest frequency parameter p of the ways in which a system rocks [1/s].
-
-    Raises
-    ------
-    InputError
-        If it is too small for a number.
-    """
+    """Smallest frequency parameter p of the ways in which a system rocks [1/s]."""
     system = as_system(system)
     shapes = list(system.carried)
     if system.count == 2:
@@ -51,13 +41,7 @@ def slowest_frequency(system: System | Body, g: float) -> float:
 
 
 def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.int64]:
-    """Return the most samples of free rocking that are followed after a motion, for every interval.
-
-    Raises
-    ------
-    InputError
-        If they would not fit into memory.
-    """
+    """Return the most samples of free rocking that are followed after a motion, for every interval."""
     samples = np.ceil(FREE_TIME / slowest_frequency(system, g) / np.asarray(dt))
     if samples.max(initial=0) > MOST_SAMPLES:
         raise InputError(
@@ -68,13 +52,7 @@ def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.i
 
 
 def step_count(system: System | Body, dt: ArrayLike, g: float, step: float) -> NDArray[np.int64]:
-    """Return the steps per sample for which p h does not exceed ``step``, for every sampling interval.
-
-    Raises
-    ------
-    InputError
-        If ``step`` is not positive, or an interval is far too long for the body.
-    """
+    """Return the steps per sample for which p h does not exceed ``step``, for every sampling interval."""
     positive_number("step", step)
     frequency = fastest_frequency(system, g)
     steps = np.ceil(frequency * np.asarray(dt) / step - 1e-9)

@@ -16,33 +16,19 @@ from rockfrag.fragility.observations import Floats
 
 Link = Literal["probit", "logit"]
 
-MOST_STEPS = 100
-"""Steps after which a regression that has not converged is left as it is."""
-
+MOST_STEPS = 100  # steps after which a regression that has not converged is left as it is
 _LARGEST_PREDICTOR = 30.0
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
 
 
 @dataclass(frozen=True)
 class BatchFit:
-    """Coefficients of a batch of regressions of the same predictors.
+    """Coefficients of a batch of regressions of the same predictors."""
 
-    Attributes
-    ----------
-    coefficients
-        Shape (batch, k); NaN where all tests of a replicate agree.
-    log_likelihood
-        Without binomial coefficients and without the penalty, shape (batch,).
-    information
-        Expected (Fisher) information, shape (batch, k, k).
-    converged
-        Shape (batch,).
-    """
-
-    coefficients: Floats
-    log_likelihood: Floats
-    information: Floats
-    converged: NDArray[np.bool_]
+    coefficients: Floats  # shape (batch, k); NaN where all tests of a replicate agree
+    log_likelihood: Floats  # without binomial coefficients and without the penalty, shape (batch,)
+    information: Floats  # expected (Fisher) information, shape (batch, k, k)
+    converged: NDArray[np.bool_]  # shape (batch,)
 
 
 @dataclass(frozen=True)
@@ -75,16 +61,12 @@ def fit_batch(
     start: Floats | None = None,
     tolerance: float = 1e-9,
 ) -> BatchFit:
-    """Fit ``batch`` binomial regressions that share their predictors.
+    """Fit ``batch`` binomial regressions that share their predictors, the ``design`` of shape (rows, k) with ones.
 
     Parameters
     ----------
-    design
-        Predictors with the column of ones, shape (rows, k).
     failures, trials
         Counts, shape (batch, rows); a row with 0 trials takes no part.
-    link
-        ``"probit"`` or ``"logit"``.
     penalised
         Add half the logarithm of the determinant of the information to the log-likelihood (Firth,
         1993, Biometrika 80: 27-38). The maximum is then finite under separation also (Kosmidis and
@@ -144,17 +126,10 @@ def fit_batch(
 
 
 def separated(log_im: Floats, failures: Floats, trials: Floats) -> NDArray[np.bool_]:
-    """Tell for each replicate whether one value of the measure parts survival from overturning.
+    """Tell for each replicate, a row of counts, whether one value of the measure parts survival from overturning.
 
     Then (complete or quasi-complete separation, in either direction) the likelihood has no finite
     maximum. Replicates in which all tests agree count as separated.
-
-    Parameters
-    ----------
-    log_im
-        Logarithm of the intensity measure, shape (rows,).
-    failures, trials
-        Shape (batch, rows).
     """
     fell, stood = failures > 0, trials - failures > 0
 

@@ -239,18 +239,9 @@ def bracket_interval(
 
 
 def bracket_log_scores(brackets: Brackets, weights: Floats) -> Floats:
-    """Log probability of each bracket under the fit to each row of weights.
+    """Log probability of each bracket under the fit to each row of weights, (batch, n); -∞ where there is no fit.
 
     Equal bounds, which have no probability, score by their density in the logarithm.
-
-    Parameters
-    ----------
-    weights
-        Of the tests, shape (batch, n).
-
-    Returns
-    -------
-    Shape (batch, n); -∞ where the weights give no fit.
     """
     low, high = _logs(brackets)
     coefficients = _fit_weighted(low, high, weights)[0]
@@ -359,8 +350,7 @@ def _newton(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats,
     return coefficients, -hessian, value
 
 
-_AT_ONCE = 50_000
-"""Brackets times weightings in memory at a time; no result depends on it."""
+_AT_ONCE = 50_000  # brackets times weightings in memory at a time; no result depends on it
 
 
 def _likelihood(

@@ -26,41 +26,24 @@ TAILS = (
 REJECTION = re.compile(r"The lognormal curve is rejected \(p = .*?\.(?= [A-Z]|$)")
 """Finds the sentence about a rejected curve among its warnings."""
 
-FEWEST_MOTIONS = 10
-"""Below so many motions every table and export says how few they are."""
+FEWEST_MOTIONS = 10  # below so many motions every table and export says how few they are
 
 
 @dataclass(frozen=True)
 class Checks:
-    """Goodness of fit, influence and the medians that need no curve.
+    """Goodness of fit, influence and the medians that need no curve."""
 
-    Attributes
-    ----------
-    p_fit
-        p value of the hypothesis that the curve describes the data [-]; NaN where it cannot be tested.
-    test
-        How that was tested.
-    largest_residual
-        Observed less fitted fraction of overturned tests in the bin where they differ most [-].
-    influential
-        Motion (earthquake) without which θ changes most; empty where there is none.
-    influence
-        θ without it over θ [-].
-    fractions
-        The non-parametric fragility function, to use where the fitted one is rejected.
-    warnings
-        Sentences.
-    goodness
-        The test of a curve fitted to outcomes in full; None without such a curve.
-    """
-
+    # p value of the hypothesis that the curve describes the data [-]; NaN where it cannot be tested
     p_fit: float
-    test: str
+    test: str  # how that was tested
+    # observed less fitted fraction of overturned tests in the bin where they differ most [-]
     largest_residual: float
-    influential: str
-    influence: float
+    influential: str  # motion (earthquake) without which θ changes most; empty where there is none
+    influence: float  # θ without it over θ [-]
+    # the non-parametric fragility function, to use where the fitted one is rejected
     fractions: Fractions
-    warnings: tuple[str, ...]
+    warnings: tuple[str, ...]  # sentences
+    # the test of a curve fitted to outcomes in full; None without such a curve
     goodness: GoodnessOfFit | None = None
 
     @property

@@ -10,43 +10,22 @@ ESTIMATES = ("theta", "beta")
 
 
 class Compared(NamedTuple):
-    """Curves that may be compared.
+    """Curves that may be compared."""
 
-    Attributes
-    ----------
-    rows
-        Rows of the table with ``theta`` and ``beta``, and their limits, all by the same estimator; theta is
-        missing
-        where that estimator gives none.
-    nonparametric
-        Whether the estimator is the monotone curve without an assumed form.
-    rejected
-        Configurations whose lognormal curve is rejected.
-    """
-
+    # rows of the table with ``theta`` and ``beta``, and their limits, all by the same estimator;
+    # theta is missing where that estimator gives none
     rows: pd.DataFrame
-    nonparametric: bool
-    rejected: list[str]
+    nonparametric: bool  # whether the estimator is the monotone curve without an assumed form
+    rejected: list[str]  # configurations whose lognormal curve is rejected
 
 
 def compared_curves(rows: pd.DataFrame, nonparametric: bool | None = None) -> Compared:
-    """Choose one estimator for all curves of a comparison.
+    """Choose one estimator for all curves of a comparison, which are of one measure and one definition.
 
     Lognormal curves are compared where none of them is rejected by its goodness of fit (p < 0.05). Where one is,
     all are replaced by nonparametric monotone curves: an estimator that is chosen body by body would show
-    differences between bodies that are differences between estimators.
-
-    Parameters
-    ----------
-    rows
-        Rows of :func:`rockfrag.fragility.fragility_table` of one measure and one definition.
-    nonparametric
-        The estimator where these rows are a part of a larger comparison, which decides.
-
-    Returns
-    -------
-    Compared
-        The rows in their order.
+    differences between bodies that are differences between estimators. Where the rows are a part of a larger
+    comparison, that decides (``nonparametric``).
     """
     below = rows["p_fit"] < REJECTED
     rejected = list(dict.fromkeys(rows.loc[below, "configuration"]))

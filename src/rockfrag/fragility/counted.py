@@ -19,34 +19,21 @@ from rockfrag.fragility.observations import Floats, Observations, name_and_unit,
 from rockfrag.machine_code import cached_njit
 from rockfrag.shaketable.swept import Swept
 
-CELLS = 2000
-"""Cells of equal width in the logarithm of a measure."""
+CELLS = 2000  # cells of equal width in the logarithm of a measure
 
 
 @dataclass(frozen=True)
 class CountedObservations(Observations):
-    """Outcomes whose rows are the cells of each block of motions (earthquakes), see :class:`Observations`.
+    """Outcomes whose rows are the cells of each block of motions (earthquakes), see :class:`Observations`."""
 
-    Attributes
-    ----------
-    motions, earthquakes
-        How many there are.
-    block
-        Block of each motion or earthquake, whichever is resampled, shape (groups,).
-    edges
-        Ends of the cells in ln IM, shape (cells + 1,).
-    scale
-        ln IM of each motion at an amplitude of 1 g, shape (motions,).
-    rise
-        What each amplitude adds to it, rising, shape (n,).
-    """
-
+    # motions, earthquakes: how many there are
     motions: int = 0
     earthquakes: int = 0
+    # block of each motion or earthquake, whichever is resampled, shape (groups,)
     block: NDArray[np.intp] | None = None
-    edges: Floats | None = None
-    scale: Floats | None = None
-    rise: Floats | None = None
+    edges: Floats | None = None  # ends of the cells in ln IM, shape (cells + 1,)
+    scale: Floats | None = None  # ln IM of each motion at an amplitude of 1 g, shape (motions,)
+    rise: Floats | None = None  # what each amplitude adds to it, rising, shape (n,)
 
     @property
     def n_motions(self) -> int:
@@ -102,15 +89,7 @@ class CountedObservations(Observations):
         return count, float(count)
 
     def drawn(self, capacity: Floats, cell: NDArray[np.intp]) -> Floats:
-        """Outcomes by cell where each motion has one capacity [ln IM], shape (replicates, cells).
-
-        Parameters
-        ----------
-        capacity
-            Shape (replicates, motions).
-        cell
-            Cell of each row, rising with the measure.
-        """
+        """See :class:`Observations`; ``cell`` rises with the measure."""
         assert self.scale is not None and self.rise is not None and self.edges is not None
         values, first = np.unique(self.im, return_index=True)
         starts = np.flatnonzero(np.diff(cell[first], prepend=-1))

@@ -6,9 +6,7 @@ from typing import Any
 
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 
-REJECTED = 0.05
-"""A curve is said not to describe its data below this p value [-]."""
-
+REJECTED = 0.05  # a curve is said not to describe its data below this p value [-]
 OF_THE_MODEL = MODEL_ERRORS[CUT]
 """Error of the model in curves of studies, whose bodies are cut blocks."""
 

@@ -10,9 +10,7 @@ from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility
 from rockfrag.fragility.observations import Observations
 
-POINTS = 120
-"""Points of a curve, in equal ratios."""
-
+POINTS = 120  # points of a curve, in equal ratios
 _TAIL = 2.6
 """Standard deviations on either side of the median within which a curve is drawn: 0.5 to 99.5 %."""
 
@@ -86,14 +84,7 @@ def fraction_points(labels: Mapping[str, Any], curve: Fragility) -> pd.DataFrame
 def outcome_bins(
     labels: Mapping[str, Any], curve: Fragility, outcomes: Observations
 ) -> pd.DataFrame:
-    """Fractions of overturned tests in bins, under the labels of their curve.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``labels``, ``im``, ``unit``, and the columns of
-        :func:`rockfrag.fragility.empirical.fraction_in_bins`, where the measure is called ``x``.
-    """
+    """Fractions of overturned tests in bins under the labels of their curve, where the measure is called ``x``."""
     names = {"im": "x", "im_lower": "x_lower", "im_upper": "x_upper"}
     table = fraction_in_bins(outcomes).rename(columns=names)
     about = pd.DataFrame({**labels, "im": curve.fit.im, "unit": curve.fit.unit}, index=table.index)

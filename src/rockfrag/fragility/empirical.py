@@ -185,17 +185,7 @@ def find_resurrections(
 
 
 def resurrections_of(parts: Iterable[Swept]) -> pd.DataFrame:
-    """Structural resurrections of IDA curves, part after part, by configuration, earthquake, floor and motion.
-
-    Parameters
-    ----------
-    parts
-        IDA curves, see :func:`rockfrag.shaketable.swept.read_swept`.
-
-    Returns
-    -------
-    As :func:`find_resurrections` with these columns for ``by``.
-    """
+    """Structural resurrections of parts of IDA curves, as :func:`find_resurrections` has those of a table."""
     keys = ["configuration", "earthquake", "floor", "motion"]
     rows = [
         {**about, **_resurrections(part.amplitude_g, overturned)}

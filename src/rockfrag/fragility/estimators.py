@@ -17,7 +17,13 @@ from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_outc
 from rockfrag.fragility.ida_data import IdaData, TableIda
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
-from rockfrag.fragility.observations import Observations, observations_from_table
+from rockfrag.fragility.observations import (
+    Observations,
+    labels,
+    name_and_unit,
+    observations_from_table,
+    positive,
+)
 from rockfrag.keywords import named_keywords
 from rockfrag.short_repr import short_repr
 
@@ -274,6 +280,19 @@ def fragility_of_brackets(brackets: Brackets, level: float) -> Fragility:
     """Fit a curve to bracketed amplitudes and give it limits over motions, or earthquakes where known."""
     fit, interval = fit_brackets(brackets), bracket_interval(brackets, level=level)
     return Fragility(fit, interval, checks_of_brackets(brackets, fit, interval))
+
+
+def fit_uplift(motions: pd.DataFrame, im: str, *, level: float = 0.90) -> Fragility:
+    """Curve of P(rock | IM) from motions scaled to the peak acceleration at which rocking starts.
+
+    That peak is exact, so each motion (a row with ``motion``, ``earthquake`` and the measure ``im`` at that scale)
+    gives its measure at uplift exactly; in the peak acceleration itself the curve is a step, given as a β of
+    next to nothing.
+    """
+    at = positive(motions, im)
+    names = labels(motions, "motion", "table")
+    earthquakes = labels(motions, "earthquake", "table")
+    return fragility_of_brackets(Brackets(at, at, names, earthquakes, *name_and_unit(im)), level)
 
 
 def _pooled(outcomes: Observations) -> Observations:

@@ -28,9 +28,7 @@ from rockfrag.fragility.pooling import cells, counts
 ENDS = (0.1587, 0.8413)
 """Shares one standard deviation below and above the median of a lognormal curve [-]."""
 
-ROUNDING = 1e-6
-"""Values and shares that differ by less are one point of the curve [-]."""
-
+ROUNDING = 1e-6  # values and shares that differ by less are one point of the curve [-]
 Limits = tuple[float, float]
 
 UNKNOWN: Limits = (float("nan"), float("nan"))
@@ -38,30 +36,19 @@ UNKNOWN: Limits = (float("nan"), float("nan"))
 
 @dataclass(frozen=True)
 class Fractions:
-    """Never-falling fraction of overturned tests, without a form.
+    """Never-falling fraction of overturned tests, without a form."""
 
-    Attributes
-    ----------
-    im
-        Values of the measure, rising, shape (n,).
-    fraction
-        Fraction at each of them, never falling, shape (n,).
-    lower, upper
-        Pointwise limits, shape (n,); NaN where there is but one group.
-    theta, theta_limits
-        Median, and its limits: 0 and infinite where the data set none; NaN where the fraction does not pass one
-        half.
-    beta, beta_limits
-        Half the logarithmic distance from the 16 % to the 84 % point, and its limits; NaN where the fraction does
-        not reach them.
-    """
-
-    im: Floats
-    fraction: Floats
+    im: Floats  # values of the measure, rising, shape (n,)
+    fraction: Floats  # fraction at each of them, never falling, shape (n,)
+    # lower, upper: pointwise limits, shape (n,); NaN where there is but one group
     lower: Floats
     upper: Floats
+    # theta, theta_limits: median, and its limits: 0 and infinite where the data set none; NaN where
+    # the fraction does not pass one half
     theta: float
     theta_limits: Limits
+    # beta, beta_limits: half the logarithmic distance from the 16 % to the 84 % point, and its
+    # limits; NaN where the fraction does not reach them
     beta: float
     beta_limits: Limits
 
@@ -100,17 +87,7 @@ class Fractions:
 def fractions_of_outcomes(
     outcomes: Observations, groups: NDArray[np.object_], level: float
 ) -> Fractions:
-    """Fractions of tests with outcomes, with limits over groups.
-
-    Parameters
-    ----------
-    outcomes
-        The tests.
-    groups
-        Label of each test's motion or earthquake, shape (n,).
-    level
-        Of the limits [-], 0 to 1.
-    """
+    """Fractions of tests with outcomes, with limits over groups: labels of motion or earthquake, shape (n,)."""
     codes = pd.factorize(pd.Series(groups))[0]
     column, values = cells(outcomes.log_im)
     fell = counts(codes, column, outcomes.overturned)
@@ -123,14 +100,9 @@ def fractions_of_outcomes(
 def fractions_of_capacities(
     log_capacity: Floats, groups: NDArray[np.object_], level: float
 ) -> Fractions:
-    """Fractions of capacities, one a motion, with limits over groups.
+    """Fractions of logarithms of capacities, one a motion, with limits over groups.
 
-    Parameters
-    ----------
-    log_capacity
-        Logarithms, -∞ and ∞ where a capacity lies below or above all that was tried, shape (n,).
-    groups, level
-        As of :func:`fractions_of_outcomes`.
+    They are -∞ and ∞ where a capacity lies below or above all that was tried, shape (n,).
     """
     codes, names = pd.factorize(pd.Series(groups))
     finite = np.isfinite(log_capacity)

@@ -14,11 +14,8 @@ from rockfrag.fragility.censored import Brackets, bracket_log_scores
 from rockfrag.fragility.observations import Floats
 from rockfrag.fragility.pooling import MOST_VALUES, cells, counts
 
-FOLDS = 20
-"""Groups are held out one by one up to so many, and beyond in so many blocks."""
-
-WORST_SCORE = -20.0
-"""Log score of an outcome that a curve calls impossible [-]."""
+FOLDS = 20  # groups are held out one by one up to so many, and beyond in so many blocks
+WORST_SCORE = -20.0  # log score of an outcome that a curve calls impossible [-]
 
 
 def folds_of(groups: int) -> NDArray[np.intp]:
@@ -33,7 +30,7 @@ def outcome_scores(
     group: NDArray[np.intp],
     fitted: int | None = None,
 ) -> Floats:
-    """Log score of each group's outcomes under the probit fitted to the other folds.
+    """Log score of each group's outcomes under the probit fitted to the other folds, (groups,); NaN for one fold.
 
     Parameters
     ----------
@@ -46,10 +43,6 @@ def outcome_scores(
     fitted
         Number of leading measures that the curve knows; by default all. The others only share in
         putting tests into cells, so that scores with and without them compare.
-
-    Returns
-    -------
-    Sum of log probabilities by group, shape (groups,); NaN for a single fold.
     """
     cell, values = _cells(logs)
     fell, total = counts(group, cell, overturned), counts(group, cell, trials)
@@ -104,13 +97,7 @@ def paired_p(best: Floats, other: Floats) -> float:
 
 
 def fraction_best(scores: Floats, replicates: int, seed: int) -> Floats:
-    """Fraction of bootstrap samples of the groups in which each measure scores best, (measures,).
-
-    Parameters
-    ----------
-    scores
-        Log scores, shape (measures, groups).
-    """
+    """Fraction of bootstrap samples in which each measure scores best, from log scores (measures, groups)."""
     groups = scores.shape[1]
     rng = np.random.default_rng(seed)
     drawn = rng.multinomial(groups, np.full(groups, 1.0 / groups), size=replicates)

@@ -19,13 +19,7 @@ from rockfrag.records.motion import Motion
 
 
 def scale_power(measure: str) -> int:
-    """Power of the amplitude with which a measure grows: 1 for peaks, 2 for Arias, 0 for periods.
-
-    Raises
-    ------
-    InputError
-        If it is not known how the measure scales.
-    """
+    """Power of the amplitude with which a measure grows: 1 for peaks, 2 for Arias, 0 for periods."""
     found = measure_of(measure)
     if found is None:
         known = ", ".join(dict.fromkeys(measure.name for measure in declared()))
@@ -182,23 +176,15 @@ def fragility_row(
 
 @dataclass(frozen=True)
 class FragilityTables:
-    """Fragility of every configuration, as tables.
+    """Fragility of every configuration, as tables."""
 
-    Attributes
-    ----------
-    curves
-        See :func:`fragility_table`.
-    bands, bins
-        What figures draw of the curves of mean probability, see
-        :mod:`rockfrag.fragility.drawn_curves`.
-    fractions
-        Points of the non-parametric fragility function of those that are rejected, see
-        :func:`rockfrag.fragility.drawn_curves.fraction_points`.
-    """
-
-    curves: pd.DataFrame
+    curves: pd.DataFrame  # see :func:`fragility_table`
+    # bands, bins: what figures draw of the curves of mean probability, see
+    # :mod:`rockfrag.fragility.drawn_curves`
     bands: pd.DataFrame
     bins: pd.DataFrame
+    # points of the non-parametric fragility function of those that are rejected, see
+    # :func:`rockfrag.fragility.drawn_curves.fraction_points`
     fractions: pd.DataFrame
 
 
@@ -263,19 +249,7 @@ def tables_of_ida_curves(
     record_set: str = "",
     level: float = 0.90,
 ) -> FragilityTables:
-    """Fit as :func:`fragility_table` does, to IDA curves in any form, and keep what figures draw too.
-
-    Parameters
-    ----------
-    ida_curves
-        Labels of the curves and IDA curves of each configuration.
-    columns, earthquake, record_set, level
-        As of :func:`fragility_table`.
-
-    Returns
-    -------
-    The :class:`FragilityTables`.
-    """
+    """Fit as :func:`fragility_table` does, to labelled IDA curves in any form, and keep what figures draw too."""
     rows: list[dict[str, Any]] = []
     bands, bins, fractions = [], [], []
     for labels, ida in ida_curves:

@@ -24,21 +24,11 @@ class IdaData(Protocol):
 
 @dataclass(frozen=True)
 class TableIda:
-    """IDA curves as a table with a row per motion and amplitude.
+    """IDA curves as a table with a row per motion and amplitude."""
 
-    Attributes
-    ----------
-    table
-        With ``motion``, ``overturned``, the amplitude and the measures.
-    earthquake
-        Column of the earthquake; None where motions have none.
-    motion
-        Column of the motion.
-    """
-
-    table: pd.DataFrame
-    earthquake: str | None = "earthquake"
-    motion: str = "motion"
+    table: pd.DataFrame  # with ``motion``, ``overturned``, the amplitude and the measures
+    earthquake: str | None = "earthquake"  # column of the earthquake; None where motions have none
+    motion: str = "motion"  # column of the motion
 
     def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
         """See :class:`IdaData`."""

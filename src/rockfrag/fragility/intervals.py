@@ -20,9 +20,7 @@ from rockfrag.fragility.observations import Floats, Grouped, Observations, Over
 from rockfrag.fragility.pooling import cells, counts
 from rockfrag.short_repr import short_repr
 
-FEWEST_GROUPS = 4
-"""Fewest groups for which the jackknife's coverage was validated."""
-
+FEWEST_GROUPS = 4  # fewest groups for which the jackknife's coverage was validated
 MOST_BLOCKS = 100
 """More groups than this are left out in random blocks, which costs little and changes little."""
 
@@ -178,14 +176,7 @@ def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
 
     The median of k capacities lies between the ends of the steps unless all are on one side of it, whose
     probability is 2^(1-k). β is at most that at which k capacities still fall between these ends with
-    the probability that the level leaves over.
-
-    Parameters
-    ----------
-    nothing
-        The interval without limits, which tells groups and level.
-    lower, upper
-        Ends of the step or steps; without two finite ends above zero there are no limits.
+    the probability that the level leaves over.  Without two finite ends above zero there are no limits.
     """
     if not 0 < lower < upper < np.inf or nothing.estimate[1] < LEAST_SLOPE:
         return nothing
@@ -215,26 +206,7 @@ def resampled_interval(
     level: float = 0.90,
     link: Link = "probit",
 ) -> Interval:
-    """Confidence limits of θ and β from a function that refits reweighted groups.
-
-    Parameters
-    ----------
-    fit, groups
-        As :func:`outcome_fitter` returns them.
-    over, level, link
-        As of :func:`interval_over_motions`.
-    notes
-        Warnings that the interval carries on.
-
-    Returns
-    -------
-    The :class:`Interval`.
-
-    Raises
-    ------
-    InputError
-        If the level does not lie between 0 and 1.
-    """
+    """Confidence limits of θ and β from a function that refits reweighted groups, see :func:`outcome_fitter`."""
     if not 0.0 < level < 1.0:
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
     estimate = fit(np.ones((1, groups)))[0]

@@ -28,9 +28,7 @@ MOST_ROWS = 100_000
 """Rows beyond which tests are fitted in 10 000 cells of nearly equal values, which moves θ by less than 1e-6."""
 
 Covariance = tuple[tuple[float, float], tuple[float, float]]
-Curve = tuple[float, float, Covariance]
-"""θ, β and the covariance of (ln θ, β)."""
-
+Curve = tuple[float, float, Covariance]  # θ, β and the covariance of (ln θ, β)
 _NAN = float("nan")
 NO_COVARIANCE: Covariance = ((_NAN, _NAN), (_NAN, _NAN))
 NO_CURVE: Curve = (_NAN, _NAN, NO_COVARIANCE)
@@ -114,10 +112,7 @@ def curve_parameters(coefficients: Floats, covariance: Floats) -> Curve:
     c0, c1 = float(coefficients[0]), float(coefficients[1])
     jacobian = np.array([[-1.0 / c1, c0 / c1**2], [0.0, -1.0 / c1**2]])
     spread = jacobian @ covariance @ jacobian.T
-    pairs = (
-        (float(spread[0, 0]), float(spread[0, 1])),
-        (float(spread[1, 0]), float(spread[1, 1])),
-    )
+    pairs = ((float(spread[0, 0]), float(spread[0, 1])), (float(spread[1, 0]), float(spread[1, 1])))
     return float(np.exp(-c0 / c1)), 1.0 / c1, pairs
 
 
@@ -223,11 +218,7 @@ def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
 def _penalised(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
     design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
     fit = fit_batch(
-        design,
-        outcomes.overturned[None, :],
-        outcomes.trials[None, :],
-        link=link,
-        penalised=True,
+        design, outcomes.overturned[None, :], outcomes.trials[None, :], link=link, penalised=True
     )
     return fit.coefficients[0], fit.information[0]
 

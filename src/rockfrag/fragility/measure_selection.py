@@ -18,12 +18,10 @@ from rockfrag.fragility.observations import Floats, Observations, numbers, obser
 from rockfrag.fragility.surface import FragilitySurface, fit_surface
 from rockfrag.short_repr import short_repr
 
-TOLD_APART_P = 0.05
-"""Two measures are told apart below this p value of their held-out scores."""
+TOLD_APART_P = 0.05  # two measures are told apart below this p value of their held-out scores
 FEWEST_GROUPS_TO_CHOOSE = 10
 """Below so many motions or earthquakes the words say that the choice is weak."""
-SUFFICIENT_P = 0.05
-"""A residual's dependence on a column is named below this p value."""
+SUFFICIENT_P = 0.05  # a residual's dependence on a column is named below this p value
 
 
 @dataclass(frozen=True)
@@ -203,20 +201,10 @@ def ranked(
     seed: int,
     efficiency: str = "beta",
 ) -> pd.DataFrame:
-    """Sort measures: best held-out score first, equals of it by efficiency, those without a curve last.
+    """Sort measures, a row each: best held-out score first, equals by efficiency, those without a curve last.
 
-    Parameters
-    ----------
-    compared
-        One row per measure.
-    scores
-        Log scores by group (:mod:`rockfrag.fragility.held_out`), shape (measures, groups).
-    tests
-        Number of tests scored.
-    replicates, seed
-        Of the bootstrap over groups.
-    efficiency
-        Column that orders equals.
+    ``scores`` are log scores by group (:mod:`rockfrag.fragility.held_out`), shape (measures, groups), of so many
+    ``tests``; the column ``efficiency`` orders equals.
     """
     rising = compared["theta"].notna().to_numpy()
     known = rising & np.isfinite(scores).all(axis=1)

@@ -12,21 +12,14 @@ SCAN, CUT = "scan", "cut block"
 
 @dataclass(frozen=True)
 class ModelError:
-    """Error of the model for one kind of body.
+    """Error of the model for one kind of body."""
 
-    Attributes
-    ----------
-    blind
-        Standard deviation of ln median of a blind answer, all that is not known of the body included [-].
-    beyond
-        What of it is left where the ways in which the body may stand are sources of their own [-].
-    words
-        What the numbers rest on.
-    """
-
+    # standard deviation of ln median of a blind answer, all that is not known of the body included
+    # [-]
     blind: float
+    # what of it is left where the ways in which the body may stand are sources of their own [-]
     beyond: float
-    words: str
+    words: str  # what the numbers rest on
 
 
 _SEEN = "blind on one campaign, a granite rock in 490 tests under 56 motions, computed 2026-11-22"

@@ -15,15 +15,14 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.fragility.checks import REJECTION
 from rockfrag.fragility.curve_facts import curve_facts
-from rockfrag.fragility.identifiers import identifiers
+from rockfrag.fragility.identifiers import curves_by_name, lognormal_of
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.declared import declared, measure_labelled
-from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
+from rockfrag.outcomes.limit_states import limit_states
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 
-STEP = 0.01
-"""β with which an exact threshold, a step, is written [-]; the formats take no step."""
+STEP = 0.01  # β with which an exact threshold, a step, is written [-]; the formats take no step
 CROSSING = 1e-9
 """Levels are written where a state would be more probable than the state before it by more than rounding [-]."""
 
@@ -35,13 +34,7 @@ _FACTORS = {"g": {"g": 1.0, "m/s²": 1.0 / constants.g}, "cm/s": {"cm/s": 1.0, "
 
 
 def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
-    """OpenQuake's name of a measure and the factor to its unit (g, cm/s).
-
-    Raises
-    ------
-    InputError
-        If OpenQuake has no such ground measure.
-    """
+    """OpenQuake's name of a measure and the factor to its unit (g, cm/s)."""
     measure = measure_labelled(name)
     if measure is None or not measure.openquake or name == measure.floor_label:
         known = ", ".join(
@@ -105,20 +98,8 @@ def write_nrml(
         If a row has no lognormal curve, a measure that OpenQuake does not know, or a floor above
         ground; if a name comes twice, or lacks a limit state that another has.
     """
-    if table.empty:
-        raise InputError("NRML: there is no curve to write; give at least one row.")
     # OpenQuake takes letters, digits, "_", "-" and ":" in a name
-    taxonomies = identifiers(map(str, table[by]), "_:-")
-    rows: dict[str, dict[str, Mapping[Hashable, Any]]] = {}
-    for row in table.to_dict("records"):
-        taxonomy = taxonomies[str(row[by])]
-        states = rows.setdefault(taxonomy, {})
-        state = limit_state_named(str(row.get("state", OVERTURNS))).name
-        if state in states:
-            raise InputError(
-                f"NRML: {taxonomy!r} has two curves; choose one estimator and one measure for each."
-            )
-        states[state] = row
+    rows = curves_by_name("NRML", table, by, "_:-")
     used = {state for states in rows.values() for state in states}
     known = [state.name for state in limit_states() if state.name in used]
     functions: list[Any] = []
@@ -136,9 +117,7 @@ def write_nrml(
         # two hyphens would end the comment
         functions.append(ElementTree.Comment(f" {name}: {said} ".replace("--", "- -")))
         warned += [str(rows[name][state].get("warnings") or "") for state in known]
-        functions.append(
-            _function(name, {state: rows[name][state] for state in known}, by, fractions)
-        )
+        functions.append(_function(name, rows[name], by, fractions))
     description = [
         "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
         "goodness of fit and the number of its motions.",
@@ -148,10 +127,7 @@ def write_nrml(
 
 
 def model_text(
-    description: str,
-    states: Sequence[str],
-    functions: Sequence[Any],
-    identifier: str = "rockfrag",
+    description: str, states: Sequence[str], functions: Sequence[Any], identifier: str = "rockfrag"
 ) -> str:
     """NRML 0.5 of a fragility model with some limit states and functions."""
     root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})
@@ -186,11 +162,7 @@ def _function(
     measures: set[str] = set()
     for state, row in states.items():
         name = str(row[by])
-        theta, beta = float(str(row["theta"])), float(str(row["beta"]))
-        if row.get("link", "probit") != "probit" or not (
-            theta > 0 and beta > 0 and beta < math.inf
-        ):
-            raise InputError(f"NRML: {name!r} has no lognormal curve; leave the row out.")
+        theta, beta = lognormal_of("NRML", row, by)
         floor = str(row.get("floor", ""))
         if floor:
             raise InputError(

@@ -13,9 +13,7 @@ from rockfrag.motions.declared import measure_of, split_column
 from rockfrag.renamed_keys import check_names
 from rockfrag.short_repr import short_repr
 
-Floats = NDArray[np.float64]
-"""An array of floating-point numbers."""
-
+Floats = NDArray[np.float64]  # an array of floating-point numbers
 Over = Literal["motion", "earthquake"]
 """What tests are grouped by: those of a group are not independent."""
 
@@ -155,13 +153,7 @@ def name_and_unit(column: str) -> tuple[str, str]:
 
 
 def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
-    """Return a column as finite numbers, shape (n,).
-
-    Raises
-    ------
-    InputError
-        If the column is absent or a value is missing or no number; the row counts from 1.
-    """
+    """Return a column as finite numbers, shape (n,)."""
     if column not in table:
         check_names(source, table.columns, [column])
         known = ", ".join(map(str, table.columns))
@@ -179,13 +171,7 @@ def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
 
 
 def positive(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
-    """Return a column as numbers above zero, shape (n,), because they enter by their logarithm.
-
-    Raises
-    ------
-    InputError
-        As :func:`numbers`, and where a value is zero or less.
-    """
+    """Return a column as numbers above zero, shape (n,), because they enter by their logarithm."""
     values = numbers(table, column, source)
     bad = np.flatnonzero(values <= 0)
     if bad.size:
@@ -197,13 +183,7 @@ def positive(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
 
 
 def read_observations(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
-    """Return a column of yes/no outcomes as 0 and 1, shape (n,).
-
-    Raises
-    ------
-    InputError
-        If a value is neither 0/1 nor false/true.
-    """
+    """Return a column of yes/no outcomes as 0 and 1, shape (n,)."""
     values = numbers(table, column, source)
     bad = np.flatnonzero((values != 0) & (values != 1))
     if bad.size:
@@ -215,13 +195,7 @@ def read_observations(table: pd.DataFrame, column: str, source: str = "table") -
 
 
 def labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.object_]:
-    """Return a column of labels, shape (n,); one label per row where ``column`` is None.
-
-    Raises
-    ------
-    InputError
-        If the column is absent or a label is missing.
-    """
+    """Return a column of labels, shape (n,); one label per row where ``column`` is None."""
     if column is None:
         return np.array([f"row {row + 1}" for row in range(len(table))], dtype=object)
     if column not in table:

@@ -10,21 +10,9 @@ MOST_VALUES = 1000
 
 
 def cells(log_im: Floats, most: int = MOST_VALUES) -> tuple[NDArray[np.intp], Floats]:
-    """Put each row into a cell of equal or neighbouring values.
+    """Put each row into a cell of equal or neighbouring values; its number, (n,), and the mean of each cell.
 
-    Parameters
-    ----------
-    log_im
-        Logarithms of the measure, shape (n,).
-    most
-        Most cells. Up to so many different values have a cell each.
-
-    Returns
-    -------
-    cell
-        Number of each row's cell, shape (n,).
-    value
-        Mean of each cell's rows, rising, shape (cells,).
+    Means rise.  Up to ``most`` different values have a cell each.
     """
     values, cell = np.unique(log_im, return_inverse=True)
     if values.size <= most:

@@ -1,7 +1,6 @@
 """Fragility curves for SimCenter tools (pelicun): damage-model CSV and its JSON of explanations."""
 
 import json
-import math
 import os
 from collections.abc import Hashable, Mapping
 from typing import Any
@@ -12,11 +11,11 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.files import write_table, write_text
 from rockfrag.fragility.curve_facts import curve_facts
-from rockfrag.fragility.identifiers import identifiers
+from rockfrag.fragility.identifiers import curves_by_name, lognormal_of
 from rockfrag.fragility.nrml import STEP, points_of
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.declared import declared
-from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
+from rockfrag.outcomes.limit_states import limit_state_named
 
 _UNITS = {"g": {"g": "g", "m/s²": "mps2"}, "cm/s": {"cm/s": "cmps", "m/s": "mps"}}
 """What SimCenter calls the units of measures in these."""
@@ -66,8 +65,6 @@ def write_simcenter(
     InputError
         If a row has no lognormal curve or another measure, or a configuration has a state twice.
     """
-    if len(table) == 0:
-        raise InputError("SimCenter: there is no curve to write; give at least one row.")
     rows = []
     notes: dict[str, object] = {
         "_GeneralInformation": {
@@ -76,22 +73,8 @@ def write_simcenter(
             "Version": "1.0",
         }
     }
-    components: dict[str, dict[str, Mapping[Hashable, Any]]] = {}
-    known = identifiers(map(str, table[by]), "_")
-    for row in table.to_dict("records"):
-        identifier = f"ROCKFRAG.{known[str(row[by])]}"
-        states = components.setdefault(identifier, {})
-        state = limit_state_named(str(row.get("state", OVERTURNS))).name
-        if state in states:
-            raise InputError(
-                f"SimCenter: {identifier} has two curves; choose one estimator and one measure for each."
-            )
-        states[state] = row
-    for name, states in components.items():
-        ordered = {
-            state.name: states[state.name] for state in limit_states() if state.name in states
-        }
-        line, notes[name] = _component(name, ordered, by, fractions)
+    for name, states in curves_by_name("SimCenter", table, by, "_", "ROCKFRAG.").items():
+        line, notes[name] = _component(name, states, by, fractions)
         rows.append(line)
     write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
     write_text(json.dumps(notes, indent=2, ensure_ascii=False, sort_keys=True) + "\n", json_path)
@@ -110,11 +93,7 @@ def _component(
     known = _demands()
     for number, (state, row) in enumerate(states.items(), start=1):
         name, im, unit = str(row[by]), str(row["im"]), str(row["unit"])
-        theta, beta = float(str(row["theta"])), float(str(row["beta"]))
-        if row.get("link", "probit") != "probit" or not (
-            theta > 0 and beta > 0 and beta < math.inf
-        ):
-            raise InputError(f"SimCenter: {name!r} has no lognormal curve; leave the row out.")
+        theta, beta = lognormal_of("SimCenter", row, by)
         if im not in known or unit not in known[im][1]:
             raise InputError(
                 f"SimCenter: {im} in {unit or 'no unit'} is no demand of this export; choose PGA or PFA "

@@ -21,9 +21,7 @@ from rockfrag.plain_text import table_encoding
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.units import DIMENSIONS, convert
 
-ROWS = 100_000
-"""Rows that are read at a time."""
-
+ROWS = 100_000  # rows that are read at a time
 Measures = Mapping[str, Sequence[str | float]] | Sequence[str]
 """Columns with measures, or for each new column the columns and numbers whose product it is."""
 
@@ -31,10 +29,7 @@ _YES = {
     *("1", "true", "yes", "y", "overturned", "toppled", "fell"),
     *("ja", "wahr", "oui", "vrai", "si", "sì", "vero", "sí", "verdadero"),
 }
-_NO = {
-    *("0", "false", "no", "n", "survived", "stood"),
-    *("nein", "falsch", "non", "faux", "falso"),
-}
+_NO = {*("0", "false", "no", "n", "survived", "stood"), *("nein", "falsch", "non", "faux", "falso")}
 _DIMENSIONLESS = ("uplift_ratio", "velocity_ratio")
 
 
@@ -145,20 +140,7 @@ def read_columns(
     positive: Sequence[str] = (),
     outcomes: Sequence[str] = (),
 ) -> pd.DataFrame:
-    """Read single columns of a table of tests.
-
-    Parameters
-    ----------
-    path
-        Text file with a header.
-    labels, positive, outcomes
-        Columns of text, of numbers above zero, and of outcomes (0 and 1 in the result).
-
-    Raises
-    ------
-    InputError
-        As :func:`read_tests`.
-    """
+    """Read columns of a table of tests: of text, of numbers above zero, and of outcomes (0 and 1)."""
 
     def columns(read: _Numbers) -> dict[str, object]:
         return {
@@ -188,13 +170,7 @@ def _read(
 
 
 def read_titles(path: str | os.PathLike[str]) -> list[str]:
-    """Return the titles of the columns of a table of tests.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read or has no header.
-    """
+    """Return the titles of the columns of a table of tests."""
     source = Path(path).name
     encoding = table_encoding(path)
     head = _head(path, encoding)[1]

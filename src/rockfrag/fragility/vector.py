@@ -18,12 +18,7 @@ from scipy import special, stats
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.held_out import outcome_scores
-from rockfrag.fragility.intervals import (
-    FEWEST_GROUPS,
-    all_but_one,
-    jackknife_error,
-    student,
-)
+from rockfrag.fragility.intervals import FEWEST_GROUPS, all_but_one, jackknife_error, student
 from rockfrag.fragility.observations import Floats, labels, name_and_unit, positive
 from rockfrag.fragility.observations import read_observations as read_observations
 from rockfrag.fragility.surface import FragilitySurface, design_of, fit_surface
@@ -292,25 +287,11 @@ def _interaction(
 def interaction_p(
     coefficients: Floats, design: Floats, outcome: Floats, group: NDArray[np.intp]
 ) -> float:
-    """P value of the last column of a probit design, by a score test over groups of dependent tests [-].
+    """Two-sided p value of the last column of a probit design, by a score test over groups of dependent tests [-].
 
     The efficient score of the last column, with what the others explain of it taken out, is summed by group;
-    Student's t of these sums has one degree of freedom less than there are groups.
-
-    Parameters
-    ----------
-    coefficients
-        Of the fit without the last column, shape (k - 1,).
-    design
-        Predictors, shape (n, k).
-    outcome
-        0 or 1, shape (n,).
-    group
-        Number of each test's earthquake, shape (n,).
-
-    Returns
-    -------
-    The p value, two-sided; NaN with fewer than three groups.
+    Student's t of these sums has one degree of freedom less than there are groups.  NaN with fewer than three
+    groups.  ``coefficients``, shape (k - 1,), are those of the fit without the last column.
     """
     groups = int(group.max()) + 1
     if groups < 3:

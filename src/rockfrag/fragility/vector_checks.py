@@ -17,17 +17,12 @@ from rockfrag.fragility.pooling import cells
 from rockfrag.fragility.surface import design_of
 from rockfrag.fragility.vector import VectorFragility
 
-BINS = 10
-"""Bins of the fitted probability in which observed and fitted numbers are compared."""
-
-MOST_CELLS = 12
-"""Cells of each measure in the non-parametric surface."""
-
+BINS = 10  # bins of the fitted probability in which observed and fitted numbers are compared
+MOST_CELLS = 12  # cells of each measure in the non-parametric surface
 TOLERANCE = 1e-9
 """Change of a probability at which the alternating projections of the surface end [-]."""
 
-MOST_CYCLES = 5_000
-"""Cycles of alternating projections; some hundreds are usual."""
+MOST_CYCLES = 5_000  # cycles of alternating projections; some hundreds are usual
 
 
 @dataclass(frozen=True)
@@ -160,16 +155,7 @@ def monotone_probability(overturned: Floats, tests: Floats) -> Floats:
     """Probability of overturning by cell that rises along rows and columns and is closest to what was observed.
 
     Weighted least squares under both orders, by alternating projections (Dykstra and Robertson 1982, Annals of
-    Statistics 10: 708-716).
-
-    Parameters
-    ----------
-    overturned, tests
-        Numbers by cell, shape (rows, columns); cells without tests follow their neighbours.
-
-    Returns
-    -------
-    Array of shape (rows, columns).
+    Statistics 10: 708-716). Arrays have the shape (rows, columns); cells without tests follow their neighbours.
     """
     weight = np.maximum(tests, 1e-9)
     value = np.where(tests > 0, overturned / weight, overturned.sum() / tests.sum())

@@ -11,12 +11,8 @@ from rockfrag.fragility.observations import Floats, name_and_unit
 from rockfrag.fragility.vector import VectorFragility, fit_vector
 from rockfrag.fragility.vector_checks import VectorChecks, check_vector
 
-PROBABILITIES = (0.1, 0.5, 0.9)
-"""Probabilities of overturning of which contours are given [-]."""
-
-POINTS = 40
-"""Points of a contour, over the values of the second measure."""
-
+PROBABILITIES = (0.1, 0.5, 0.9)  # probabilities of overturning of which contours are given [-]
+POINTS = 40  # points of a contour, over the values of the second measure
 MOST_TESTS = 100_000
 """Tests of one fit; of more every so many-th is taken, which changes limits over earthquakes little."""
 
@@ -30,24 +26,17 @@ CELLS = ("first", "second", "at_first", "at_second", "tests", "overturned", "pro
 
 @dataclass(frozen=True)
 class VectorTables:
-    """Tidy tables of fits in two measures.
+    """Tidy tables of fits in two measures."""
 
-    Attributes
-    ----------
-    fits
-        A row a fit: the labels given, the columns of the two measures, coefficients of 1, ln first, ln second and
-        their product (0 where it earned no place), AIC, numbers, p values and warnings.
-    contours
-        A row a point: the value of the measure ``of`` (``value``, with limits ``lower`` and ``upper``) at which
-        overturning has ``probability``, where the other one is ``at``.  ``of`` is the measure that decides more
-        over the tests: the contour may run along the other one.
-    cells
-        A row a cell of the two measures: tests, those that overturned, the probability that rises in both
-        measures, and the fitted one.
-    """
-
+    # a row a fit: the labels given, the columns of the two measures, coefficients of 1, ln first, ln
+    # second and their product (0 where it earned no place), AIC, numbers, p values and warnings
     fits: pd.DataFrame
+    # a row a point: the value of the measure ``of`` (``value``, with limits ``lower`` and ``upper``)
+    # at which overturning has ``probability``, where the other one is ``at``.  ``of`` is the measure
+    # that decides more over the tests: the contour may run along the other one
     contours: pd.DataFrame
+    # a row a cell of the two measures: tests, those that overturned, the probability that rises in
+    # both measures, and the fitted one
     cells: pd.DataFrame
 
 
@@ -61,27 +50,10 @@ def vector_tables(
     level: float = 0.90,
     seed: int = 0,
 ) -> VectorTables:
-    """Fit every pair of measures to every table of tests.
+    """Fit every pair of measures to every table of tests, by name; ``warnings`` say which fits are not possible.
 
-    Parameters
-    ----------
-    tests
-        Tables with a row a test, by name.
-    pairs
-        Pairs of columns.
-    label
-        Column in which names of the tables stand.
-    earthquake, motion
-        Columns of earthquake and motion; None where each test is one of its own.
-    level
-        Two-sided confidence level of limits [-].
-    seed
-        Of the test of fit.
-
-    Returns
-    -------
-    VectorTables
-        Without rows of fits that the tests do not allow; ``warnings`` of ``fits`` says why.
+    ``label`` is the column in which names of the tables stand; ``earthquake`` and ``motion`` are None where each
+    test is one of its own; ``seed`` is of the test of fit.
     """
     fits: list[dict[str, object]] = []
     contours, cells = [], []

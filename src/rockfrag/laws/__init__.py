@@ -24,32 +24,20 @@ Rate = Callable[[float, float, float, float], float]
 
 @dataclass(frozen=True)
 class Law:
-    """One law of impacts.
+    """One law of impacts."""
 
-    Attributes
-    ----------
-    name
-        Name in files and messages.
-    number
-        Number by which the kernels know it.
-    tell
-        Function of the shape of the lone body, its measured ratio of the angular velocities after and before
-        an impact [-] and the pivot on which the impact ends: what the kernels are told.
-    rate
-        Function that the kernels inline: of the law's number, the rate at which momentum lets the contact come
-        off, the rate before the impact and the one that impulses moved as the law says leave, the rate at which
-        the contact comes off [rad/s, or m/s]. None: of another law.
-    moves_impulse
-        Whether the law's number is where the impulse acts, from the middle (0) to the new pivot (1) of the base.
-    scales_momentum
-        Whether the law multiplies what momentum leaves, so that it has nothing to say where that is nothing.
-    """
-
-    name: str
-    number: int
+    name: str  # Name in files and messages
+    number: int  # Number by which the kernels know it
+    # Function of the shape of the lone body, its measured ratio of the angular velocities after and
+    # before an impact [-] and the pivot on which the impact ends: what the kernels are told
     tell: Callable[[Shape, float, int], Told]
+    # Function that the kernels inline: of the law's number, the rate at which momentum lets the
+    # contact come off, the rate before the impact and the one that impulses moved as the law says
+    # leave, the rate at which the contact comes off [rad/s, or m/s]. None: of another law
     rate: Rate | None = None
+    # Whether the law's number is where the impulse acts, from the middle (0) to the new pivot (1) of the base
     moves_impulse: bool = False
+    # Whether the law multiplies what momentum leaves, so that it has nothing to say where that is nothing
     scales_momentum: bool = False
 
 
@@ -64,18 +52,10 @@ def declare(
     moves_impulse: bool = False,
     scales_momentum: bool = False,
 ) -> Law:
-    """Declare a law of impacts.
+    """Declare a law of impacts, with what :class:`Law` has.
 
-    Parameters
-    ----------
-    name, tell, rate, moves_impulse, scales_momentum
-        As of :class:`Law`.  With a rate it must be declared before anything is simulated, as kernels are compiled
-        with the laws that there are.
-
-    Raises
-    ------
-    InputError
-        If the name is taken.
+    With a rate it must be declared before anything is simulated, as kernels are compiled with the laws that there
+    are.
     """
     if name in _LAWS:
         raise InputError(
@@ -110,13 +90,7 @@ def law_names() -> tuple[str, ...]:
 
 
 def law_named(name: str) -> Law:
-    """Return the law of a name.
-
-    Raises
-    ------
-    InputError
-        If there is none.
-    """
+    """Return the law of a name."""
     laws()
     if name not in _LAWS:
         raise InputError(f"restitution: the law {name!r} is none of {', '.join(law_names())}.")

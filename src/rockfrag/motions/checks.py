@@ -11,18 +11,11 @@ from numpy.typing import NDArray
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 
-MOST_SAMPLES = 10_000_000
-"""More samples than this are taken for a mistake in a unit."""
+MOST_SAMPLES = 10_000_000  # more samples than this are taken for a mistake in a unit
 
 
 def number(owner: str, name: str, value: Any, unit: str = "") -> float:
-    """Return ``value`` as a float if it is a finite number.
-
-    Raises
-    ------
-    InputError
-        If it is anything else, a truth value or a text that looks like a number included.
-    """
+    """Return ``value`` as a float if it is a finite number."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise InputError(f"{owner}: {name} must be a finite number{_of(unit)}, got {value!r}.")
     try:

@@ -46,16 +46,6 @@ def despike(motion: Motion, times: float = 50.0) -> Motion:
     (Hampel's identifier, Davies and Gather, 1993, J. Am. Stat. Assoc. 88: 782-792, with a quantile that
     coarse digits and smooth motions do not turn into zero).  Where most samples
     repeat each other nothing is replaced.
-
-    Parameters
-    ----------
-    times
-        How far a sample must stand out [standard deviations].
-
-    Raises
-    ------
-    InputError
-        If ``times`` is not above zero or the motion has fewer than five samples.
     """
     times = positive("step despike", "times", times, "standard deviations")
     _enough_samples("despike", motion, 5)

@@ -26,9 +26,7 @@ SUFFIXES = {
 _UNITS = {suffix: unit for unit, suffix in SUFFIXES.items()}
 _COLUMN = re.compile(rf"(?P<name>.+?)_(?P<unit>{'|'.join(sorted(_UNITS, key=len, reverse=True))})")
 _SPECTRAL = re.compile(r"(?P<name>.+?)_(?P<whole>\d+)(_(?P<part>\d+))?s")
-_PEAKS = ("amplitude", "input")
-"""What else tables call the peak acceleration."""
-
+_PEAKS = ("amplitude", "input")  # what else tables call the peak acceleration
 Shared = Callable[[Motion, float], Any]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -104,15 +102,7 @@ class IntensityMeasure:
         return self.openquake if self.period is None else f"{self.openquake}({self.period:g})"
 
     def of_motion(self, motion: Motion, damping: float = 0.05) -> float:
-        """Return its value of a motion, in its unit.
-
-        Parameters
-        ----------
-        motion
-            What to measure.
-        damping
-            Damping of what is spectral [-].
-        """
+        """Return its value of a motion, in its unit; ``damping`` [-] is that of what is spectral."""
         if self.period is not None:
             from rockfrag.motions.spectra import response_spectrum
 
@@ -178,9 +168,7 @@ def declared() -> tuple[IntensityMeasure, ...]:
     return tuple(_MEASURES.values())
 
 
-def intensity_measures(
-    periods: Sequence[float] = SPECTRAL_PERIODS,
-) -> tuple[IntensityMeasure, ...]:
+def intensity_measures(periods: Sequence[float] = SPECTRAL_PERIODS) -> tuple[IntensityMeasure, ...]:
     """Return the measures that a table of motions has, in its order, spectral ones at these periods [s]."""
     found: list[IntensityMeasure] = []
     spectral = [measure for measure in declared() if measure.spectral]
@@ -209,13 +197,7 @@ def split_column(column: str) -> tuple[str, str]:
 
 
 def measure_of(column: str) -> IntensityMeasure | None:
-    """Return the measure of a column, in the unit that its name has; None if none is declared.
-
-    Parameters
-    ----------
-    column
-        Such as ``pga_g``, ``sa_0_3s_g``, ``pgv_m_s``, or ``pfa_g`` of a floor.
-    """
+    """Return the measure of a column such as ``pga_g`` or ``sa_0_3s_g``, in the unit of its name; None if none."""
     _load_built_in()
     name, unit = split_column(column)
     if name in _PEAKS:

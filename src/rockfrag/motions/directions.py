@@ -1,6 +1,5 @@
 """The motion that a row of a catalogue asks for: one component, or a direction of two."""
 
-import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -11,14 +10,9 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.motions.processing import process
-from rockfrag.motions.rotation import (
-    fault_normal,
-    radial,
-    rotate_to_azimuth,
-    stronger_direction,
-)
+from rockfrag.motions.rotation import fault_normal, radial, rotate_to_azimuth, stronger_direction
 from rockfrag.motions.time_base import common_time
-from rockfrag.records.catalogue import load_component, load_motion
+from rockfrag.records.catalogue import load_component, load_motion, scaled
 from rockfrag.records.motion import Motion
 
 _DIRECTION = re.compile(
@@ -28,52 +22,25 @@ _TURNS = {"fault-normal": fault_normal, "radial": radial}
 
 
 def motion_of_row(row: dict[str, Any], folder: Path, records: Path) -> Motion:
-    """Read the motion of one row of a catalogue, in the direction that the row asks for.
+    """Read the motion of one row of a catalogue in ``folder``, in the direction that the row asks for.
 
     The column ``direction`` may have an azimuth (``45``), ``fault-normal`` or ``fault-parallel`` with
     the strike, ``radial`` or ``transverse`` with the azimuth from the station to the source, or
     ``stronger``: the direction of the largest acceleration. Where it is empty the motion is the
     component of ``file`` itself.
-
-    Parameters
-    ----------
-    row
-        Cells by column, as :func:`rockfrag.records.catalogue.read_catalogue` gives them.
-    folder
-        Folder of the catalogue.
-    records
-        Folder of fetched records.
-
-    Raises
-    ------
-    InputError
-        If a record is wrong, or the direction cannot be read or reached.
     """
     motion = load_motion(row, folder, records)
     direction = str(row.get("direction") or "")
     if not direction:
         return motion
-    second = _scaled(load_component(row, row["second"], folder, records), row)
+    second = scaled(load_component(row, row["second"], folder, records), row)
     return replace(turned(motion, second, direction), name=motion.name)
 
 
 def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tuple[Motion, Motion]:
-    """Read the motion of a row and the vertical one of the same record, at the same times.
+    """Read the motion of a row, and the vertical one that its column ``vertical`` names.
 
-    Parameters
-    ----------
-    row, folder, records
-        As of :func:`motion_of_row`; the column ``vertical`` names the vertical component.
-
-    Returns
-    -------
-    The motion as :func:`motion_of_row` returns it, and the vertical one with its name and its factor, both over
-    the time that they have in common.
-
-    Raises
-    ------
-    InputError
-        As :func:`motion_of_row`, if the row names no vertical component, or they have no time in common.
+    Both are over the time that they have in common; the vertical one has name and factor of the other.
     """
     if not row.get("vertical"):
         raise InputError(f"{row['name']}: the catalogue names no vertical component of it.")
@@ -81,7 +48,7 @@ def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tup
     others = [row["vertical"], *([row["second"]] if direction else [])]
     components = [
         load_motion(row, folder, records),
-        *(_scaled(load_component(row, other, folder, records), row) for other in others),
+        *(scaled(load_component(row, other, folder, records), row) for other in others),
     ]
     motion, vertical, *second = common_time(components, verticals=(1,))
     if second:
@@ -89,22 +56,8 @@ def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tup
     return motion, replace(vertical, name=motion.name)
 
 
-def _scaled(motion: Motion, row: dict[str, Any]) -> Motion:
-    """Return a component with the factor of its row."""
-    factor = row.get("scale_factor", math.nan)
-    if math.isnan(factor) or factor == 1:
-        return motion
-    return motion.after("scale", motion.acceleration * factor, factor=factor)
-
-
 def turned(first: Motion, second: Motion, direction: str) -> Motion:
-    """Return two components in a direction of a catalogue; see :func:`motion_of_row`.
-
-    Raises
-    ------
-    InputError
-        If the direction cannot be read, or the components not be turned into it.
-    """
+    """Return two components in a direction of a catalogue; see :func:`motion_of_row`."""
     if direction == "stronger":
         return stronger_direction(first, second)
     match = _DIRECTION.match(direction)
@@ -123,11 +76,6 @@ def components_of_row(row: dict[str, Any], folder: Path, records: Path) -> dict[
     """Read the components that a row names, at common times: ``first``, ``second``, ``vertical``.
 
     Those that the row does not name are not there; none is scaled.
-
-    Raises
-    ------
-    InputError
-        If a record is wrong, or the components have no time in common.
     """
     named = {"first": row["file"], "second": row.get("second"), "vertical": row.get("vertical")}
     files = {role: str(file) for role, file in named.items() if file}
@@ -147,7 +95,7 @@ def pair_of_row(row: dict[str, Any], folder: Path, records: Path) -> tuple[Motio
     if not row.get("second"):
         raise InputError(f"{row['name']}: the catalogue names no second component of it.")
     components = components_of_row({**row, "vertical": ""}, folder, records)
-    return _scaled(components["first"], row), _scaled(components["second"], row)
+    return scaled(components["first"], row), scaled(components["second"], row)
 
 
 def measure_records(
@@ -158,27 +106,9 @@ def measure_records(
 ) -> pd.DataFrame:
     """Measure the records of which both horizontal components are known, whatever their directions.
 
-    Parameters
-    ----------
-    rows
-        Rows of a catalogue; those without ``second`` are passed over.
-    folder
-        Folder of the catalogue.
-    records
-        Folder of fetched records.
-    processing
-        Steps that both components go through first, as in :func:`rockfrag.motions.process`.
-
-    Returns
-    -------
-    DataFrame
-        ``name`` of the row, then the measures of :func:`rockfrag.motions.measure_pair`: RotD50 and
-        RotD100 of PGA, PGV and spectral accelerations. No column where no row names a second component.
-
-    Raises
-    ------
-    InputError
-        If a record is wrong, or two components are no pair.
+    Both go through the steps of ``processing`` first (:func:`rockfrag.motions.process`). The columns are ``name``
+    of the row, then the measures of :func:`rockfrag.motions.measure_pair`: RotD50 and RotD100 of PGA, PGV and
+    spectral accelerations. There is no column where no row names a second component.
     """
     # the measures are compiled, which the checks of a study need not wait for
     from rockfrag.motions.measures import measure_pair

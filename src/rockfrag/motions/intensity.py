@@ -202,12 +202,7 @@ def _d5_75(motion: Motion) -> float:
 
 
 @intensity_measure(
-    "s",
-    power=0,
-    label="D5-95",
-    name="d5_95",
-    decimals=1,
-    title="Significant duration, 5–95 %",
+    "s", power=0, label="D5-95", name="d5_95", decimals=1, title="Significant duration, 5–95 %"
 )
 def _d5_95(motion: Motion) -> float:
     return significant_duration(motion, 0.05, 0.95)
@@ -315,8 +310,7 @@ def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) 
     return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
 
 
-HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)
-"""Periods of the Housner intensity [s]."""
+HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)  # periods of the Housner intensity [s]
 
 
 def housner_intensity(motion: Motion, damping: float = 0.05) -> float:

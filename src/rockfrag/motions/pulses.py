@@ -19,8 +19,7 @@ from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
 
-DT = 0.005
-"""Sampling interval that pulses have unless another is asked for [s]."""
+DT = 0.005  # sampling interval that pulses have unless another is asked for [s]
 
 
 def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion:

@@ -12,9 +12,7 @@ from rockfrag.motions.time_base import common_time
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.orientation import azimuth_of, is_vertical
 
-_RIGHT_ANGLE = 5.0
-"""Degrees by which two components may be off a right angle."""
-
+_RIGHT_ANGLE = 5.0  # degrees by which two components may be off a right angle
 DIRECTIONS_DEG = range(180)
 """Directions that are looked in [degrees]; the other half of the circle sees the same."""
 
@@ -186,13 +184,7 @@ def stronger_direction(first: Motion, second: Motion) -> Motion:
 
 
 def azimuth(motion: Motion) -> float:
-    """Azimuth of a component [degrees from north], stated or named by its component.
-
-    Raises
-    ------
-    InputError
-        If it is not known, or the component is a vertical one.
-    """
+    """Azimuth of a component [degrees from north], stated or named by its component."""
     stated = motion.metadata.get("azimuth_deg")
     name = str(motion.metadata.get("component") or "")
     found = float(stated) if stated is not None else azimuth_of(name)

@@ -36,13 +36,7 @@ def scale(motion: Motion, factor: float) -> Motion:
 
 
 def factors_to_pga(motion: Motion, pga_g: Floats) -> Floats:
-    """Factors [-] that scale a motion to peak accelerations [g], in the shape in which these come.
-
-    Raises
-    ------
-    InputError
-        If the motion is zero throughout.
-    """
+    """Factors [-] that scale a motion to peak accelerations [g], in the shape in which these come."""
     if motion.pga <= 0:
         _factor("factors_to_pga", motion, 1.0, motion.pga)
     return pga_g * GRAVITY / motion.pga

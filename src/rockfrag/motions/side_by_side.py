@@ -47,8 +47,7 @@ _HIGHEST = 20 * LANES
 _FREE, _PER_A, _PER_S = range(14 * LANES, 17 * LANES, LANES)
 _ROWS = 21
 
-LOOK_EVERY = 32
-"""Samples of a stretch, after which is asked whether anything larger can still come."""
+LOOK_EVERY = 32  # samples of a stretch, after which is asked whether anything larger can still come
 
 
 class _Group(NamedTuple):
@@ -62,25 +61,9 @@ class _Group(NamedTuple):
 
 
 def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -> Floats:
-    """Sd of many oscillators [m], as :func:`rockfrag.motions.response_spectrum` gives it, bit by bit.
+    """Sd of many oscillators [m], shape (k,), as :func:`rockfrag.motions.response_spectrum` gives it, bit by bit.
 
-    Parameters
-    ----------
-    motion
-        Ground acceleration, linear between samples and zero after the last one.
-    periods
-        Natural periods [s], shape (k,), positive.
-    damping
-        Fraction of critical damping [-].
-
-    Returns
-    -------
-    Peak relative displacement [m], shape (k,).
-
-    Raises
-    ------
-    InputError
-        If the damping is negative.
+    The motion is linear between samples and zero after the last one; ``periods`` [s], shape (k,), are positive.
     """
     damping = checked_damping(damping)
     peaks = np.empty(periods.size)
@@ -92,13 +75,7 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
 
 
 def largest_pseudo_acceleration(motion: Motion, periods: Floats, damping: float) -> int:
-    """Index of the period of the largest PSA = ω² Sd; periods that cannot have it are left out.
-
-    Parameters
-    ----------
-    motion, periods, damping
-        As of :func:`peak_displacements`; the damping is not zero and below critical.
-    """
+    """Index of the period of the largest PSA = ω² Sd; periods that cannot have it are left out."""
     acceleration, to_come = motion.acceleration, _still_to_come(motion.acceleration)
     slope = float(np.abs(np.diff(acceleration, append=0.0)).max()) / motion.dt
     square = (2 * math.pi / periods) ** 2

@@ -30,7 +30,7 @@ def half_length(length: float, dt: float) -> int:
 def best_place(
     velocity: Floats, energy: Floats, dt: float, period: float, cycles: float, known: float
 ) -> tuple[float, int, float, float]:
-    """Find the best place of a pulse, by least squares at each place.
+    """Find the best place of a pulse of a period [s], γ = ``cycles`` ≥ 1, by least squares at each place.
 
     Parameters
     ----------
@@ -38,12 +38,6 @@ def best_place(
         Velocity [m/s], shape (n,).
     energy
         Sum of its squares before each sample and in all [m²/s²], shape (n + 1,).
-    dt
-        Sampling interval [s].
-    period
-        Period T of the pulse [s].
-    cycles
-        Oscillatory character γ [-], one or more.
     known
         Only a pulse that explains more than this is of interest [m²/s²].
 
@@ -109,20 +103,8 @@ def best_pulse(
 ) -> tuple[float, float, float]:
     """Find the best of several pulses, if it explains more than the best so far.
 
-    Parameters
-    ----------
-    velocity, energy, dt
-        As of :func:`best_place`.
-    every
-        Samples of the record that one of the velocity stands for.
-    periods, cycles
-        Periods [s] and oscillatory characters [-] that are tried, in this order.
-    best
-        What the best pulse so far explains [m²/s²], its period and its cycles.
-
-    Returns
-    -------
-    As ``best``.
+    ``best`` and what is returned: what the best pulse so far explains [m²/s²], its period [s] and its cycles [-].
+    The velocity has every ``every``-th sample of the record.
     """
     hopeless = 0.0
     for period in periods:

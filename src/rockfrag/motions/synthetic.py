@@ -28,8 +28,7 @@ LOWEST_FREQUENCY = 0.3
 """The filter frequency of the evolutionary process never falls below this [Hz] (Rezaeian & Der
 Kiureghian 2010)."""
 
-ITERATIONS = 50
-"""Corrections of the Fourier amplitudes on the way to a spectrum-compatible motion."""
+ITERATIONS = 50  # corrections of the Fourier amplitudes on the way to a spectrum-compatible motion
 
 
 def evolutionary(

@@ -12,8 +12,7 @@ from rockfrag.motions.checks import peaks
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.orientation import is_vertical
 
-_WHOLE = 1e-3
-"""Fraction of a sampling interval within which a shift counts as one of whole samples."""
+_WHOLE = 1e-3  # fraction of a sampling interval within which a shift counts as one of whole samples
 
 
 def common_time(

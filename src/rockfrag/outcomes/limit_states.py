@@ -109,13 +109,7 @@ def limit_states() -> tuple[LimitState, ...]:
 
 
 def limit_state_named(name: str) -> LimitState:
-    """Return the limit state of a name.
-
-    Raises
-    ------
-    InputError
-        If there is none.
-    """
+    """Return the limit state of a name."""
     if name not in _STATES:
         known = ", ".join(state.name for state in limit_states())
         raise InputError(f"limit state {name!r} is not known; choose one of {known}.")

@@ -255,14 +255,8 @@ def empty_outcomes(
 ) -> Outcomes:
     """Return outcomes in which no engine has answered yet, for it to write into.
 
-    Parameters
-    ----------
-    names
-        Names of the bodies of each system, from below.
-    scales
-        Factors on the motions, shape (motions, scales).
-    engines
-        Names of the engines that will answer.
+    ``names`` are of the bodies of each system, from below; factors on the motions have the shape (motions,
+    scales).
     """
     shape = (len(names), *scales.shape)
     most = max((len(each) for each in names), default=0)
@@ -282,17 +276,7 @@ def empty_outcomes(
 
 
 def merge_outcomes(into: Outcomes, rows: Sequence[int], found: Outcomes) -> None:
-    """Write the outcomes of some systems, answered by one engine, into those of all.
-
-    Parameters
-    ----------
-    into
-        Outcomes of all systems.
-    rows
-        Positions of the systems in it.
-    found
-        Outcomes of these systems.
-    """
+    """Write the outcomes of some systems, answered by one engine, into the rows of those of all."""
     place = np.asarray(rows, dtype=np.intp)
     numbers = np.array([into.engines.index(name) for name in found.engines], dtype=np.int8)
     into.engine[place] = numbers[found.engine]

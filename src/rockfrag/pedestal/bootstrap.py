@@ -15,25 +15,16 @@ DRAWN_AT_ONCE = 2_000_000
 
 
 def rank_probabilities(
-    table: pd.DataFrame,
-    factor: str,
-    cluster: str,
-    seed: int,
-    *,
-    within: bool = False,
+    table: pd.DataFrame, factor: str, cluster: str, seed: int, *, within: bool = False
 ) -> pd.DataFrame:
-    """How often each level has the largest and the smallest mean in resampled data.
+    """How often each level of a factor has the largest and the smallest mean of d in resampled data.
 
     Parameters
     ----------
     table
         Rows with the columns ``factor``, ``cluster``, ``d``.
-    factor
-        Levels that are ranked: object, floor or earthquake.
     cluster
         What is drawn with replacement: ``earthquake`` or ``motion``; all rows of a drawn cluster come.
-    seed
-        Of the resampling.
     within
         Draw clusters separately inside each level (the motions of each earthquake); otherwise the same
         clusters for all levels, which keeps what the levels share.

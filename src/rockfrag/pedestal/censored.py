@@ -22,38 +22,24 @@ from rockfrag.pedestal.paired_tests import KEY, check_tests, pedestals_apart
 
 Rows = npt.NDArray[np.intp]
 
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
-"""Gauss-Legendre quadrature on (-1, 1)."""
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)  # gauss-Legendre quadrature on (-1, 1)
 MOST_REFITTED = 50
 """Earthquakes up to which the likelihood is fitted anew without each; of more, each one's pull is linear."""
-MOST_PAIRS = 2_000
-"""More pairs than this are put together where they are alike."""
-STEP = 1e-4
-"""Step of parameters for derivatives [-]."""
-FAR = 9.0
-"""Standard deviations beyond which the normal density is nothing."""
+MOST_PAIRS = 2_000  # more pairs than this are put together where they are alike
+STEP = 1e-4  # step of parameters for derivatives [-]
+FAR = 9.0  # standard deviations beyond which the normal density is nothing
 
 
 @dataclass(frozen=True)
 class CensoredFit:
-    """Maximum of the interval likelihood.
+    """Maximum of the interval likelihood."""
 
-    Parameters
-    ----------
-    effect
-        δ = ln(P/NP) with the interval of the jackknife over earthquakes [-].
-    sd_pair, sd_test
-        τ and σ [-].
-    loglik
-        Log-likelihood at the maximum.
-    tests, censored
-        Numbers of tests used and of those that never overturned.
-    """
-
-    effect: Estimate
+    effect: Estimate  # δ = ln(P/NP) with the interval of the jackknife over earthquakes [-]
+    # sd_pair, sd_test: τ and σ [-]
     sd_pair: float
     sd_test: float
-    loglik: float
+    loglik: float  # log-likelihood at the maximum
+    # tests, censored: numbers of tests used and of those that never overturned
     tests: int
     censored: int
 
@@ -79,22 +65,10 @@ class _Design:
 
 
 def fit_censored(tests: pd.DataFrame) -> CensoredFit:
-    """Estimate the pedestal's effect from exact, interval- and right-censored tests.
+    """Estimate the pedestal's effect from exact, interval- and right-censored tests (`check_tests`).
 
-    Fixed effects are the object, the floor, and the pedestal.  The
-    interval of the effect comes from leaving out one earthquake at a time, since earthquakes were sampled, not
-    tests.
-
-    Parameters
-    ----------
-    tests
-        See `rockfrag.pedestal.paired_tests.check_tests`; lower_g and upper_g of a step protocol are used.
-
-    Raises
-    ------
-    InputError
-        As `check_tests`; if all tests of one side are censored, so that the likelihood
-        grows without bound.
+    Fixed effects are the object, the floor, and the pedestal.  The interval of the effect comes from leaving out
+    one earthquake at a time, since earthquakes were sampled, not tests.
     """
     clean = check_tests(pedestals_apart(tests)[0])
     for side, rows in clean.groupby("pedestal"):
@@ -274,11 +248,7 @@ def _log_density(z: Array) -> Array:
 def _log_single(low: Array, high: Array, sd: float) -> Array:
     """Log of the normal density (exact figures) or of the probability of an interval."""
     exact = low == high
-    probability = np.where(
-        low > 0,
-        ndtr(-low) - ndtr(-high),
-        ndtr(high) - ndtr(low),
-    )
+    probability = np.where(low > 0, ndtr(-low) - ndtr(-high), ndtr(high) - ndtr(low))
     interval = np.log(np.maximum(probability, 1e-300))
     density = _log_density(low) - math.log(sd)
     return np.asarray(np.where(exact, density, interval), dtype=np.float64)

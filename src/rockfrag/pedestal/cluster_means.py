@@ -28,8 +28,7 @@ from scipy import special
 Array = npt.NDArray[np.float64]
 
 CONFIDENCE = 0.95
-ROUNDING = 1e-12
-"""Differences of logarithms below this are rounding, not scatter [-]."""
+ROUNDING = 1e-12  # differences of logarithms below this are rounding, not scatter [-]
 
 
 class TooFewUnitsError(ValueError):
@@ -124,29 +123,11 @@ def t_beyond(t: npt.ArrayLike, degrees: int) -> Array:
 def t_estimate(
     values: npt.ArrayLike, confidence: float = CONFIDENCE, resolution: float = 0.0
 ) -> Estimate:
-    """Mean of independent units with its t interval and test.
+    """Mean of independent units, shape (k,), with its t interval and test.
 
-    Parameters
-    ----------
-    values
-        One value per sampled unit, shape (k,).
-    confidence
-        Level of the two-sided interval.
-    resolution
-        Half-width below which the data cannot tell the mean from another value [-], see
-        `tied_resolution`.
-
-    Returns
-    -------
-    Estimate
-        The half-width is that of t, and at least the resolution; the standard error is at least that
-        of the mean of k values uniform within ± the resolution, resolution/√(3 k). Units that all
-        agree, with no resolution known, have neither interval nor p value (NaN).
-
-    Raises
-    ------
-    TooFewUnitsError
-        If there are no values or one is not finite.
+    The half-width is that of t, and at least the resolution (see `tied_resolution`); the standard error is at
+    least that of the mean of k values uniform within ± the resolution, resolution/√(3 k). Units that all
+    agree, with no resolution known, have neither interval nor p value (NaN).
     """
     x = np.asarray(values, dtype=float)
     if x.size == 0 or not np.all(np.isfinite(x)):
@@ -170,15 +151,7 @@ def t_estimate(
 
 
 def tied_resolution(values: npt.ArrayLike, resolution: npt.ArrayLike) -> Array:
-    """Resolution of the values that equal the most frequent one, 0 for the others, shape (n,) [-].
-
-    Parameters
-    ----------
-    values
-        Logarithms, shape (n,); equal to 9 decimals counts as equal.
-    resolution
-        Half-width to which each is known [-], shape (n,).
-    """
+    """Resolution of the values that equal the most frequent one (to 9 decimals), 0 for the others, (n,) [-]."""
     rounded = np.round(np.asarray(values, dtype=float), 9) + 0.0
     different, place, count = np.unique(rounded, return_inverse=True, return_counts=True)
     tied = place == int(count.argmax()) if different.size else np.zeros(0, dtype=bool)
@@ -193,20 +166,7 @@ def _resolution_of(table: pd.DataFrame) -> Array:
 
 
 def unit_means(table: pd.DataFrame, unit: str) -> pd.Series:
-    """Means of d by sampled unit: over the pairs of a motion, then over motions.
-
-    Parameters
-    ----------
-    table
-        Pairs with the columns ``unit``, motion and d.
-    unit
-        ``earthquake`` or ``motion``.
-
-    Returns
-    -------
-    pandas.Series
-        One value per unit, indexed and sorted by its name.
-    """
+    """Means of d by sampled unit (``earthquake`` or ``motion``): over the pairs of a motion, then over motions."""
     by = ["motion"] if unit == "motion" else [unit, "motion"]
     means = table.groupby(by)["d"].mean()
     return means if unit == "motion" else means.groupby(level=unit).mean()
@@ -238,18 +198,10 @@ def effect_of(units: "Units") -> Estimate:
 
 
 class Units(NamedTuple):
-    """What was sampled: the earthquakes of some pairs, or the motions of their single earthquake.
+    """What was sampled: the earthquakes of some pairs, or the motions of their single earthquake."""
 
-    Attributes
-    ----------
-    d
-        Mean of d over each one's pairs [-], shape (k,).
-    hidden
-        What the steps of these pairs hide of it [-], shape (k,).
-    """
-
-    d: Array
-    hidden: Array
+    d: Array  # mean of d over each one's pairs [-], shape (k,)
+    hidden: Array  # what the steps of these pairs hide of it [-], shape (k,)
 
 
 def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
@@ -301,17 +253,10 @@ def contrast(
     block: str = "earthquake",
     value: str = "d",
 ) -> Estimate:
-    """Difference of the mean of ``value`` between two levels of a factor, block by block.
+    """Difference of the mean of ``value`` between two levels of a factor, ``level`` minus ``reference``.
 
-    Like is compared with like: both levels must be there for the same object, earthquake, floor (and side).
-
-    Parameters
-    ----------
-    factor, level, reference
-        Column and its two levels; the estimate is ``level`` minus ``reference``.
-    block
-        Column within which the levels are compared: the earthquakes for floors and objects, the floors
-        for a comparison of two earthquakes.
+    Like is compared with like: both levels must be there for the same object, earthquake, floor (and side). They
+    are compared within each ``block``: the earthquakes for floors and objects, the floors for two earthquakes.
     """
     design = ("earthquake", "floor", "object", "side")
     matched = [name for name in design if name in table.columns and name != factor]

@@ -17,9 +17,7 @@ from rockfrag.errors import InputError
 from rockfrag.renamed_keys import check_names
 from rockfrag.short_repr import short_repr
 
-MOST_NAMED = 100
-"""Pairs and tests that notes call by their names; of more the number."""
-
+MOST_NAMED = 100  # pairs and tests that notes call by their names; of more the number
 KEY = ["object", "earthquake", "floor", "motion"]
 _NEEDED = ("object", "pedestal", "earthquake", "floor", "amplitude_g")
 
@@ -209,18 +207,8 @@ def _check_duplicates(clean: pd.DataFrame) -> None:
 def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
     """Give each pedestal of an object that has several its own pairs with the lone object.
 
-    Parameters
-    ----------
-    tests
-        See `check_tests`; pedestals are told apart by the column ``configuration``, if there is one.
-
-    Returns
-    -------
-    tests
-        The rows, where an object with several pedestals is named after the configuration instead, and
-        its tests without pedestal stand beside each.
-    origin
-        Object by each such name.
+    Such an object is named after the ``configuration`` instead, and its tests without pedestal stand beside each;
+    the mapping has the object by each such name.
     """
     if not {"configuration", "object", "pedestal"} <= set(tests.columns):
         return tests, {}
@@ -245,20 +233,8 @@ def with_counterparts(
 ) -> tuple[pd.DataFrame, dict[str, str]]:
     """Let arrangements that name their counterpart be compared with it instead of with the object alone.
 
-    Parameters
-    ----------
-    tests
-        See `check_tests`, with the column ``configuration``.
-    counterparts
-        Arrangement with which each one is compared, both by name.
-
-    Returns
-    -------
-    tests
-        The rows; those of each such comparison stand for an object of their own, with the arrangement as P and
-        its counterpart as NP.
-    origin
-        Object by the name of each comparison.
+    The rows of each such comparison stand for an object of their own, with the arrangement as P and its
+    counterpart as NP; the mapping has the object by the name of each comparison.
     """
     parts = [tests[~tests["configuration"].isin(list(counterparts))]]
     origin: dict[str, str] = {}
@@ -273,13 +249,7 @@ def with_counterparts(
 
 
 def slenderness_of(clean: pd.DataFrame, slenderness: Mapping[str, float]) -> pd.Series:
-    """Slenderness of each row's object [-].
-
-    Raises
-    ------
-    InputError
-        If an object is not in the mapping.
-    """
+    """Slenderness of each row's object [-]."""
     unknown = sorted(set(clean["object"]) - set(slenderness))
     if unknown:
         raise InputError(

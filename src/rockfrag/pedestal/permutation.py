@@ -16,50 +16,29 @@ DRAWS = 9_999
 """Up to so many sign patterns (13 units) all are enumerated; of more, so many are drawn."""
 
 
-MOST_DRAWN = 500
-"""Units beyond which the mean under flipped signs has the normal distribution."""
-
-MOST_LEFT_OUT = 100
-"""Earthquakes up to which each is left out in turn; of more, none says much."""
-
+MOST_DRAWN = 500  # units beyond which the mean under flipped signs has the normal distribution
+MOST_LEFT_OUT = 100  # earthquakes up to which each is left out in turn; of more, none says much
 WITHOUT_COLUMNS = ["without", "ratio", "lower", "upper", "p", "largest_change"]
 """Columns of `leave_one_earthquake_out`."""
 
 
 @dataclass(frozen=True)
 class SignFlips:
-    """Permutation test by flipping the signs of whole units.
+    """Permutation test by flipping the signs of whole units."""
 
-    Parameters
-    ----------
-    p
-        Two-sided p value [-].
-    smallest_p
-        The smallest p value that so many units can give, 2^(1-k) [-].
-    units
-        Number of units, k.
-    exact
-        Whether all 2^k patterns were enumerated; otherwise they were drawn from the seed, or are so many
-        that their mean is normal.
-    """
-
-    p: float
-    smallest_p: float
-    units: int
+    p: float  # two-sided p value [-]
+    smallest_p: float  # the smallest p value that so many units can give, 2^(1-k) [-]
+    units: int  # number of units, k
+    # whether all 2^k patterns were enumerated; otherwise they were drawn from the seed, or are so
+    # many that their mean is normal
     exact: bool
 
 
 def sign_flip_test(values: npt.ArrayLike, seed: int = 0) -> SignFlips:
-    """Test a mean of zero by flipping the signs of units (Fisher 1935).
+    """Test a mean of zero by flipping the signs of k units, here the means of d of earthquakes (Fisher 1935).
 
-    Valid when each unit's distribution is symmetric about zero under the hypothesis.
-
-    Parameters
-    ----------
-    values
-        One value per unit, here the mean of d of each earthquake, shape (k,).
-    seed
-        Of the patterns drawn when there are more than `DRAWS` of them.
+    Valid when each unit's distribution is symmetric about zero under the hypothesis. ``seed`` is of the patterns
+    drawn when there are more than `DRAWS` of them.
     """
     x = np.asarray(values, dtype=float)
     k = x.size
@@ -93,13 +72,10 @@ def _sign_patterns(units: int) -> Array:
 
 
 def leave_one_earthquake_out(table: pd.DataFrame) -> pd.DataFrame:
-    """Effect without each earthquake in turn.
+    """Effect without each earthquake in turn; no row for a single one and for more than `MOST_LEFT_OUT`.
 
-    Returns
-    -------
-    pandas.DataFrame
-        without, ratio, lower, upper [-], p, largest_change (True for the earthquake that moves the
-        estimate most); no row for a single earthquake and for more than `MOST_LEFT_OUT`.
+    The columns are without, ratio, lower, upper [-], p, largest_change (True for the earthquake that moves the
+    estimate most).
     """
     earthquakes = sorted(table["earthquake"].unique())
     if not 1 < len(earthquakes) <= MOST_LEFT_OUT:

@@ -13,17 +13,7 @@ MOST_UNITS = 100_000
 
 
 def power_of_t(ratio: float, sd: float, n: int) -> float:
-    """Power of the two-sided one-sample t test on n values of ln ratio.
-
-    Parameters
-    ----------
-    ratio
-        True ratio [-].
-    sd
-        Standard deviation of one value [-], above zero.
-    n
-        Number of values, at least 2.
-    """
+    """Power of the two-sided one-sample t test on n ≥ 2 values of ln ratio with a standard deviation [-]."""
     from statsmodels.stats.power import TTestPower
 
     if n < 2 or sd <= 0:
@@ -89,7 +79,6 @@ def power_note(effect: Estimate, unit: str = "earthquake") -> str:
     if not effect.se > 0:
         return f"all {unit}s agree and their steps are not known, so the power is not known"
     detectable = 100 * (detectable_ratio(effect) - 1)
-    unit = {"earthquake": "earthquake"}.get(unit, unit)
     seen = f"{effect.units} {unit}s can detect a change of {detectable:.1f} % or more (80 % power)"
     if abs(effect.mean) <= effect.resolution:
         finest = 100 * math.expm1(effect.resolution)

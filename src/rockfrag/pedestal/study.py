@@ -43,9 +43,7 @@ EFFECT_COLUMNS = [
     *("detectable_ratio", "resolution_ratio", "tied", "at_bound"),
 ]
 WHOLE_COLUMNS = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
-EQUIVALENCE_LEVEL = 0.05
-"""Equivalence is shown below this p value [-]."""
-_UNITS = {"earthquake": "earthquake"}
+EQUIVALENCE_LEVEL = 0.05  # equivalence is shown below this p value [-]
 STEPS_DECIDE = "; the limits are the width of the steps, not of the scatter"
 """Said of a method whose own interval is narrower than what the steps of the amplitudes leave open."""
 RANK_COLUMNS = ["factor", "level", "ratio", "p_largest", "p_smallest"]
@@ -172,7 +170,7 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
     flips = sign_flip_test(unit_means(table, "earthquake"), seed)
     rows: list[tuple[str, float, float, float, float, float, int, str]] = [
         (
-            f"t on the means of {_UNITS.get(unit, unit)}s",
+            f"t on the means of {unit}s",
             effect.mean,
             effect.lower,
             effect.upper,

@@ -4,6 +4,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,23 +26,9 @@ SOURCES = ("folder", "url", *WHEELS, "fdsn")
 """Where a motion may come from: a local folder, the web, a pinned wheel, an FDSN service."""
 
 COLUMNS = (
-    "name",
-    "earthquake",
-    "date",
-    "station",
-    "component",
-    "magnitude",
-    "distance_km",
-    "source",
-    "file",
-    "second",
-    "vertical",
-    "direction",
-    "scale_factor",
-    "sha256",
-    "unit",
-    "dt",
-    "licence",
+    *("name", "earthquake", "date", "station", "component", "magnitude", "distance_km"),
+    *("source", "file", "second", "vertical", "direction", "scale_factor"),
+    *("sha256", "unit", "dt", "licence"),
 )
 """Columns of a catalogue; those of :data:`NEEDED` need a value in each row, others may be missing."""
 
@@ -54,19 +41,10 @@ _NUMBERS = {
     "dt": (SHORTEST_STEP, LONGEST_STEP),
 }
 _FACTS = (
-    "earthquake",
-    "date",
-    "station",
-    "component",
-    "magnitude",
-    "distance_km",
-    "second",
-    "vertical",
-    "direction",
-    "licence",
+    *("earthquake", "date", "station", "component", "magnitude", "distance_km"),
+    *("second", "vertical", "direction", "licence"),
 )
-_MOST_SHOWN = 400
-"""Characters of the list of wrong cells in a message."""
+_MOST_SHOWN = 400  # characters of the list of wrong cells in a message
 
 
 def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
@@ -247,22 +225,7 @@ def load_motions(
 
 
 def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
-    """Read the motion of one checked row of a catalogue: the component that ``file`` names.
-
-    Parameters
-    ----------
-    row
-        Cells by column, as :func:`read_catalogue` gives them.
-    folder
-        Folder of the catalogue.
-    records
-        Folder of fetched records.
-
-    Raises
-    ------
-    InputError
-        As :func:`load_motions`.
-    """
+    """Read the motion of one checked row of a catalogue in ``folder``: the component that ``file`` names."""
     motion = load_component(row, row["file"], folder, records)
     facts = {
         key: value
@@ -270,28 +233,23 @@ def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
         if (value := row.get(key, "")) != ""
         and not (isinstance(value, float) and math.isnan(value))
     }
-    named = Motion(
-        acceleration=motion.acceleration,
-        dt=motion.dt,
-        name=row["name"],
-        metadata={**motion.metadata, **facts, "source": row["source"], "file": row["file"]},
-        provenance=motion.provenance,
-    )
+    facts |= {"source": row["source"], "file": row["file"]}
+    named = replace(motion, name=row["name"], metadata={**motion.metadata, **facts})
+    return scaled(named, row)
+
+
+def scaled(motion: Motion, row: dict[str, Any]) -> Motion:
+    """Return a motion with the factor of its row."""
     factor = row.get("scale_factor", math.nan)
     if math.isnan(factor) or factor == 1:
-        return named
-    return named.after("scale", named.acceleration * factor, factor=factor)
+        return motion
+    return motion.after("scale", motion.acceleration * factor, factor=factor)
 
 
 def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) -> Motion:
     """Read one component of a row's record: that of ``file``, of its ``second`` or its ``vertical``.
 
     All are of the row's source, unit and interval; the SHA-256 is that of ``file`` alone.
-
-    Raises
-    ------
-    InputError
-        As :func:`load_motions`.
     """
     source = row["source"]
     name, channel = _file_and_channel(file)

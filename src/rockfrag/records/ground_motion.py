@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 
-SAME_STEP = 1e-9
-"""Relative difference of sampling intervals that is rounding of a file."""
+SAME_STEP = 1e-9  # relative difference of sampling intervals that is rounding of a file
 
 
 @dataclass(frozen=True)

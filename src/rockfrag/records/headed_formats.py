@@ -1,45 +1,13 @@
 """The text formats whose header says what they are; plain text is what none of them knows."""
 
-from rockfrag.records.formats import (
-    afad,
-    agram,
-    at2,
-    bhrc,
-    cosmos,
-    csmip,
-    csmnc,
-    cwa,
-    esm,
-    geonet,
-    opensees,
-    renadic,
-    seismosoft,
-    smc,
-    unam,
-    usc,
-    usc_volume_2,
-)
+from importlib import import_module
+from pkgutil import iter_modules
+
+from rockfrag.records import formats
 from rockfrag.records.parsing.format import Format
 
 HEADED: tuple[Format, ...] = tuple(
-    module.FORMAT
-    for module in (
-        afad,
-        agram,
-        at2,
-        bhrc,
-        cosmos,
-        csmip,
-        csmnc,
-        cwa,
-        esm,
-        geonet,
-        opensees,
-        renadic,
-        seismosoft,
-        smc,
-        unam,
-        usc,
-        usc_volume_2,
-    )
+    import_module(f"{formats.__name__}.{module.name}").FORMAT
+    for module in iter_modules(formats.__path__)
+    if module.name not in ("obspy_native", "plain")
 )

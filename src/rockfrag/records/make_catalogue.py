@@ -3,7 +3,7 @@
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -21,8 +21,7 @@ from rockfrag.records.read import Record, motion_of, read_record
 from rockfrag.records.sources.archive import is_archive, unpacked
 from rockfrag.records.sources.folder import files_of
 
-_PERPENDICULAR = 5.0
-"""Degrees by which two components may be off a right angle and still be a pair."""
+_PERPENDICULAR = 5.0  # degrees by which two components may be off a right angle and still be a pair
 
 _SUFFIXES = tuple(
     re.compile(pattern, re.IGNORECASE)
@@ -56,9 +55,9 @@ class Component:
     several: bool
     unit: str
     dt_given: float | None
-    container: str = ""
-    digest: str = ""
-    quality_flags: tuple[str, ...] = ()
+    container: str
+    digest: str
+    quality_flags: tuple[str, ...]
 
     @property
     def azimuth(self) -> float | None:
@@ -289,11 +288,17 @@ def _components(
         chosen = (label if unique else str(number)) if len(own) > 1 else ""
         parts = [relative, channel.member, chosen]
         needs_unit = not channel.unit
+        try:
+            motion = motion_of(record, channel, unit if needs_unit else None)
+        except InputError as error:
+            draft.errors.append(str(error))
+            continue
+        samples = motion.acceleration.tobytes() + repr(motion.dt).encode()
         component = Component(
             file="#".join(part for part in parts if part),
             name=_stem(PurePosixPath(channel.member or file.name).name),
             path=channel.member or str(file),
-            facts={},
+            facts=dict(motion.metadata),
             npts=channel.npts,
             dt=channel.dt,
             sha256=record.sha256,
@@ -301,19 +306,10 @@ def _components(
             unit=unit or "" if needs_unit else "",
             dt_given=dt_given,
             container=str(file) if channel.member else "",
+            digest=sha256(samples).hexdigest(),
+            quality_flags=tuple(quality_flags(motion)),
         )
-        try:
-            motion = motion_of(record, channel, unit if needs_unit else None)
-        except InputError as error:
-            draft.errors.append(str(error))
-            continue
-        digest = sha256(motion.acceleration.tobytes() + repr(motion.dt).encode()).hexdigest()
-        facts = dict(motion.metadata)
-        found.append(
-            replace(
-                component, facts=facts, digest=digest, quality_flags=tuple(quality_flags(motion))
-            )
-        )
+        found.append(component)
     return found
 
 

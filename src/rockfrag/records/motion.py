@@ -19,8 +19,7 @@ from rockfrag.short_repr import short_repr
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MOTIONS_AT_ONCE = 64
-"""Motions of a row group of a file, which can be read by themselves."""
+MOTIONS_AT_ONCE = 64  # motions of a row group of a file, which can be read by themselves
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,7 @@ from pathlib import Path
 
 from rockfrag.errors import InputError
 
-FILE_NAME = "_SearchResults.csv"
-"""Name of the file in every download."""
-
+FILE_NAME = "_SearchResults.csv"  # name of the file in every download
 _SECTION = re.compile(r"Summary of Metadata of Selected Records", re.IGNORECASE)
 _TITLES = {
     "record sequence number": "number",
@@ -34,31 +32,18 @@ _NEEDED = ("number", "earthquake", "first")
 
 @dataclass(frozen=True)
 class PeerRecord:
-    """One record of a download; files are empty where the download has none, numbers None.
+    """One record of a download; files are empty where the download has none, numbers None."""
 
-    Attributes
-    ----------
-    number
-        Record sequence number, such as ``753``.
-    earthquake, year, station
-        As the database names them.
-    magnitude
-        Moment magnitude.
-    distance_km
-        Closest distance to the rupture [km], else the Joyner-Boore distance.
-    scale_factor
-        Factor of the search's target spectrum.
-    first, second, vertical
-        Names of the acceleration files.
-    """
-
-    number: str
+    number: str  # record sequence number, such as ``753``
+    # earthquake, year, station: as the database names them
     earthquake: str
     year: str
     station: str
-    magnitude: float | None
+    magnitude: float | None  # moment magnitude
+    # closest distance to the rupture [km], else the Joyner-Boore distance
     distance_km: float | None
-    scale_factor: float | None
+    scale_factor: float | None  # factor of the search's target spectrum
+    # first, second, vertical: names of the acceleration files
     first: str
     second: str
     vertical: str

@@ -12,8 +12,9 @@ from rockfrag.errors import InputError
 from rockfrag.keywords import named_keywords
 from rockfrag.plain_text import printable
 from rockfrag.records.digest import sha256_of
+from rockfrag.records.formats import plain
 from rockfrag.records.formats.obspy_native import obspy_channels
-from rockfrag.records.identify import identify
+from rockfrag.records.headed_formats import HEADED
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.orientation import azimuth_of, plain_name
@@ -25,11 +26,11 @@ from rockfrag.records.sources.folder import is_no_record
 from rockfrag.short_repr import short_repr
 from rockfrag.units import GRAVITY
 
+FORMATS = (*HEADED, plain.FORMAT)  # those read here; ObsPy reads some others
 _GRAVITY_FRACTION = 0.05
 """A mean within this fraction of g is the weight of the sensor's mass, not motion."""
 
-_SAME_STEP = 1e-9
-"""Fraction of an interval by which the user's may differ from the stated one."""
+_SAME_STEP = 1e-9  # fraction of an interval by which the user's may differ from the stated one
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ def read_record(
 
 
 def _channels(path: Path, dt: float | None, cut_short: bool) -> tuple[str, list[Channel]]:
-    found = identify(path)
+    found = next((known for known in FORMATS if known.is_format(path)), None)
     if found is None:
         name, channels = obspy_channels(path, cut_short)
     else:
@@ -204,13 +205,7 @@ def read_motion(
 
 
 def choose_channel(record: Record, wanted: str | None) -> Channel:
-    """Return the channel of a record with a name, orientation or number.
-
-    Raises
-    ------
-    InputError
-        If none or several channels answer to it, listing those there are.
-    """
+    """Return the channel of a record with a name, orientation or number."""
     channels = record.channels
     if wanted is None:
         if len(channels) == 1:
@@ -233,21 +228,7 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
 def motion_of(
     record: Record, channel: Channel, unit: str | None = None, force: bool = False
 ) -> Motion:
-    """Return one channel of a record as a motion in m/s².
-
-    Parameters
-    ----------
-    record, channel
-        What was read, and which channel of it.
-    unit, force
-        As of :func:`read_motion`.
-
-    Raises
-    ------
-    InputError
-        If the unit is neither stated nor given, or given otherwise than stated, or would make the peak
-        larger than those of records.
-    """
+    """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
     samples = channel.samples()
     stored = _settled_unit(record, channel, samples, unit)
     factor = TO_SI[stored]

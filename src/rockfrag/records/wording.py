@@ -9,12 +9,7 @@ _FORCED = " with force=True or in the file"
 def for_command_line(message: object, force: bool = True) -> str:
     """Return a message that names arguments of functions with the options of ``rockfrag`` instead.
 
-    Parameters
-    ----------
-    message
-        The message.
-    force
-        Whether the command has the option ``--force``.
+    ``force`` tells whether the command has the option ``--force``.
     """
     words = str(message) if force else str(message).replace(_FORCED, " in the file")
     return _OPTION.sub(lambda found: f"--{found[1].replace('_', '-')}", words)

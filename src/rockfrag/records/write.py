@@ -25,19 +25,14 @@ WRITERS = {
 }
 """Ending and writer of each text format."""
 
-FORMATS = (*WRITERS, "MSEED")
-"""Formats that a motion can be written in."""
-
+FORMATS = (*WRITERS, "MSEED")  # formats that a motion can be written in
 _USUAL_UNITS = {"AT2": "g", "SEISMOSOFT": "g"}
 _ENDINGS = {ending.lower(): name for name, (ending, _) in WRITERS.items()} | {".mseed": "MSEED"}
 
 
 @named_keywords
 def write_motion(
-    motion: Motion,
-    path: str | os.PathLike[str],
-    format: str | None = None,
-    unit: str | None = None,
+    motion: Motion, path: str | os.PathLike[str], format: str | None = None, unit: str | None = None
 ) -> Path:
     """Write a motion, be it a record, processed, of a floor or synthetic, and return the path.
 
@@ -80,10 +75,7 @@ def write_motion(
 
 
 def write_motions(
-    motions: Iterable[Motion],
-    folder: str | os.PathLike[str],
-    format: str,
-    unit: str | None = None,
+    motions: Iterable[Motion], folder: str | os.PathLike[str], format: str, unit: str | None = None
 ) -> list[Path]:
     """Write each motion into a folder, named as the motion, and return the paths.
 
@@ -118,13 +110,7 @@ def write_motions(
 
 
 def motions_of_study(path: str | os.PathLike[str]) -> list[Motion]:
-    """Read the motions that a study keeps in a Parquet file, such as ``motions/floors.parquet``.
-
-    Raises
-    ------
-    InputError
-        If it is no such file.
-    """
+    """Read the motions that a study keeps in a Parquet file, such as ``motions/floors.parquet``."""
     try:
         return read_motion_set(path)
     except (OSError, ValueError, KeyError) as error:
@@ -148,11 +134,7 @@ def _trace(motion: Motion, unit: str) -> Trace:
         "component": str(facts.get("component") or ""),
         "source": str(facts.get("source") or "rockfrag"),
     }
-    header = {
-        "delta": motion.dt,
-        "station": str(facts.get("station") or ""),
-        "rockfrag": described,
-    }
+    header = {"delta": motion.dt, "station": str(facts.get("station") or ""), "rockfrag": described}
     return Trace(motion.acceleration / TO_SI[unit], header)
 
 

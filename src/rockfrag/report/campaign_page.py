@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,6 @@ from markupsafe import Markup
 from rockfrag.campaign.repeats import REPEATS
 from rockfrag.campaign.trials import preferred_edges
 from rockfrag.campaign.validation import FEWEST_VOTERS
-from rockfrag.files import write_text
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector_tables import VectorTables
 from rockfrag.report.figures.campaign import (
@@ -21,10 +19,11 @@ from rockfrag.report.figures.campaign import (
     footprint_figure,
     tests_figure,
 )
-from rockfrag.report.page import Column, render, table_html
+from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, opened
+from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.two_measures import two_measures_section
-from rockfrag.report.study_report import FIGURES, draw, write_captions
+from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import (
     agree,
     counted,
@@ -36,20 +35,11 @@ from rockfrag.report.wording import (
     sentence,
 )
 from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
-from rockfrag.stages.digest import package_digest
 from rockfrag.study.campaign import CampaignStudy
 
 
 def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
-    """Draw the figures of a campaign and write its page, ``report.html``.
-
-    Parameters
-    ----------
-    study
-        The configuration.
-    folder
-        Folder of the results, with the tables of :data:`rockfrag.stages.campaign.TABLES`.
-    """
+    """Draw the figures of a campaign and write its page, ``report.html``, beside the tables of its stages."""
     tables = {name: pd.read_parquet(folder / f"{name}.parquet") for name in TABLES}
     sections = [
         _agreement(study, tables),
@@ -59,32 +49,18 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         _object(study, tables),
         _conditioning(study, tables),
     ]
-    answer = _answer(study, tables, sections)
-    pictures = {
-        spec.name: draw(spec, folder / FIGURES)
-        for section in sections
-        for spec in section.parts
-        if isinstance(spec, FigureSpec)
-    }
-    write_captions(answer, sections, folder / FIGURES)
     tests = tables["tests"]
-    page = render(
+    write_page(
+        folder,
+        _answer(study, tables, sections),
+        sections,
         title=study.title,
         lead=f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, "
         f"{int(tests['overturned'].sum())} of them overturned; each is simulated with the motion "
         f"{_said(study)} the table.",
-        answer=answer,
-        sections=sections,
-        pictures=pictures,
-        provenance={
-            "Configuration": study.source.name,
-            "Tests": study.tests.name,
-            "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
-        },
+        provenance=provenance(study, {"Tests": study.tests.name}),
         basis="measured",
     )
-    write_text(page, folder / "report.html")
 
 
 Row = Mapping[Any, Any]
@@ -455,20 +431,6 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
 def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     trials, contact, footprint = tables["trials"], tables["contact"], tables["footprint"]
     likely = trials[trials["plausible"]]
-    unknown = [
-        c
-        for c in (
-            "direction_deg",
-            "contact_tolerance_mm",
-            "edge_retreat_mm",
-            "restitution",
-            "friction",
-            "left_m",
-            "right_m",
-            "alpha_deg",
-        )
-        if c in trials
-    ]
     titles = {
         "direction_deg": "Direction of shaking [°]",
         "contact_tolerance_mm": "Contact tolerance [mm]",
@@ -479,20 +441,8 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
         "right_m": "Right edge to the centre of gravity [m]",
         "alpha_deg": "Smaller critical angle [°]",
     }
-    rows = [
-        {
-            "what": titles[name],
-            "tried": f"{trials[name].min():.3g} to {trials[name].max():.3g}",
-            "plausible": f"{likely[name].min():.3g} to {likely[name].max():.3g}",
-            "median": f"{likely[name].median():.3g}",
-        }
-        for name in unknown
-    ]
-    columns = (
-        Column("what", "Property"),
-        Column("tried", "Range tried", numeric=True),
-        Column("plausible", "Plausible range", numeric=True),
-        Column("median", "Median of the plausible", numeric=True),
+    tried, plausible = (
+        {name: part[name] for name in titles if name in trials} for part in (trials, likely)
     )
     parts: list[object] = []
     if not footprint.empty:
@@ -507,10 +457,15 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
             )
         )
     parts.append(
-        table_html(
-            pd.DataFrame(rows),
-            columns,
+        text_table(
+            {
+                "Property": [titles[name] for name in tried],
+                "Range tried": [f"{x.min():.3g} to {x.max():.3g}" for x in tried.values()],
+                "Plausible range": [f"{x.min():.3g} to {x.max():.3g}" for x in plausible.values()],
+                "Median of the plausible": [f"{x.median():.3g}" for x in plausible.values()],
+            },
             "Unmeasured properties: ranges tried, and ranges that agree with the tests.",
+            ["Range tried", "Plausible range", "Median of the plausible"],
         )
     )
     contact_columns = (

@@ -35,15 +35,7 @@ _MOST_CONFIGURATIONS = 6
 
 
 def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
-    """Say at which peak each configuration overturns with a probability of one half; None without a curve.
-
-    Parameters
-    ----------
-    curves
-        Rows of :func:`rockfrag.fragility.fragility_table`, of any measures and definitions.
-    level
-        Level of the intervals in words, such as ``90 %``.
-    """
+    """Say at which peak each configuration overturns with a probability of one half; None without a curve."""
     if curves.empty:
         return None
     found = headline_curves(curves)
@@ -52,7 +44,7 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
         return None
     measure, unit = rows["im"].iloc[0], rows["unit"].iloc[0]
     decimals = min(max(decimals_of(value, 2) for value in rows["theta"]), 3)
-    texts = estimates(rows, ("theta", "theta_lower", "theta_upper"), decimals)
+    texts = estimates(rows, "theta", decimals)
     named = [f"{name} {text}" for name, text in zip(rows["configuration"], texts, strict=True)]
     printed = [number(value, decimals) for value in rows["theta"]]
     least, most = (
@@ -83,13 +75,7 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
 
 
 def headline_curves(curves: pd.DataFrame) -> Compared:
-    """Curves that the first page compares: of the first measure, all outcomes counted, by one estimator.
-
-    Parameters
-    ----------
-    curves
-        As of :func:`strength_found`.
-    """
+    """Curves that the first page compares: of the first measure, all outcomes counted, by one estimator."""
     first = curves["im"] == (curves["im"].iloc[0] if len(curves) else "")
     known = curves[first & (curves["estimator"] == "mean_probability") & curves["theta"].notna()]
     return compared_curves(known)
@@ -103,13 +89,7 @@ ONE_MOTION = Finding(
 
 
 def recorded_found(recorded: pd.DataFrame) -> Finding:
-    """Say what the motions as recorded overturn, and how much that depends on their exact strength.
-
-    Parameters
-    ----------
-    recorded
-        As :func:`rockfrag.stages.ida.as_recorded` returns it, of every configuration.
-    """
+    """Say what the motions as recorded overturn, and how much that depends on their exact strength."""
     analyses, fallen = len(recorded), int(recorded["overturned"].sum())
     near = int(recorded["fraction_near"].between(0, 1, inclusive="neither").sum())
     by_name = recorded.groupby("configuration", sort=False)["overturned"].agg(["sum", "size"])
@@ -406,13 +386,7 @@ def _by_floor(rows: pd.DataFrame, about: Sides) -> list[Finding]:
 
 
 def model_allowed(validity: pd.DataFrame) -> list[Finding]:
-    """Say how much friction rocking without sliding needs, and whether a block would have jumped.
-
-    Parameters
-    ----------
-    validity
-        A row per test: ``pedestal`` (``P`` or ``NP``), ``friction_demand``, ``least_normal_force_n``.
-    """
+    """Say how much friction rocking without sliding needs, and whether a block would have jumped."""
     if validity.empty:
         return []
     tests = len(validity)
@@ -476,13 +450,7 @@ UNIT = {"earthquake": "earthquake", "motion": "motion", "floor": "floor"}
 
 
 def sliding_found(sliding: pd.DataFrame) -> Finding:
-    """Say in how many analyses bodies slid and flew, how far, and how many outcomes that changed.
-
-    Parameters
-    ----------
-    sliding
-        As :func:`rockfrag.stages.validity.sliding_table` returns it.
-    """
+    """Say in how many analyses bodies slid and flew, how far, and how many outcomes that changed."""
     cases, slid, flew, saved, felled = (
         int(sliding[name].sum()) for name in ("cases", "slid", "flew", "saved", "felled")
     )

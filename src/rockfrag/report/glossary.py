@@ -50,18 +50,7 @@ TERMS: Mapping[str, str] = {
 
 
 def terms_used(text: str) -> dict[str, str]:
-    """Return the terms that a text uses, in alphabetical order.
-
-    Parameters
-    ----------
-    text
-        Visible text of a page.
-
-    Returns
-    -------
-    dict
-        Meaning by term.
-    """
+    """Return the terms that the visible text of a page uses with their meanings, in alphabetical order."""
     used = [name for name in TERMS if any(_occurs(part, text) for part in name.split(", "))]
     return {name: TERMS[name] for name in sorted(used, key=str.lower)}
 

@@ -4,7 +4,6 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -82,16 +81,8 @@ def table_html(
 ) -> Markup:
     """Render a table; on a narrow screen its rows become lists of titles and values.
 
-    Parameters
-    ----------
-    table, columns, caption
-        What it shows, and what stands above it.
-    file
-        File of the results that has all rows; where it is named no more than ``MOST_TABLE_ROWS`` are shown.
-
-    Returns
-    -------
-    Markup; empty for a table without rows, so that no page shows an empty one.
+    It is empty without rows. Where the file of the results with all rows is named no more than
+    ``MOST_TABLE_ROWS`` are shown.
     """
     if table.empty:
         return Markup("")
@@ -113,6 +104,14 @@ def table_html(
     )
     room = len(columns) + _LONG_COLUMN * list(kinds.values()).count("long")
     return framed(caption, head, rows, room)
+
+
+def text_table(
+    texts: Mapping[str, Sequence[str]], caption: str, numeric: Sequence[str] = ()
+) -> Markup:
+    """Render texts by the titles of their columns; those that are of numbers stand to the right."""
+    columns = [Column(title, title, numeric=title in numeric) for title in texts]
+    return table_html(pd.DataFrame(dict(texts)), columns, caption)
 
 
 def cell_html(content: str | Markup, title: str, kind: str) -> Markup:
@@ -139,18 +138,10 @@ def _kind(table: pd.DataFrame, column: Column) -> str:
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawn figure on the page.
+    """A drawn figure on the page."""
 
-    Attributes
-    ----------
-    spec
-        The figure.
-    svg
-        What was drawn of it.
-    """
-
-    spec: FigureSpec
-    svg: str
+    spec: FigureSpec  # The figure
+    svg: str  # What was drawn of it
 
     @property
     def width(self) -> int:
@@ -192,11 +183,6 @@ def inline_svg(svg: str, name: str, alt: str) -> Markup:
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
         'viewBox="{}" role="img" aria-label="{}" stroke-linejoin="round">{}</svg>'
     ).format(box[1] if box else "", alt, Markup(inner.strip()))
-
-
-def read_picture(spec: FigureSpec, path: Path) -> Picture:
-    """Return the figure drawn in an SVG file."""
-    return Picture(spec, path.read_text(encoding="utf-8"))
 
 
 @dataclass(frozen=True)
@@ -245,22 +231,10 @@ def render(
 ) -> str:
     """Return the page as HTML; the same arguments give the same bytes.
 
-    Parameters
-    ----------
-    title, lead
-        Heading of the page, and the sentence below it.
-    answer
-        What stands first.
-    sections
-        Chapters in order, which open on demand.
-    pictures
-        The figures of the answer and of all sections by name.
-    provenance
-        What a reader needs to get the same results again.
-    basis
-        Whether its figures are ``simulated`` or ``measured``; the page warns of the first.
-    live
-        The simulation that runs in the page, see :func:`rockfrag.report.live.live_kernel`.
+    ``sections`` are chapters in order, which open on demand, ``pictures`` the figures of the answer and of all
+    sections by name, and ``provenance`` what a reader needs to get the same results again. The page warns of a
+    ``basis`` that is ``simulated`` and not ``measured``. For ``live`` see
+    :func:`rockfrag.report.live.live_kernel`.
     """
     environment = Environment(
         loader=PackageLoader("rockfrag.report"),

@@ -28,43 +28,21 @@ MOST_MOTIONS = 50
 
 @dataclass(frozen=True)
 class FigureSpec:
-    """One figure.
+    """One figure."""
 
-    Attributes
-    ----------
-    name
-        Name of its files, of letters, digits, ``-``, ``_`` and ``.``.
-    alt
-        What it shows, for readers who do not see it.
-    caption
-        What stands below it.
-    draw
-        Draws it.
-    """
-
-    name: str
-    alt: str
-    caption: str
-    draw: Callable[[], Figure]
+    name: str  # Name of its files, of letters, digits, ``-``, ``_`` and ``.``
+    alt: str  # What it shows, for readers who do not see it
+    caption: str  # What stands below it
+    draw: Callable[[], Figure]  # Draws it
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One finding.
+    """One finding."""
 
-    Attributes
-    ----------
-    headline
-        What was found, a sentence without its full stop.
-    text
-        What it means, in sentences that stand open beside it.
-    numbers
-        The numbers behind it, in sentences that a click opens.
-    """
-
-    headline: str
-    text: str = ""
-    numbers: str = ""
+    headline: str  # What was found, a sentence without its full stop
+    text: str = ""  # What it means, in sentences that stand open beside it
+    numbers: str = ""  # The numbers behind it, in sentences that a click opens
 
     @property
     def shown(self) -> str:
@@ -84,54 +62,29 @@ def opened(finding: Finding) -> list[str]:
 
 @dataclass(frozen=True)
 class Answer:
-    """What stands first on a page: the question, and what was found.
+    """What stands first on a page: the question, and what was found."""
 
-    Attributes
-    ----------
-    asked
-        The question, in a sentence.
-    sentences
-        What was found, most important first; three at most.
-    figure
-        The one figure that shows it.
-    advice
-        What to do, each in a sentence.
-    rests_on, could_change
-        What the result rests on, and what could change it, each in a sentence or two.
-    questions
-        What a keeper of the objects would ask, each with the anchor of the chapter that answers it.
-    """
-
-    asked: str
-    sentences: Sequence[Finding]
-    figure: FigureSpec | None = None
-    advice: Sequence[str] = ()
+    asked: str  # The question, in a sentence
+    sentences: Sequence[Finding]  # What was found, most important first; three at most
+    figure: FigureSpec | None = None  # The one figure that shows it
+    advice: Sequence[str] = ()  # What to do, each in a sentence
+    # What the result rests on, and what could change it, each in a sentence or two
     rests_on: Sequence[str] = ()
     could_change: Sequence[str] = ()
+    # What a keeper of the objects would ask, each with the anchor of the chapter that answers it
     questions: Sequence[tuple[str, str]] = ()
 
 
 @dataclass(frozen=True)
 class Section:
-    """A chapter of the page, which opens on demand.
+    """A chapter of the page, which opens on demand."""
 
-    Attributes
-    ----------
-    anchor, title
-        Its place and its heading.
-    message
-        What it found, in one short sentence that stands on the page before it is opened.
-    paragraphs
-        How to read it.
-    parts
-        Its figures, and the tables behind them.
-    """
-
+    # Its place and its heading
     anchor: str
     title: str
-    message: str
-    paragraphs: Sequence[str] = ()
-    parts: Sequence[Markup | FigureSpec] = ()
+    message: str  # What it found, in one short sentence that stands on the page before it is opened
+    paragraphs: Sequence[str] = ()  # How to read it
+    parts: Sequence[Markup | FigureSpec] = ()  # Its figures, and the tables behind them
 
 
 class Results:
@@ -226,18 +179,9 @@ def _always(_: Study) -> bool:
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the report.
+    """A part of the report."""
 
-    Attributes
-    ----------
-    tables
-        Names of the tables that it reads.
-    section
-        Writes its section, or None where there is nothing to show.
-    asked
-        Whether a study has it.
-    """
-
-    tables: tuple[str, ...]
+    tables: tuple[str, ...]  # Names of the tables that it reads
+    # Writes its section, or None where there is nothing to show
     section: Callable[[Results], Section | None]
-    asked: Callable[[Study], bool] = field(default=_always)
+    asked: Callable[[Study], bool] = field(default=_always)  # Whether a study has it

@@ -18,18 +18,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 
 
 def print_page(page: Path) -> Path:
-    """Print a page, and return the path of the PDF beside it.
-
-    Parameters
-    ----------
-    page
-        The page, such as ``results/example/report.html``.
-
-    Raises
-    ------
-    InputError
-        If there is no page or no browser, or it does not print.
-    """
+    """Print a page, and return the path of the PDF beside it; this needs a browser that prints."""
     if not page.is_file():
         raise InputError(f"{page}: there is no report yet; run the study first.")
     browser = next((path for name in BROWSERS if (path := shutil.which(name))), None)

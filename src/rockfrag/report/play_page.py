@@ -24,22 +24,7 @@ MOST_SAMPLES = 20_000
 
 
 def write_play_page(body: SystemLike, motion: Motion, path: str | os.PathLike[str]) -> None:
-    """Write the page.
-
-    Parameters
-    ----------
-    body
-        What rocks.
-    motion
-        By what; as long as ``MOST_SAMPLES`` at most.
-    path
-        Where to write it.
-
-    Raises
-    ------
-    InputError
-        If the record is too long, or zero throughout, or there are more than two blocks.
-    """
+    """Write the page of at most two blocks that rock under a motion of at most ``MOST_SAMPLES``."""
     system = as_system(body)
     if not in_page(system):
         raise InputError(

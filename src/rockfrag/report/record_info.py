@@ -75,24 +75,13 @@ def describe_files(
 ) -> pd.DataFrame:
     """Describe every channel of every file, folders and archives searched through, in order of name.
 
-    Parameters
-    ----------
-    paths
-        Files, archives and folders. In folders hidden files, StationXML and papers are left out.
-    unit
-        Unit of the samples of the files that do not state theirs.
-    dt
-        Sampling interval [s] of plain text that does not state it.
-    force
-        Whether to take ``unit`` as given although a peak is then above 3 g.
+    Hidden files, StationXML and papers in folders are left out. ``unit`` and ``dt`` are of files that do not
+    state theirs; with ``force`` a unit is taken as given although a peak is then above 3 g.
 
-    Returns
-    -------
-    DataFrame
-        Columns :data:`COLUMNS`. PGV and PGD are of the exact integral of the acceleration as
-        recorded, from rest, without baseline correction; the dominant period is that of the
-        largest 5 % damped pseudo-acceleration; ``quality_flags`` says what looks wrong. A file that cannot be
-        read, or whose unit is not known, has the reason in ``error`` and does not stop the others.
+    Columns are :data:`COLUMNS`. PGV and PGD are of the exact integral of the acceleration as recorded, from rest,
+    without baseline correction; the dominant period is that of the largest 5 % damped pseudo-acceleration;
+    ``quality_flags`` says what looks wrong. A file that cannot be read, or whose unit is not known, has the
+    reason in ``error`` and does not stop the others.
     """
     rows: list[dict[str, Any]] = []
     for path in _files(paths):
@@ -231,19 +220,9 @@ def _response_at_samples(motion: Motion, period: float) -> float:
 
 
 def draw_record(motion: Motion, path: str | os.PathLike[str]) -> None:
-    """Draw acceleration, velocity, displacement and the response spectrum of a motion.
+    """Draw acceleration, velocity, displacement and the response spectrum of a motion as ``.png`` or ``.svg``.
 
-    Parameters
-    ----------
-    motion
-        The motion as recorded; velocity and displacement are its exact integrals from rest.
-    path
-        ``.png`` or ``.svg``.
-
-    Raises
-    ------
-    InputError
-        If the ending of the path is another.
+    Velocity and displacement are exact integrals from rest.
     """
     if Path(path).suffix not in (".png", ".svg"):
         raise InputError(f"{path}: a picture is written as .png or .svg.")

@@ -7,20 +7,11 @@ from rockfrag.study.study import Study
 
 @dataclass(frozen=True)
 class Sides:
-    """Two sides of a comparison.
+    """Two sides of a comparison."""
 
-    Attributes
-    ----------
-    change
-        Subject of a sentence about what the difference does.
-    ratio
-        The ratio of amplitudes.
-    first, second
-        An arrangement and its counterpart, after "amplitude".
-    """
-
-    change: str = "the pedestal"
-    ratio: str = "with/without pedestal"
+    change: str = "the pedestal"  # Subject of a sentence about what the difference does
+    ratio: str = "with/without pedestal"  # The ratio of amplitudes
+    # An arrangement and its counterpart, after "amplitude"
     first: str = "with pedestal"
     second: str = "without pedestal"
 

@@ -17,17 +17,6 @@ def overturned_cases(
     """Say for case i, system ``system[i]`` under ``scale[i]`` × motion ``motion[i]``, whether it overturns.
 
     Each system with all its cases is one grid, and systems share the threads.
-
-    Parameters
-    ----------
-    cases
-        Systems, motions, and what is asked of each; its scales do not count.
-    system, motion, scale
-        The cases, each of shape (cases,).
-
-    Returns
-    -------
-    Array of shape (cases,).
     """
     overturned = np.zeros(len(system), dtype=bool)
 

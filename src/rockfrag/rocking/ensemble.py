@@ -44,8 +44,7 @@ on a warning is given: rocking adds to it (19 of 27 blocks of h/b 0.5 to 1.2 at 
 contact, while slender ones need several g)."""
 
 
-LEAST_LIFTING = 0.8
-"""Acceleration over g below which no uniform block both rocks and is warned of."""
+LEAST_LIFTING = 0.8  # acceleration over g below which no uniform block both rocks and is warned of
 
 
 class LightBodies(UserWarning):
@@ -166,13 +165,7 @@ def prepared(
     scales: ArrayLike,
     options: Options,
 ) -> Cases:
-    """Return the checked cases of a door.
-
-    Raises
-    ------
-    InputError
-        If an argument cannot be used, or two wishes cannot be met together.
-    """
+    """Return the checked cases of a door."""
     body_list = listed_bodies(bodies)
     shaking = listed_motions(motions, dt, options.vertical)
     factors = checked_scales(scales, shaking)

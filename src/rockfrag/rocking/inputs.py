@@ -26,12 +26,8 @@ from rockfrag.records.motion import Motion
 from rockfrag.system.blocks import SystemLike, as_system, is_system
 from rockfrag.system.system import uplift_ratios
 
-MOST_CASES = 50_000_000
-"""Cases of an ensemble whose results are held in memory."""
-
-STRONGEST = 1e4
-"""Peak acceleration [m/s²] beyond any earthquake."""
-
+MOST_CASES = 50_000_000  # cases of an ensemble whose results are held in memory
+STRONGEST = 1e4  # peak acceleration [m/s²] beyond any earthquake
 MotionLike = Motion | GroundMotion | ArrayLike
 """A motion, or the accelerations of its horizontal component [m/s²], shape (n,)."""
 
@@ -39,14 +35,7 @@ MotionLike = Motion | GroundMotion | ArrayLike
 def checked_motion(
     motion: MotionLike, dt: float | None, name: str = "motion"
 ) -> tuple[NDArray[np.float64], float]:
-    """Return the accelerations of a motion [m/s²] and its sampling interval [s].
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two samples, one is not a finite number or beyond any earthquake, or if the
-        interval is missing, given twice or not positive.
-    """
+    """Return the accelerations of a motion [m/s²] and its sampling interval [s]."""
     _refuse_file_name(name, motion)
     if isinstance(motion, Motion):
         if dt is not None:
@@ -82,13 +71,7 @@ def checked_vertical(
     interval: float,
     name: str = "vertical",
 ) -> NDArray[np.float64]:
-    """Return the vertical accelerations that belong to horizontal ones [m/s²]; none for None.
-
-    Raises
-    ------
-    InputError
-        If they cannot be used, or are not sampled at the same times.
-    """
+    """Return the vertical accelerations that belong to horizontal ones [m/s²]; none for None."""
     if vertical is None:
         return np.zeros(0)
     if isinstance(vertical, Motion) and not math.isclose(vertical.dt, interval, rel_tol=1e-9):
@@ -106,13 +89,7 @@ def checked_vertical(
 
 
 def checked_start(body: SystemLike, value: object, name: str) -> tuple[float, ...]:
-    """Return rotations or angular velocities at the start, one for each block; zeros for None.
-
-    Raises
-    ------
-    InputError
-        If there is not one finite number for each block, or a block lies on its side already.
-    """
+    """Return rotations or angular velocities at the start, one for each block; zeros for None."""
     blocks = as_system(body).count
     if value is None:
         return (0.0,) * blocks
@@ -125,13 +102,7 @@ def checked_start(body: SystemLike, value: object, name: str) -> tuple[float, ..
 
 
 def listed_bodies(bodies: object) -> list[SystemLike]:
-    """Return the bodies as a list.
-
-    Raises
-    ------
-    InputError
-        If there is none, or one is no Block, Stack, Column or System.
-    """
+    """Return the bodies as a list."""
     if is_system(bodies):
         return [bodies]
     if not isinstance(bodies, (Sequence, np.ndarray)) or isinstance(bodies, (str, bytes)):
@@ -151,13 +122,7 @@ def listed_motions(
     dt: float | Sequence[float] | None,
     vertical: MotionLike | Sequence[MotionLike] | None = None,
 ) -> list[GroundMotion]:
-    """Return checked motions.
-
-    Raises
-    ------
-    InputError
-        If a motion cannot be used, or the lengths of the lists do not fit together.
-    """
+    """Return checked motions."""
     each = _listed_motions(motions)
     intervals: list[float | None]
     if dt is None or isinstance(dt, (numbers.Real, str, complex)):
@@ -186,13 +151,7 @@ def ground_motion(
     name: str = "motion",
     vertical_name: str = "vertical",
 ) -> GroundMotion:
-    """Return the checked ground motion of a horizontal and perhaps a vertical component.
-
-    Raises
-    ------
-    InputError
-        If a component cannot be used, or the two are not sampled at the same times.
-    """
+    """Return the checked ground motion of a horizontal and perhaps a vertical component."""
     if isinstance(motion, GroundMotion):
         if vertical is not None or dt is not None:
             raise InputError(
@@ -242,13 +201,7 @@ def _listed_motions(motions: Any, name: str = "motions") -> list[MotionLike]:
 
 
 def check_one_per_body(name: str, given: object, count: int) -> None:
-    """Say in one sentence if what is given per body is not a list with an entry for each.
-
-    Raises
-    ------
-    InputError
-        If its length is not the number of bodies.
-    """
+    """Say in one sentence if what is given per body is not a list with an entry for each."""
     if given is None:
         return
     if not isinstance(given, (list, tuple, np.ndarray)):
@@ -258,13 +211,7 @@ def check_one_per_body(name: str, given: object, count: int) -> None:
 
 
 def checked_scales(scales: ArrayLike, motions: Sequence[GroundMotion]) -> NDArray[np.float64]:
-    """Return factors on the accelerations as an array of shape (motions, scales).
-
-    Raises
-    ------
-    InputError
-        If the shape does not fit the motions, a factor is not finite, or a scaled motion is beyond any earthquake.
-    """
+    """Return factors on the accelerations as an array of shape (motions, scales)."""
     if isinstance(scales, np.ndarray):
         # before anything is asked of so many numbers
         check_case_count(scales.size)
@@ -292,13 +239,7 @@ def checked_scales(scales: ArrayLike, motions: Sequence[GroundMotion]) -> NDArra
 
 
 def checked_threads(threads: object) -> int:
-    """Return the number of threads; that of the cores if None.
-
-    Raises
-    ------
-    InputError
-        If it is not a positive whole number.
-    """
+    """Return the number of threads; that of the cores if None."""
     if threads is None:
         return os.cpu_count() or 1
     count = whole_number("threads", threads)
@@ -308,26 +249,14 @@ def checked_threads(threads: object) -> int:
 
 
 def checked_switch(name: str, value: object) -> bool:
-    """Return True or False as they are.
-
-    Raises
-    ------
-    InputError
-        If it is anything else.
-    """
+    """Return True or False as they are."""
     if not isinstance(value, (bool, np.bool_)):
         raise InputError(f"{name}: expected True or False, got {shown(value)}.")
     return bool(value)
 
 
 def check_case_count(count: int) -> None:
-    """Refuse an ensemble whose results would not fit into memory.
-
-    Raises
-    ------
-    InputError
-        If there are more than ``MOST_CASES``.
-    """
+    """Refuse an ensemble whose results would not fit into memory."""
     if count > MOST_CASES:
         raise InputError(
             f"bodies × motions × scales: {count} cases are more than the {MOST_CASES} whose results "
@@ -342,15 +271,8 @@ class UnitWarning(UserWarning):
 def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     """Warn of what looks like a mistake of unit: of accelerations, of times, of gravity.
 
-    Parameters
-    ----------
-    cases
-        Systems, motions and scales.
-    given
-        Motions as the user gave them. Only of an array, which has no unit of its own, is it a reason for doubt
-        that it lifts nothing and would lift something if it were in g.
-    stacklevel
-        Callers between the warning and the user's line.
+    Of motions as ``given`` only an array, which has no unit of its own, is a reason for doubt where it lifts
+    nothing and would lift something if it were in g. There are ``stacklevel`` callers up to the user's line.
     """
     if not cases.systems or not cases.motions:
         return

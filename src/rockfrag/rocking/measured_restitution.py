@@ -63,10 +63,7 @@ Restitution = float | Sequence[Measured] | dict[str, Any] | MeasuredRestitution 
 def largest_restitution(block: Block, pivot: int | None = None) -> float:
     """Largest ratio of angular velocities with which no impact of the lone block gains energy [-].
 
-    Parameters
-    ----------
-    pivot
-        The corner that comes down, +1 or -1; of both the lesser if it is None, which is 1 for a symmetric block.
+    ``pivot`` is the corner that comes down, +1 or -1; without one it is the lesser of both, 1 if symmetric.
     """
     if pivot is None:
         return min(largest_restitution(block, +1), largest_restitution(block, -1))
@@ -76,22 +73,7 @@ def largest_restitution(block: Block, pivot: int | None = None) -> float:
 def impact_laws(
     system: System, restitution: Restitution, name: str = "restitution"
 ) -> tuple[ImpactLaw, ...]:
-    """Return the law of the impacts of each contact of a system.
-
-    Parameters
-    ----------
-    system
-        What stands.
-    restitution
-        As :data:`Restitution`; or a mapping ``{"ground": …, "interface": …}``.
-    name
-        What messages call it.
-
-    Raises
-    ------
-    InputError
-        If the restitution does not fit the system or would add energy.
-    """
+    """Return the law of the impacts of each contact of a system; messages call the restitution by ``name``."""
     law, given = "position", restitution
     if isinstance(restitution, MeasuredRestitution):
         law, given = restitution.law, restitution.value

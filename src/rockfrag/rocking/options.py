@@ -31,25 +31,9 @@ def system_of(
     omega0: StartInput = None,
     name: str = "",
 ) -> System:
-    """Return the system that a body and its options are.
+    """Return the system that a body and its options, as of :func:`rockfrag.rocking.simulate`, are.
 
-    Parameters
-    ----------
-    body
-        What stands.
-    friction
-        Friction of its contacts; None as the body has it.
-    restitution
-        Restitution of its contacts, likewise.
-    theta0, omega0
-        Rotations [rad] and angular velocities [rad/s] at the start, likewise.
-    name
-        What messages add to the name of an option, such as ``[3]``.
-
-    Raises
-    ------
-    InputError
-        If an option does not fit the body.
+    ``name`` is what messages add to the name of an option, such as ``[3]``.
     """
     system = as_system(body)
     contacts = list(system.contacts)
@@ -78,23 +62,7 @@ def systems_of(
     theta0: Sequence[StartInput] | None = None,
     omega0: Sequence[StartInput] | None = None,
 ) -> tuple[System, ...]:
-    """Return the systems that bodies and their options are.
-
-    Parameters
-    ----------
-    bodies
-        What stands.
-    friction
-        A list with one entry per body, each as in :func:`system_of`; or one coefficient, one :class:`Friction`
-        or one mapping for all.
-    restitution, theta0, omega0
-        Lists with one entry per body.
-
-    Raises
-    ------
-    InputError
-        If there is not one entry for each body, or one does not fit its body.
-    """
+    """Return the systems that bodies and their options, as of :func:`rockfrag.rocking.overturns`, are."""
     count = len(bodies)
     each = _friction_of_each(friction, count)
     for name, given in (("restitution", restitution), ("theta0", theta0), ("omega0", omega0)):
@@ -137,14 +105,7 @@ def _friction_of_each(friction: Any, count: int) -> list[Any]:
 
 
 def frictions_of(count: int, friction: object, name: str = "friction") -> list[Friction | None]:
-    """Return the friction of each contact of a body, the ground's first.
-
-    Raises
-    ------
-    InputError
-        If the numbers do not fit the body, one is negative or none, or a static coefficient is less than the
-        kinetic one.
-    """
+    """Return the friction of each contact of a body, the ground's first."""
     places = (
         ["ground", "interface"]
         if count == 2

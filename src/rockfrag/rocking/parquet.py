@@ -32,9 +32,7 @@ from rockfrag.rocking.options import FrictionInput, StartInput
 from rockfrag.system.blocks import SystemLike
 from rockfrag.units import GRAVITY
 
-ROWS = 262_144
-"""Most cases that are in memory at a time, and most rows of a row group."""
-
+ROWS = 262_144  # most cases that are in memory at a time, and most rows of a row group
 PLACE = {"system": pa.int32(), "motion": pa.int32(), "scale": pa.float64()}
 WITHIN: dict[Table, dict[str, pa.DataType]] = {
     "cases": {},
@@ -164,11 +162,8 @@ def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, sli
 
 # --------------------------------------------------------------------------- histories
 
-Place = tuple[int, int, int]
-"""Positions of system, motion and scale."""
-
-AHEAD = 2
-"""Histories that are computed or wait to be written at a time, for each thread."""
+Place = tuple[int, int, int]  # positions of system, motion and scale
+AHEAD = 2  # histories that are computed or wait to be written at a time, for each thread
 
 SCHEMA = pa.schema(
     PLACE
@@ -255,10 +250,7 @@ def stream_histories(
 
 
 def _in_order(
-    pool: ThreadPoolExecutor,
-    work: Callable[[Place], pa.Table],
-    places: Iterable[Place],
-    most: int,
+    pool: ThreadPoolExecutor, work: Callable[[Place], pa.Table], places: Iterable[Place], most: int
 ) -> Iterator[pa.Table]:
     """Yield ``work(place)`` in the order of the places, ``most`` of them at a time under work or done."""
     waiting: deque[Future[pa.Table]] = deque()

@@ -57,20 +57,9 @@ class RestitutionFit:
 def peak_after(
     block: Block, speed: float, pivot: int = 1, *, linear: bool = False, g: float = GRAVITY
 ) -> float:
-    """Peak rotation of a block that leaves its base with an angular velocity.
+    """Peak rotation [rad] of a block that leaves its base with ``speed`` [rad/s]; NaN if it would go over.
 
-    Parameters
-    ----------
-    speed
-        Magnitude of the angular velocity just after the impact [rad/s].
-    pivot
-        Corner it rocks on.
-    linear
-        Use the slender linearised equation (Housner, 1963).
-
-    Returns
-    -------
-    Magnitude of the rotation [rad]; NaN if it would go over.
+    ``linear`` uses the slender linearised equation (Housner, 1963).
     """
     alpha, x = block.critical_angle(pivot), speed**2 / block.frequency(pivot, g) ** 2
     # written so that small speeds keep their digits
@@ -245,12 +234,7 @@ def restitution_from_impacts(
 
 
 def restitution_from_history(
-    block: Block,
-    time: ArrayLike,
-    theta: ArrayLike,
-    *,
-    confidence: float = 0.95,
-    g: float = GRAVITY,
+    block: Block, time: ArrayLike, theta: ArrayLike, *, confidence: float = 0.95, g: float = GRAVITY
 ) -> RestitutionFit:
     """Fit e to a sampled history of free rocking, by least squares on the rotations.
 

@@ -24,8 +24,7 @@ from rockfrag.system.blocks import SystemLike
 from rockfrag.system.perturbation import perturbed
 from rockfrag.units import GRAVITY
 
-LARGEST_PERTURBATION = 0.1
-"""Beyond this a copy is another experiment."""
+LARGEST_PERTURBATION = 0.1  # beyond this a copy is another experiment
 
 
 @named_keywords

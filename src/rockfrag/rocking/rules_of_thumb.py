@@ -29,15 +29,7 @@ Rule = Callable[[Block, Motion], float]
 
 
 def static(block: Block, motion: Motion) -> float:
-    """Factor at which the peak acceleration reaches b/h: what starts rocking is taken to topple.
-
-    Parameters
-    ----------
-    block
-        The block.
-    motion
-        The motion.
-    """
+    """Factor at which the peak acceleration reaches b/h: what starts rocking is taken to topple."""
     return float(GRAVITY * math.tan(block.alpha) / motion.pga)
 
 
@@ -46,28 +38,13 @@ def housner(block: Block, motion: Motion) -> float:
 
     The critical angle is Sv √(m R² / (g R I_O)), that is Sv = g α / p. Sv is the mean of the undamped
     pseudo-velocity spectrum from 0.1 to 2.5 s.
-
-    Parameters
-    ----------
-    block
-        The block.
-    motion
-        The motion.
     """
     spectrum = response_spectrum(motion, HOUSNER_PERIODS, 0.0).pseudo_velocity
     return float(housner_velocity(block.alpha, block.frequency()) / spectrum.mean())
 
 
 def peak_velocity(block: Block, motion: Motion) -> float:
-    """Factor at which the peak velocity reaches g α / p, Housner's velocity read as that of the floor.
-
-    Parameters
-    ----------
-    block
-        The block.
-    motion
-        The motion.
-    """
+    """Factor at which the peak velocity reaches g α / p, Housner's velocity read as that of the floor."""
     return float(housner_velocity(block.alpha, block.frequency()) / pgv(motion))
 
 
@@ -78,13 +55,6 @@ def asce_43(block: Block, motion: Motion) -> float:
     √(2 (f - 1) g / (C h)) / (2π θ) with f = cos θ + a sin θ, a = b/h, C = (4/3) (1 + a²), the damping
     γ / √(4π² + γ²) with γ = -2 ln(1 - 2a²/C), and bears the spectral acceleration 2 g (f - 1) / θ, here without
     vertical shaking. The block topples where no rotation bears the demand.
-
-    Parameters
-    ----------
-    block
-        The block.
-    motion
-        The motion.
     """
     a = math.tan(block.alpha)
     height = block.h
@@ -111,29 +81,13 @@ RULES: Mapping[str, Rule] = MappingProxyType(
 
 
 def three_models(body: Body) -> list[Block]:
-    """Blocks that practice checks for an object: itself, and with what it stands on as one body.
-
-    Parameters
-    ----------
-    body
-        The object, or the object on its pedestal.
-    """
+    """Blocks that practice checks for an object: itself, and with what it stands on as one body."""
     # a block joined with nothing is the block
     return list(dict.fromkeys((body.blocks[-1], body.rigidly_joined())))
 
 
 def predicted(body: Body, motion: Motion, rule: Rule) -> float:
-    """Factor on a motion at which a rule expects an object to topple: the least of the models of practice.
-
-    Parameters
-    ----------
-    body
-        The object.
-    motion
-        The motion that shakes it.
-    rule
-        One of :data:`RULES`.
-    """
+    """Factor on a motion at which a rule expects an object to topple: the least of the models of practice."""
     return min(rule(block, motion) for block in three_models(body))
 
 
@@ -142,10 +96,7 @@ def bias(
 ) -> tuple[float, float]:
     """Median of predicted over simulated factors, and the standard deviation of its logarithm [-].
 
-    Parameters
-    ----------
-    predicted_factors, simulated
-        Factors at which motions topple an object; motions without a simulated one are left out.
+    Motions without a simulated factor are left out.
     """
     ratio = np.log(predicted_factors / simulated)
     ratio = ratio[np.isfinite(ratio)]

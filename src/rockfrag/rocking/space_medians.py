@@ -36,16 +36,9 @@ Pair = tuple[Motion, Motion]
 
 
 def body_of(base: str, slenderness: float, height: float) -> Block:
-    """Return a uniform body of stone.
+    """Return a uniform body of stone on a base that is ``square``, ``one to two`` or ``round``.
 
-    Parameters
-    ----------
-    base
-        ``square``, ``one to two`` or ``round``.
-    slenderness
-        Height over the narrow side or the diameter [-].
-    height
-        Height [m].
+    Slenderness is the height [m] over the narrow side or the diameter [-].
     """
     width = height / slenderness
     if base == ROUND:
@@ -56,15 +49,7 @@ def body_of(base: str, slenderness: float, height: float) -> Block:
 
 
 def median(fractions: Floats, levels: Floats) -> float:
-    """Level at which half of the motions topple a body, between levels by the logarithm; NaN beyond them.
-
-    Parameters
-    ----------
-    fractions
-        Fraction at each level, shape (levels,).
-    levels
-        The levels, rising.
-    """
+    """Level at which half of the motions topple a body, between levels by the logarithm; NaN beyond them."""
     rising = np.maximum.accumulate(fractions)
     k = int(np.searchsorted(rising, 0.5))
     if k in (0, rising.size):
@@ -85,19 +70,6 @@ def medians(
     threads: int = 1,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return medians in space and in the plane of one body, and the fractions they come from.
-
-    Parameters
-    ----------
-    base, slenderness, height
-        As of :func:`body_of`.
-    pairs, earthquakes
-        Both components of each record, and its earthquake.
-    sweep
-        Levels and directions.
-    seed
-        Of the resampling and the displacements.
-    threads
-        Threads to use; nothing depends on it.
 
     Returns
     -------
@@ -148,11 +120,7 @@ def _in_plane(
 
 
 def _ratios(
-    found: dict[str, Floats],
-    earthquakes: Sequence[str],
-    levels: Floats,
-    sweep: Sweep,
-    seed: int,
+    found: dict[str, Floats], earthquakes: Sequence[str], levels: Floats, sweep: Sweep, seed: int
 ) -> dict[str, float]:
     """Median in space, and over each planar one, with limits of resampled earthquakes."""
     names = np.asarray(earthquakes)

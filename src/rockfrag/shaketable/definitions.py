@@ -25,15 +25,8 @@ DEFINITION = "step_protocol"
 """The definition that resembles a laboratory's: statistics rest on it, the others stand beside."""
 
 _NEEDED = (
-    "configuration",
-    "object",
-    "pedestal",
-    "motion",
-    "earthquake",
-    "floor",
-    "amplitude_g",
-    "overturned",
-    "overturned_body",
+    *("configuration", "object", "pedestal", "motion", "earthquake", "floor"),
+    *("amplitude_g", "overturned", "overturned_body"),
 )
 
 
@@ -199,15 +192,7 @@ def tests_from_swept(
     definitions: Sequence[str] = DEFINITIONS,
     limits_g: Mapping[str, float] | None = None,
 ) -> pd.DataFrame:
-    """Read IDA curves as tests, part after part, as :func:`tests_from_ida` does those of a table.
-
-    Parameters
-    ----------
-    parts
-        IDA curves, see :func:`rockfrag.shaketable.swept.read_swept`.
-    protocol, definitions, limits_g
-        As of :func:`tests_from_ida`.
-    """
+    """Read IDA curves as tests, part after part, as :func:`tests_from_ida` does those of a table."""
     rows: list[dict[str, object]] = []
     for part in parts:
         level_series: dict[tuple[float | None, int], NDArray[np.intp]] = {}

@@ -23,14 +23,8 @@ from rockfrag.tabular import read_cells
 from rockfrag.units import GRAVITY
 
 _TEXT = (
-    "test",
-    "object",
-    "pedestal",
-    "earthquake",
-    "floor",
-    "censored",
-    "overturned_body",
-    "repetition",
+    *("test", "object", "pedestal", "earthquake", "floor"),
+    *("censored", "overturned_body", "repetition"),
 )
 _BOUNDS = {"g": ("lower_g", "upper_g"), "m_s2": ("lower_m_s2", "upper_m_s2")}
 _OPTIONAL = ("remark", "motion", "amplitude_g", "amplitude_m_s2")

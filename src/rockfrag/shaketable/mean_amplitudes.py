@@ -16,11 +16,7 @@ _ALL = ""
 def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     """Geometric means of what is compared, over the motions that overturned all that is compared.
 
-    Parameters
-    ----------
-    tests
-        Tests of one definition: ``configuration``, ``object``, ``pedestal``, ``earthquake``, ``floor``,
-        ``motion``, ``amplitude_g`` [g], missing where the test has none.
+    ``tests`` are of one definition; ``amplitude_g`` [g] is missing where the test has none.
 
     Returns
     -------
@@ -48,15 +44,7 @@ def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
 
 
 def mean_amplitudes_of(tests: pd.DataFrame, by: list[str]) -> pd.DataFrame:
-    """Means of each part of a table of tests, such as each variant of a building.
-
-    Parameters
-    ----------
-    tests
-        See :func:`mean_amplitudes`.
-    by
-        Columns that tell the parts apart; they come first in the result.
-    """
+    """Means of each part of a table of tests, such as each variant of a building, told apart by columns."""
     parts = []
     for key, rows in tests.groupby(by, sort=False, dropna=False):
         about = pd.DataFrame(dict(zip(by, key, strict=True)), index=[0])

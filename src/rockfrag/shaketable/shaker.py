@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.motions.checks import positive
 from rockfrag.motions.conditioning import pad
 from rockfrag.motions.filtering import highpass
 from rockfrag.motions.scaling import scale_to_pga
@@ -21,9 +22,7 @@ from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
-FILTER_ORDER = 4
-"""Order of the zero-phase Butterworth high-pass that makes room for a motion."""
-
+FILTER_ORDER = 4  # order of the zero-phase Butterworth high-pass that makes room for a motion
 CORNERS_HZ = tuple(float(corner) for corner in np.round(np.arange(0.02, 5.001, 0.02), 2))
 """Corners tried, from the mildest on [Hz]."""
 
@@ -71,8 +70,7 @@ class Shaker:
         if self.velocity is not None:
             limits["velocity"] = self.velocity
         for name, value in limits.items():
-            if not (math.isfinite(value) and value > 0):
-                raise InputError(f"shaker: {name} must be a positive number, got {value}.")
+            positive("shaker", name, value)
         if not self.lowest_hz < self.highest_hz:
             raise InputError(
                 f"shaker: the band from {self.lowest_hz} to {self.highest_hz} Hz is empty."

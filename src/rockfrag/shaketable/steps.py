@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.motions.checks import positive
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
@@ -31,7 +32,8 @@ class LinearSteps:
     step_g: float
 
     def __post_init__(self) -> None:
-        _check_positive("linear steps", start_g=self.start_g, step_g=self.step_g)
+        positive("linear steps", "start_g", self.start_g)
+        positive("linear steps", "step_g", self.step_g)
 
     def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
         """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
@@ -55,7 +57,8 @@ class GeometricSteps:
     growth: float
 
     def __post_init__(self) -> None:
-        _check_positive("geometric steps", start_g=self.start_g, growth=self.growth)
+        positive("geometric steps", "start_g", self.start_g)
+        positive("geometric steps", "growth", self.growth)
 
     def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
         """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
@@ -84,12 +87,8 @@ class ForceSteps:
     moved_mass_kg: float
 
     def __post_init__(self) -> None:
-        _check_positive(
-            "force steps",
-            start_n=self.start_n,
-            step_n=self.step_n,
-            moved_mass_kg=self.moved_mass_kg,
-        )
+        for name in ("start_n", "step_n", "moved_mass_kg"):
+            positive("force steps", name, getattr(self, name))
 
     def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
         """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
@@ -109,9 +108,3 @@ def _count(levels: float) -> int:
             f"protocol: steps so small that {count} of them fit below the limit; enlarge them."
         )
     return max(count, 0)
-
-
-def _check_positive(owner: str, **values: float) -> None:
-    for name, value in values.items():
-        if not (math.isfinite(value) and value > 0):
-            raise InputError(f"{owner}: {name} must be a positive number, got {value}.")

@@ -24,27 +24,14 @@ ABOUT = ("configuration", "object", "pedestal", "earthquake", "floor", "motion")
 
 @dataclass(frozen=True)
 class Swept:
-    """Outcomes of some motions, each at the same amplitudes.
+    """Outcomes of some motions, each at the same amplitudes."""
 
-    Attributes
-    ----------
-    about
-        One row a motion: the columns ``ABOUT``.
-    amplitude_g
-        Amplitudes [g], rising, shape (n,).
-    overturned
-        Whether the limit state that was asked for was reached, shape (motions, n).
-    fallen
-        Place in ``bodies`` of what overturned, shape (motions, n).
-    bodies
-        Names of what overturned in any of them, empty for nothing.
-    """
-
-    about: pd.DataFrame
-    amplitude_g: NDArray[np.float64]
+    about: pd.DataFrame  # one row a motion: the columns ``ABOUT``
+    amplitude_g: NDArray[np.float64]  # amplitudes [g], rising, shape (n,)
+    # whether the limit state that was asked for was reached, shape (motions, n)
     overturned: NDArray[np.bool_]
-    fallen: NDArray[np.intp]
-    bodies: Sequence[str]
+    fallen: NDArray[np.intp]  # place in ``bodies`` of what overturned, shape (motions, n)
+    bodies: Sequence[str]  # names of what overturned in any of them, empty for nothing
 
 
 def labels_of(system: System) -> dict[str, str]:
@@ -59,20 +46,7 @@ def fallen_names(system: System) -> tuple[str, ...]:
 
 
 def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swept]:
-    """Yield the outcomes of IDA curves in parts of some motions, so that memory holds one part.
-
-    Parameters
-    ----------
-    paths
-        Files of IDA curves, each of one configuration or of some motions of it.
-    state
-        Name of the limit state that is asked for, which the IDA curves count.
-
-    Raises
-    ------
-    InputError
-        If a part does not hold whole motions that rose through the same amplitudes.
-    """
+    """Yield the outcomes of IDA curves in a limit state, some motions at a time, so that memory holds one part."""
     reached = limit_state_named(state).column
     columns = [*ABOUT, "amplitude_g", reached, "overturned_body"]
     texts = [*ABOUT, "overturned_body"]
@@ -102,17 +76,7 @@ def _swept(part: pa.Table, reached: str, path: Path) -> Swept:
 
 
 def swept_of(ida: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:
-    """Yield each IDA curve of a table by itself, in the order in which they first appear.
-
-    Parameters
-    ----------
-    ida
-        Rows in any order, with ``amplitude_g`` and ``overturned_body``.
-    keys
-        Columns that tell IDA curves apart.
-    about
-        Columns to keep.
-    """
+    """Yield each IDA curve of a table, told apart by ``keys``, in the order in which they first appear."""
     number, bodies = pd.factorize(ida["overturned_body"])
     overturned = ida["overturned"].to_numpy(dtype=bool)
     amplitude = ida["amplitude_g"].to_numpy(dtype=np.float64)

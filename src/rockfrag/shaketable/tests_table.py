@@ -23,21 +23,9 @@ reading          how the bounds were found (``step_protocol``, ``measured``, …
 import pandas as pd
 
 COLUMNS = (
-    "test",
-    "configuration",
-    "object",
-    "pedestal",
-    "earthquake",
-    "floor",
-    "motion",
-    "lower_g",
-    "upper_g",
-    "amplitude_g",
-    "censored",
-    "overturned_body",
-    "repetition",
-    "remark",
-    "definition",
+    *("test", "configuration", "object", "pedestal", "earthquake", "floor", "motion"),
+    *("lower_g", "upper_g", "amplitude_g", "censored", "overturned_body"),
+    *("repetition", "remark", "definition"),
 )
 
 PEDESTALS = ("P", "NP")

@@ -12,13 +12,10 @@ from rockfrag.units import GRAVITY
 def bodies_table(configurations: Sequence[System]) -> pd.DataFrame:
     """Return what is tested, a row per configuration.
 
-    Returns
-    -------
-    pandas.DataFrame
-        ``configuration``, ``object``, ``stands_on`` (the pedestal, empty for the floor); of the object
-        ``width_m``, ``height_m``, ``mass_kg``, ``slenderness`` (height over width [-]),
-        ``critical_angle_rad``, ``radius_m``, ``frequency_1_s``; ``uplift_m_s2``: least
-        acceleration of the floor at which anything starts to rock [m/s²].
+    Columns: ``configuration``, ``object``, ``stands_on`` (the pedestal, empty for the floor); of the object
+    ``width_m``, ``height_m``, ``mass_kg``, ``slenderness`` (height over width [-]), ``critical_angle_rad``,
+    ``radius_m``, ``frequency_1_s``; ``uplift_m_s2``: least acceleration of the floor at which anything starts to
+    rock [m/s²].
     """
     rows = []
     for configuration in configurations:

@@ -60,7 +60,7 @@ def run(job: Job[CampaignStudy]) -> Results:
     tests = campaign.tests
     measured = tests[MEASURED].to_numpy()
     groups = pd.factorize(tests["group"])[0]
-    validated = _validated(study, outcomes, measured, groups)
+    validated = cross_validate(outcomes, measured, groups, **study.division)
     job.log.info(
         "%d tests under %d motions: %.1f %% of the outcomes right",
         len(tests), groups.max() + 1, 100 * (validated.outcomes == measured).mean(),
@@ -70,7 +70,7 @@ def run(job: Job[CampaignStudy]) -> Results:
     plane = None
     if trials.planar:
         flat, _ = simulate_tests(trials.planar, motions, job.threads)
-        plane = _validated(study, flat, measured, groups)
+        plane = cross_validate(flat, measured, groups, **study.division)
     yield "agreement", _agreement(study, campaign, validated, plane, groups)
     yield "rocking", _rocking(study, campaign, outcomes, rocked, groups)
     yield "fragility", _fragility(study, campaign, validated, groups)
@@ -88,20 +88,7 @@ def run(job: Job[CampaignStudy]) -> Results:
 def campaign_with_motions(
     study: CampaignStudy, log: logging.Logger
 ) -> tuple[Campaign, list[Motion]]:
-    """Read the table of tests and the motion of each, scaled where the table says so.
-
-    Parameters
-    ----------
-    study
-        The configuration.
-    log
-        Where it is said how many tests are left out.
-
-    Raises
-    ------
-    InputError
-        If the table or a motion cannot be used.
-    """
+    """Read the tests and the motion of each, scaled where the table says so; log how many are left out."""
     for public in study.fetch:
         fetch_url(public.url, public.sha256, public.path)
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
@@ -181,12 +168,6 @@ def _block(given: Mapping[str, Any]) -> Block:
     )
 
 
-def _validated(study: CampaignStudy, outcomes: Any, measured: Any, groups: Any) -> Validated:
-    return cross_validate(
-        outcomes, measured, groups, folds=study.folds, repeats=study.repeats, seed=study.seed
-    )
-
-
 def _judged_trials(trials: Trials, outcomes: Any, measured: Any, groups: Any) -> pd.DataFrame:
     """Trials with their agreement over all tests: in sample, so it only shows where the plausible ones lie."""
     right = (outcomes == measured).mean(axis=1)
@@ -207,15 +188,14 @@ def _agreement(
     tests, level = campaign.tests, study.confidence
     measured = tests[MEASURED].to_numpy()
     rivals = {} if plane is None else {IN_PLANE: plane.outcomes}
-    chosen = {"folds": study.folds, "repeats": study.repeats, "seed": study.seed}
     for name in campaign.measures:
         rivals[f"threshold on {name}"] = cross_validated_threshold(
-            tests[name].to_numpy(), measured, groups, **chosen
+            tests[name].to_numpy(), measured, groups, **study.division
         )
     if len(campaign.measures) > 1:
         both = list(campaign.measures[:2])
         rivals[f"probit on {' and '.join(both)}"] = cross_validated_threshold(
-            tests[both].to_numpy(), measured, groups, **chosen
+            tests[both].to_numpy(), measured, groups, **study.division
         )
     codes = {f"code {name}": campaign.codes[name].to_numpy() for name in campaign.codes}
     rows = [agreement_row(OURS, validated.outcomes, measured, groups, level)]
@@ -251,10 +231,8 @@ def _rocking(
         outcomes,
         campaign.tests[MEASURED].to_numpy(),
         groups,
-        folds=study.folds,
-        repeats=study.repeats,
-        seed=study.seed,
         asked=rocked,
+        **study.division,
     )
     noted = campaign.tests["rocked"].to_numpy()
     return pd.DataFrame([agreement_row(OURS, found.outcomes, noted, groups, study.confidence)])
@@ -316,7 +294,7 @@ def _conditioning(
         **study.varied_conditioning,
     }.items():
         outcomes, _ = simulate_tests(trials.systems, _motions(study, campaign, steps), job.threads)
-        found = _validated(study, outcomes, measured, groups)
+        found = cross_validate(outcomes, measured, groups, **study.division)
         rows.append(
             {
                 **agreement_row(name, found.outcomes, measured, groups, study.confidence),

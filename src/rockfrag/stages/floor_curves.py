@@ -43,41 +43,22 @@ def floor_curves(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Fragility of every configuration on every floor; motions of different floors are never mixed.
 
-    Parameters
-    ----------
-    ida_curves
-        For each limit state, whether it was reached: IDA curves of each configuration on each floor, which know
-        the measures of that floor.
-    measures
-        Intensity measures of the motions as recorded.
-    floors
-        Level of each floor by its label; level 0 moves as the ground does.
-    systems
-        Systems by the name of their configuration.
-    record_set
-        Digest of the motions, which goes into the table.
-    level
-        Confidence level of the limits.
-    rocks_at_once
-        Whether bodies rock as soon as the peak of a motion exceeds their threshold, as they do where nothing
-        slides and nothing moves vertically; the state ``rocks`` is left out where they may not.
+    For each limit state ``ida_curves`` has those of each configuration on each floor, ``measures`` are of the
+    motions as recorded, ``floors`` the level of each by its label (0 moves as the ground does), ``record_set`` a
+    digest of the motions. ``rocks_at_once`` tells that bodies rock as soon as the peak of a motion exceeds their
+    threshold, as they do where nothing slides and nothing moves vertically; the state ``rocks`` is left out where
+    they may not.
 
-    Returns
-    -------
-    curves
-        One row per configuration, floor, measure and limit state: ``configuration``, ``floor``,
-        ``floor_level``, ``measure`` (column of ``measures``), ``state`` (name of a limit state) and the columns of
-        :func:`rockfrag.fragility.ida_curves.fragility_table`. A state that IDA curves count has the mean
-        probability over all analyses.
-        Rocking starts at an exact peak acceleration, whose value in another measure varies from motion to
-        motion.
-    fractions
-        Points of the non-parametric fragility function, of those that are rejected: see
-        :func:`rockfrag.fragility.drawn_curves.fraction_points`.
+    Returns curves and fractions. Curves have one row per configuration, floor, measure and limit state:
+    ``configuration``, ``floor``, ``floor_level``, ``measure`` (column of ``measures``), ``state`` (name of a
+    limit state) and the columns of :func:`rockfrag.fragility.ida_curves.fragility_table`. A state that IDA curves
+    count has the mean probability over all analyses; rocking starts at an exact peak acceleration, whose value in
+    another measure varies from motion to motion. Fractions are points of the non-parametric fragility function,
+    of those that are rejected: see :func:`rockfrag.fragility.drawn_curves.fraction_points`.
     """
     from rockfrag.fragility import fragility_of, fragility_row, with_measures
     from rockfrag.fragility.drawn_curves import fraction_points
-    from rockfrag.fragility.states import fit_uplift
+    from rockfrag.fragility.estimators import fit_uplift
 
     floor_labels = {measure.label: measure.floor_label for measure in intensity_measures()}
     fractions = []

@@ -131,32 +131,16 @@ def ida_table(
     threads: int = 1,
     vertical: Sequence[Motion] | None = None,
 ) -> pa.Table:
-    """Shake one configuration by every motion, scaled to every amplitude.
+    """Shake one configuration by every motion, scaled to every peak [g], with the vertical one beside it.
 
-    Parameters
-    ----------
-    configuration
-        What stands on the table.
-    motions
-        Motions of the table; each is scaled so that its peak is the amplitude.
-    amplitudes_g
-        Peaks of the motion [g].
-    threads
-        Threads to use; the result does not depend on it.
-    vertical
-        Vertical motion beside each motion, which is scaled with it; None shakes horizontally alone.
-
-    Returns
-    -------
-    One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``),
-    ``motion``, ``earthquake``, ``floor``, ``amplitude_g``, a column for each limit state that is counted
-    (``overturned``, with friction ``slides``), ``overturned_body``,
-    ``overturning_time_s`` and ``certain_time_s`` (instant of the fall, and from which it was certain),
-    ``impacts``, ``unstable_distance`` (small where the outcome nearly flipped), ``peak_rotation_body_1`` and on
-    (|θ| of each body from below over its critical angle); with vertical motion and without friction also
-    ``minimum_gravity_ratio``; with friction also ``peak_slip_m`` (of any contact), ``slip_contact_1_m`` and on (at
-    the end), ``peak_slip_contact_1_m`` and on, ``flights`` and ``overturned_without_sliding``, the outcome if
-    nothing could slide or fly.
+    One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``), ``motion``,
+    ``earthquake``, ``floor``, ``amplitude_g``, a column for each limit state that is counted (``overturned``,
+    with friction ``slides``), ``overturned_body``, ``overturning_time_s`` and ``certain_time_s`` (instant of the
+    fall, and from which it was certain), ``impacts``, ``unstable_distance`` (small where the outcome nearly
+    flipped), ``peak_rotation_body_1`` and on (|θ| of each body from below over its critical angle); with vertical
+    motion and without friction also ``minimum_gravity_ratio``; with friction also ``peak_slip_m`` (of any
+    contact), ``slip_contact_1_m`` and on (at the end), ``peak_slip_contact_1_m`` and on, ``flights`` and
+    ``overturned_without_sliding``, the outcome if nothing could slide or fly.
     """
     from rockfrag.motions.scaling import factors_to_pga
 
@@ -233,21 +217,8 @@ def as_recorded(
     threads: int = 1,
     vertical: Sequence[Motion] | None = None,
 ) -> pd.DataFrame:
-    """Shake one configuration by every motion as it was recorded.
+    """Shake one configuration by every motion as it was recorded, with the vertical motion beside it, if any.
 
-    Parameters
-    ----------
-    configuration
-        What stands on the table.
-    motions
-        Motions of the table.
-    threads
-        Threads to use; the result does not depend on it.
-    vertical
-        Vertical motion beside each motion, which is scaled with it; None shakes horizontally alone.
-
-    Returns
-    -------
     One row per motion: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``), ``motion``, ``earthquake``,
     ``floor``, ``pga_g``, ``rocked`` (any body), ``overturned``, ``overturned_body``, ``peak_rotation`` (of the
     object on what it stands on, |θ| over the critical angle), ``fraction_near`` (fraction that overturns of the

@@ -31,28 +31,15 @@ class Job(Generic[S]):
 
     Results are named by their path in the study's folder without an ending: ``tests`` is a table
     (``tests.csv`` and ``tests.parquet``), ``motions/ground`` a set of motions (``motions/ground.parquet``).
-
-    Attributes
-    ----------
-    study
-        The study.
-    folder
-        Folder of the study's results.
-    threads
-        Threads to use; no result depends on their number.
-    log
-        Log of the job; its last line says what was found.
-    part
-        Number of the part of the motions that the job is for, where parts have jobs of their own.
-    inputs, outputs
-        Paths that its rule declares, as the rule writes them; None where there is no rule.
     """
 
-    study: S
-    folder: Path
-    threads: int
-    log: logging.Logger
+    study: S  # The study
+    folder: Path  # Folder of the study's results
+    threads: int  # Threads to use; no result depends on their number
+    log: logging.Logger  # Log of the job; its last line says what was found
+    # Number of the part of the motions that the job is for, where parts have jobs of their own
     part: int = 0
+    # Paths that its rule declares, as the rule writes them; None where there is no rule
     inputs: frozenset[Path] | None = None
     outputs: frozenset[Path] | None = None
 
@@ -67,12 +54,9 @@ class Job(Generic[S]):
         return read_motion_set(self.file(f"{name}.parquet"), part)
 
     def file(self, path: str) -> Path:
-        """Return the whole path of another stage's file.
+        """Return the whole path of another stage's file, which the rule must declare as an input.
 
-        Raises
-        ------
-        ValueError
-            If the rule does not declare it as an input: Snakemake would not know when to compute it again.
+        Otherwise Snakemake would not know when to compute it again: a ValueError.
         """
         whole = self.folder / path
         if self.inputs is not None and whole not in self.inputs:
@@ -80,13 +64,7 @@ class Job(Generic[S]):
         return whole
 
     def write(self, name: str, result: "pd.DataFrame | list[Motion]") -> None:
-        """Write a result: a table as CSV and as Parquet, motions as Parquet.
-
-        Raises
-        ------
-        ValueError
-            If the rule does not declare it as an output.
-        """
+        """Write a result that the rule declares: a table as CSV and as Parquet, motions as Parquet."""
         paths = [self.folder / f"{name}.parquet"]
         if isinstance(result, pd.DataFrame):
             paths.insert(0, self.folder / f"{name}.csv")

@@ -22,15 +22,8 @@ _TOOK = re.compile(r"took ([0-9.]+) s, ([0-9.]+) s of processors, (\d+|nan) MiB"
 def logged(path: str, name: str) -> Iterator[logging.Logger]:
     """Log what happens inside the block; an error ends the process with one sentence.
 
-    The screen gets that sentence and the path of the log, the log a traceback as well where the error
-    is not one of the user's input.
-
-    Parameters
-    ----------
-    path
-        The log file, overwritten.
-    name
-        Name of the job.
+    The screen gets that sentence and the path of the log, the log a traceback as well where the error is not one
+    of the user's input.
     """
     log = logging.getLogger("rockfrag")
     start = time.monotonic()

@@ -22,15 +22,7 @@ GIVEN = ("mean_period_s", "d5_95_s")
 
 
 def best_of(choice: pd.DataFrame, asked: Sequence[str]) -> list[str]:
-    """Names of the best measures of all configurations among those that a study asks for.
-
-    Parameters
-    ----------
-    choice
-        As :func:`measure_selection` returns it.
-    asked
-        Columns of the measures in which the study wants its curves.
-    """
+    """Names of the best measures of all configurations among those that a study asks for."""
     known = choice[choice["measure"].isin(list(asked)) & choice["score"].notna()]
     return list(dict.fromkeys(known.drop_duplicates("configuration")["im"]))
 
@@ -40,17 +32,6 @@ def measure_selection(
 ) -> pd.DataFrame:
     """Compare measures for every configuration.
 
-    Parameters
-    ----------
-    ida_curves
-        IDA curves of each configuration, which know the candidates.
-    measures
-        Intensity measures of the motions as recorded.
-    level, seed
-        Of the limits and of the bootstrap.
-
-    Returns
-    -------
     One row per configuration and measure, best first: the columns of
     :class:`rockfrag.fragility.measure_selection.MeasureSelection`, ``recommended`` (True for one row each) and
     ``words``, the recommendation with its reasons.

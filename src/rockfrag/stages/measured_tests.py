@@ -40,25 +40,10 @@ def measured_tables(
     seed: int,
     level: float,
 ) -> dict[str, pd.DataFrame]:
-    """Fit fragility and the pedestal's effect to measured tests.
+    """Fit fragility and the pedestal's effect to tests as :func:`rockfrag.shaketable.read_measured` returns them.
 
-    Parameters
-    ----------
-    measured
-        Table of tests as :func:`rockfrag.shaketable.read_measured` returns it.
-    simulated
-        Tests of one definition of the simulation.
-    slenderness
-        Height over width of each object [-].
-    seed
-        Seed of the bootstrap.
-    level
-        Of the limits of the curves.
-
-    Returns
-    -------
-    The tables by their names; what the tests cannot carry is empty, with the reason
-    in ``measured/notes``.
+    Returns the tables by their names; what the tests cannot carry is empty, with the reason in
+    ``measured/notes``.
     """
     notes: list[str] = []
     effects = pd.DataFrame(columns=["definition", "scope"])
@@ -83,10 +68,8 @@ def measured_tables(
 def beside(measured: pd.DataFrame, simulated: pd.DataFrame) -> pd.DataFrame:
     """Put each measured test beside its simulated counterpart.
 
-    Returns
-    -------
-    The measured tests with ``simulated_g``, the simulated amplitude (NaN without a counterpart or
-    where it is censored), and ``ratio``, measured over simulated amplitude.
+    Adds ``simulated_g``, the simulated amplitude (NaN without a counterpart or where it is censored), and
+    ``ratio``, measured over simulated amplitude.
     """
     known = simulated.drop_duplicates(list(_KEY)).set_index(list(_KEY))["amplitude_g"]
     keys = measured[list(_KEY)].itertuples(index=False, name=None)

@@ -33,15 +33,7 @@ _LOG = logging.getLogger(__name__)
 def blind_of(
     study: CampaignStudy, campaign: Campaign, motions: Sequence[Motion], threads: int | None = None
 ) -> dict[str, BlindAnswer]:
-    """Blind answers of a campaign, by measure, that in which outcomes scatter least first.
-
-    Parameters
-    ----------
-    study, campaign, motions
-        The study, its tests and the motion of each.
-    threads
-        Threads to use; all cores if None.
-    """
+    """Blind answers of a campaign, by measure, that in which outcomes scatter least first."""
     if "pedestal" in study.object:
         raise InputError(
             f"{study.source}: key object.pedestal: the model error is of an object alone; give a campaign without."

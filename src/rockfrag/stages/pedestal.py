@@ -36,19 +36,8 @@ def pedestal_tables(
 ) -> dict[str, pd.DataFrame]:
     """Estimate the pedestal's effect once per reading of the tests.
 
-    Parameters
-    ----------
-    tests
-        Table of tests with the column ``definition``.
-    seed
-        Seed of the bootstrap.
-    slenderness
-        Height over width of each object [-].
-
-    Returns
-    -------
-    The tables named in ``PEDESTAL_TABLES``, see :class:`rockfrag.pedestal.PedestalStudy`, each with
-    the column ``definition`` first.
+    Returns the tables named in ``PEDESTAL_TABLES``, see :class:`rockfrag.pedestal.PedestalStudy`, each with the
+    column ``definition`` first.
     """
     from rockfrag.pedestal import study_pedestal
 

@@ -14,11 +14,6 @@ def check_memory() -> None:
     """Refuse a limit of memory (``ulimit -v``) under which no process of a run could work.
 
     Libraries of linear algebra wait for ever where they are refused memory while they are loaded.
-
-    Raises
-    ------
-    InputError
-        If processes may reserve less than :data:`LEAST_MEMORY`.
     """
     if os.name != "posix":
         return
@@ -33,18 +28,7 @@ def check_memory() -> None:
 
 
 def check_folders(*folders: Path) -> None:
-    """See that all can be written where there is something already.
-
-    Parameters
-    ----------
-    folders
-        Of a study's results, and of what is noted of its runs; they need not be there.
-
-    Raises
-    ------
-    PermissionError
-        If one of them, or a folder in it, may not be written.
-    """
+    """See that all can be written where there is something already; the folders need not be there."""
     for top in folders:
         for folder in [top, *(path for path in top.rglob("*") if path.is_dir())]:
             if folder.is_dir() and not os.access(folder, os.W_OK | os.X_OK):

@@ -27,16 +27,9 @@ MOST_LEVELS = 200
 
 
 def rows_of(parts: Iterable[Swept]) -> pd.DataFrame:
-    """Put outcomes of IDA curves into a table with a row a test.
+    """Put outcomes of IDA curves of one configuration into a table with a row a test.
 
-    Parameters
-    ----------
-    parts
-        IDA curves of one configuration.
-
-    Returns
-    -------
-    Columns ``earthquake``, ``floor``, ``motion``, ``amplitude_g`` and ``overturned`` (0 or 1).
+    Columns: ``earthquake``, ``floor``, ``motion``, ``amplitude_g`` and ``overturned`` (0 or 1).
     """
     tables = []
     for part in parts:

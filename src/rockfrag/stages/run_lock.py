@@ -17,15 +17,7 @@ LOCK = ".run"
 def run_lock(results: Path) -> Iterator[None]:
     """Be the only run of a study while the block lasts; half-written files of a killed one are removed.
 
-    Parameters
-    ----------
-    results
-        Folder of the study's results.
-
-    Raises
-    ------
-    InputError
-        If the study is running already; says in which process and since when.
+    A study that is running already is refused; the message says in which process and since when.
     """
     file = results / LOCK
     with locked(file) as free:

@@ -26,24 +26,7 @@ RUN = "ROCKFRAG_RUN"
 
 
 def prepared(content: Mapping[str, Any], path: str | os.PathLike[str]) -> tuple[AnyStudy, Path]:
-    """Make all checks that come before the first job.
-
-    Parameters
-    ----------
-    content
-        The configuration as read.
-    path
-        The file it was read from.
-
-    Returns
-    -------
-    The study, and the folder of its results.
-
-    Raises
-    ------
-    InputError
-        One sentence about the first thing that is wrong.
-    """
+    """Make all checks that come before the first job; return the study, and the folder of its results."""
     study = any_study(content, path)
     folder = results_folder(study)
     if isinstance(study, Study) and not (folder / "motions" / "records.parquet").exists():
@@ -52,13 +35,7 @@ def prepared(content: Mapping[str, Any], path: str | os.PathLike[str]) -> tuple[
 
 
 def results_folder(study: AnyStudy) -> Path:
-    """Folder of a study's results.
-
-    Raises
-    ------
-    InputError
-        If the results of another configuration are there.
-    """
+    """Folder of a study's results; refuse one that holds those of another configuration."""
     folder = RESULTS / study.name
     owner = folder / OWNER
     if owner.is_file():
@@ -82,24 +59,10 @@ def run_job(
     threads: int,
     log_file: str,
 ) -> None:
-    """Run a stage of a study, as a job of the workflow does, and write what it yields.
+    """Run a stage of a study (``module:function``), as a job of the workflow does, and write what it yields.
 
-    Parameters
-    ----------
-    stage
-        The function that computes the results: its module, a colon and its name.
-    config
-        The configuration as read.
-    study_file
-        The file it was read from.
-    inputs, outputs
-        Paths that the rule declares.
-    part
-        Number of the part of the motions, see :class:`rockfrag.stages.job.Job`.
-    threads
-        Threads that it may use.
-    log_file
-        Path of its log, whose stem names the job.
+    Inputs and outputs are the paths that the rule declares; the stem of the log names the job. For ``part`` see
+    :class:`rockfrag.stages.job.Job`.
     """
     end_with_run()
     module, _, function = stage.partition(":")

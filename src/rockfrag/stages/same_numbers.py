@@ -23,17 +23,7 @@ _C_LIBRARY = "glibc.cpu.hwcaps=" + ",".join(
 
 
 def same_numbers(environment: Mapping[str, str]) -> dict[str, str]:
-    """Environment of a process whose numbers depend on architecture and versions of libraries alone.
-
-    Parameters
-    ----------
-    environment
-        The environment as it is.
-
-    Returns
-    -------
-    Variables to be set, before Python starts.
-    """
+    """Variables, set before Python starts, by which numbers depend on architecture and libraries alone."""
     simd = np.show_config(mode="dicts")["SIMD Extensions"]
     chosen = {
         "NPY_ENABLE_CPU_FEATURES": "",

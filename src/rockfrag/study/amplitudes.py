@@ -11,19 +11,12 @@ from rockfrag.errors import InputError
 
 @dataclass(frozen=True)
 class Amplitudes:
-    """Peaks of the input motion from the lowest to the highest in steps of equal ratio.
+    """Peaks of the input motion from the lowest to the highest in steps of equal ratio."""
 
-    Attributes
-    ----------
-    lowest_g, highest_g
-        First amplitude and the one not to be exceeded [g].
-    step_percent
-        Step from one to the next [%].
-    """
-
+    # First amplitude and the one not to be exceeded [g]
     lowest_g: float
     highest_g: float
-    step_percent: float
+    step_percent: float  # Step from one to the next [%]
 
     def __post_init__(self) -> None:
         if self.highest_g <= self.lowest_g:

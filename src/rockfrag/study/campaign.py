@@ -9,6 +9,7 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.schema import checked
+from rockfrag.study.heading import Heading, heading_of
 from rockfrag.study.steps import Steps, checked_steps
 
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
@@ -28,62 +29,43 @@ class PublicFile:
 
 
 @dataclass(frozen=True)
-class CampaignStudy:
-    """Everything that the configuration of a campaign says, checked.
+class CampaignStudy(Heading):
+    """Everything that the configuration of a campaign says, checked."""
 
-    Attributes
-    ----------
-    name, title, seed
-        Folder under ``results/``, heading of the report, seed of every random number.
-    source
-        The configuration file.
-    fetch
-        Public files that are fetched if they are not there.
-    tests, columns, other_codes
-        Table of tests, its columns, and a table of other programs' outcomes or None.
-    motions, unit, dt_s, channel
-        Where the table's motions are, and what their files do not state.
-    pulse_cycles
-        Cycles of the cosine that the table was told to make, where ``motions`` is empty because PGA and PGV/PGA of
-        each test tell its motion; 0 for measured motions.
-    leave_out
-        Whether tests without a motion are left out; otherwise they are refused.
-    measures
-        For each intensity measure the columns and numbers whose product it is; empty to measure the motions.
-    object
-        Either ``mesh`` with its mass or density, or the planar block by hand, on those of ``pedestal`` if any.
-    conditioning, varied_conditioning
-        Steps that each motion goes through, and other lists of steps by name that are tried beside.
-    unknowns
-        Range of each thing that nobody measured.
-    trials, folds, repeats, confidence
-        Number of guesses, folds and divisions into folds, and the level of the intervals.
-    """
-
-    name: str
-    title: str
-    seed: int
-    source: Path
-    fetch: tuple[PublicFile, ...]
+    fetch: tuple[PublicFile, ...]  # Public files that are fetched if they are not there
+    # Table of tests, its columns, and a table of other programs' outcomes or None
     tests: Path
     columns: Mapping[str, str]
     other_codes: Path | None
+    # Where the table's motions are, and what their files do not state
     motions: str
+    # Cycles of the cosine that the table was told to make, where ``motions`` is empty because PGA
+    # and PGV/PGA of each test tell its motion; 0 for measured motions
     pulse_cycles: int
     unit: str | None
     dt_s: float | None
     channel: str | None
-    leave_out: bool
+    leave_out: bool  # Whether tests without a motion are left out; otherwise they are refused
+    # For each intensity measure the columns and numbers whose product it is; empty to measure the motions
     measures: Mapping[str, tuple[str | float, ...]]
+    # Either ``mesh`` with its mass or density, or the planar block by hand, on those of
+    # ``pedestal`` if any
     object: Mapping[str, Any]
+    # Steps that each motion goes through, and other lists of steps by name that are tried beside
     conditioning: Steps
     varied_conditioning: Mapping[str, Steps]
-    unknowns: Mapping[str, tuple[float, float]]
+    unknowns: Mapping[str, tuple[float, float]]  # Range of each thing that nobody measured
+    # Number of guesses, folds and divisions into folds, and the level of the intervals
     trials: int
     folds: int
     repeats: int
     confidence: float
     mesh: Path | None = field(default=None)
+
+    @property
+    def division(self) -> dict[str, Any]:
+        """How tests are divided into folds: their number, that of divisions, and the seed."""
+        return {"folds": self.folds, "repeats": self.repeats, "seed": self.seed}
 
     @property
     def summary(self) -> str:
@@ -100,19 +82,8 @@ class CampaignStudy:
         return [str(path) for path in paths if path not in fetched]
 
 
-def is_campaign(content: Mapping[str, Any]) -> bool:
-    """Say whether a configuration is one of a campaign on a shake table."""
-    return CAMPAIGN_KEY in content
-
-
 def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> CampaignStudy:
-    """Make the study of a campaign from a configuration that was read from ``path``.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key, what was expected and what was found.
-    """
+    """Make the study of a campaign from a configuration that was read from ``path``."""
     source = Path(path)
     content = checked(content, "campaign", str(source))
     campaign, thing = content[CAMPAIGN_KEY], content["object"]
@@ -145,10 +116,7 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     other = campaign.get("other_codes")
     mesh = thing.get("mesh")
     return CampaignStudy(
-        name=content["study"],
-        title=content["title"],
-        seed=content["seed"],
-        source=source,
+        **heading_of(content, path),
         fetch=fetch,
         tests=_existing(source, "campaign.tests", _beside(source, campaign["tests"]), fetched),
         columns=dict(campaign["columns"]),

@@ -18,16 +18,9 @@ from rockfrag.tabular import Row, read_rows
 def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
     """Read a table of blocks.
 
-    Columns: ``name``, ``width_m``, ``height_m``, ``mass_kg`` and, where the block is not a uniform
-    rectangle, ``inertia_kg_m2`` (about the centre of gravity), ``cg_height_m`` and ``cg_offset_m``.
-    Any other unit may stand in the name of a column (``width_cm``, ``mass_g``), or beside each number
-    where the name has none.
-
-    Raises
-    ------
-    InputError
-        If the file, a column or a cell is not as expected, a name is given twice, or a block cannot
-        be of any solid.
+    Columns: ``name``, ``width_m``, ``height_m``, ``mass_kg`` and, where the block is not a uniform rectangle,
+    ``inertia_kg_m2`` (about the centre of gravity), ``cg_height_m`` and ``cg_offset_m``. Any other unit may stand
+    in the name of a column (``width_cm``, ``mass_g``), or beside each number where the name has none.
     """
     shape = ("inertia_kg_m2", "cg_height_m", "cg_offset_m")
     needed = ("width_m", "height_m", "mass_kg")
@@ -68,15 +61,9 @@ def _block(row: Row) -> Block:
 def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) -> list[System]:
     """Read which block stands on which; a system has the configuration's name, and its bodies those of the blocks.
 
-    Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none. Several
-    blocks under an object are named from above, ``base|plinth``; they may stand behind the object too,
+    Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none. Several blocks
+    under an object are named from above, ``base|plinth``; they may stand behind the object too,
     ``venus|base|plinth``. Of ``counterpart`` see :func:`read_counterparts`.
-
-    Raises
-    ------
-    InputError
-        If the file or a cell is not as expected, a name is given twice, a block is not known, or
-        the object does not fit on the pedestal.
     """
     found: dict[str, System] = {}
     checked: dict[str, str] = {}
@@ -105,13 +92,7 @@ _COLUMNS = (["name", "object"], ["pedestal", "counterpart"])
 
 
 def read_counterparts(path: str | os.PathLike[str]) -> dict[str, str]:
-    """Read with which arrangement one is compared, by name, where that is not its object alone on the floor.
-
-    Raises
-    ------
-    InputError
-        If the table cannot be read, or a counterpart is no other arrangement of it.
-    """
+    """Read with which arrangement one is compared, by name, where that is not its object alone on the floor."""
     rows = read_rows(path, *_COLUMNS)
     names = {row.cells["name"] for row in rows}
     found = {row.text("name"): row.text("counterpart") for row in rows if row.has("counterpart")}
@@ -140,20 +121,10 @@ def each_alone(blocks: Mapping[str, Block]) -> list[System]:
 
 
 def with_restitution(system: System, measured: Mapping[str, Measured], law: str) -> System:
-    """Return a system whose bodies come off impacts as was measured of each alone.
+    """Return a system whose bodies come off impacts as was measured of each alone, a stack by a law.
 
-    Parameters
-    ----------
-    measured
-        Ratio of angular velocities [-], or two of impacts that end on the right and on the left corner, by block;
-        a block that is not named conserves momentum.
-    law
-        How a stack follows it.
-
-    Raises
-    ------
-    InputError
-        If a block would gain energy.
+    By block ``measured`` has the ratio of angular velocities [-], or two of impacts that end on the right and on
+    the left corner; a block that is not named conserves momentum.
     """
     each = tuple(measured.get(name) for name in system.names)
     if all(value is None for value in each):
@@ -165,16 +136,8 @@ def with_restitution(system: System, measured: Mapping[str, Measured], law: str)
 def with_friction(system: System, content: float | Mapping[str, Any]) -> System:
     """Return a system whose contacts have the friction that a study states.
 
-    Parameters
-    ----------
-    content
-        A coefficient [-] of all contacts, or a mapping with ``ground`` and ``interface``, each a coefficient or
-        a mapping with ``static`` and ``kinetic``; a lone object has the friction of the ground.
-
-    Raises
-    ------
-    InputError
-        If a static coefficient is less than the kinetic one.
+    That is a coefficient [-] of all contacts, or a mapping with ``ground`` and ``interface``, each a coefficient
+    or a mapping with ``static`` and ``kinetic``; a lone object has the friction of the ground.
     """
     each = (
         [content["ground"], content["interface"]] if isinstance(content, Mapping) else [content] * 2

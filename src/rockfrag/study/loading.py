@@ -5,7 +5,7 @@ use. Only what is in the user's records is left to :mod:`rockfrag.study.records`
 """
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
-from rockfrag.study.campaign import CampaignStudy, campaign_from, is_campaign
+from rockfrag.study.campaign import CAMPAIGN_KEY, CampaignStudy, campaign_from
 from rockfrag.study.configurations import (
     each_alone,
     read_configurations,
@@ -29,13 +29,14 @@ from rockfrag.study.configurations import (
     with_friction,
     with_restitution,
 )
+from rockfrag.study.heading import heading_of
 from rockfrag.study.measured_table import (
+    TABLE_KEY,
     MeasuredTable,
-    is_measured_table,
     measured_table_from,
 )
 from rockfrag.study.paths import check_file, existing_file
-from rockfrag.study.space import SpaceStudy, is_space_study, space_study_from
+from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from
@@ -57,41 +58,23 @@ AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 
 
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
-    """Read a configuration of any kind: a simulated study, a measured table, a campaign, bodies in space.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key or row, what was expected and what was found.
-    """
+    """Read a configuration of any kind: a simulated study, a measured table, a campaign, bodies in space."""
     return any_study(read_yaml(path), path)
 
 
 def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnyStudy:
-    """Make a study of any kind of a configuration that was read from ``path``.
-
-    Raises
-    ------
-    InputError
-        As :func:`load_any`.
-    """
-    if is_measured_table(content):
-        return measured_table_from(content, path)
-    if is_campaign(content):
-        return campaign_from(content, path)
-    if is_space_study(content):
-        return space_study_from(content, path)
-    return study_from(content, path)
+    """Make a study of any kind of a configuration that was read from ``path``."""
+    kinds: dict[str, Callable[..., AnyStudy]] = {
+        TABLE_KEY: measured_table_from,
+        CAMPAIGN_KEY: campaign_from,
+        SPACE_KEY: space_study_from,
+    }
+    of_kind = next((make for key, make in kinds.items() if key in content), study_from)
+    return of_kind(content, path)
 
 
 def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
-    """Make a study of a configuration that was read from ``path``, and check what it refers to.
-
-    Raises
-    ------
-    InputError
-        As :func:`load_any`.
-    """
+    """Make a study of a configuration that was read from ``path``, and check what it refers to."""
     source = Path(path)
     content = checked(content, "study", str(source))
     bodies, motions = content["bodies"], content["motions"]
@@ -111,10 +94,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         source, _chosen(source, known, bodies.get("use")), specimens, bodies.get("restitution")
     )
     study = Study(
-        name=content["study"],
-        title=content["title"],
-        seed=content["seed"],
-        source=source,
+        **heading_of(content, path),
         catalogue_file=catalogue_file,
         catalogue=_rows(source, read_catalogue(catalogue_file), motions.get("use")),
         processing=checked_steps(source, "motions.processing", motions.get("processing", ())),

@@ -12,6 +12,7 @@ from rockfrag.errors import InputError
 from rockfrag.records.catalogue import own_records, read_catalogue
 from rockfrag.rocking.space_sweep import Sweep
 from rockfrag.schema import checked
+from rockfrag.study.heading import Heading, heading_of
 from rockfrag.study.paths import existing_file
 
 SPACE_KEY = "space"
@@ -19,37 +20,18 @@ SPACE_KEY = "space"
 
 
 @dataclass(frozen=True)
-class SpaceStudy:
-    """Everything that the configuration of a study in space says, checked.
+class SpaceStudy(Heading):
+    """Everything that the configuration of a study in space says, checked."""
 
-    Attributes
-    ----------
-    name, title, seed
-        Folder under ``results/``, heading of the report, seed of every random number.
-    source
-        The configuration file.
-    every
-        Records of FEMA P-695 that shake the bodies: every one for 1, every second one for 2; None
-        with a catalogue.
-    catalogue_file, catalogue
-        Catalogue of the records, and its rows, each with both components; or None.
-    bases, slenderness, heights_m
-        Bases by name, heights over the narrow side, and heights [m].
-    sweep
-        Levels and directions.
-    """
-
-    name: str
-    title: str
-    seed: int
-    source: Path
+    # Records of FEMA P-695 that shake the bodies: every one for 1, every second one for 2; None with a catalogue
     every: int | None
     catalogue_file: Path | None
-    catalogue: pd.DataFrame | None
+    catalogue: pd.DataFrame | None  # a row for each pair of components
+    # Bases by name, heights over the narrow side, and heights [m]
     bases: tuple[str, ...]
     slenderness: tuple[float, ...]
     heights_m: tuple[float, ...]
-    sweep: Sweep
+    sweep: Sweep  # Levels and directions
 
     @property
     def summary(self) -> str:
@@ -66,19 +48,8 @@ class SpaceStudy:
         return [str(self.catalogue_file), *map(str, own)]
 
 
-def is_space_study(content: Mapping[str, Any]) -> bool:
-    """Say whether a configuration is one of bodies in space."""
-    return SPACE_KEY in content
-
-
 def space_study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> SpaceStudy:
-    """Make a study of bodies in space from a configuration that was read from ``path``.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key, what was expected and what was found.
-    """
+    """Make a study of bodies in space from a configuration that was read from ``path``."""
     content = checked(content, "space", str(path))
     space = content[SPACE_KEY]
     if ("every" in space) == ("catalogue" in space):
@@ -89,10 +60,7 @@ def space_study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -
     if "catalogue" in space:
         catalogue_file = existing_file(Path(path), "space.catalogue", space["catalogue"])
     return SpaceStudy(
-        name=content["study"],
-        title=content["title"],
-        seed=content["seed"],
-        source=Path(path),
+        **heading_of(content, path),
         every=space.get("every"),
         catalogue_file=catalogue_file,
         catalogue=None if catalogue_file is None else _pairs(catalogue_file),

@@ -10,13 +10,7 @@ Steps = tuple[Mapping[str, Any], ...]
 
 
 def checked_steps(source: Path, key: str, steps: Sequence[Mapping[str, Any]]) -> Steps:
-    """Return the steps that a configuration lists under ``key``.
-
-    Raises
-    ------
-    InputError
-        If a step or one of its parameters is not known.
-    """
+    """Return the steps that a configuration lists under ``key``; each step and parameter must be known."""
     if steps:
         # the steps need SciPy and ObsPy, which a study without any need not wait for
         from rockfrag.motions.processing import check_steps

@@ -14,6 +14,7 @@ from rockfrag.plausibility import size_warning
 from rockfrag.records.catalogue import own_records
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.study.amplitudes import Amplitudes
+from rockfrag.study.heading import Heading
 from rockfrag.study.supplementary import Supplementary
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
@@ -44,70 +45,35 @@ class FragilitySettings:
 
 
 @dataclass(frozen=True)
-class Study:
-    """Everything that a study's configuration says, checked; see :mod:`rockfrag.study.loading`.
+class Study(Heading):
+    """Everything that a study's configuration says, checked; see :mod:`rockfrag.study.loading`."""
 
-    Attributes
-    ----------
-    name, title, seed
-        Folder under ``results/``, heading of the report, seed of every random number.
-    source
-        The configuration file.
-    catalogue_file, catalogue
-        Path of the table of motions, and its rows that are used, in order.
-    processing
-        Steps that each record goes through, in order.
-    building_file, building
-        Path of the building whose floors are shaken, and the building; None for ground motions alone.
-    specimens_file, configurations_file, specimens
-        Paths of the tables of bodies, the second None where each block stands alone, and the blocks by
-        name.
-    configurations
-        What is tested, in order: systems whose bodies have the names of their blocks.
-    amplitudes
-        Peaks of the input motion.
-    protocol_step_percent
-        By how much the laboratory raises the amplitude from one run to the next [%].
-    fragility
-        Settings of the fragility curves.
-    keep_going
-        Whether records that cannot be used are left out, and said to be, instead of ending the study.
-    slides
-        Whether friction is limited, so that bodies slide and fly.
-    vertical
-        Whether the vertical components of the records shake too.
-    write_motions
-        Format in which the motions of all floors are written too, or None.
-    more
-        Optional parts: shaker, measured tests.
-    counterparts
-        Name of the configuration with which one is compared, where that is not its object alone on the floor.
-    added
-        Settings of the plugins that it asks for, by name; see :mod:`rockfrag.plugins`.
-    """
-
-    name: str
-    title: str
-    seed: int
-    source: Path
+    # Path of the table of motions, and its rows that are used, in order
     catalogue_file: Path
     catalogue: pd.DataFrame
-    processing: tuple[Mapping[str, Any], ...]
+    processing: tuple[Mapping[str, Any], ...]  # Steps that each record goes through, in order
+    # Path of the building whose floors are shaken, and the building; None for ground motions alone
     building_file: Path | None
     building: ShearBuilding | None
+    # Paths of the tables of bodies, the second None where each block stands alone, and the blocks by name
     specimens_file: Path
     configurations_file: Path | None
     specimens: Mapping[str, Block]
+    # What is tested, in order: systems whose bodies have the names of their blocks
     configurations: tuple[System, ...]
-    amplitudes: Amplitudes
+    amplitudes: Amplitudes  # Peaks of the input motion
+    # By how much the laboratory raises the amplitude from one run to the next [%]
     protocol_step_percent: float
-    fragility: FragilitySettings
+    fragility: FragilitySettings  # Settings of the fragility curves
+    # Whether records that cannot be used are left out, and said to be, instead of ending the study
     keep_going: bool
-    slides: bool
-    vertical: bool
-    write_motions: str | None
-    more: Supplementary
+    slides: bool  # Whether friction is limited, so that bodies slide and fly
+    vertical: bool  # Whether the vertical components of the records shake too
+    write_motions: str | None  # Format in which the motions of all floors are written too, or None
+    more: Supplementary  # Optional parts: shaker, measured tests
+    # Name of the configuration with which one is compared, where that is not its object alone on the floor
     counterparts: Mapping[str, str] = field(default_factory=dict)
+    # Settings of the plugins that it asks for, by name; see :mod:`rockfrag.plugins`
     added: Mapping[str, Any] = field(default_factory=dict)
 
     @property

@@ -12,29 +12,17 @@ from rockfrag.study.paths import existing_file
 
 @dataclass(frozen=True)
 class Supplementary:
-    """Optional parts of a study; each is None where the configuration does not ask for it.
+    """Optional parts of a study; each is None where the configuration does not ask for it."""
 
-    Attributes
-    ----------
-    shaker_file, shaker
-        A shaking table whose limits are read beside the unlimited protocol, and its YAML file.
-    measured_tests
-        CSV file of a laboratory's tests, which go through the same statistics.
-    """
-
+    # A shaking table whose limits are read beside the unlimited protocol, and its YAML file
     shaker_file: Path | None = None
     shaker: Shaker | None = None
+    # CSV file of a laboratory's tests, which go through the same statistics
     measured_tests: Path | None = None
 
 
 def supplementary_from(content: Mapping[str, Any], source: Path) -> Supplementary:
-    """Take the optional parts out of a study's configuration, which has passed its schema.
-
-    Raises
-    ------
-    InputError
-        If a file is absent or wrong.
-    """
+    """Take the optional parts out of a study's configuration, which has passed its schema."""
     shaker_file = _file(source, "shaker", content.get("shaker"))
     return Supplementary(
         shaker_file=shaker_file,

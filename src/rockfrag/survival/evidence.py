@@ -115,24 +115,10 @@ def lognormal_coefficients(theta: float, beta: float) -> tuple[float, float]:
 
 
 def draw_errors(objects: int, shared: float, samples: int, seed: int = 0) -> tuple[Floats, Floats]:
-    """Draw errors of fragilities and positions in ages, evenly spread (Sobol).
+    """Draw errors of fragilities and positions in ages, evenly spread (Sobol; a power of two).
 
-    Parameters
-    ----------
-    objects
-        Number of objects.
-    shared
-        Correlation of their errors, 0 to 1 [-].
-    samples
-        A power of two.
-    seed
-        Of the scrambling.
-
-    Returns
-    -------
-    normal, uniform
-        Standard normal errors, correlated between objects, and independent uniform numbers, each of shape
-        (samples, objects).
+    Returns standard normal errors, correlated between objects as ``shared`` says [-], and independent uniform
+    numbers, each of shape (samples, objects).
     """
     sobol = stats.qmc.Sobol(2 * objects + 1, scramble=True, rng=np.random.default_rng(seed))
     drawn = sobol.random(samples)

@@ -2,36 +2,24 @@
 
 import json
 import os
-import tempfile
 from importlib.metadata import version
 from pathlib import Path
 
 import pandas as pd
 
 from rockfrag.files import file_name, write_table, write_text
-from rockfrag.report.page import Column, render, table_html
+from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import draw
+from rockfrag.report.study_report import page_text
 from rockfrag.survival.answer import DECISION_RATE, LIMITS, RULED_OUT, Constrained
 from rockfrag.survival.figures import curves_figure, weights_figure
 
 
 def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Path:
-    """Write page, JSON and tables of a site into a folder.
+    """Write page, JSON and tables of a site into a folder, and return the path of the page.
 
-    Files: ``<site>.html``, ``<site>.json``, ``<site>-weights.csv`` (``rlz_id``, ``branch_path`` and ``weight``
-    as in OpenQuake's realizations, and the weight before) and ``<site>-curves.csv``.
-
-    Parameters
-    ----------
-    found
-        The reweighted hazard.
-    folder
-        Where to write them; made if absent.
-
-    Returns
-    -------
-    Path of the page.
+    Files: ``<site>.html``, ``<site>.json``, ``<site>-weights.csv`` (``rlz_id``, ``branch_path`` and ``weight`` as
+    in OpenQuake's realizations, and the weight before) and ``<site>-curves.csv``.
     """
     stem = Path(folder) / file_name(found.site.name)
     write_table(weights_table(found), Path(f"{stem}-weights.csv"))
@@ -135,13 +123,7 @@ def _sensitivity_sentence(found: Constrained) -> str:
 
 
 def page_of(found: Constrained) -> str:
-    """Return the page as HTML, which loads nothing from outside.
-
-    Parameters
-    ----------
-    found
-        The reweighted hazard.
-    """
+    """Return the page as HTML, which loads nothing from outside."""
     curves = FigureSpec(
         "curves",
         f"Mean hazard before and after survival. {_level_sentence(found)}",
@@ -156,9 +138,7 @@ def page_of(found: Constrained) -> str:
         lambda: weights_figure(found),
     )
     names = ", ".join(body.name for body in found.site.objects)
-    with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
-        pictures = {spec.name: draw(spec, Path(scratch)) for spec in (curves, weights)}
-    return render(
+    return page_text(
         title=f"What {names} say about the hazard of {found.site.name}",
         lead=f"{len(found.result.branches)} branches of the hazard reweighted by what still stands: {names}.",
         answer=Answer(
@@ -172,7 +152,6 @@ def page_of(found: Constrained) -> str:
             rests_on=LIMITS,
         ),
         sections=[_hazard(found), _branches(found, weights), _objects(found), _hangs_on(found)],
-        pictures=pictures,
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
     )
 

@@ -38,37 +38,20 @@ class VelocityRelation:
 
 @dataclass(frozen=True)
 class ShakingRates:
-    """Points of shaking with the annual rates that they stand for in each branch of the hazard.
+    """Points of shaking with the annual rates that they stand for in each branch of the hazard."""
 
-    Attributes
-    ----------
-    values
-        Value of each measure at each point, in the measure's unit, shape (points,).
-    rates
-        Annual rate of each point [1/year], shape (branches, points).  Their sum over points above a level is
-        how often that level is exceeded.
-    """
-
+    # Value of each measure at each point, in the measure's unit, shape (points,)
     values: Mapping[IntensityMeasure, Floats]
+    # Annual rate of each point [1/year], shape (branches, points).  Their sum over points above a
+    # level is how often that level is exceeded
     rates: Floats
 
 
 def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
-    """Weights with which a function that is linear in ln level is integrated over a hazard curve [1/year].
+    """Weights with which a function linear in ln level is integrated over a hazard curve [1/year], shape (n,).
 
-    ∫ P(x) |dν(x)| from the first level on, where ν is a power law between levels and P stays as it is above the
-    last one, is the sum of P at the levels times these weights.
-
-    Parameters
-    ----------
-    curve
-        The hazard curve.
-    levels
-        Rising levels in the curve's unit, shape (n,), n ≥ 2.
-
-    Returns
-    -------
-    Array of shape (n,).
+    ∫ P(x) |dν(x)| from the first of n ≥ 2 rising levels on, where ν is a power law between levels and P stays as
+    it is above the last one, is the sum of P at the levels times these weights.
     """
     rate = curve.rate(levels)
     fall = -np.diff(np.log(rate))
@@ -89,26 +72,9 @@ def shaking_rates(
 ) -> ShakingRates:
     """Points of shaking at a site in all measures that the objects are sensitive to, the same for all branches.
 
-    Parameters
-    ----------
-    branches
-        Hazard curves of each branch by measure.
-    wanted
-        Measures of the objects' fragilities.
-    velocity
-        PGV that comes with a PGA, where PGV is wanted and the branches have no curve of it, or both are wanted.
-    reach
-        Lowest and highest level between which fragilities change, a range to be covered.
-
-    Returns
-    -------
-    ShakingRates
-        On a grid of levels of the one measure, and for PGA and PGV on nodes of the velocity at each.
-
-    Raises
-    ------
-    InputError
-        If a measure is in no curve and follows from none.
+    ``velocity`` is the PGV that comes with a PGA, where PGV is wanted and the branches have no curve of it, or
+    both are wanted; ``reach`` are the levels between which fragilities change, a range to be covered. The points
+    lie on a grid of levels of the one measure, and for PGA and PGV on nodes of the velocity at each.
     """
     measures = set(branches[0])
     if len(wanted) == 1 and wanted <= measures:
@@ -147,14 +113,7 @@ def _on_grid(curves: Sequence[HazardCurve], reach: tuple[float, float]) -> tuple
 def quantile_weights(values: Floats, weights: Floats, quantiles: Floats) -> Floats:
     """Weighted quantiles along the first axis, the cumulative weight interpolated, shape (quantiles, n).
 
-    Parameters
-    ----------
-    values
-        Shape (branches, n).
-    weights
-        Shape (branches,), of sum 1.
-    quantiles
-        Between 0 and 1, shape (quantiles,).
+    Values have the shape (branches, n), their weights (branches,) and the sum 1.
     """
     order = np.argsort(values, axis=0)
     cumulative = np.cumsum(weights[order], axis=0)

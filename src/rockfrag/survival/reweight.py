@@ -227,17 +227,7 @@ def _expected_topplings(
 def scaled(
     objects: Sequence[StandingObject], capacity: float = 1.0, age: float = 1.0
 ) -> list[StandingObject]:
-    """Objects that withstand a factor more shaking, or have stood a factor longer.
-
-    Parameters
-    ----------
-    objects
-        The objects.
-    capacity
-        Factor on the shaking that they withstand [-].
-    age
-        Factor on their ages and on the time for which they have been fragile [-].
-    """
+    """Objects that withstand a factor more shaking, or have stood and been fragile a factor longer."""
     found = []
     for body in objects:
         c = body.coefficients

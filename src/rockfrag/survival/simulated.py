@@ -23,18 +23,10 @@ SHAKING = ("pga", "pgv", "sa", "hazard", "return_period", "return_period_years",
 
 @dataclass(frozen=True)
 class Simulated:
-    """Fragility of a simulated object.
+    """Fragility of a simulated object."""
 
-    Attributes
-    ----------
-    coefficients
-        Of Φ(c0 + c1 ln x), or of Φ(c0 + c1 ln PGA + c2 ln(PGV/PGA)).
-    sd_ln
-        Standard deviation of the logarithm of what is not known of its median [-].
-    """
-
-    coefficients: tuple[float, ...]
-    sd_ln: float
+    coefficients: tuple[float, ...]  # Of Φ(c0 + c1 ln x), or of Φ(c0 + c1 ln PGA + c2 ln(PGV/PGA))
+    sd_ln: float  # Standard deviation of the logarithm of what is not known of its median [-]
 
 
 def simulate_object(
@@ -45,29 +37,10 @@ def simulate_object(
     *,
     with_velocity: bool,
 ) -> Simulated:
-    """Simulate an object that ``statue.yaml`` could describe.
+    """Simulate an object that ``statue.yaml`` could describe: the path of such a file, or what would stand in it.
 
-    Parameters
-    ----------
-    given
-        Path of such a file, or what would stand in it.
-    folder
-        Folder from which paths are read.
-    measure
-        Intensity measure of its fragility.
-    records
-        Folder of fetched records.
-    with_velocity
-        Whether the velocity of the site is known, so that the fragility is one in PGA and PGV/PGA.
-
-    Returns
-    -------
-    The :class:`Simulated`.
-
-    Raises
-    ------
-    InputError
-        If the object cannot be read, or no motion, or every one, topples it at all levels that were tried.
+    With the velocity of the site known the fragility is one in PGA and PGV/PGA. An object that no motion, or
+    every one, topples at all levels that were tried is refused.
     """
     settings, where = given, "statue"
     if isinstance(given, str):

@@ -165,11 +165,8 @@ def interval_of(outline: Outline, along: tuple[float, float]) -> Interval:
 def checked_tensor(given: object) -> Tensor:
     """Return a tensor of inertia as three rows.
 
-    Raises
-    ------
-    InputError
-        If it is not symmetric, or no body can have it: each principal moment is positive and at most the sum of
-        the other two.
+    It must be symmetric, and each principal moment positive and at most the sum of the other two, as of every
+    body.
     """
     values = real_array("RigidBody: inertia", given, "kg m²")
     if values.shape != (3, 3) or not np.isfinite(values).all():

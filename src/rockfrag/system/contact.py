@@ -77,13 +77,7 @@ class Contact:
 
 
 def checked_friction(name: str, value: object) -> Friction | None:
-    """Return the friction of one contact: of a coefficient, a pair (static, kinetic) or a Friction; None as it is.
-
-    Raises
-    ------
-    InputError
-        If a number is negative or none, or the static coefficient is less than the kinetic one.
-    """
+    """Return the friction of a contact of a coefficient, a pair (static, kinetic), a Friction or None."""
     if value is None:
         return None
     if isinstance(value, np.ndarray) and value.ndim == 0:

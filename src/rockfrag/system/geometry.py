@@ -64,6 +64,23 @@ def turned(x: float, y: float, angle: float) -> tuple[float, float]:
     return x * c + y * s, -x * s + y * c
 
 
+def turned_in_plan(x: float, y: float, sine: float, cosine: float) -> tuple[float, float]:
+    """Turn a vector about the vertical, from x towards y."""
+    return cosine * x - sine * y, sine * x + cosine * y
+
+
+def turned_moments(
+    xx: float, xy: float, yy: float, sine: float, cosine: float
+) -> tuple[float, float, float]:
+    """Turn the part of a tensor in the plan likewise: xx, xy and yy."""
+    aside = 2 * cosine * sine * xy
+    return (
+        cosine * cosine * xx - aside + sine * sine * yy,
+        cosine * sine * (xx - yy) + (cosine * cosine - sine * sine) * xy,
+        sine * sine * xx + aside + cosine * cosine * yy,
+    )
+
+
 # --------------------------------------------------------------------------- one block
 
 

@@ -39,14 +39,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Edges:
-    """Where a body stands in one direction of shaking.
+    """Where a body stands in one direction of shaking."""
 
-    Attributes
-    ----------
-    left, right
-        Horizontal distances of the edges from the centre of gravity, against and along the direction [m].
-    """
-
+    # Horizontal distances of the edges from the centre of gravity, against and along the direction [m]
     left: float
     right: float
 
@@ -273,10 +268,7 @@ def _outward(corners: Array) -> Array:
 def edge_distances(corners: Array) -> Array:
     """Return the distances of a polygon's edges from the origin, negative where that is outside [m], shape (n,).
 
-    Parameters
-    ----------
-    corners
-        Corners of a convex polygon, anticlockwise, shape (n, 2) [m].
+    Corners of a convex polygon are given anticlockwise, shape (n, 2) [m].
     """
     return np.asarray(np.einsum("ni,ni->n", _outward(corners), corners))
 

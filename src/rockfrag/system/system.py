@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
+from rockfrag.elementary import sin_cos
 from rockfrag.errors import InputError
 from rockfrag.input_checks import shown
 from rockfrag.system import geometry
@@ -210,20 +209,8 @@ def uplift_ratios(system: System) -> tuple[float, ...]:
 def each_contact(name: str, given: object, count: int) -> tuple[object, ...]:
     """Return what is given for each contact of a system, from the ground up.
 
-    Parameters
-    ----------
-    name
-        What messages call it.
-    given
-        One value for all contacts; or a mapping with ``ground`` and ``interface``, the latter one value for all
-        contacts above the ground or a list with one for each.
-    count
-        Number of contacts.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown, or the number of values is not that of the contacts.
+    It is one value for all contacts; or a mapping with ``ground`` and ``interface``, the latter one value for all
+    contacts above the ground or a list with one for each.
     """
     if not isinstance(given, dict):
         return (given,) * count
@@ -300,17 +287,17 @@ def turned_about_vertical(system: System, angle_deg: float) -> System:
     if not angle_deg % 360:
         return system
     (body,) = system.bodies
-    angle = math.radians(angle_deg)
-    c, s = math.cos(angle), math.sin(angle)
-    rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    turn = sin_cos(math.radians(angle_deg))
     assert isinstance(body.base, Polygon)
-    base = Polygon(tuple((c * x - s * y, s * x + c * y) for x, y in body.base.vertices))
-    centre = rotation @ np.array(body.centre)
+    (xx, xy, xz), (_, yy, yz), (*_, zz) = body.tensor.tolist()
+    xx, xy, yy = geometry.turned_moments(xx, xy, yy, *turn)
+    xz, yz = geometry.turned_in_plan(xz, yz, *turn)
+    x, y, z = body.centre
     turned = replace(
         body,
-        inertia=rotation @ body.tensor @ rotation.T,
-        centre=(float(centre[0]), float(centre[1]), float(centre[2])),
-        base=base,
+        inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)),
+        centre=(*geometry.turned_in_plan(x, y, *turn), z),
+        base=Polygon(tuple(geometry.turned_in_plan(*at, *turn) for at in body.base.vertices)),
         face=None,
     )
     return replace(system, bodies=(turned,))

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,14 @@ from scipy import special, stats
 
 from rockfrag.assess import mitigations, narrowing, objects, place, risk, sources, words
 from rockfrag.assess.conversion import MOST_LEVELS, OF_DISPLACEMENT, VelocityRelation
-from rockfrag.assess.hazard.curve import DAMAGING, EC8_SLOPE, EC8_SLOPE_SD, FLANKS, HIGHEST
+from rockfrag.assess.hazard.curve import (
+    DAMAGING,
+    EC8_SLOPE,
+    EC8_SLOPE_SD,
+    FLANKS,
+    HIGHEST,
+    HazardCurve,
+)
 from rockfrag.assess.hazard.measure import PGA, PGV
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import (
@@ -21,7 +29,8 @@ from rockfrag.assess.outcomes import (
     LEVELS,
     make_intensity_levels,
 )
-from rockfrag.assess.request import LONGEST_PERIOD, Records
+from rockfrag.assess.place import Place
+from rockfrag.assess.request import LONGEST_PERIOD, Records, Request
 from rockfrag.assess.scale import STEPS
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.modes import find_modes
@@ -58,28 +67,33 @@ def computing() -> str:
     return "\n".join([driver_text("ensemble"), *(script(f"{name}.js") for name in SCRIPTS)])
 
 
-def data_of(motions: MotionSet, *, on_floor: bool = False) -> dict[str, Any]:
+def data_of(motions: MotionSet, request: Request | None = None) -> dict[str, Any]:
     """Return what the page computes with, but for the samples of the motions.
 
     Parameters
     ----------
     motions
         The motions of the ground.
-    on_floor
-        Whether they were recorded on the floor of the object.
+    request
+        Where they were recorded, and the building and hazard that the form does not tell; nothing if None.
     """
+    asked = [] if request is None else [item for item in (request.level, *request.hazard) if item]
+    measures = dict.fromkeys((PGA, PGV, *(item.measure for item in asked)))
+    intervals = sorted({motion.dt for motion in motions.ground})
     names = list(dict.fromkeys(motions.earthquakes))
     return {
         "earthquakes": [names.index(name) for name in motions.earthquakes],
         "motions": motions.words,
         "names": [motion.name for motion in motions.ground],
-        "onFloor": on_floor,
-        "measures": {measure.imt: _measure(motions, measure) for measure in (PGA, PGV)},
+        "measures": {measure.imt: _measure(motions, measure) for measure in measures},
+        "onFloor": request is not None and request.records.on_floor,
+        "quantiles": [] if request is None else _quantiles(request.hazard),
         "measurements": {
             name: measurement.left for name, measurement in narrowing.MEASUREMENTS.items()
         },
         "constants": _constants(),
-        "floors": _floors(sorted({motion.dt for motion in motions.ground})),
+        "floors": _floors(intervals),
+        "own": request and _own(request.place, intervals),
         "steps": [{"name": step.name, "below": _finite(step.below)} for step in STEPS],
         "limits": {"storey": STOREY_HEIGHTS, "period": FIRST_PERIODS},
         "units": {
@@ -123,12 +137,46 @@ def _floors(intervals: Sequence[float]) -> dict[int, Any]:
     """Modes of buildings of which only the storeys are known, as they are and with each property moved."""
     found = {}
     for storeys in range(1, TABLED_STOREYS + 1):
-        usual = place.make_place({"floor": f"1/{storeys}"}, Path())
-        each = {"": usual}
-        for moved in usual.variants():
-            each |= {f"{moved.name}{sign}": at for sign, at in zip("-+", moved.sides, strict=True)}
-        found[storeys] = {name: _modes(at.building, intervals) for name, at in each.items()}
+        found[storeys] = _with_variants(
+            place.make_place({"floor": f"1/{storeys}"}, Path()), intervals
+        )
     return found
+
+
+def _with_variants(at: Place, intervals: Sequence[float]) -> dict[str, Any]:
+    each = {"": at}
+    for moved in at.variants():
+        each |= {f"{moved.name}{sign}": side for sign, side in zip("-+", moved.sides, strict=True)}
+    return {name: _modes(side.building, intervals) for name, side in each.items()}
+
+
+def _own(at: Place, intervals: Sequence[float]) -> dict[str, Any] | None:
+    """A building that was given: its modes, the levels of its floors, and what is said of it."""
+    building = at.building
+    if building is None:
+        return None
+    usual = place.make_place({"floor": f"{building.level(at.floor)}/{building.storeys}"}, Path())
+    if building == usual.building:
+        return None
+    top = replace(building, floors={**building.floors, "": building.storeys})
+    return {
+        "storeys": building.storeys,
+        "levels": dict(building.floors),
+        "modes": _with_variants(replace(at, building=top, floor=""), intervals),
+        "total": sum(building.heights),
+        "period": float(find_modes(building).period[0]),
+        # all of it is given; of one made of what is known of it the floor is called so
+        "whole": at.floor != "floor",
+    }
+
+
+def _quantiles(hazard: Sequence[HazardCurve]) -> list[dict[str, Any]]:
+    """Curves of the hazard's quantiles, by the standard normal score of each."""
+    return [
+        {"z": float(special.ndtri(q)), "levels": each.levels.tolist(), "rates": each.rates.tolist()}
+        for curve in hazard
+        for q, each in curve.quantiles.items()
+    ]
 
 
 def _modes(model: ShearBuilding | None, intervals: Sequence[float]) -> list[dict[str, Any]]:

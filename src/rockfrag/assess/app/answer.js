@@ -64,8 +64,10 @@ const answer = (data) => {
     return found;
   }
 
-  // what is known so far of runs whose outcomes are complete; `outcomes` by the place of the run in the plan
-  function found(request, runs, outcomes, ensemble) {
+  const ESTIMATED = ["fraction", "rocking", "probability", "main", "narrowed", "wide"];
+  // what is known so far of runs whose outcomes are complete; `outcomes` by the place of the run in the plan, `earlier`
+  // what was found when there were fewer
+  function found(request, runs, outcomes, ensemble, earlier) {
     const now = outcomes[0], level = siteLevel(request), hazard = hazardOf(request), { place } = request;
     const exact = request.measure === "PGA" && place.ground;
     const known = (role) => runs.map((run, i) => ({ ...run, outcomes: outcomes[i] })).filter((run) => run.role === role && run.outcomes);
@@ -78,7 +80,8 @@ const answer = (data) => {
     const moved = known("moved"), sides = [];
     for (let i = 0; i + 1 < moved.length; i += 2) sides.push([moved[i].name, moved[i].outcomes, moved[i + 1].outcomes]);
     answer.complete = runs.every((run, i) => run.role !== "moved" || outcomes[i]);
-    if (answer.complete) {
+    if (earlier?.complete) for (const name of ESTIMATED) answer[name] = earlier[name];
+    else if (answer.complete) {
       const shifts = { model: MODEL, space: SPACE }, fit = measures[request.measure].ratios ? shiftOf(now, measures[request.measure].ratios) : null;
       if (fit) shifts.conversion = fit.shift;
       const fraction = judge.estimate(judge.fractionTarget(level), now, sides, {}, shifts);
@@ -92,7 +95,9 @@ const answer = (data) => {
       Object.assign(answer, { main, narrowed: judge.narrowed(main), wide: judge.isWide(fraction) });
     }
     answer.arrangements = [["on_its_pedestal", judge.valueOf(target, now)], ...known("arrangement").map((run) => [run.name, judge.valueOf(target, run.outcomes)])];
-    answer.mitigations = known("mitigation").map((run) => ({ ...run, outcomes: null, ...judge.compared(target, now, run.outcomes) })).sort((a, b) => a.value - b.value);
+    const changes = [...known("mitigation"), ...known("arrangement")].filter(({ change }) => change);
+    answer.mitigations = changes.map(({ change, values, outcomes: with_ }) => ({ name: change, values, ...judge.compared(target, now, with_) }))
+      .sort((a, b) => Number.isNaN(a.factor) - Number.isNaN(b.factor) || (a.factor || 0) - (b.factor || 0) || a.value - b.value);
     return answer;
   }
   function countsOf({ levels, allowed, rocked, overturned }, level) {

@@ -1,7 +1,7 @@
 """The command ``rockfrag app``."""
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,14 +9,15 @@ from rockfrag.assess import commands as assess
 from rockfrag.errors import InputError
 
 if TYPE_CHECKING:
-    from rockfrag.assess.hazard.curve import HazardCurve
+    from rockfrag.assess.request import Request
 
 _OBJECT = {"width": "35 cm", "height": "1.2 m"}
 _SHAKING = {"pga": "0.4 g", "return_period": "475"}
 """What stands in the form where no object, and no shaking, is given."""
 
 _FORM = ("name", "width", "height", "mass", "cg_height", "cg_offset", "restitution", "floor")
-_KEYS = (*_FORM, "pedestal", "building", "pga", "pgv", "return_period", "hazard", "records")
+_LEVELS = ("pga", "pgv", "sa")
+_KEYS = (*_FORM, "pedestal", "building", *_LEVELS, "return_period", "hazard", "records")
 """Keys of ``statue.yaml`` that the page has a field for, or is written with."""
 
 
@@ -50,47 +51,46 @@ def _app(options: argparse.Namespace) -> int:
         raise InputError(
             f"key {beyond[0]}: the page does not compute with it; rockfrag assess does."
         )
-    shaken = given.keys() & {"pga", "pgv", "hazard"}
+    shaken = given.keys() & {*_LEVELS, "hazard"}
     settings = _OBJECT | ({} if shaken else _SHAKING) | given
     folder = Path(options.file).parent if options.file else Path()
     request = make_request(settings, options.file or "rockfrag app", folder)
     motions = motion_set(request.records, Place(), Path(options.records))
-    write_app(
-        motions, _form(settings, request.hazard), options.output, on_floor=request.records.on_floor
-    )
+    write_app(motions, form_of(settings, request), options.output, request=request)
     print(options.output)
     return 0
 
 
-def _form(settings: Mapping[str, Any], hazard: "Sequence[HazardCurve]") -> dict[str, str]:
+def form_of(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
     """What stands in the form at first."""
     form = {key: str(settings[key]) for key in _FORM if key in settings}
     pedestal, building = settings.get("pedestal") or {}, settings.get("building") or {}
     if isinstance(pedestal, list):
         raise InputError("key pedestal: the page has one; rockfrag assess takes several.")
-    if not isinstance(building, Mapping) or not building.keys() <= {
-        "storey_height",
-        "material",
-        "first_period_s",
-    }:
-        raise InputError("key building: the page knows one storey height, a period and a material.")
     form |= {f"pedestal_{key}": str(value) for key, value in pedestal.items()}
-    form |= {key: str(building[key]) for key in ("storey_height", "material") if key in building}
-    if "first_period_s" in building:
-        form["period"] = f"{building['first_period_s']} s"
-    level = "pga" if "pga" in settings else "pgv"
-    if "pga" in settings and "pgv" in settings:
-        raise InputError("key pgv: the page takes one level; rockfrag assess takes both.")
-    form |= {"measure": level.upper(), "level": str(settings.get(level, ""))}
-    if "hazard" in settings:
-        (curve, *others) = hazard
-        if others or curve.quantiles or curve.measure.imt not in ("PGA", "PGV"):
-            raise InputError(
-                "key hazard: the page takes one mean curve, in PGA or PGV; leave the others out."
-            )
-        rows = zip(curve.levels.tolist(), curve.rates.tolist(), strict=True)
-        form |= {
-            "measure": curve.measure.imt,
-            "hazard": "\n".join(f"{x!r} {rate!r}" for x, rate in rows),
-        }
-    return form | {"years": str(settings.get("return_period", ""))}
+    if isinstance(building, Mapping):
+        told = ("storey_height", "material")
+        form |= {key: str(building[key]) for key in told if key in building}
+        if "first_period_s" in building:
+            form["period"] = f"{building['first_period_s']} s"
+    return form | _shaking(settings, request) | {"years": str(settings.get("return_period", ""))}
+
+
+def _shaking(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
+    """The level and the hazard curve as they stand in the form."""
+    given = [key for key in _LEVELS if key in settings]
+    if len(given) > 1:
+        raise InputError(f"key {given[1]}: the page takes one level; rockfrag assess takes both.")
+    level = settings[given[0]] if given else ""
+    form = {
+        "measure": request.level.measure.imt if request.level else "PGA",
+        "level": str(level[1] if given == ["sa"] else level),
+    }
+    if "hazard" not in settings:
+        return form
+    (curve, *others) = request.hazard
+    if others:
+        raise InputError("key hazard: the page takes one measure; leave the others out.")
+    rows = zip(curve.levels.tolist(), curve.rates.tolist(), strict=True)
+    lines = "\n".join(f"{x!r} {rate!r}" for x, rate in rows)
+    return form | {"measure": curve.measure.imt, "hazard": lines}

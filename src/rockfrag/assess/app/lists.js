@@ -21,7 +21,7 @@ const lists_ = (data, fields) => {
   const KEYS = { storey_height: ["building", "storey_height"], material: ["building", "material"], period: ["building", "first_period"],
     pedestal_width: ["pedestal", "width"], pedestal_height: ["pedestal", "height"], pedestal_mass: ["pedestal", "mass"] };
   const LEFT_OUT = ["measure", "level", "years", "hazard", "round"];
-  function yamlOf(form) {
+  function yamlOf(form, say) {
     const plain = fields.filter((name) => !KEYS[name] && !LEFT_OUT.includes(name) && form[name]?.trim?.());
     const value = (name) => (name === "restitution" ? point(form[name]) : JSON.stringify(point(form[name].trim())));
     const lines = plain.map((name) => `${name}: ${value(name)}`);
@@ -30,8 +30,11 @@ const lists_ = (data, fields) => {
       const own = Object.entries(KEYS).filter(([name, [home]]) => home === part && form[name]?.trim() && (part === "pedestal" || form.floor?.trim()));
       if (own.length) lines.push(`${part}:`, ...own.map(([name, [, key]]) => `  ${key}: ${value(name)}`));
     }
-    if (form.level?.trim()) lines.push(`${form.measure === "PGV" ? "pgv" : "pga"}: ${value("level")}`);
+    const period = /^SA\((.*)\)$/.exec(form.measure)?.[1];
+    if (form.level?.trim()) lines.push(period ? `sa: ["${period} s", ${value("level")}]` : `${form.measure === "PGV" ? "pgv" : "pga"}: ${value("level")}`);
     if (form.years?.trim()) lines.push(`return_period: ${JSON.stringify(form.years.trim())}`);
+    if (data.own?.whole && form.floor?.trim()) lines.push(`# ${say("building_beside")}`);
+    if (form.hazard?.trim()) lines.push(`# ${say("hazard_beside")}`);
     return lines.join("\n") + "\n";
   }
   const point = (text) => text.replace(/^(\s*[-+]?\d+),(\d+)/, "$1.$2");
@@ -45,7 +48,9 @@ const lists_ = (data, fields) => {
       if (!line.trim() || /^\s*#/.test(line)) continue;
       const found = /^(\s*)([a-z_]+):\s*(.*)$/.exec(line);
       if (!found) throw new Error(say("file_keys", { key: line.trim().slice(0, 40) }));
-      const [, indent, key, value] = found;
+      const [, indent, key, value] = found, spectral = key === "sa" && /^\["?([\d.]+) *s"?, *"?([^"\]]*)"?\]$/.exec(value);
+      if (spectral) Object.assign(form, { measure: `SA(${spectral[1]})`, level: spectral[2] });
+      if (spectral && data.measures[form.measure]) continue;
       if (!indent) home = value ? "" : key;
       if (!indent && !value) continue;
       const name = indent ? Object.keys(KEYS).find((own) => KEYS[own][0] === home && KEYS[own][1] === key)

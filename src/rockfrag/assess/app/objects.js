@@ -79,8 +79,8 @@ const objects = (data) => {
   }
 
   function shakingOf(form) {
-    const level = form.measure === "PGV" ? quantity("level", form.level, "velocity") : quantity("level", form.level, "acceleration");
-    const measure = form.measure === "PGV" ? "PGV" : "PGA", { highest } = data.measures[measure];
+    const measure = data.measures[form.measure] ? form.measure : "PGA", { highest } = data.measures[measure];
+    const level = quantity("level", form.level, measure === "PGV" ? "velocity" : "acceleration");
     const value = level === null ? null : measure === "PGV" ? level * 100 : level / constants.GRAVITY;
     if (value !== null && !(value > 0 && value <= highest)) refuse("level", "level", { highest, unit: data.measures[measure].unit });
     const years = number("years", form.years, "years", 0, LONGEST_PERIOD), curve = curveOf(form.hazard, measure);
@@ -109,20 +109,31 @@ const objects = (data) => {
       if (!(level > 0 && rate <= 100) || (i && !(level > rows[i - 1][0] && rate < rows[i - 1][1]))) refuse("hazard", "hazard_order", { line: i + 1 });
     });
     if (!(rows.at(-1)[0] <= highest && rows.at(-1)[0] >= damaging)) refuse("hazard", "hazard_unit", { highest, damaging, unit: data.measures[measure].unit });
-    return { levels: rows.map((row) => row[0]), rates: rows.map((row) => row[1]), quantiles: [] };
+    return { levels: rows.map((row) => row[0]), rates: rows.map((row) => row[1]), quantiles: text === data.form?.hazard && measure === data.form.measure ? data.quantiles : [] };
   }
   const poe = (heading) => {
     const years = Number(/poe_?(\d+)/.exec(heading)?.[1] ?? 50);
     return (p) => (p >= 0 && p < 1 ? -Math.log1p(-p) / years : NaN);
   };
 
+  // a floor whose modes stand in the page, as the building is and with each property moved
+  function tabled(known, at) {
+    const floors = Object.fromEntries(at.level === 0 ? [] : Object.entries(known).map(([name, modes]) => [name, { modes, level: at.level }]));
+    return { assumed: "building", ...at, ground: at.level === 0, floors };
+  }
+  const BUILDING = ["storey_height", "material", "period"];
   function placeOf(form) {
     if (data.onFloor || !form.floor?.trim()) {
       return { ground: true, key: "", floors: {}, assumed: data.onFloor ? "" : "on_ground" };
     }
-    const found = /^\s*(\d{1,3})\s*\/\s*(\d{1,3})\s*$/.exec(form.floor);
-    const [level, storeys] = found ? [Number(found[1]), Number(found[2])] : [1, 0];
+    const { own } = data, found = /^\s*(\d{1,3})\s*\/\s*(\d{1,3})\s*$/.exec(form.floor);
+    const label = own?.levels[form.floor.trim()] === undefined ? "" : form.floor.trim();
+    const [level, storeys] = label ? [own.levels[label], own.storeys] : found ? [Number(found[1]), Number(found[2])] : [1, 0];
     if (!(level <= storeys && storeys >= 1 && storeys <= HIGHEST_BUILDING)) refuse("floor", "floor", { most: HIGHEST_BUILDING, text: short(form.floor) });
+    if (own && (own.whole || (storeys === own.storeys && BUILDING.every((name) => (form[name] ?? "") === (data.form[name] ?? (name === "material" ? "masonry" : "")))))) {
+      if (storeys !== own.storeys || level > storeys) refuse("floor", "own_floor", { storeys: own.storeys, labels: Object.keys(own.levels).join(", "), text: short(form.floor) });
+      return tabled(own.modes, { level, storeys, label: found ? "" : label, total: own.total, period: own.period, key: `own ${level}`, assumed: own.whole ? "elastic" : "building" });
+    }
     const each = positive("storey_height", form.storey_height, "length"), given = positive("period", form.period, "time");
     const heights = new Array(storeys).fill(each ?? STOREY_HEIGHT), total = heights.reduce((a, b) => a + b, 0);
     if (!(heights[0] >= data.limits.storey[0] && heights[0] <= data.limits.storey[1])) refuse("storey_height", "storey");
@@ -130,10 +141,7 @@ const objects = (data) => {
     const period = given ?? PERIOD_FACTORS[material] * total ** 0.75;
     if (!(period >= data.limits.period[0] && period <= data.limits.period[1])) refuse("period", "period");
     const known = each === null && given === null && material === "masonry" ? data.floors?.[storeys] : null;
-    if (known && level) {
-      const floors = Object.fromEntries(Object.entries(known).map(([name, modes]) => [name, { modes, level }]));
-      return { ground: false, level, storeys, floors, key: `${level}/${storeys}`, assumed: "building", total, period };
-    }
+    if (known) return tabled(known, { level, storeys, total, period, key: `${level}/${storeys}` });
     const masses = heights.map(() => STOREY_MASS), stiffnesses = building.stiffnessesFor(masses, heights, period);
     const at = { masses, stiffnesses, damping: DAMPING, level };
     const slower = (factor) => ({ ...at, stiffnesses: stiffnesses.map((k) => k / factor ** 2) });
@@ -160,6 +168,8 @@ const objects = (data) => {
       const { centre: [x, y, inertia] } = ensemble.bodyOf({ statue: top, pedestal: below });
       return { width: below.width, height: below.height + top.height, mass: below.mass + top.mass, inertia, cgHeight: y, cgOffset: x };
     };
+    const held = { to_pedestal: () => body(joined(statue, pedestal), null), to_floor: () => body(statue, null) }[pedestal && request.fixed];
+    if (held) return [{ role: "now", body: held() }];
     stands(body(statue), ensemble);
     if (measured !== null && measured > ensemble.bodyOf(body(statue)).largest) refuse("restitution", "gains_energy");
     const runs = [{ role: "now", body: body(statue) }];
@@ -174,10 +184,10 @@ const objects = (data) => {
     for (const floor of Object.keys(place.floors).filter(Boolean))
       runs.push({ role: "moved", name: floor.slice(0, -1), few: true, floor, body: body(statue) });
     if (pedestal) {
-      runs.push({ role: "arrangement", name: "fixed_to_pedestal", body: body(joined(statue, pedestal), null) });
-      runs.push({ role: "arrangement", name: "on_the_floor", body: body(statue, null) });
+      runs.push({ role: "arrangement", name: "fixed_to_pedestal", change: "fix_to_pedestal", values: {}, body: body(joined(statue, pedestal), null) });
+      runs.push({ role: "arrangement", name: "on_the_floor", change: "fix_pedestal", values: {}, body: body(statue, null) });
     }
-    const helps = (name, what, values = {}) => runs.push({ role: "mitigation", name, body: what, values });
+    const helps = (name, what, values = {}) => runs.push({ role: "mitigation", change: name, body: what, values });
     const onPlate = (block) => joined(block, { width: WIDER * block.width, height: PLATE, mass: STEEL * PLATE * (WIDER * block.width) ** 2 });
     const plate = (block) => ({ width: 100 * WIDER * block.width, thick: 100 * PLATE });
     if (!pedestal) helps("plate_it", body(onPlate(statue)), plate(statue));
@@ -190,18 +200,16 @@ const objects = (data) => {
     if (pedestal) {
       const half = { ...pedestal, height: PEDESTAL_HEIGHT * pedestal.height, mass: PEDESTAL_HEIGHT * pedestal.mass };
       helps("lower_pedestal", body(statue, half), { height: 100 * half.height });
-      helps("fix_to_pedestal", body(joined(statue, pedestal), null));
-      helps("fix_pedestal", body(statue, null));
     }
     for (const { body: each } of runs) stands(each, ensemble);
     return runs;
   }
-  // what cannot stand is said in the words of the module, beside the width
+  // what cannot stand is said beside the width
   function stands(body, ensemble) {
     try {
       ensemble.bodyOf(body);
     } catch ({ message }) {
-      refuse("width", message);
+      refuse("width", `fault_${ROCKFRAG_FAULTS.indexOf(message)}`);
     }
   }
   function withBallast(block, part = BALLAST) {

@@ -3,7 +3,11 @@
 "use strict";
 const find = (id) => document.getElementById(id);
 const data = JSON.parse(find("data").textContent);
-const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+function bytesOf(text) {
+  const letters = atob(text), bytes = new Uint8Array(letters.length);
+  for (let i = 0; i < bytes.length; i++) bytes[i] = letters.charCodeAt(i);
+  return bytes;
+}
 const make = (tag, attributes = {}, ...children) => {
   const element = Object.assign(document.createElement(tag), attributes);
   element.append(...children);
@@ -16,16 +20,19 @@ const FIELDS = {
   place: ["floor", "storey_height", "material", "period"],
   shaking: ["measure", "level", "years", "hazard"],
 };
+if (data.own?.whole) FIELDS.place = ["floor"];
 const CLOSED = ["more", "pedestal", "place"]; // groups that open where they are wanted
-const OPTIONS = { measure: ["PGA", "PGV"], material: ["masonry", "concrete", "steel"] };
+const OPTIONS = { measure: Object.keys(data.measures), material: ["masonry", "concrete", "steel"] };
 const ALL = Object.values(FIELDS).flat();
 const PART = 25; // motions of a task
+// why a body cannot stand, in the words of the module
+const FAULTS = Object.fromEntries(ROCKFRAG_FAULTS.map((text, i) => [`fault_${i}`, text]));
 let texts = data.texts.en, say = null, linesOf = null;
 
 // ---- texts
 
 function choose(language) {
-  texts = { ...data.texts.en, ...data.texts[language] };
+  texts = { ...FAULTS, ...data.texts.en, ...data.texts[language] };
   document.documentElement.lang = language;
   linesOf = words(data, texts);
   say = (id, values = {}) => (texts[id] ?? id).replace(/\{(\w+)\}/g, (whole, name) => String(values[name] ?? whole));
@@ -44,7 +51,7 @@ function drawForm() {
   const old = formTexts();
   form.replaceChildren();
   for (const [group, names] of Object.entries(FIELDS)) {
-    const title = say(group === "shaking" ? "measure" : group), boxes = names.map((name) => field(name, old));
+    const title = say(group), boxes = names.map((name) => field(name, old));
     const given = names.some((name) => inputs[name].checked || (inputs[name].type === "text" && inputs[name].value));
     form.append(CLOSED.includes(group) ? make("details", { open: given }, make("summary", { textContent: title }), ...boxes)
       : make("fieldset", {}, make("legend", { textContent: title }), ...boxes));
@@ -132,7 +139,7 @@ function ask(of, message, first = false) {
 }
 // ---- a request, from its plan to its answer
 
-let timer = 0;
+let timer = 0, settle = () => {}; // told whether an answer is complete or refused
 function later() {
   clearTimeout(timer);
   timer = setTimeout(update, 120);
@@ -146,33 +153,43 @@ function update() {
     current = other = null;
     complain(error);
     find("answer").classList.add("stale");
-    return;
+    return settle(false);
   }
   complain(null);
   find("blocked").hidden = true;
   current = { id: ++number, request, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
   document.body.dataset.stage = "";
   other = null;
-  compute(current, (told) => { show(told); if (told.last) slide(); });
+  compute(current, (told) => {
+    show(told);
+    if (!told.last) return;
+    slide();
+    settle(true);
+  });
 }
 async function compute(run, told, only = Infinity) {
   const { id, request } = run, count = data.earthquakes.length;
   const plan = await ask(run, { kind: "plan", id, request });
-  if (plan.refusal) return complain({ field: plan.refusal.field, id: plan.refusal.text, values: plan.refusal.values });
+  if (plan.refusal) {
+    complain({ field: plan.refusal.field, id: plan.refusal.text, values: plan.refusal.values });
+    find("answer").classList.add("stale");
+    return run === current && settle(false);
+  }
   if (plan.failure) return refused(plan.failure);
   const roles = plan.told.roles.slice(0, only), parts = roles.map(() => []);
   const starts = Array.from({ length: Math.ceil(count / PART) }, (_, i) => i * PART);
   const needed = (role) => roles.map(({ role: own }, i) => (own === role ? i : -1)).filter((i) => i >= 0);
   const moments = [[0], [...needed("now"), ...needed("moved")], roles.map((_, i) => i)].slice(0, only === 1 ? 1 : 3);
-  let done = 0, latest = 0;
+  let done = 0, latest = 0, earlier = null;
   const ready = (i) => parts[i].length === starts.length;
   const answerNow = async () => {
     const stage = moments.findLastIndex((all) => all.every(ready));
     if (stage < latest) return;
     latest = stage + 1;
-    const message = { kind: "answer", id, request, parts: parts.map((each, i) => (ready(i) && moments[stage].includes(i) ? each : null)) };
+    const message = { kind: "answer", id, request, earlier, parts: parts.map((each, i) => (ready(i) && moments[stage].includes(i) ? each : null)) };
     const found = await ask(run, message, true);
     if (found.failure) return refused(found.failure);
+    earlier = found.told;
     if (stage + 1 < latest) return; // a later one was asked for since, and may have come first
     told({ run, found: found.told, last: stage === moments.length - 1 });
   };
@@ -187,10 +204,11 @@ async function compute(run, told, only = Infinity) {
     });
   }));
 }
-// what a body says of itself in the words of the module is said beside the width
-function refused(words) {
-  find("field-width-error").textContent = words;
+function refused(why) {
+  find("blocked").textContent = say("failed", { why });
+  find("blocked").hidden = false;
   find("answer").classList.add("stale");
+  settle(false);
 }
 function progress(done, all) {
   find("progress").max = all;
@@ -206,16 +224,26 @@ function show(told) {
   const { run: { request, since }, found } = told, said = linesOf(request, found);
   find("answer").classList.remove("stale");
   find("headline").textContent = said.headline;
-  const lines = [["Result", said.result], ["Risk", said.risk], ["Position", said.position], ["What helps", told.last ? said.helps : ""], ["How sure", said.sure]];
-  find("lines").replaceChildren(...lines.filter(([, text]) => text).flatMap(([id, text]) =>
-    [make("dt", { textContent: say(id) }), make("dd", { textContent: text })]));
-  const form = formTexts(), typed = ALL.filter((name) => form[name] && name !== "hazard" && !OPTIONS[name] && name !== "round");
-  find("sizes").textContent = typed.map((name) => `${say(name)}: ${form[name]}`).join("; ") + ".";
+  find("lines").replaceChildren(...linesAs(said, told.last));
   find("note").hidden = !request.place.computed;
   find("note").textContent = say("computed_floor");
   document.body.dataset.stage = told.last ? "complete" : found.complete ? "interval" : "first";
   document.body.dataset[document.body.dataset.stage] = String(performance.now() - since);
-  if (scene.of !== told.run) draw(told);
+  find("keep").disabled = !told.last;
+  document.dispatchEvent(new CustomEvent("answer", { detail: { found, last: told.last } }));
+  if (scene.of !== told.run) scene.drawn = draw(told);
+}
+function linesAs(said, helps = true) {
+  const lines = [["Result", said.result], ["Risk", said.risk], ["Position", said.position], ["What helps", helps ? said.helps : ""], ["How sure", said.sure]];
+  return lines.filter(([, text]) => text).flatMap(([id, text]) => [make("dt", { textContent: say(id) }), make("dd", { textContent: text })]);
+}
+// what was typed, in a line
+function typedIn(form) {
+  const plain = ALL.filter((name) => form[name] && !["measure", "material", "hazard", "level"].includes(name));
+  const told = plain.map((name) => (form[name] === true ? say(name) : `${say(name)}: ${form[name]}`));
+  if (form.level) told.push(`${form.measure}: ${form.level}`);
+  if (form.hazard) told.push(say("curve_of", { measure: form.measure, count: form.hazard.trim().split("\n").length }));
+  return told.join("; ") + ".";
 }
 
 // ---- what helps: sliders, before and after
@@ -230,17 +258,21 @@ function drawSliders() {
     tell();
     return make("div", { className: "field" }, make("label", { htmlFor: input.id }, say(`slide_${id}`), told), input);
   }));
+  const choice = make("select", { id: "slide-fixed" }, ...["not_fixed", "to_pedestal", "to_floor"].map((id) => make("option", { value: id, textContent: say(id) })));
+  choice.addEventListener("input", slide);
+  find("sliders").append(make("div", { className: "field" }, make("label", { htmlFor: choice.id }, say("slide_fixed")), choice));
 }
 function slide() {
   if (!shown || shown.run !== current) return;
   const [width, cg, ballast] = Object.values(SLIDERS).map(([, , at]) => at / 100), before = shown.found;
-  if (!(width || cg || ballast)) return compare(before, null);
+  const choice = find("slide-fixed"), fixed = shown.run.request.pedestal ? choice.value : "not_fixed";
+  choice.closest("div").hidden = !shown.run.request.pedestal;
+  if (!(width || cg || ballast || fixed !== "not_fixed")) return compare(before, null);
   const { request } = current, statue = bodies.changed(request.statue, { wider: 1 + width, lower: 1 - cg, ballast });
-  other = { id: ++number, request: { ...request, statue } };
+  other = { id: ++number, request: { ...request, statue, fixed } };
   compute(other, ({ found }) => compare(before, found), 1);
 }
 function compare(before, after) {
-  const percent = (value) => (value === null ? "–" : new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 2 }).format(100 * value) + " %");
   const rows = [["topples_column", "value"], ["risk_column", "probabilityValue"]];
   find("compared").replaceChildren(...rows.map(([title, key]) => make("tr", {}, make("th", { scope: "row", textContent: say(title) }),
     make("td", { className: "number", textContent: percent(before[key]) }), make("td", { className: "number", textContent: after ? percent(after[key]) : "–" }))));
@@ -273,10 +305,10 @@ async function draw(told) {
   paint();
 }
 const unpacked = async (text) => new Uint8Array(await new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
-function paint() {
-  const { response, statue, pedestal, at } = scene, canvas = find("scene"), context = canvas.getContext("2d");
+function paint(what = scene, canvas = find("scene")) {
+  const { response, statue, pedestal, at } = what, context = canvas.getContext("2d");
   if (!response) return;
-  const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  const style = getComputedStyle(canvas), colour = (name) => style.getPropertyValue(`--${name}`).trim();
   const below = pedestal?.height ?? 0, tall = below + statue.height, zoom = Math.min(230 / tall, 320 / Math.max(tall, statue.width));
   context.clearRect(0, 0, 600, 300);
   context.fillStyle = colour("rule");
@@ -321,29 +353,48 @@ function play() {
 // ---- objects that are kept
 
 const kept = [];
+const percent = (value) => (value === null ? "–" : new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 2 }).format(100 * value) + " %");
 function drawKept() {
   const button = (id, action) => {
-    const made = make("button", { type: "button", textContent: say(id) });
+    const made = make("button", { type: "button", id, textContent: say(id) });
     made.addEventListener("click", action);
     return made;
   };
   const file = make("input", { type: "file", accept: ".csv,.yaml,.yml", id: "file", hidden: true });
   file.addEventListener("change", () => openFile(file));
-  find("tools").replaceChildren(button("keep", keep), button("save_csv", saveCsv), button("save_yaml", () => save("statue.yaml", lists.yamlOf(formTexts()))),
-    button("open", () => file.click()), button("print", () => print()), file);
-  find("columns").replaceChildren(...["rank", "name", "topples_column", "risk_column", "Result"].map((id) => make("th", { scope: "col", textContent: say(id) })), make("td", { className: "screen" }));
+  const keepOne = button("keep", keep);
+  keepOne.disabled = document.body.dataset.stage !== "complete";
+  find("tools").replaceChildren(keepOne, button("save_csv", saveCsv), button("save_yaml", () => save("statue.yaml", lists.yamlOf(formTexts(), say))),
+    button("open", () => file.click()), button(kept.length ? "print_all" : "print", () => print()), file);
+  find("columns").replaceChildren(...headings(), make("td"));
   const risk = ({ told: { found } }) => found.probabilityValue ?? found.value;
   kept.sort((a, b) => risk(b) - risk(a));
   find("objects").replaceChildren(...kept.map((item, i) => {
-    const { run: { request }, found } = item.told, said = linesOf(request, found), percent = (v) => (v === null ? "–" : `${Number((100 * v).toPrecision(2))} %`);
-    return make("tr", {}, ...[i + 1, request.name, percent(found.value), percent(found.probabilityValue), said.result].map((text) => make("td", { textContent: text })),
-      make("td", { className: "screen" }, button("load", () => fillForm(item.form)), button("remove", () => { kept.splice(kept.indexOf(item), 1); drawKept(); })));
+    const row = rowOf(item, i), remove = () => { kept.splice(kept.indexOf(item), 1); drawKept(); };
+    row.append(make("td", {}, button("load", () => fillForm(item.form)), button("remove", remove)));
+    for (const each of row.querySelectorAll("button")) {
+      each.removeAttribute("id");
+      each.setAttribute("aria-label", `${each.textContent}: ${item.told.run.request.name}`);
+    }
+    return row;
   }));
 }
-function keep() {
-  if (shown?.run !== current || !shown) return;
-  kept.push({ form: formTexts(), told: shown });
+const headings = () => ["rank", "name", "topples_column", "risk_column", "Result"].map((id) => make("th", { scope: "col", textContent: say(id) }));
+function rowOf({ told: { run: { request }, found } }, i) {
+  const texts = [i + 1, linesOf.nameOf(request), percent(found.value), percent(found.probabilityValue), linesOf(request, found).result];
+  return make("tr", {}, ...texts.map((text) => make("td", { textContent: text })));
+}
+async function keep() {
+  const item = { form: formTexts(), told: shown };
+  await scene.drawn;
+  kept.push(Object.assign(item, { scene: stillOf(item.told.run) }));
   drawKept();
+}
+// what is drawn of an object, without its motion
+function stillOf(run) {
+  if (scene.of !== run || !scene.response) return null;
+  const { response: { theta1, theta2 }, statue, pedestal, at, words } = scene;
+  return { statue, pedestal, words, at: 0, response: { theta1: [theta1[at]], theta2: [theta2[at]] } };
 }
 function fillForm(values) {
   for (const name of ALL) {
@@ -361,28 +412,51 @@ const saveCsv = () => save("objects.csv", lists.csvOf(kept.map(({ form }) => for
 async function openFile(input) {
   const [file] = input.files, problem = find("file-error");
   problem.hidden = true;
+  const complainOf = (text) => {
+    problem.textContent = text;
+    problem.hidden = false;
+  };
   try {
     if (file.size > 200000) throw new Error(say("file_long"));
-    const read = lists.read(file.name, await file.text(), say);
-    fillForm(read[0]);
-    for (const form of read.slice(1)) await assessed(form);
+    const forms = lists.read(file.name, await file.text(), say), left = [];
+    if (forms.length === 1) fillForm(forms[0]);
+    else for (const [i, form] of forms.entries()) {
+      if (await answered(form)) await keep();
+      else left.push(i + 2); // below the titles
+    }
+    if (left.length) complainOf(say("rows_left", { rows: left.join(", ") }));
   } catch (error) {
-    problem.textContent = say("file_unread", { why: error.message });
-    problem.hidden = false;
+    complainOf(say("file_unread", { why: error.message }));
   }
   input.value = "";
 }
-// the objects of a list, one after another
-function assessed(form) {
+function answered(form) {
   return new Promise((resolve) => {
-    const until = setInterval(() => {
-      if (document.body.dataset.stage !== "complete" || shown?.run !== current) return;
-      clearInterval(until);
-      keep();
-      fillForm(form);
-      resolve();
-    }, 50);
+    settle = resolve;
+    fillForm(form);
   });
+}
+
+// ---- on paper: a sheet for each object that is kept, or for the one that is shown
+
+function drawSheets() {
+  const items = kept.length ? kept : shown ? [{ form: formTexts(), told: shown, scene: stillOf(shown.run) }] : [];
+  find("sheets").replaceChildren(...(kept.length > 1 ? [rankedSheet()] : []));
+  for (const { form, told: { run: { request }, found }, scene: still } of items) {
+    const said = linesOf(request, found), canvas = make("canvas", { width: 600, height: 300 });
+    const sheet = make("section", { className: "sheet" }, make("h2", { textContent: said.headline }), make("p", { textContent: typedIn(form) }), make("dl", {}, ...linesAs(said)));
+    find("sheets").append(sheet);
+    if (still) {
+      sheet.append(make("figure", {}, canvas, make("figcaption", { textContent: still.words() })));
+      paint(still, canvas);
+    }
+    if (request.place.computed) sheet.append(make("p", { className: "message", textContent: say("computed_floor") }));
+    sheet.append(make("p", { className: "message", textContent: `${data.made ? say("made") + " " : ""}${say("no_substitute")} ${new Date().toLocaleDateString(document.documentElement.lang)}` }));
+  }
+}
+function rankedSheet() {
+  const table = make("table", {}, make("thead", {}, make("tr", {}, ...headings())), make("tbody", {}, ...kept.map(rowOf)));
+  return make("section", { className: "sheet" }, make("h2", { textContent: say("list") }), table);
 }
 
 // ---- the beginning
@@ -394,8 +468,9 @@ async function begin() {
   find("language").value = data.texts[wanted] ? wanted : "en";
   find("language").addEventListener("change", () => { translate(); });
   find("play").addEventListener("click", play);
+  addEventListener("beforeprint", drawSheets);
   form.addEventListener("submit", (event) => event.preventDefault());
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", paint);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => paint());
   translate();
   const stop = (id) => {
     find("blocked").textContent = say(id);

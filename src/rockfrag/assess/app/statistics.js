@@ -2,30 +2,30 @@
 const statistics = (() => {
   "use strict";
   const ROOT_TWO = Math.SQRT2, LOG_ROOT_TWO_PI = 0.5 * Math.log(2 * Math.PI);
-  const polynomial = (coefficients, x) => coefficients.reduce((sum, c) => sum * x + c, 0);
+  const polynomial = (coefficients, x) => {
+    let sum = 0;
+    for (const c of coefficients) sum = sum * x + c;
+    return sum;
+  };
 
   // exp(x²) erfc(x) for x ≥ 0 (Cody 1969, Math. Comp. 23: 631)
+  const MIDDLE = [2.15311535474403846e-8, 0.564188496988670089, 8.88314979438837594, 66.1191906371416295,
+    298.635138197400131, 881.95222124176909, 1712.04761263407058, 2051.07837782607147, 1230.33935479799725];
+  const MIDDLE_BELOW = [1, 15.7449261107098347, 117.693950891312499, 537.181101862009858, 1621.38957456669019,
+    3290.79923573345963, 4362.61909014324716, 3439.36767414372164, 1230.33935480374942];
+  const FAR = [0.0163153871373020978, 0.305326634961232344, 0.360344899949804439, 0.125781726111229246,
+    0.0160837851487422766, 6.58749161529837803e-4];
+  const FAR_BELOW = [1, 2.56852019228982242, 1.87295284992346725, 0.527905102951428412, 0.0605183413124413191,
+    0.00233520497626869185];
+  const SMALL = [0.185777706184603153, 3.1611237438705656, 113.864154151050156, 377.485237685302021, 3209.37758913846947];
+  const SMALL_BELOW = [1, 23.6012909523441209, 244.024637934444173, 1282.61652607737228, 2844.23683343917062];
   function scaledErfc(x) {
     if (x <= 0.46875) return Math.exp(x * x) * (1 - smallErf(x));
-    if (x <= 4) {
-      return polynomial([2.15311535474403846e-8, 0.564188496988670089, 8.88314979438837594, 66.1191906371416295,
-        298.635138197400131, 881.95222124176909, 1712.04761263407058, 2051.07837782607147, 1230.33935479799725], x)
-        / polynomial([1, 15.7449261107098347, 117.693950891312499, 537.181101862009858, 1621.38957456669019,
-          3290.79923573345963, 4362.61909014324716, 3439.36767414372164, 1230.33935480374942], x);
-    }
-    const y = 1 / (x * x);
-    const r = y * polynomial([0.0163153871373020978, 0.305326634961232344, 0.360344899949804439, 0.125781726111229246,
-      0.0160837851487422766, 6.58749161529837803e-4], y)
-      / polynomial([1, 2.56852019228982242, 1.87295284992346725, 0.527905102951428412, 0.0605183413124413191,
-        0.00233520497626869185], y);
+    if (x <= 4) return polynomial(MIDDLE, x) / polynomial(MIDDLE_BELOW, x);
+    const y = 1 / (x * x), r = (y * polynomial(FAR, y)) / polynomial(FAR_BELOW, y);
     return (1 / Math.sqrt(Math.PI) - r) / x;
   }
-  function smallErf(x) {
-    const y = x * x;
-    return x * polynomial([0.185777706184603153, 3.1611237438705656, 113.864154151050156, 377.485237685302021,
-      3209.37758913846947], y)
-      / polynomial([1, 23.6012909523441209, 244.024637934444173, 1282.61652607737228, 2844.23683343917062], y);
-  }
+  const smallErf = (x) => (x * polynomial(SMALL, x * x)) / polynomial(SMALL_BELOW, x * x);
   // ln Φ(x)
   function logNdtr(x) {
     const z = Math.abs(x) / ROOT_TWO;
@@ -112,26 +112,35 @@ const statistics = (() => {
     }
     return { inverse, log };
   }
-  const times = (matrix, vector) => matrix.map((row) => row.reduce((sum, value, i) => sum + value * vector[i], 0));
+  const dot = (a, b) => {
+    let sum = 0;
+    for (let i = 0; i < a.length; i++) sum += a[i] * b[i];
+    return sum;
+  };
+  const times = (matrix, vector) => matrix.map((row) => dot(row, vector));
 
   // coefficients of a probit regression by Fisher scoring; `fell` of `trials` a row; null where it has none
-  function fitProbit(design, fell, trials, { penalised = false, tolerance = 1e-9 } = {}) {
+  function fitProbit(design, fell, trials, { penalised = false, tolerance = 1e-9, start = null } = {}) {
     const k = design[0].length;
-    let c = new Array(k).fill(0), step = new Array(k).fill(0), best = -Infinity;
+    let c = start ?? new Array(k).fill(0), step = new Array(k).fill(0), best = -Infinity;
     for (let pass = 0; pass < 100; pass++) {
       const trial = c.map((value, i) => value + step[i]);
-      const fisher = trial.map(() => new Array(k).fill(0));
-      const terms = design.map((x, r) => {
-        const eta = Math.max(-30, Math.min(30, x.reduce((sum, value, i) => sum + value * trial[i], 0)));
+      const fisher = trial.map(() => new Array(k).fill(0)), terms = new Float64Array(4 * design.length);
+      let goal = 0;
+      for (let r = 0, at = 0; r < design.length; r++, at += 4) {
+        const x = design[r], eta = Math.max(-30, Math.min(30, dot(x, trial)));
         const p = logNdtr(eta), q = logNdtr(-eta), density = -0.5 * eta * eta - LOG_ROOT_TWO_PI;
         const weight = trials[r] * Math.exp(2 * density - p - q);
         for (let i = 0; i < k; i++) for (let j = 0; j < k; j++) fisher[i][j] += weight * x[i] * x[j];
-        return { eta, p, q, up: Math.exp(density - p), down: Math.exp(density - q), weight };
-      });
+        goal += fell[r] * p + (trials[r] - fell[r]) * q;
+        terms[at] = eta;
+        terms[at + 1] = Math.exp(density - p);
+        terms[at + 2] = Math.exp(density - q);
+        terms[at + 3] = weight;
+      }
       const found = inverted(fisher);
       if (!found) return null;
-      let goal = penalised ? 0.5 * found.log : 0;
-      terms.forEach(({ p, q }, r) => { goal += fell[r] * p + (trials[r] - fell[r]) * q; });
+      if (penalised) goal += 0.5 * found.log;
       const size = Math.max(...step.map(Math.abs));
       if (goal < best - 1e-10) {
         if (size < 1e-14) return { coefficients: c, converged: false };
@@ -143,20 +152,17 @@ const statistics = (() => {
       best = goal;
       if (settled) return { coefficients: c, converged: true };
       const score = new Array(k).fill(0);
-      terms.forEach(({ eta, up, down, weight }, r) => {
-        const x = design[r];
+      for (let r = 0; r < design.length; r++) {
+        const x = design[r], eta = terms[4 * r], up = terms[4 * r + 1], down = terms[4 * r + 2], weight = terms[4 * r + 3];
         let value = fell[r] * up - (trials[r] - fell[r]) * down;
-        if (penalised) {
-          const hat = weight * x.reduce((sum, a, i) => sum + a * times(found.inverse, x)[i], 0);
-          value += 0.5 * hat * (-2 * eta - up + down);
-        }
+        if (penalised) value += 0.5 * weight * dot(x, times(found.inverse, x)) * (-2 * eta - up + down);
         for (let i = 0; i < k; i++) score[i] += value * x[i];
-      });
+      }
       step = times(found.inverse, score);
     }
     return { coefficients: c, converged: false };
   }
 
-  return { logNdtr, studentTail, studentQuantile, fitProbit, inverted, times, LOG_ROOT_TWO_PI };
+  return { logNdtr, studentTail, studentQuantile, fitProbit, inverted, dot, times, LOG_ROOT_TWO_PI };
 })();
 if (typeof module !== "undefined") module.exports = statistics;

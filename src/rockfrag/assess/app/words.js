@@ -34,6 +34,7 @@ const words = (data, texts) => {
   function end(part) {
     const value = 100 * part;
     if (value < 5e-4) return "0";
+    if (value >= 99.5 && value <= 100 - 5e-4) return local(value.toFixed(-Math.floor(Math.log10(100 - value))));
     if (value >= 10) return whole(value);
     return value >= 1 ? g(value, 2) : g(value, 1);
   }
@@ -48,12 +49,13 @@ const words = (data, texts) => {
   const capital = (text) => text.slice(0, 1).toUpperCase() + text.slice(1);
   const listed = (all) => (all.length < 2 ? all.join("") : `${all.slice(0, -1).join(", ")} ${say("and")} ${all.at(-1)}`);
 
-  return function linesOf(request, found) {
+  const nameOf = (request) => (request.name === data.texts.en.the_object ? say("the_object") : request.name);
+  function linesOf(request, found) {
     const { measure, place, pedestal, statue } = request, { unit } = data.measures[measure];
-    const name = request.name === data.texts.en.the_object ? say("the_object") : request.name;
+    const name = nameOf(request);
     const ordinal = (n) => texts.ordinals[n] ?? `${n}${texts.ordinal_endings[n % 100 > 10 && n % 100 < 14 ? 0 : n % 10] ?? texts.ordinal_endings[0]}`;
     const floorName = place.level === place.storeys ? say("roof") : say("floor_name", { europe: ordinal(place.level), america: ordinal(place.level + 1) });
-    const where = place.storeys ? `${say("on_level", place)} (${floorName})` : say(data.onFloor ? "on_floor" : "on_ground");
+    const where = place.storeys ? `${say(place.label ? "on_named" : "on_level", place)} (${floorName})` : say(data.onFloor ? "on_floor" : "on_ground");
     const amount = (value) => `${measure} ${g(value, 3)} ${unit}`;
     const starts = Number.isFinite(found.rocksFrom) ? `${measure} ${g(found.rocksFrom, 2)} ${unit}` : say("more_than_tried");
     const at = say("at", { level: amount(found.level) }) + (request.level === null ? ` (${say("once_in_475")})` : "");
@@ -69,7 +71,7 @@ const words = (data, texts) => {
       return say(number === 1 ? "one_of" : "some_of", { number, total, verb: verb(number !== 1) });
     }
     function narrowing() {
-      if (!found.narrowed) return "";
+      if (!found.narrowed || range(found.narrowed) === range(main)) return "";
       return say("narrowing", { what: listed(found.narrowed.known.map((key) => texts.measurements[key])), range: range(found.narrowed) });
     }
     function result() {
@@ -83,7 +85,7 @@ const words = (data, texts) => {
       }
       const said = say("said", { topples: counted(1), interval: interval(fraction), rocks: counted(0) });
       if (fraction && found.wide) {
-        const more = found.narrowed && main === fraction ? ` ${capital(narrowing())}.` : "";
+        const more = main === fraction && narrowing() ? ` ${capital(narrowing())}.` : "";
         return say("not_decidable", { name, where, at, said }) + more;
       }
       const may = value >= MANY ? "likely" : value === 0 ? "unlikely" : "may";
@@ -134,7 +136,7 @@ const words = (data, texts) => {
       const ranked = Number.isFinite(total) && total > 0 ? Object.entries(main.sources).map(([key, s]) => [key, (s * s) / total]).sort((a, b) => b[1] - a[1]) : [];
       const named = ranked.filter(([, part]) => part >= LEAST_PART).slice(0, MOST_SOURCES);
       if (named.length) lines.push(say("variance", { all: listed(named.map(([key, part]) => say("part_from", { part: whole(100 * part), what: texts.sources[key] }))) }));
-      if (found.narrowed && !(found.wide && main === fraction)) lines.push(`${capital(narrowing())}.`);
+      if (narrowing() && !(found.wide && main === fraction)) lines.push(`${capital(narrowing())}.`);
       const size = (keys) => keys.reduce((sum, key) => sum + (main.sources[key] ?? 0) ** 2, 0);
       const assumed = assumptions(request).map(([id, values, keys]) => [say(id, values), size(keys)]);
       const order = assumed.map((item, i) => [...item, i]).sort((a, b) => b[1] - a[1] || a[2] - b[2]).map(([text]) => text);
@@ -150,12 +152,14 @@ const words = (data, texts) => {
       return say(value >= MANY ? "head_likely" : value > FEW ? "head_may" : "head_unlikely", values);
     }
     return { headline: headline(), result: result(), risk: risk(), position: position(), helps: helps(), sure: sure(), mitigation };
-  };
+  }
+  return Object.assign(linesOf, { nameOf });
 
   // what was not given: text, what stands in it, and the sources that it widens; the place first
   function assumptions({ place, statue, pedestal, massGiven, restitution }) {
     const found = [];
     if (place.assumed === "on_ground") found.push(["assumed_ground", {}, []]);
+    if (place.assumed === "elastic") found.push(["assumed_elastic", {}, ["period", "damping"]]);
     if (place.assumed === "building") found.push(["assumed_building", { total: g(place.total, 3), period: g(place.period, 2) }, ["period", "damping"]]);
     found.push(["assumed_rectangular", {}, []]);
     if (restitution === null) found.push(["assumed_momentum", {}, ["restitution"]]);

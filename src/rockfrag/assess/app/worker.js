@@ -34,9 +34,9 @@ const TASKS = {
   begin: async (task) => { await begin(task); },
   plan: (task) => ({ roles: planOf(task).map(({ role, name }) => ({ role, name })) }),
   count: (task) => tools.count(task.request, planOf(task)[task.run], task.first, task.last),
-  answer: ({ parts, ...task }) => {
+  answer: ({ parts, earlier, ...task }) => {
     const runs = planOf(task), outcomes = parts.map((each, i) => each && tools.made.joined(task.request, runs[i], each));
-    return tools.made.found(task.request, runs, outcomes, tools.ensemble);
+    return tools.made.found(task.request, runs, outcomes, tools.ensemble, earlier);
   },
   motion: ({ motion }) => ({ samples: tools.motions[motion].samples, dt: tools.motions[motion].dt }),
 };

@@ -13,6 +13,7 @@ from markupsafe import Markup
 
 from rockfrag.assess.app import computing, data_of, script
 from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.request import Request
 from rockfrag.assess.scale import SCALE_WORDS, STEPS
 from rockfrag.assess.sources import SOURCES
 from rockfrag.errors import InputError
@@ -38,7 +39,7 @@ def write_app(
     form: Mapping[str, str],
     path: str | os.PathLike[str],
     *,
-    on_floor: bool = False,
+    request: Request | None = None,
     made: bool = False,
 ) -> None:
     """Write the page.
@@ -51,8 +52,8 @@ def write_app(
         What stands in the form at first, by the names of its fields.
     path
         Where to write it.
-    on_floor
-        Whether the motions were recorded on the floor of the object.
+    request
+        Where the motions were recorded, and the building and hazard that the form does not tell; nothing if None.
     made
         Whether they were made by formulas, which the page then says.
 
@@ -61,7 +62,7 @@ def write_app(
     InputError
         If the motions are too many for a page.
     """
-    page = page_of(motions, form, on_floor=on_floor, made=made)
+    page = page_of(motions, form, request, made=made)
     size = len(page.encode())
     if size > MOST_BYTES:
         raise InputError(
@@ -71,12 +72,14 @@ def write_app(
     write_text(page, path)
 
 
-def page_of(motions: MotionSet, form: Mapping[str, str], *, on_floor: bool, made: bool) -> str:
+def page_of(
+    motions: MotionSet, form: Mapping[str, str], request: Request | None = None, *, made: bool
+) -> str:
     """Return the page as HTML, which loads nothing."""
     packed, about = packed_samples(motions.ground)
     modules = {"fused": "ensemble-fused", "plain": "ensemble", "history": "integrate"}
     data = {
-        **data_of(motions, on_floor=on_floor),
+        **data_of(motions, request),
         "form": dict(form),
         "made": made,
         "texts": {language: texts(language) for language in LANGUAGES},

@@ -105,27 +105,10 @@ def make_curve(
     where: str,
     source: str = "",
 ) -> HazardCurve:
-    """Make a curve of what a file says, or say in one sentence what is wrong with it.
+    """Make a curve of levels and rates [1/year] of a file, or say in one sentence what is wrong with it.
 
     Points that are never exceeded, and equal rates at either end, which are those of a probability that was
-    rounded, are left out.
-
-    Parameters
-    ----------
-    measure
-        The intensity measure.
-    levels, rates
-        Levels in its unit and annual rates [1/year], equally many.
-    where
-        File and place, for messages.
-    source
-        Where it comes from, in a few words; ``where`` if empty.
-
-    Raises
-    ------
-    InputError
-        If levels do not rise, rates do not fall or are no rates, fewer than two points are left, or the levels are
-        not those of the unit.
+    rounded, are left out. ``where`` goes into messages, and is the source where none is named.
     """
     x, y = np.asarray(levels, dtype=np.float64), np.asarray(rates, dtype=np.float64)
     if x.size != y.size:
@@ -163,22 +146,7 @@ def make_curve(
 
 
 def rates_of(poes: Sequence[float], years: float, where: str) -> Floats:
-    """Annual rates of probabilities of exceedance in some years, by Poisson's law [1/year].
-
-    Parameters
-    ----------
-    poes
-        Probabilities, from 0 to 1; 1 stands for a rate without bound.
-    years
-        Investigation time [year].
-    where
-        File and place, for messages.
-
-    Raises
-    ------
-    InputError
-        If the time is not positive or a probability is none.
-    """
+    """Annual rates of probabilities of exceedance in some years, by Poisson's law [1/year]; infinite for 1."""
     if not (math.isfinite(years) and years > 0):
         raise InputError(f"{where}: the investigation time must be above 0 years, found {years:g}.")
     p = np.asarray(poes, dtype=np.float64)
@@ -192,19 +160,7 @@ def rates_of(poes: Sequence[float], years: float, where: str) -> Floats:
 def curve_of_one_level(
     measure: IntensityMeasure, level: float, years: float, slope: float = EC8_SLOPE
 ) -> HazardCurve:
-    """Continue one level with its return period as a power law.
-
-    Parameters
-    ----------
-    measure
-        The intensity measure.
-    level
-        Level in its unit.
-    years
-        Mean return period of its exceedance [year].
-    slope
-        Exponent of the power law.
-    """
+    """Continue one level with its mean return period [year] as a power law."""
 
     def curve(k: float, source: str) -> HazardCurve:
         factors = np.array([0.1, 1.0, 10.0])

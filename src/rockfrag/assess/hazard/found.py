@@ -9,34 +9,16 @@ from rockfrag.errors import InputError
 
 @dataclass(frozen=True)
 class Found:
-    """A curve of a file and which statistic of the hazard model it is.
+    """A curve of a file and which statistic of the hazard model it is."""
 
-    Attributes
-    ----------
-    curve
-        The curve.
-    statistic
-        ``mean`` or such as ``quantile-0.16``.
-    """
-
-    curve: HazardCurve
-    statistic: str
+    curve: HazardCurve  # The curve
+    statistic: str  # ``mean`` or such as ``quantile-0.16``
 
 
 def read_statistic(text: str, where: str) -> str:
-    """Return the name of a statistic as ``mean`` or ``quantile-0.16``.
+    """Return the name of a statistic as ``mean`` or ``quantile-0.16``; refuse a single branch of a logic tree.
 
-    Parameters
-    ----------
-    text
-        As a file has it: ``mean``, ``quantile-0.16``, ``quantile_curve-0.5``; empty for the only curve of a file.
-    where
-        Where it stands, for the message.
-
-    Raises
-    ------
-    InputError
-        If it is another, such as one realisation of a logic tree.
+    It may stand there as ``quantile_curve-0.5``, or be empty for the only curve of a file.
     """
     if text in ("", "mean"):
         return "mean"
@@ -50,13 +32,7 @@ def read_statistic(text: str, where: str) -> str:
 
 
 def read_numbers(text: str, where: str) -> list[float]:
-    """Return numbers that are separated by blanks.
-
-    Raises
-    ------
-    InputError
-        If one is no number.
-    """
+    """Return numbers that are separated by blanks."""
     try:
         return [float(word) for word in text.split()]
     except ValueError as error:

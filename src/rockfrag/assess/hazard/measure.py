@@ -21,20 +21,7 @@ PGA, PGV, SA = (_KNOWN[kind] for kind in ("PGA", "PGV", "SA"))
 
 
 def read_measure(text: str, where: str) -> IntensityMeasure:
-    """Read the name of a measure as hazard models write it: ``PGA``, ``SA(0.3)``, ``SA0P2``, ``PSA-1.0s``.
-
-    Parameters
-    ----------
-    text
-        The name.
-    where
-        Where it stands, for the message.
-
-    Raises
-    ------
-    InputError
-        If it is none of them.
-    """
+    """Read the name of a measure as hazard models write it: ``PGA``, ``SA(0.3)``, ``SA0P2``, ``PSA-1.0s``."""
     plain = re.sub(r"[\s\-]", "", text).upper()
     if plain in ("PGA", "PGV"):
         return _KNOWN[plain]

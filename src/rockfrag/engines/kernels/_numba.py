@@ -18,6 +18,7 @@ from numba.core.base import BaseContext
 from numba.core.cgutils import normalize_ir_text
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.ir_utils import build_definitions
 from numba.core.rewrites.static_getitem import RewriteConstGetitems, RewriteConstSetitems
 from numba.core.ssa import reconstruct_ssa
@@ -121,8 +122,7 @@ def _one_of(typing_context: Any, pair: Any, comparison: Any) -> Any:
     return signature(common, *pair), generate
 
 
-_OF_TWO = {min: _smaller, max: _larger}
-"""What numba would compile a function of a tuple for."""
+_OF_TWO = {min: _smaller, max: _larger}  # what numba would compile a function of a tuple for
 
 
 class _Prepare:
@@ -340,7 +340,8 @@ def whole_ir(kernel: Any, types: tuple[Any, ...]) -> tuple[str, str]:
     kernel.compile(types)
     (compiled,) = kernel.overloads.values()
     entry = compiled.fndesc.llvm_func_name
-    parts = _callers_first([compiled.library])
+    with global_compiler_lock:
+        parts = _callers_first([compiled.library])
     whole = llvm.parse_assembly("")
     # else nothing calls it, and linking would drop it
     compiled.library._final_module.get_function(entry).linkage = "external"

@@ -35,33 +35,20 @@ from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
 
 class ChatterTolerance(NamedTuple):
-    """How long chatter is followed before it is closed.
+    """How long chatter is followed before it is closed."""
 
-    Attributes
-    ----------
-    closing_speed : a contact that comes off slower than this stays closed [rad/s]
-    drop : flights higher than this are followed even if they are sure to end at rest [rad]
-    """
-
-    closing_speed: float
-    drop: float
+    closing_speed: float  # a contact that comes off slower than this stays closed [rad/s]
+    drop: float  # flights higher than this are followed even if they are sure to end at rest [rad]
 
 
-HISTORY = ChatterTolerance(closing_speed=1e-6, drop=1e-9)
-"""Where the history is kept."""
-OUTCOME = ChatterTolerance(closing_speed=1e-4, drop=1e-2)
-"""Where only the outcome matters."""
-
+HISTORY = ChatterTolerance(closing_speed=1e-6, drop=1e-9)  # where the history is kept
+OUTCOME = ChatterTolerance(closing_speed=1e-4, drop=1e-2)  # where only the outcome matters
 CHATTER_ERROR = 1e-7
 """Largest w² T [rad²/s] of a chatter that is closed at once on a body that rocks on."""
-FASTEST_CHATTER = 0.1
-"""Speed [rad/s] above which it is not."""
-CHATTER_TIME = 0.08
-"""Time [s] over which the ground is looked at, at most, before it is."""
-LONGEST_FRACTION = 0.999
-"""Fraction of the speed left by impacts above which no end is foreseen."""
-MOST_AHEAD = 32
-"""Samples of the ground that are looked at, at most."""
+FASTEST_CHATTER = 0.1  # speed [rad/s] above which it is not
+CHATTER_TIME = 0.08  # time [s] over which the ground is looked at, at most, before it is
+LONGEST_FRACTION = 0.999  # fraction of the speed left by impacts above which no end is foreseen
+MOST_AHEAD = 32  # samples of the ground that are looked at, at most
 
 
 class Ahead(NamedTuple):
@@ -88,10 +75,8 @@ RESTORING = np.dtype(
         ("still", np.float64, 4),
         ("per_ground", np.float64, 4),
         ("frequency2", np.float64),  # p² of the statue
-        (
-            "fastest",
-            np.float64,
-        ),  # 0.2 D/p with the D of a still ground: above it no chatter is closed
+        # 0.2 D/p with the D of a still ground: above it no chatter is closed
+        ("fastest", np.float64),
     ]
 )
 """With what chatter of a body at θ1 = θ2 = 0 is closed."""
@@ -147,12 +132,8 @@ def weight_at(ahead, k):
 def dies_out(speed, fraction, safety, restoring, drop, ahead):
     """Whether the impacts that follow one at θ1 = θ2 = 0 end at rest before anything else can happen.
 
-    Parameters
-    ----------
-    speed : of the body after the impact [rad/s]
-    share : of the speed that an impact leaves, √ of that of the kinetic energy
-    safety : what T is taken longer by
-    drop : flights of more than this are followed [rad]
+    ``speed`` [rad/s] is the body's after the impact, ``fraction`` what an impact leaves of it, ``safety`` what T
+    is taken longer by; flights of more than ``drop`` [rad] are followed.
     """
     if fraction > LONGEST_FRACTION:
         return False
@@ -180,11 +161,8 @@ def dies_out(speed, fraction, safety, restoring, drop, ahead):
 def block_dies_out(w, side, here, there, ahead):
     """Whether the impacts after a launch of a lone block at speed ``w`` per sample end at rest.
 
-    Parameters
-    ----------
-    side : pivot on which it is launched
-    here, there : constants of that pivot and of the other (``block.PIVOT``)
-    ahead : the ground over g
+    ``here`` is the pivot of ``side``, on which it is launched, ``there`` the other (``block.PIVOT``); ``ahead`` is
+    the ground over g.
     """
     # gravity only ever grows D; the least of it is enough
     weight = weight_at(ahead, ahead.k)
@@ -226,22 +204,15 @@ def block_dies_out(w, side, here, there, ahead):
 
 
 class Hop(NamedTuple):
-    """A contact that has come down and off again while the other is open, with rates per sample.
+    """A contact that has come down and off again while the other is open, with rates per sample."""
 
-    Attributes
-    ----------
-    ground : whether it is the ground's contact, not the interface's
-    side : sign of its opening now
-    old : its relative velocity before the impact
-    cosine, sine : of the statue's rotation
-    omega1, omega2 : velocities after the impact
-    """
-
-    ground: bool
-    side: int
-    old: float
+    ground: bool  # whether it is the ground's contact, not the interface's
+    side: int  # sign of its opening now
+    old: float  # its relative velocity before the impact
+    # cosine, sine: of the statue's rotation
     cosine: float
     sine: float
+    # omega1, omega2: velocities after the impact
     omega1: float
     omega2: float
 
@@ -283,10 +254,8 @@ def _opening(two, hop, side, g):
 def may_close(hop, before, after, longest, g, ahead):
     """Whether a contact that hops may stay closed at once, while the other is open.
 
-    Parameters
-    ----------
-    before, after : constants of the contact states before and after the impact (``stack_constants.TWO``)
-    longest : time that its hops may take at most [samples]
+    ``before`` and ``after`` are constants of the contact states (``stack_constants.TWO``); its hops may take
+    ``longest`` [samples].
     """
     h, k, tau, last, factor = ahead.dt, ahead.k, ahead.tau, ahead.last, ahead.factor
     samples = ahead.samples

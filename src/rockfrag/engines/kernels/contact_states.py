@@ -30,11 +30,8 @@ from rockfrag.engines.kernels.equations import (
 )
 from rockfrag.engines.kernels.jit import kernel
 
-HALF_TURN = 0.5 * math.pi
-"""A block that has turned so far lies down [rad]."""
-
-GROUND, INTERFACE = 1, 2
-"""The two contacts."""
+HALF_TURN = 0.5 * math.pi  # a block that has turned so far lies down [rad]
+GROUND, INTERFACE = 1, 2  # the two contacts
 
 
 @kernel

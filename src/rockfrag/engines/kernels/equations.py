@@ -228,10 +228,7 @@ def turn_between(body, state):
 def metric(body, first, other, turn):
     """Kinetic-metric products K11, K12, K21, K22 of the velocity fields about two pairs of points.
 
-    Parameters
-    ----------
-    first, other : (σ1, σ2), the points on ground and interface that the fields turn about
-    turn : cosine and sine of θ2 - θ1
+    The points (σ1, σ2) lie on ground and interface; ``turn``: cosine and sine of θ2 - θ1.
     """
     c, s = turn
     ax, ay = arm1(body, first[0])

@@ -18,27 +18,16 @@ Every outcome of every impact is worked out here, so a contact law has its place
 - ``block_impact``: the lone block of an ensemble.
 """
 
-from rockfrag.engines.kernels.equations import (
-    kinetic_energy,
-    metric,
-    pivot,
-    turn_between,
-)
+from rockfrag.engines.kernels.equations import kinetic_energy, metric, pivot, turn_between
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.laws import moves_impulse, rate
 
-GAIN = 1e-9
-"""Relative growth of the kinetic energy in an impact that counts as rounding."""
+GAIN = 1e-9  # relative growth of the kinetic energy in an impact that counts as rounding
 
 
 @kernel
 def impact(body, state, closes1, closes2):
-    """State and velocities after contacts of a state close.
-
-    Returns
-    -------
-    c1, c2, ω1⁺, ω2⁺, and 1 if a measured restitution had to give way, otherwise 0.
-    """
+    """After contacts close: c1, c2, ω1⁺, ω2⁺, and 1 if a measured restitution had to give way, otherwise 0."""
     n1, n2, w1, w2, _ = _admissible(body, state, closes1, closes2, False)
     if not body.measured:
         return n1, n2, w1, w2, 0
@@ -236,10 +225,8 @@ def _with_rates(body, state, closes, others, ground, interface):
     of the ground if the interface closes, that of the statue about its pivot if the ground does.  The other
     contact separates if that momentum asks for it, and is pressed otherwise.
 
-    Parameters
-    ----------
-    others : contacts after the impact by momentum, which the contact without a given rate tries first
-    ground, interface : whether the rate of the contact is given, and the rate [rad/s]
+    ``others``: contacts after the impact by momentum, which the contact without a given rate tries first;
+    ``ground``, ``interface``: whether the rate of the contact is given, and the rate [rad/s].
     """
     given1, rate1 = ground
     given2, rate2 = interface
@@ -299,11 +286,8 @@ def mass_matrix(two, cosine, sine):
 def ground_impact(before, after, product, turn, omega1, omega2):
     """Velocities after the ground closes (Psycharis, 1990): both momenta about the new pivots.
 
-    Parameters
-    ----------
-    before, after : constants of the contact states (``stack_constants.TWO``)
-    product : ``ground`` of ``stack_constants.IMPACT``
-    turn : cosine and sine of θ2 - θ1
+    ``before`` and ``after`` are constants of the contact states (``stack_constants.TWO``), ``product`` is
+    ``ground`` of ``stack_constants.IMPACT``; ``turn``: cosine and sine of θ2 - θ1.
     """
     _, old12, m22, _ = mass_matrix(before, turn[0], turn[1])
     m11, m12, _, _ = mass_matrix(after, turn[0], turn[1])

@@ -28,7 +28,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import cache
 from pathlib import Path
-from types import FunctionType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numba
@@ -44,9 +44,7 @@ from rockfrag.system import geometry
 TESTED_NUMBA = ("0.68.",)
 """Versions of numba whose private parts are known to be as this module takes them to be."""
 
-PATIENCE_S = 300.0
-"""How long a process waits for another one that compiles the same [s]."""
-
+PATIENCE_S = 300.0  # how long a process waits for another one that compiles the same [s]
 KNOWN = numba.__version__.startswith(TESTED_NUMBA)
 
 if KNOWN:
@@ -87,11 +85,16 @@ _PART: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 if KNOWN:
     _PART["pipeline_class"] = PartCompiler
 
+
+def share_with_kernels(module: ModuleType) -> None:
+    """Let kernels call the functions of a module, plain Python, as if they were some of them."""
+    for function in list(vars(module).values()):
+        if isinstance(function, FunctionType) and function.__module__ == module.__name__:
+            register_jitable(**_EVERY, **_PART)(function)
+
+
 for _module in (elementary, geometry, couple, position):
-    for _function in list(vars(_module).values()):
-        if isinstance(_function, FunctionType) and _function.__module__ == _module.__name__:
-            # plain Python, which kernels may call as if it were one of them
-            register_jitable(**_EVERY, **_PART)(_function)
+    share_with_kernels(_module)
 
 
 @cache

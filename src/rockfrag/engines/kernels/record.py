@@ -73,12 +73,8 @@ BALANCE = np.dtype([("critical", np.float64), ("frequency2", np.float64)])
 @inlined_kernel
 def copy_state(source, target):
     """Make one state equal to another."""
-    target.c1, target.c2, target.ground, target.gravity = (
-        source.c1,
-        source.c2,
-        source.ground,
-        source.gravity,
-    )
+    target.c1, target.c2 = source.c1, source.c2
+    target.ground, target.gravity = source.ground, source.gravity
     target.theta1, target.omega1 = source.theta1, source.omega1
     target.theta2, target.omega2 = source.theta2, source.omega2
 
@@ -149,12 +145,7 @@ def _peak(angle, end, theta, rate_at_end, h):
 
 @kernel
 def track(balances, state, series, end, h, summary):
-    """Update peaks and the closest approach to an unstable equilibrium after a step that ends in a state.
-
-    Returns
-    -------
-    Whether a block is beyond its balance then.
-    """
+    """Update peaks and the closest approach to an unstable equilibrium; whether a block is beyond its balance."""
     ratio1, ratio2 = 0.0, 0.0
     theta1, theta2 = state.theta1, state.theta2
     omega1, omega2 = state.omega1, state.omega2
@@ -178,11 +169,8 @@ def note_demand(body, step, series, end, work, summary):
 
     A step is looked at in its middle and at its end, and at its beginning if the contacts have just changed;
     between them forces are nearly parabolas, and steps are short.  What is asked beyond balance counts only if the
-    block comes back.
-
-    Returns
-    -------
-    Time in the step at which a normal force first was none; NEVER if they push, or beyond balance.
+    block comes back.  Returned is the time in the step at which a normal force first was none; NEVER if they push,
+    or beyond balance.
     """
     state, trial = work.state, work.trial
     # what has come back from beyond balance was not yet a fall

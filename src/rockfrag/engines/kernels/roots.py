@@ -8,8 +8,7 @@ import math
 from rockfrag.engines.kernels.jit import fma, inlined_kernel, kernel
 from rockfrag.engines.kernels.taylor import ORDER, rate_at, travel
 
-NEVER = 2.0
-"""The time of what does not happen in a step."""
+NEVER = 2.0  # the time of what does not happen in a step
 
 # --------------------------------------------------------------------------- values of a series
 

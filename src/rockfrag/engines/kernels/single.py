@@ -58,31 +58,22 @@ from rockfrag.engines.kernels.roots import (
 )
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series
 
-GRAZING_SPEED = 1e-3
-"""Relative speed [rad/s] below which a contact grazes."""
+GRAZING_SPEED = 1e-3  # relative speed [rad/s] below which a contact grazes
 MAX_CONTACT_EVENTS_PER_STEP = 400
 """Contact events of a sample after which its contacts are made to stay closed."""
 
 
 class Shaking(NamedTuple):
-    """What a body is shaken with.
+    """What a body is shaken with."""
 
-    Attributes
-    ----------
-    samples : acceleration of the ground [m/s²], linear between samples, zero after the last
-    vertical : likewise upwards, over gravity [-]; as many, or none where it is zero
-    scale : factor on them
-    dt : sampling interval [s]
-    substeps : steps per sample
-    free_samples : samples that the integration goes on after the last one, at most
-    """
-
+    # acceleration of the ground [m/s²], linear between samples, zero after the last
     samples: NDArray[np.float64]
+    # likewise upwards, over gravity [-]; as many, or none where it is zero
     vertical: NDArray[np.float64]
-    scale: float
-    dt: float
-    substeps: int
-    free_samples: int
+    scale: float  # factor on them
+    dt: float  # sampling interval [s]
+    substeps: int  # steps per sample
+    free_samples: int  # samples that the integration goes on after the last one, at most
 
 
 class Scratch(NamedTuple):
@@ -390,11 +381,9 @@ def first_closing(c1, c2, series):
 
 @kernel
 def _next_contact_event(body, state, step, series, trial):
-    """Find the earliest contact event within a step.
+    """Find the earliest contact event within a step: its time, NEVER if there is none, and what it is.
 
-    Returns
-    -------
-    Its time (NEVER if there is none), which closed contact fails (0 none), and whether ground and interface close.
+    That is which closed contact fails (0 none), and whether ground and interface close.
     """
     c1, c2 = state.c1, state.c2
     when, closes1, closes2 = first_closing(c1, c2, series)

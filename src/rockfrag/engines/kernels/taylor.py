@@ -28,8 +28,7 @@ from rockfrag.engines.kernels.equations import (
 )
 from rockfrag.engines.kernels.jit import fma, inlined_kernel, kernel
 
-ORDER = 7
-"""Order of the series: with p h ≤ 0.1 the remainder is below 1e-13 rad."""
+ORDER = 7  # order of the series: with p h ≤ 0.1 the remainder is below 1e-13 rad
 
 ROTATION = np.dtype(
     [
@@ -51,19 +50,12 @@ SERIES = np.dtype(
 
 
 class Step(NamedTuple):
-    """A step of an integration.
+    """A step of an integration."""
 
-    Attributes
-    ----------
-    length : its length [s]
-    ground : acceleration of the ground at its beginning [m/s²]
-    rise : what that grows by until its end [m/s²]
-    gravity, lift : gravity and the ground's upward acceleration likewise [m/s²]
-    """
-
-    length: float
-    ground: float
-    rise: float
+    length: float  # its length [s]
+    ground: float  # acceleration of the ground at its beginning [m/s²]
+    rise: float  # what that grows by until its end [m/s²]
+    # gravity, lift: gravity and the ground's upward acceleration likewise [m/s²]
     gravity: float
     lift: float
 
@@ -322,13 +314,8 @@ def rates_of_two(mass, weight1, weight2, rates, ground, gravity):
     (``equations``).  All satisfy recurrences: M' = D Δ', D' = -M Δ', X' = -Y θ', Y' = X θ'.  Time is counted
     in steps: rates and V carry the step's length.
 
-    Parameters
-    ----------
-    mass : M11, M22 and, at the start of the step, M12 and D
-    weight1, weight2 : X and Y of the rotations at the start of the step
-    rates : θ1' and θ2' then
-    ground : acceleration of the ground then, and what it grows by until the end
-    gravity : as in ``pulled``
+    At the start of the step ``mass`` has M11, M22, M12 and D, a ``weight`` X and Y, ``rates`` θ1' and θ2', and
+    ``ground`` its acceleration and what that grows by until the end; ``gravity`` is as in ``pulled``.
     """
     m11, m22, m0, d0 = mass
     (x10, y10), (x20, y20) = weight1, weight2

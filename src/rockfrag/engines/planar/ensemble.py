@@ -22,27 +22,15 @@ from rockfrag.system.system import System
 COARSE_CLOSING = 1e-4
 """Parting speed over √(g b) below which a contact stays closed after an impact, where only the outcome matters."""
 
-CHUNK = 4
-"""Cases that a thread takes at once."""
+CHUNK = 4  # cases that a thread takes at once
 
 
 def contact_outcomes(
     grid: Grid, wanted: NDArray[np.bool_] | None = None, closing: float = COARSE_CLOSING
 ) -> NDArray[np.void]:
-    """Integrate the ``wanted`` cases of systems × motions × scales.
+    """Integrate the ``wanted`` cases of systems × motions × scales, all if None; the others are left zero.
 
-    Parameters
-    ----------
-    grid
-        Planar systems, motions, scales, and what is asked of them.
-    wanted
-        Which cases to integrate, shape (systems, motions, scales); the others are left zero.  All if None.
-    closing
-        Parting speed over √(g b) below which a contact stays closed after an impact [-].
-
-    Returns
-    -------
-    Outcomes, (systems, motions, scales) of ``OUTCOME``.
+    ``closing`` is the parting speed over √(g b) below which a contact stays closed after an impact [-].
     """
     g, step, dts = grid.request.g, step_of(grid), intervals_of(grid)
     wanted = np.ones(grid.shape, dtype=bool) if wanted is None else wanted

@@ -41,27 +41,18 @@ _STATES = np.array([FLIGHT, -1, +1, 0])
 
 
 class ContactRun(NamedTuple):
-    """What the contact kernels wrote of one system under one motion.
+    """What the contact kernels wrote of one system under one motion."""
 
-    Attributes
-    ----------
-    system, motion
-        What was shaken, and by what.
-    body, work
-        The records ``BODY`` and ``WORK``.
-    history, contact_events
-        Rows of the columns that the kernels write.
-    fall
-        Time of the fall [s], NaN if there was none.
-    """
-
+    # system, motion: what was shaken, and by what
     system: System
     motion: GroundMotion
+    # body, work: the records ``BODY`` and ``WORK``
     body: np.void
     work: np.void
+    # history, contact_events: rows of the columns that the kernels write
     history: Array
     contact_events: Array
-    fall: float
+    fall: float  # time of the fall [s], NaN if there was none
 
     @property
     def loose(self) -> bool:
@@ -77,23 +68,10 @@ def contact_run(
     step: float = STEP,
     closing: float = CLOSING,
 ) -> ContactRun:
-    """Integrate one planar system that may slide, rock and fly.
+    """Integrate one planar system that may slide, rock and fly; :func:`response_of` makes a response of it.
 
-    Parameters
-    ----------
-    system, motion
-        What is shaken, and by what.
-    g
-        Acceleration of gravity [m/s²].
-    step
-        Largest product of the frequency parameter and the step [-].
-    closing
-        Parting speed over √(g b) below which a contact that would fall shut again stays closed after an
-        impact [-].
-
-    Returns
-    -------
-    What the kernels wrote; :func:`response_of` makes a response of it.
+    ``step`` is the largest product of the frequency parameter and the step [-], ``closing`` the parting speed over
+    √(g b) below which a contact that would fall shut again stays closed after an impact [-].
     """
     values, interval = motion.x.acceleration, motion.dt
     up = np.zeros(0) if motion.z is None else motion.z.acceleration

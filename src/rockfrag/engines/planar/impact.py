@@ -14,14 +14,11 @@ from rockfrag.engines.planar.search import search
 from rockfrag.engines.planar.solve import bias, end_of, rate, solve
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
 
-NO_GAIN = 1e-12
-"""Fraction of the kinetic energy below which a gain is rounding."""
-HALVINGS = 40
-"""Halvings of the interval in which a law that gives way keeps the energy."""
+NO_GAIN = 1e-12  # fraction of the kinetic energy below which a gain is rounding
+HALVINGS = 40  # halvings of the interval in which a law that gives way keeps the energy
 CROWD = 100
 """Contact events within a sample after which speeds below the closing speed count as none, whatever pulls."""
-UNREACHED = 1e-7
-"""Violation above which an impact has no outcome under a law."""
+UNREACHED = 1e-7  # violation above which an impact has no outcome under a law
 
 
 @kernel

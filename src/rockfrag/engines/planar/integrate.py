@@ -33,9 +33,7 @@ from rockfrag.engines.planar.step import (
 MOST_CONTACT_EVENTS = 300
 """Contact events within a sample after which accumulating ones are ended ten times as coarsely, and again."""
 
-MOST_IDLE = 30
-"""Contact events on the spot after which a step is taken without looking for more."""
-
+MOST_IDLE = 30  # contact events on the spot after which a step is taken without looking for more
 MOST_JOLTS = 60
 """Impulses on the spot after which a step is taken in any case, so that time goes on; fewer lose energy where
 ever coarser impacts (``MOST_CONTACT_EVENTS``) end what repeats."""
@@ -69,59 +67,37 @@ Array = NDArray[np.float64]
 
 
 class Shaking(NamedTuple):
-    """One motion, and in what steps it is integrated.
+    """One motion, and in what steps it is integrated."""
 
-    Attributes
-    ----------
-    horizontal, vertical : samples [m/s²], zero after the last; an empty ``vertical`` is zero throughout
-    dt : sampling interval [s]
-    scale : factor on the samples
-    substeps : steps per sample
-    free_samples : samples that the integration goes on after the last one at most
-    """
-
+    # horizontal, vertical: samples [m/s²], zero after the last; an empty ``vertical`` is zero
+    # throughout
     horizontal: Array
     vertical: Array
-    dt: float
-    scale: float
-    substeps: int
-    free_samples: int
+    dt: float  # sampling interval [s]
+    scale: float  # factor on the samples
+    substeps: int  # steps per sample
+    free_samples: int  # samples that the integration goes on after the last one at most
 
 
 class Book(NamedTuple):
-    """What is written down on the way.
+    """What is written down on the way."""
 
-    Attributes
-    ----------
-    history : (samples, history_columns), or of no rows
-    contact events : (capacity, contact_event_columns), or of no rows
-    """
-
-    history: Array
-    contact_events: Array
+    history: Array  # (samples, history_columns), or of no rows
+    contact_events: Array  # (capacity, contact_event_columns), or of no rows
 
 
 class Cases(NamedTuple):
-    """Bodies × motions × scales, the scale running fastest.
+    """Bodies × motions × scales, the scale running fastest."""
 
-    Attributes
-    ----------
-    bodies : (bodies,) BODY
-    starts : (bodies, 2, 3 MOST) coordinates and velocities
-    horizontal, vertical : all motions end to end; ``vertical`` may be empty
-    offsets : (motions + 1,) where each begins
-    dts : (motions,) sampling intervals [s]
-    factors : (motions, scales)
-    substeps, free_samples : (bodies, motions)
-    """
-
-    bodies: NDArray[Any]
-    starts: Array
+    bodies: NDArray[Any]  # (bodies,) BODY
+    starts: Array  # (bodies, 2, 3 MOST) coordinates and velocities
+    # horizontal, vertical: all motions end to end; ``vertical`` may be empty
     horizontal: Array
     vertical: Array
-    offsets: NDArray[np.int64]
-    dts: Array
-    factors: Array
+    offsets: NDArray[np.int64]  # (motions + 1,) where each begins
+    dts: Array  # (motions,) sampling intervals [s]
+    factors: Array  # (motions, scales)
+    # substeps, free_samples: (bodies, motions)
     substeps: NDArray[np.int64]
     free_samples: NDArray[np.int64]
 
@@ -136,17 +112,7 @@ class Instant(NamedTuple):
 
 @entry_kernel
 def integrate_cases(numbers, cases, closing, book, w, outcome):
-    """Integrate the cases of some ``numbers``, and keep their outcomes.
-
-    Parameters
-    ----------
-    numbers : of the cases to integrate
-    cases : Cases
-    closing : as of integrate
-    book : Book, of no rows
-    w : WORK
-    outcome : (all cases,) OUTCOME
-    """
+    """Integrate the cases of some ``numbers``, and keep their outcomes; ``book`` has no rows."""
     motions, scales = cases.factors.shape
     for number in numbers:
         b = number // (motions * scales)
@@ -316,16 +282,8 @@ def integrate(p, shaking, start, closing, book, w):
                 if w.met >= MOST_CONTACT_EVENTS:
                     w.forced += 1
                 ah, av = ground_at(sample, tau)
-                count = _handle(
-                    p,
-                    w,
-                    Instant((i + tau) * dt, ah, av),
-                    coarser,
-                    False,
-                    False,
-                    book.contact_events,
-                    count,
-                )
+                instant = Instant((i + tau) * dt, ah, av)
+                count = _handle(p, w, instant, coarser, False, False, book.contact_events, count)
                 fresh = True
                 if w.met > 10 * MOST_CONTACT_EVENTS:
                     tau = 1.0
@@ -420,14 +378,10 @@ def _contact_event_in_step(p, w, at_end, stretch):
 
 @kernel
 def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
-    """Change the mode at a contact event, whose failing channels are in ``w.fails``.
+    """Change the mode at a contact event, whose failing channels are in ``w.fails``; the number of them so far.
 
     ``all_ends``: the state is new (start, end of rest), and only ends that touch count.  ``exclude``: the old
     mode is known to fail.
-
-    Returns
-    -------
-    Number of contact events so far.
     """
     _remember(p, w)
     passes = False

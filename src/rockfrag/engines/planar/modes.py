@@ -5,8 +5,7 @@ from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.planar.search import mode_number, search, take_number, try_mode
 from rockfrag.engines.planar.solve import end_of, look_at, rate, solve
 
-STILL = 1e-11
-"""Fraction of √(g b) below which a speed is rounding."""
+STILL = 1e-11  # fraction of √(g b) below which a speed is rounding
 
 
 @kernel

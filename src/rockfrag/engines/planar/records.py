@@ -20,11 +20,8 @@ from rockfrag.system.system import System
 F, INT = np.float64, np.int64
 Array = NDArray[np.float64]
 
-MOST = 12
-"""Bodies of the longest column."""
-
-TRIES = 1024
-"""Modes that a search tries at most: more than three interfaces have."""
+MOST = 12  # bodies of the longest column
+TRIES = 1024  # modes that a search tries at most: more than three interfaces have
 
 BODY = np.dtype(
     [
@@ -166,22 +163,13 @@ OUTCOME = np.dtype(
 
 
 class Part(NamedTuple):
-    """A planar body as it stands on what is below.
+    """A planar body as it stands on what is below."""
 
-    Attributes
-    ----------
-    shape : the body by itself, from the middle of its base
-    height : of its face above its base [m]
-    lean : by which its uneven base turns it, and its face [rad]
-    offset : of the middle of its base from the middle of the face below [m]
-    face : middle and half width of its face, from the middle of its base [m]
-    """
-
-    shape: geometry.Shape
-    height: float
-    lean: float
-    offset: float
-    face: tuple[float, float]
+    shape: geometry.Shape  # the body by itself, from the middle of its base
+    height: float  # of its face above its base [m]
+    lean: float  # by which its uneven base turns it, and its face [rad]
+    offset: float  # of the middle of its base from the middle of the face below [m]
+    face: tuple[float, float]  # middle and half width of its face, from the middle of its base [m]
 
 
 def parts_of(system: System) -> list[Part]:

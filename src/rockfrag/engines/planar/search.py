@@ -15,8 +15,7 @@ CONSISTENT = 2e-13
 slack of contact events, so that a mode that has just failed is not."""
 UNSOLVED = 1e-6
 """Relative motion of a closed end beyond which the equations of a mode were singular but for rounding."""
-ROUNDING = 1e-10
-"""Violation up to which a mode is taken where none is consistent."""
+ROUNDING = 1e-10  # violation up to which a mode is taken where none is consistent
 LEFT, RIGHT, SLIP = 0, 1, 2
 """What changes between modes: whether an end is closed, or how an interface slides."""
 
@@ -276,24 +275,29 @@ def _is_tried(w, count, number):
 
 
 @kernel
+def _try_next(p, w, impact, force, motion, exclude, count):
+    """Try the mode in ``w`` and enter it at place ``count`` of the list; whether it is consistent."""
+    margin = try_mode(p, w, impact, force, motion)
+    number = mode_number(p, w.closed, w.slides)
+    w.tried[count] = number
+    w.wrong[count] = math.inf if number == exclude else max(0.0, -margin)
+    return margin >= -CONSISTENT and number != exclude
+
+
+@kernel
 def _descend(p, w, impact, force, motion, exclude, count):
     """Mend the worst of the mode in ``w`` until none is left or a mode comes back.
 
     ``exclude``: number of a mode that is known to fail.  What is tried is added to the ``count`` in the list.
-
-    Returns
-    -------
-    Number of modes in the list, and the number of the consistent mode found (-1: none).
+    Returned are the number of modes in it, and the number of the consistent mode found (-1: none).
     """
     while count < w.tried.size:
         number = mode_number(p, w.closed, w.slides)
         if _is_tried(w, count, number):
             return count, -1
-        margin = try_mode(p, w, impact, force, motion)
-        w.tried[count] = number
-        w.wrong[count] = math.inf if number == exclude else max(0.0, -margin)
+        consistent = _try_next(p, w, impact, force, motion, exclude, count)
         count += 1
-        if margin >= -CONSISTENT and number != exclude:
+        if consistent:
             return count, number
         if w.flip[0] < 0:
             return count, -1
@@ -324,11 +328,9 @@ def _try_neighbours(p, w, impact, force, motion, exclude, count):
                     return count, -1
                 if _is_tried(w, count, number):
                     continue
-                margin = try_mode(p, w, impact, force, motion)
-                w.tried[count] = number
-                w.wrong[count] = math.inf if number == exclude else max(0.0, -margin)
+                consistent = _try_next(p, w, impact, force, motion, exclude, count)
                 count += 1
-                if margin >= -CONSISTENT and number != exclude:
+                if consistent:
                     return count, number
         at += 1
     return count, -1
@@ -359,9 +361,7 @@ def _only_touching(p, w):
 def _try_slips(p, w, impact, force, motion, found, count):
     """Try the other ways to slide of the interfaces that a consistent mode changes; sticking goes before sliding.
 
-    Returns
-    -------
-    Number of modes in the list, the mode to take, and whether another one was consistent.
+    Returned are the number of modes in the list, the mode to take, and whether another one was consistent.
     """
     several = False
     for k in range(p.count):
@@ -377,11 +377,9 @@ def _try_slips(p, w, impact, force, motion, found, count):
             number = mode_number(p, w.closed, w.slides)
             if count == w.tried.size or _is_tried(w, count, number):
                 continue
-            margin = try_mode(p, w, impact, force, motion)
-            w.tried[count] = number
-            w.wrong[count] = max(0.0, -margin)
+            consistent = _try_next(p, w, impact, force, motion, -1, count)
             count += 1
-            if margin >= -CONSISTENT:
+            if consistent:
                 several = True
                 if way == 0:
                     found = number
@@ -404,14 +402,10 @@ def _set_all(p, w, closed):
 
 @kernel
 def search(p, w, ah, av, impact, force, motion, exclude):
-    """Set the mode of ``w`` to a consistent one that its touching ends allow, or the least violated.
+    """Set the mode of ``w`` to a consistent one that its touching ends allow, or the least violated; by how much.
 
     The mode in ``w`` is where the search starts.  ``w.moves``: signs of slip that are given.  ``exclude``: number
     of a mode that has just failed, -1 for none.
-
-    Returns
-    -------
-    The violation of the mode found.
     """
     weigh(p, w, ah, av, impact)
     w.searches += 1

@@ -39,11 +39,8 @@ def corner_of(p, w, q, k, end):
 def end_of(p, w, q, k, end, kind):
     """End of interface k in the configuration ``q``.
 
-    ``kind``: 1 a corner on the face, 0 the face's edge against the base, -1 whichever it is.
-
-    Returns
-    -------
-    Point (x, y), tangent (tx, ty), gap [m], how far the corner is beyond the edge [m], kind.
+    ``kind``: 1 a corner on the face, 0 the face's edge against the base, -1 whichever it is.  Returned are point
+    (x, y), tangent (tx, ty), gap [m], how far the corner is beyond the edge [m], and the kind.
     """
     x, y = corner_of(p, w, q, k, end)
     if k == 0:
@@ -120,17 +117,11 @@ def fill_row(q, k, x, y, dx, dy, row):
 
 @kernel
 def solve(p, w, q, v, ah, av, impact, rough=True):
-    """Accelerations of the mode in ``w``, or velocities after an ``impact``, into ``w.out``.
+    """Accelerations of the mode in ``w``, or velocities after an ``impact``, into ``w.out``; whether any are.
 
     Without ``rough`` sliding contacts have no friction: the velocities nearest to ``v`` in kinetic energy that
-    keep the mode.
-
-    Normal forces (impulses) of closed ends go to ``w.normal``, shear of interfaces to ``w.shear``.  ``look_at``
-    must have been called with ``q``.
-
-    Returns
-    -------
-    Whether the equations had a solution.
+    keep the mode.  Normal forces (impulses) of closed ends go to ``w.normal``, shear of interfaces to ``w.shear``.
+    ``look_at`` must have been called with ``q``.
     """
     if p.count == 1 and not impact:
         return _solve_lone(p, w, q, v, ah, av)
@@ -304,13 +295,9 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
 @kernel
 def _carry(p, w, q, ah, av, standing):
     """Forces under the bodies that stand still: what they carry, and what the ground's acceleration asks for."""
-    push_x, push_y, moment = (
-        0.0,
-        0.0,
-        0.0,
-    )  # of what is above on the body, the moment clockwise about its centre
     for k in range(standing, 0, -1):
         body = k - 1
+        # of what is above on the body, the moment clockwise about its centre
         push_x, push_y, moment = 0.0, 0.0, 0.0
         if k < p.count:
             first = True

@@ -10,37 +10,26 @@ SLACK, TOUCH = 1e-12, 1e-13
 """Slack before a contact event is seen, so that what has just begun is not taken for its end: forces over weight;
 speeds over √(g b) and lengths over b [-]."""
 
-ERROR = 1e-7
-"""Error of a step above which it is taken again, half as long [-]."""
-SHORTEST = 1e-7
-"""Fraction of a sampling interval below which a step is not made shorter."""
-
+ERROR = 1e-7  # error of a step above which it is taken again, half as long [-]
+SHORTEST = 1e-7  # fraction of a sampling interval below which a step is not made shorter
 HANGING = 1e-6
 """Fraction of the half width by which a corner that comes in under an edge hangs beside the face and not over it:
 its base is at a right angle to the face, and the body has fallen."""
 
-WIDTH = 1e-12
-"""Fraction of a step to which the time of a contact event is found."""
-
+WIDTH = 1e-12  # fraction of a step to which the time of a contact event is found
 GAP, EDGE = 0, 2
 """Channels of an interface: its two ends (gap, or pressure of a closed end), their edges, ..."""
-FRICTION, FALL = 4, 5
-"""... stick or slip, and the fall of the body above it."""
+FRICTION, FALL = 4, 5  # ... stick or slip, and the fall of the body above it
 
 
 class Stretch(NamedTuple):
-    """A stretch of time over which the accelerations of the ground are linear.
+    """A stretch of time over which the accelerations of the ground are linear."""
 
-    Attributes
-    ----------
-    length : [s]
-    ah, av : horizontal and vertical acceleration at its beginning [m/s²]
-    rise_h, rise_v : by which they rise over it
-    """
-
-    length: float
+    length: float  # [s]
+    # ah, av: horizontal and vertical acceleration at its beginning [m/s²]
     ah: float
     av: float
+    # rise_h, rise_v: by which they rise over it
     rise_h: float
     rise_v: float
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.engines.spatial._body import BODY, MOST_VERTICES, SIZE
+from rockfrag.engines.spatial._describe import fill_body
 from rockfrag.errors import InputError
 from rockfrag.system.body import Circle, Polygon
 from rockfrag.system.system import System
@@ -15,9 +16,6 @@ Array = NDArray[np.float64]
 
 NEVER_SLIDES = 20.0
 """Coefficient of friction of a contact without any: a body in space that only sticks is no closed model [-]."""
-
-FEET = 32
-"""Points of a rim of which four carry a round body that slides flat."""
 
 
 def kernel_body(system: System, g: float = GRAVITY) -> np.void:
@@ -82,11 +80,9 @@ def polygon_body(
             f"base: {count} vertices are more than the {MOST_VERTICES} that a body in space may have; "
             "leave out those that hardly turn the outline, or give a circle."
         )
-    points = np.column_stack([vertices, np.full(count, -height)])
-    edges = np.roll(vertices, -1, axis=0) - vertices
-    reach = (edges[:, 1] * vertices[:, 0] - edges[:, 0] * vertices[:, 1]) / np.hypot(*edges.T)
-    furthest = float(np.hypot(*vertices.T).max())
-    return _filled(points, inertia, height, friction, g, (float(reach.min()), furthest))
+    body = np.zeros(1, BODY)
+    body["count"], body["points"][0, :count, :2] = count, vertices
+    return _filled(body, inertia, height, friction, g)
 
 
 def round_body(
@@ -113,42 +109,25 @@ def round_body(
     InputError
         If the centre of mass is not above the base.
     """
-    turns = np.arange(FEET) * 2 * math.pi / FEET
-    feet = np.asarray(centre) + radius * np.column_stack([np.cos(turns), np.sin(turns)])
-    points = np.column_stack([feet, np.full(FEET, -height)])
-    off = float(np.hypot(*centre))
-    body = _filled(points, inertia, height, friction, g, (radius - off, radius + off))
-    across = (inertia[0, 0] + inertia[1, 1]) / 2
+    body = np.zeros(1, BODY)
     body["rim"], body["centre"] = radius, centre
-    body["pass_turn"] = math.pi * math.sqrt(1 + radius**2 / (across + height**2))
-    body["slide_turn"] = math.pi * math.sqrt(1 + radius**2 / across)
-    return body
+    return _filled(body, inertia, height, friction, g)
 
 
 def _filled(
-    points: Array,
+    body: NDArray[np.void],
     inertia: Array,
     height: float,
     friction: tuple[float, float],
     g: float,
-    reach: tuple[float, float],
 ) -> np.void:
-    """Return the record of a body whose base reaches so far at least and at most from below its centre of mass."""
-    if not reach[0] > 0:
+    """Complete the record of a body whose base is in it."""
+    body["height"], body["inertia"] = height, inertia
+    body["static"], body["kinetic"] = friction
+    if not fill_body(body.view(np.recarray)[0], g):
         raise InputError(
             "base: the centre of mass is not above the base, so the body cannot stand."
         )
-    count = len(points)
-    squares = np.einsum("ni,ni->n", points, points)
-    about = inertia + squares[:, None, None] * np.eye(3) - np.einsum("ni,nj->nij", points, points)
-    body = np.zeros(1, BODY)
-    body["count"], body["height"] = count, height
-    body["static"], body["kinetic"] = friction
-    body["barrier"] = g * (math.hypot(reach[0], height) - height)
-    body["nearest"], body["furthest"] = reach
-    body["inertia"], body["inverse"] = inertia, np.linalg.inv(inertia)
-    body["points"][0, :count], body["about"][0, :count] = points, about
-    body["about_inverse"][0, :count] = np.linalg.inv(about)
     made: np.void = body[0]
     return made
 
@@ -163,6 +142,7 @@ def standing(body: np.void, turned: float = 0.0) -> Array:
 
 def later_peaks(acceleration: Array) -> Array:
     """Return the largest horizontal and vertical acceleration from each sample on, shape (n, 2) [m/s²]."""
-    level = np.hypot(acceleration[:, 0], acceleration[:, 1])
+    x, y = acceleration[:, 0], acceleration[:, 1]
+    level = np.sqrt(x * x + y * y)
     both = np.stack([level, np.abs(acceleration[:, 2])], axis=1)
     return np.ascontiguousarray(np.maximum.accumulate(both[::-1], axis=0)[::-1])

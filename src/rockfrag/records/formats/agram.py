@@ -6,6 +6,7 @@ rows of ten (F8.2), which need no blank between them.
 """
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 
 from obspy import UTCDateTime
@@ -39,17 +40,14 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 def _parse(text: TextFile) -> list[Channel]:
     channels, quantities = [], []
-    line = text.find(_RATE_LINE)
-    while line >= 0:
-        following = text.find(_RATE_LINE, line + 1)
-        stop = len(text) if following < 0 else following - _ABOVE
+    for line, following in text.parts(_RATE_LINE):
+        stop = following if following == len(text) else following - _ABOVE
         section, dt, unit = _section(text, line, stop)
         samples = section.samples(text)
         quantities.append(section.quantity)
         if section.quantity == "acceleration":
             plain = Channel(section.count, dt, samples.copy, unit)
             channels.append(_channel(text.lines(max(0, line - _ABOVE), line), plain))
-        line = following
     refuse_others(text, quantities)
     return channels
 
@@ -87,11 +85,8 @@ def _channel(words: list[str], values: Channel) -> Channel:
             except (ValueError, OverflowError, TypeError):
                 start = None
     earthquake = next((line.strip() for line in words if "EARTHQUAKE" in line.upper()), "")
-    return Channel(
-        npts=values.npts,
-        dt=values.dt,
-        samples=values.samples,
-        unit=values.unit,
+    return replace(
+        values,
         start_time=start,
         station=words[0].strip() if words else "",
         component=component,

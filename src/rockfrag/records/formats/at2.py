@@ -206,12 +206,6 @@ def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
 
     The unit is ``stats.rockfrag.unit``. Values have the digits that tell every float64 from its
     neighbours.
-
-    Raises
-    ------
-    InputError
-        If the stream has more or fewer than one trace, a sample is not finite, or the trace does not
-        state a unit of acceleration.
     """
     trace, samples = one_trace(stream, filename)
     unit = stated_unit(trace, filename)

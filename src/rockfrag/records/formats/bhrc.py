@@ -38,13 +38,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
-    channels = []
-    first = text.find(_HEAD)
-    while first >= 0:
-        stop = text.until(_END, first)
-        channels.append(_component(text, first, stop))
-        first = text.find(_HEAD, stop) if stop < len(text) else -1
-    return channels
+    return [_component(text, first, stop) for first, stop in text.parts(_HEAD, _END)]
 
 
 def _component(text: TextFile, first: int, stop: int) -> Channel:

@@ -8,10 +8,7 @@ pairs of time and acceleration in g/10.
 """
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
-
-from obspy import UTCDateTime
+from dataclasses import replace
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
@@ -46,6 +43,7 @@ _VALUES = re.compile(
     re.I | re.M,
 )
 _END = re.compile(_VALUES.pattern + rb"|^[ \t]*/&|" + _HEAD.pattern, re.I | re.M)
+_CHANNEL_END = re.compile(rb"^[ \t]*/&", re.M)
 _UNIT = re.compile(
     r"(?:units?\s*(?::|of|are|=)|\bin)\s*(?P<unit>[CM]*M\s*/\s*S\w*(?:\s*/\s*S\w*)?\d?|CM|G\s*/\s*10|"
     r"1/10\s*G|G)(?![A-Z])",
@@ -53,18 +51,6 @@ _UNIT = re.compile(
 )
 _DEFAULT_UNITS = {"acceleration": "cm/s2", "velocity": "cm/s", "displacement": "cm"}
 _MAX_HEADER = 60
-
-
-@dataclass(frozen=True)
-class _Words:
-    """What the text header of a channel says."""
-
-    network: str
-    station: str
-    station_name: str
-    component: str
-    earthquake: str
-    start_time: UTCDateTime | None
 
 
 def _recognise(lines: list[str], name: str) -> bool:
@@ -84,13 +70,13 @@ def _parse(text: TextFile) -> list[Channel]:
         text.refuse(
             "this file holds response spectra (volume 3), not acceleration; give the V2 file"
         )
-    for first, stop in _channel_lines(text):
-        words = _words(text, first, stop)
+    for first, stop in text.parts(_HEAD, _CHANNEL_END):
+        words = text.lines(first, min(stop, first + _MAX_HEADER))
         at_values = text.find(_VALUES, first, stop)
         if at_values < 0 and is_pairs_header(text, first):
             pairs = read_pairs(text, first, stop)
             quantities.append("acceleration")
-            channels.append(_channel(words, pairs.channel()))
+            channels.append(_described(pairs.channel(), words))
         elif at_values < 0:
             text.fail("no line with the number of samples below; the file is cut short", first)
         while at_values >= 0:
@@ -99,20 +85,10 @@ def _parse(text: TextFile) -> list[Channel]:
             samples = section.samples(text)
             if section.quantity == "acceleration":
                 plain = Channel(section.count, dt, samples.copy, unit)
-                channels.append(_channel(words, plain))
+                channels.append(_described(plain, words))
             at_values = text.find(_VALUES, section.stop, stop)
     refuse_others(text, quantities)
     return channels
-
-
-def _channel_lines(text: TextFile) -> Iterator[tuple[int, int]]:
-    """Yield the first line of each channel and the line after its last."""
-    end = re.compile(rb"^[ \t]*/&", re.M)
-    first = text.find(_HEAD)
-    while first >= 0:
-        stop = text.until(end, first)
-        yield first, stop
-        first = text.find(_HEAD, stop + 1) if stop < len(text) else -1
 
 
 def _section(text: TextFile, line: int, stop: int) -> tuple[Section, float, str]:
@@ -137,9 +113,8 @@ def _section(text: TextFile, line: int, stop: int) -> tuple[Section, float, str]
     return section, positive_step(text, dt, line), stated_unit
 
 
-def _words(text: TextFile, first: int, stop: int) -> _Words:
-    """Read the text header: the line below the station's number has its name."""
-    lines = text.lines(first, min(stop, first + _MAX_HEADER))
+def _described(values: Channel, lines: list[str]) -> Channel:
+    """Add what the text header says: the line below the station's number has its name."""
     network = station = name = component = ""
     start = None
     for number, line in enumerate(lines):
@@ -158,7 +133,14 @@ def _words(text: TextFile, first: int, stop: int) -> _Words:
         found = re.search(r"(?:start|trigger)\s+time\s*:(.*)$", line, re.IGNORECASE)
         if found and start is None:
             start = american_time(found[1])
-    return _Words(network, station, name, component, _earthquake(lines), start)
+    return replace(
+        values,
+        start_time=start,
+        network=network,
+        station=station,
+        component=component,
+        details={"station_name": name, "earthquake": _earthquake(lines), **values.details},
+    )
 
 
 def _earthquake(lines: list[str]) -> str:
@@ -166,24 +148,6 @@ def _earthquake(lines: list[str]) -> str:
     words = [re.split(r"\s{3,}|\(origin", line.strip(), flags=re.I)[0] for line in lines[1:4]]
     words = [word for word in words if word and not word.upper().startswith("UNCORRECTED")]
     return ", ".join(words[:2])
-
-
-def _channel(words: _Words, values: Channel) -> Channel:
-    return Channel(
-        npts=values.npts,
-        dt=values.dt,
-        samples=values.samples,
-        unit=values.unit,
-        start_time=words.start_time,
-        network=words.network,
-        station=words.station,
-        component=words.component,
-        details={
-            "station_name": words.station_name,
-            "earthquake": words.earthquake,
-            **values.details,
-        },
-    )
 
 
 FORMAT = Format("CSMIP", _recognise, _parse)

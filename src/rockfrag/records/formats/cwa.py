@@ -13,7 +13,7 @@ from obspy import UTCDateTime
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import field_width, positive_step
+from rockfrag.records.parsing.fortran_sections import field_width, in_rows, positive_step
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import clock_time, step_of_times
@@ -102,18 +102,14 @@ def _check_length(text: TextFile, stated: str, length: float, line: int) -> None
 def _table(text: TextFile, start: int, words: str, columns: int) -> NDArray[np.float64]:
     width = field_width(f"({words})") or 10
     values = text.numbers(start, None, width)
-    if values.size == 0 or values.size % columns:
-        text.fail(
-            f"{values.size} values do not fill rows of {columns}; the file is cut short", start
-        )
-    return values.reshape(-1, columns)
+    return in_rows(text, values, columns, start)
 
 
 def _time(stated: tuple[str, str] | None) -> UTCDateTime | None:
     match = _TIME.search(stated[0]) if stated else None
     if match is None or stated is None:
         return None
-    start = clock_time(match["y"], match["m"], match["d"], match["h"], match["min"], match["s"])
+    start = clock_time(*match.groups())
     zone = re.search(r"(?:GMT|UTC)\s*([+-]\d+)", stated[1])
     return None if start is None else start - 3600.0 * (int(zone[1]) if zone else 0)
 

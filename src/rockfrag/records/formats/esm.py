@@ -97,9 +97,7 @@ def time_of(words: str) -> UTCDateTime | None:
     for pattern in _TIMES:
         match = pattern.match(words)
         if match:
-            return clock_time(
-                match["y"], match["m"], match["d"], match["h"], match["min"], match["s"]
-            )
+            return clock_time(*match.group("y", "m", "d", "h", "min", "s"))
     return None
 
 

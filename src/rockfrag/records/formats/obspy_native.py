@@ -20,7 +20,7 @@ from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
 from rockfrag.errors import InputError
 from rockfrag.records.foreign_files import foreign_kind
-from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.channel import Channel, cut_short_step
 from rockfrag.records.parsing.format import head_lines
 from rockfrag.records.parsing.number_table import first_odd_row
 from rockfrag.records.parsing.quantities import canonical_unit
@@ -45,28 +45,15 @@ _WATER_LEVEL = 60.0
 MOST_SAMPLES = 20_000_000
 """Samples of a file, all channels together: a day at 200 Hz has 17 million."""
 
-_SMALL = 2**20
-"""Bytes of a file that cannot have so many."""
+_SMALL = 2**20  # bytes of a file that cannot have so many
 _SHOWN = 60
 
 
 def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Channel]]:
-    """Return the format name and the channels of a file by ObsPy's own readers.
+    """Return the format name and the channels of a file, ``.gz`` unpacked, by ObsPy's own readers.
 
     MiniSEED needs a StationXML file (``.xml``) in the same folder that describes its channels;
     without one the samples have no unit.
-
-    Parameters
-    ----------
-    path
-        The file; ``.gz`` is unpacked.
-    cut_short
-        Whether to read what there is of a file with fewer samples than its header promises.
-
-    Raises
-    ------
-    InputError
-        If ObsPy knows no format for the file or cannot read it, or it holds no acceleration.
     """
     head = read_head(path, HEAD_BYTES)
     kind = foreign_kind(head)
@@ -234,13 +221,7 @@ def _shortness(trace: Trace, format_name: str, path: Path, cut_short: bool) -> l
     if found == promised:
         return []
     if cut_short and found < promised:
-        return [
-            {
-                "step": "read a file that is cut short",
-                "samples_promised": promised,
-                "samples_read": found,
-            }
-        ]
+        return [cut_short_step(promised, found)]
     raise InputError(
         f"{path}: the header promises {promised} samples ({float(duration):g} s) but {found} follow; "
         "the file is cut short, or its header is wrong."

@@ -38,19 +38,14 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
-    at_series = text.find(_SERIES_BYTES)
-    if at_series < 0:
+    if text.find(_SERIES_BYTES) < 0:
         text.fail("no timeSeries Path in this script")
     unit = _UNIT.search(text.data)
     stated = canonical_unit(unit["unit"].decode("ascii", errors="replace")) if unit else ""
     promised = int(unit["count"]) if unit and unit["count"] else None
-    channels = []
-    while at_series >= 0:
-        following = text.find(_SERIES_BYTES, at_series + 1)
-        stop = len(text) if following < 0 else following
-        channels.append(_series(text, at_series, stop, stated, promised))
-        at_series = following
-    return channels
+    return [
+        _series(text, first, stop, stated, promised) for first, stop in text.parts(_SERIES_BYTES)
+    ]
 
 
 def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | None) -> Channel:
@@ -141,14 +136,7 @@ is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:
-    """Write one trace as a Path series with its unit in a comment; OpenSees can ``source`` the file.
-
-    Raises
-    ------
-    InputError
-        If the stream has more or fewer than one trace, a sample is not finite, or the trace does not
-        state a unit of acceleration.
-    """
+    """Write one trace as a Path series with its unit in a comment; OpenSees can ``source`` the file."""
     trace, samples = one_trace(stream, filename)
     unit = stated_unit(trace, filename)
     dt = float(f"{trace.stats.delta:.12g}")

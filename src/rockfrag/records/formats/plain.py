@@ -9,7 +9,7 @@ stated must agree, with the file and with what the user names; what is not state
 
 import os
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -47,17 +47,14 @@ _OF_OBSPY = re.compile(
 """First words of text formats that ObsPy reads, or that are refused by name."""
 
 _MIN_ROWS = 3
-_RISING = 0.9
-"""Fraction of the rows in which a column without title must rise to be one of times."""
-
+_RISING = 0.9  # fraction of the rows in which a column without title must rise to be one of times
 _FEW_ROWS = 20
 
 _SMOOTHER = 0.6
 """Ratio of steps along columns to steps along rows below which columns are channels side by side."""
 
 _SHOWN = 60
-_LONGEST_ROUND = 3
-"""Significant digits of an interval that stands above samples of more digits."""
+_LONGEST_ROUND = 3  # significant digits of an interval that stands above samples of more digits
 
 
 @dataclass(frozen=True)
@@ -165,9 +162,7 @@ def _with_numbers_above(text: TextFile, layout: _Layout, lines: list[str]) -> _L
         below = next((x for x in lines[table.start + 1 :] if not is_blank(x)), "")
         if _is_count_row(row, numbers_of(below, table.decimal_comma), table.columns):
             above = [(table.start, word) for word in row]
-            table = NumberTable(
-                table.start + 1, table.columns, table.words, table.numbers, table.decimal_comma
-            )
+            table = replace(table, start=table.start + 1)
     if not above:
         return layout
     # a row that begins with anything else than a count may have one number of columns before it
@@ -199,15 +194,8 @@ def _agreeing(
             text.fail(
                 f"{own:g} {what} here, but {stated:g} in the words of the header; mend it", line
             )
-    return _Layout(
-        table,
-        layout.stop,
-        layout.facts,
-        layout.titles,
-        npts if npts is not None else layout.npts,
-        dt if dt is not None else layout.dt,
-        layout.steps,
-    )
+    npts, dt = (layout.npts if npts is None else npts), (layout.dt if dt is None else dt)
+    return replace(layout, table=table, npts=npts, dt=dt)
 
 
 def _is_count_row(row: list[str], below: list[str], columns: int) -> bool:
@@ -299,7 +287,8 @@ def _series(text: TextFile, layout: _Layout, dt: float | None) -> Channel:
         values, layout = _without_leading(text, layout, values, dt)
     stated = next(iter(layout.titles), Column("", "", "", ""))
     _refuse_other(text, layout, stated.quantity or layout.facts.quantity)
-    _check_count(text, layout, values.size)
+    if layout.npts is not None:
+        text.check_count(layout.npts, values.size, layout.line)
     step = layout.dt if layout.dt is not None else dt
     if step is None:
         what = "one column" if layout.table.columns == 1 else "rows of numbers"
@@ -390,16 +379,6 @@ def _notation(word: str) -> tuple[bool, int]:
     return mantissa != word, len(decimals[1]) if len(decimals) > 1 else -1
 
 
-def _check_count(text: TextFile, layout: _Layout, found: int) -> None:
-    promised = layout.npts
-    if promised is not None and promised != found and not (text.cut_short and 0 < found < promised):
-        text.fail(
-            f"the header promises {promised} samples but {found} follow; "
-            "the file is cut short, or its header is wrong",
-            layout.line,
-        )
-
-
 def _refuse_other(text: TextFile, layout: _Layout, quantity: str) -> None:
     """Refuse samples that are stated to be of another quantity than acceleration."""
     if quantity not in ("", "acceleration"):
@@ -427,7 +406,8 @@ def _channels(
             "is, write the word or the unit into its title",
             layout.line - 1,
         )
-    _check_count(text, layout, table.shape[0])
+    if layout.npts is not None:
+        text.check_count(layout.npts, table.shape[0], layout.line)
     names = [columns[i].component for i in chosen]
     channels = []
     for n, i in enumerate(chosen):
@@ -546,11 +526,6 @@ def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
     """Write one trace as CSV, time and acceleration, that read back to the same samples.
 
     The titles state the unit where ``stats.rockfrag.unit`` has it.
-
-    Raises
-    ------
-    InputError
-        If the stream has more or fewer than one trace, or a sample is not finite.
     """
     trace, samples = one_trace(stream, filename)
     unit = trace.stats.get("rockfrag", {}).get("unit", "")

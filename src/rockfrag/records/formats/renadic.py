@@ -5,6 +5,7 @@ second line.
 """
 
 import re
+from dataclasses import replace
 from pathlib import PurePath
 
 from rockfrag.records.parsing.channel import Channel
@@ -25,14 +26,10 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
-    channels = []
-    first = text.find(_HEAD)
-    while first >= 0:
-        stop = text.until(_END, first)
-        pairs = read_pairs(text, first, stop)
-        channels.append(_channel(text, first, pairs.channel()))
-        first = text.find(_HEAD, stop + 1) if stop < len(text) else -1
-    return channels
+    return [
+        _channel(text, first, read_pairs(text, first, stop).channel())
+        for first, stop in text.parts(_HEAD, _END)
+    ]
 
 
 def _channel(text: TextFile, first: int, values: Channel) -> Channel:
@@ -41,11 +38,8 @@ def _channel(text: TextFile, first: int, values: Channel) -> Channel:
     component = re.search(r"^\s*CHAN\s*\d+\s*:\s*(\S+)", header, re.M | re.I)
     trigger = re.search(r"TRIGGER\s+TIME\s*:(.*)$", header, re.M | re.I)
     number = lines[1].strip()
-    return Channel(
-        npts=values.npts,
-        dt=values.dt,
-        samples=values.samples,
-        unit=values.unit,
+    return replace(
+        values,
         start_time=american_time(trigger[1]) if trigger else None,
         station=_station(PurePath(text.name).name.split(".")[0], number),
         component=component[1] if component else "",

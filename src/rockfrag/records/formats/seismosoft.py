@@ -89,14 +89,7 @@ is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:
-    """Write one trace as a SeismoSoft accelerogram that reads back to the same samples.
-
-    Raises
-    ------
-    InputError
-        If the stream has more or fewer than one trace, a sample is not finite, or the trace does not
-        state a unit of acceleration.
-    """
+    """Write one trace as a SeismoSoft accelerogram that reads back to the same samples."""
     trace, samples = one_trace(stream, filename)
     unit, facts = stated_unit(trace, filename), trace.stats.rockfrag
     dt = float(f"{trace.stats.delta:.12g}")

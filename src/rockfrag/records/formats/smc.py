@@ -71,11 +71,8 @@ def _parse(text: TextFile) -> list[Channel]:
     station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.IGNORECASE)
     missing = whole[_MISSING]
     return [
-        Channel(
-            npts=values.npts,
-            dt=values.dt,
-            samples=values.samples,
-            unit=values.unit,
+        replace(
+            values,
             start_time=_start(whole),
             station=_station_code(words[2], whole, missing),
             component=_component(whole, station[2].strip() if station else ""),

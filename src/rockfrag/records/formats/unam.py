@@ -14,7 +14,7 @@ from obspy import UTCDateTime
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import field_width, positive_step
+from rockfrag.records.parsing.fortran_sections import field_width, in_rows, positive_step
 from rockfrag.records.parsing.header_keys import header_keys
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
@@ -48,8 +48,9 @@ def _parse(text: TextFile) -> list[Channel]:
         text.fail("sampling interval or number of samples is not a number")
     dt = positive_step(text, dt, at_data)
     table = _table(text, rulers[1] + 1, facts, len(steps))
-    _check_count(text, rulers[1] + 1, table.shape[0], promised, dt)
     extra = table.shape[0] - promised
+    if not 0 <= extra < 1 / dt:
+        text.check_count(promised, table.shape[0], rulers[1] + 1)
     step = {"step": "read samples beyond the nominal duration", "samples": extra}
     unit = canonical_unit(facts.get("unidades de los datos", "").split("(")[0])
     return [
@@ -77,20 +78,7 @@ def _table(text: TextFile, start: int, facts: dict[str, str], columns: int) -> N
     values = text.numbers(start, None, field_width(f"({form})"))
     if text.cut_short:
         values = values[: values.size // columns * columns]
-    if values.size == 0 or values.size % columns:
-        text.fail(
-            f"{values.size} values do not fill rows of {columns}; the file is cut short", start
-        )
-    return values.reshape(-1, columns)
-
-
-def _check_count(text: TextFile, line: int, found: int, promised: int, dt: float) -> None:
-    if not promised <= found < promised + 1 / dt and not (text.cut_short and found < promised):
-        text.fail(
-            f"the header promises {promised} samples but {found} follow; "
-            "the file is cut short, or its header is wrong",
-            line,
-        )
+    return in_rows(text, values, columns, start)
 
 
 def _list(facts: dict[str, str], key: str) -> list[str]:

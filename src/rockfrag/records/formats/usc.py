@@ -4,6 +4,7 @@ Each text line has its length in columns 73 and 74, which tells the format from 
 """
 
 import re
+from dataclasses import replace
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
@@ -28,14 +29,10 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 def _parse(text: TextFile) -> list[Channel]:
     channels = []
-    first = text.find(_HEAD)
-    while first >= 0:
-        following = text.find(_HEAD, first + 1)
-        stop = len(text) if following < 0 else following
+    for first, stop in text.parts(_HEAD):
         last = text.find(re.compile(rb"^[ \t]*/&", re.M), first, stop)
         pairs = read_pairs(text, first, stop if last < 0 else last)
         channels.append(place_of(text.lines(first, first + _HEADER), pairs.channel()))
-        first = following
     return channels
 
 
@@ -49,15 +46,8 @@ def place_of(words: list[str], values: Channel) -> Channel:
             station, name = found[1], lines[number + 1] if lines[number + 1 :] else ""
         found = re.match(r"COMP\w*\s+(\S+)", line, re.IGNORECASE)
         component = found[1] if found and not component else component
-    return Channel(
-        npts=values.npts,
-        dt=values.dt,
-        samples=values.samples,
-        unit=values.unit,
-        station=station,
-        component=component,
-        details={"station_name": name, "earthquake": _earthquake(lines), **values.details},
-    )
+    details = {"station_name": name, "earthquake": _earthquake(lines), **values.details}
+    return replace(values, station=station, component=component, details=details)
 
 
 def _earthquake(lines: list[str]) -> str:

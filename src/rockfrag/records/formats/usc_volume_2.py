@@ -36,11 +36,8 @@ _PEAK = re.compile(
 _COUNT_IN_WORDS = re.compile(r"(?P<count>\d+)\s+INSTRUMENT\s+AND\s+BASELINE\s+CORRECTED", re.I)
 _STEP_IN_WORDS = re.compile(r"SPACED\s+INTERVALS?\s+OF\s+(?P<dt>[\d.]+)\s*SEC", re.IGNORECASE)
 _WHOLE_NUMBERS = re.compile(rb"^[ \t]*(?:-?\d+[ \t]+){9,}-?\d+[ \t]*$", re.M)
-_AS_STATED = 0.01
-"""Share by which the largest value may be off the stated peak."""
-
-_NUMBER_LINES = 7 + 13
-"""Lines of 100 integers (16I5) and of 100 reals (8F10) above the samples."""
+_AS_STATED = 0.01  # share by which the largest value may be off the stated peak
+_NUMBER_LINES = 7 + 13  # lines of 100 integers (16I5) and of 100 reals (8F10) above the samples
 _QUANTITIES = {"ACC": "acceleration", "VEL": "velocity", "DIS": "displacement"}
 _MAX_HEADER = 60
 _SECOND_LINES = 6
@@ -56,15 +53,11 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 def _parse(text: TextFile) -> list[Channel]:
     channels, quantities = [], []
-    first = text.find(_HEAD)
-    while first >= 0:
-        following = text.find(_HEAD, first + 1)
-        stop = len(text) if following < 0 else following
+    for first, stop in text.parts(_HEAD):
         line = text.find(_VALUES, first, stop)
         if line < 0:
             channels.append(_in_words(text, first, stop))
             quantities.append("acceleration")
-            first = following
             continue
         words = text.lines(first, min(line, first + _MAX_HEADER))
         while line >= 0:
@@ -76,7 +69,6 @@ def _parse(text: TextFile) -> list[Channel]:
                 plain = Channel(section.count, dt, samples.copy, unit)
                 channels.append(place_of(words, plain))
             line = text.find(_VALUES, section.stop, stop)
-        first = following
     refuse_others(text, quantities)
     return channels
 
@@ -97,12 +89,7 @@ def _in_words(text: TextFile, first: int, stop: int) -> Channel:
     if values.size == 3 * promised:
         # velocity and displacement follow
         values = values[:promised]
-    if values.size != promised and not (text.cut_short and 0 < values.size < promised):
-        text.fail(
-            f"the header promises {promised} samples but {values.size} follow; "
-            "the file is cut short, or its header is wrong",
-            line,
-        )
+    text.check_count(promised, values.size, line)
     _check_peak(text, words, values, line)
     unit = canonical_unit(peak["unit"].upper().replace("CMS", "CM"))
     dt = positive_step(text, float(step["dt"]), first)

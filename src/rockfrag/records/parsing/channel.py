@@ -16,47 +16,38 @@ from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 _FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
 
 
+def cut_short_step(promised: int, found: int) -> dict[str, Any]:
+    """Return the step of the provenance of a file with fewer samples than its header promises."""
+    return {
+        "step": "read a file that is cut short",
+        "samples_promised": promised,
+        "samples_read": found,
+    }
+
+
 @dataclass(frozen=True)
 class Channel:
-    """One acceleration history as a file stores it.
+    """One acceleration history as a file stores it."""
 
-    Attributes
-    ----------
-    npts
-        Number of samples.
-    dt
-        Sampling interval [s].
-    samples
-        Gives the samples in the unit of the file, shape (npts,).
-    unit
-        Canonical unit (``g``, ``cm/s2``, …); empty if the file does not state it.
-    start_time
-        Time of the first sample, or None if the file does not state it; a time before 1900 or after
-        2100 is a mistake of the header and counts as not stated.
-    network, station, location, code
-        The SEED names as far as the file has them; a station without a code has its name here.
-    component
-        Orientation as the file words it (``090``, ``N10E``, ``UP``).
-    member
-        Name of the file within an archive of several records, else empty.
-    raw
-        Whether this is a raw recording, whose mean is the zero of the sensor and not motion.
-    details
-        More facts for the metadata: ``station_name``, ``earthquake``, ``title``, …
-    """
-
-    npts: int
-    dt: float
+    npts: int  # number of samples
+    dt: float  # sampling interval [s]
+    # gives the samples in the unit of the file, shape (npts,)
     samples: Callable[[], NDArray[np.float64]]
-    unit: str = ""
+    unit: str = ""  # canonical unit (``g``, ``cm/s2``, …); empty if the file does not state it
+    # time of the first sample, or None if the file does not state it; a time before 1900 or after
+    # 2100 is a mistake of the header and counts as not stated
     start_time: UTCDateTime | None = None
+    # network, station, location, code: the SEED names as far as the file has them; a station without
+    # a code has its name here
     network: str = ""
     station: str = ""
     location: str = ""
     code: str = ""
-    component: str = ""
-    member: str = ""
+    component: str = ""  # orientation as the file words it (``090``, ``N10E``, ``UP``)
+    member: str = ""  # name of the file within an archive of several records, else empty
+    # whether this is a raw recording, whose mean is the zero of the sensor and not motion
     raw: bool = False
+    # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …
     details: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -69,18 +60,7 @@ class Channel:
             object.__setattr__(self, "start_time", None)
 
     def check(self, name: str) -> None:
-        """Check that number of samples and interval can be those of a record.
-
-        Parameters
-        ----------
-        name
-            Name of the file, for the message.
-
-        Raises
-        ------
-        InputError
-            If they are not, with the one that is wrong.
-        """
+        """Check that number of samples and interval can be those of a record; ``name`` is its file's."""
         if self.npts < 1:
             raise InputError(f"{name}: the header promises {self.npts} samples.")
         if not SHORTEST_STEP <= self.dt <= LONGEST_STEP:

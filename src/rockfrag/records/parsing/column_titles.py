@@ -87,14 +87,8 @@ class Column:
 def column_titles(table: NumberTable, row: str) -> list[Column]:
     """Return the columns that the titles above a table name, none where it has no titles.
 
-    The titles stand directly above the numbers, or have a line of units between.
-
-    Parameters
-    ----------
-    table
-        Where the numbers begin.
-    row
-        The first row of them, which shows how titles are separated.
+    The titles stand directly above the numbers, or have a line of units between; ``row``, the first of the
+    numbers, shows how titles are separated.
     """
     if not table.words:
         return []

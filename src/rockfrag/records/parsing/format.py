@@ -9,7 +9,7 @@ from typing import Any
 from obspy import Stream, UTCDateTime
 
 from rockfrag.errors import InputError
-from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.channel import Channel, cut_short_step
 from rockfrag.records.parsing.text_file import (
     HEAD_BYTES,
     NotAcceleration,
@@ -20,31 +20,21 @@ from rockfrag.records.parsing.text_file import (
     read_text,
 )
 
-_LONGEST = 1_000
-"""Characters of a line that are looked at to recognise a format."""
+_LONGEST = 1_000  # characters of a line that are looked at to recognise a format
 
 
 @dataclass(frozen=True)
 class Format:
-    """One record format.
+    """One record format."""
 
-    Attributes
-    ----------
-    name
-        Name of the ObsPy plugin.
-    recognise
-        Tells from the first lines of a file (and its name) whether it is of this format.
-    parse
-        Gives the channels of a file of this format; with ``wants_dt`` also told the sampling
-        interval that the user named.
-    encoding
-        Encoding of text that is not UTF-8, where the format's network writes in one.
-    """
-
-    name: str
+    name: str  # name of the ObsPy plugin
+    # tells from the first lines of a file (and its name) whether it is of this format
     recognise: Callable[[list[str], str], bool]
+    # gives the channels of a file of this format; with ``wants_dt`` also told the sampling interval
+    # that the user named
     parse: Callable[..., list[Channel]]
     wants_dt: bool = False
+    # encoding of text that is not UTF-8, where the format's network writes in one
     encoding: str = ""
 
     def is_format(self, source: Source) -> bool:
@@ -62,20 +52,8 @@ class Format:
     ) -> list[Channel]:
         """Return the acceleration channels of a file.
 
-        Parameters
-        ----------
-        source
-            Path or file object.
-        dt
-            Sampling interval [s] for plain text that does not state its own.
-        cut_short
-            Whether to read what there is of a file with fewer samples than its header promises; a
-            step of the channel says so.
-
-        Raises
-        ------
-        InputError
-            If the file is broken, or holds something other than acceleration.
+        ``dt`` [s] is for plain text that does not state its own. With ``cut_short`` a file with fewer samples than
+        its header promises is read all the same, and a step of the channel says so.
         """
         text = read_text(source, self.encoding)
         try:
@@ -116,13 +94,7 @@ class Format:
         dt: float | None = None,
         **_: Any,
     ) -> Stream:
-        """Return the acceleration channels of a file as an ObsPy stream, in the unit of the file.
-
-        Raises
-        ------
-        InputError
-            If the file is broken, or holds something other than acceleration.
-        """
+        """Return the acceleration channels of a file as an ObsPy stream, in the unit of the file."""
         stream = Stream([channel.trace(headonly) for channel in self.channels(source, dt)])
         if not headonly and (starttime is not None or endtime is not None):
             stream.trim(starttime, endtime, nearest_sample=nearest_sample)
@@ -134,11 +106,7 @@ def _shortened(channel: Channel) -> Channel:
     samples = channel.samples()
     if samples.size == channel.npts:
         return channel
-    step = {
-        "step": "read a file that is cut short",
-        "samples_promised": channel.npts,
-        "samples_read": int(samples.size),
-    }
+    step = cut_short_step(channel.npts, int(samples.size))
     details = {**channel.details, "steps": (*channel.details.get("steps", ()), step)}
     return replace(channel, npts=int(samples.size), samples=samples.copy, details=details)
 

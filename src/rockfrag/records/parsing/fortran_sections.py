@@ -34,13 +34,7 @@ class Section:
 
 
 def integers(text: TextFile, start: int, stop: int, width: int, count: int) -> list[int]:
-    """Return the whole numbers of header lines ``start`` up to ``stop`` (columns of ``width``).
-
-    Raises
-    ------
-    InputError
-        If fewer than ``count`` are there, or one is not a whole number.
-    """
+    """Return the whole numbers of header lines ``start`` up to ``stop`` (columns of ``width``)."""
     values = text.numbers(start, stop, width)
     if values.size < count:
         text.fail(f"{count} whole numbers are expected in this header, not {values.size}", start)
@@ -50,17 +44,22 @@ def integers(text: TextFile, start: int, stop: int, width: int, count: int) -> l
 
 
 def reals(text: TextFile, start: int, stop: int, width: int, count: int) -> list[float]:
-    """Return the numbers of header lines ``start`` up to ``stop`` (columns of ``width``).
-
-    Raises
-    ------
-    InputError
-        If fewer than ``count`` are there.
-    """
+    """Return the numbers of header lines ``start`` up to ``stop`` (columns of ``width``)."""
     values = text.numbers(start, stop, width)
     if values.size < count:
         text.fail(f"{count} numbers are expected in this header, not {values.size}", start)
     return [float(value) for value in values]
+
+
+def in_rows(
+    text: TextFile, values: NDArray[np.float64], columns: int, start: int
+) -> NDArray[np.float64]:
+    """Return the values from line ``start`` on as whole rows, shape (rows, columns)."""
+    if values.size == 0 or values.size % columns:
+        text.fail(
+            f"{values.size} values do not fill rows of {columns}; the file is cut short", start
+        )
+    return values.reshape(-1, columns)
 
 
 def field_width(words: str) -> int | None:
@@ -70,26 +69,14 @@ def field_width(words: str) -> int | None:
 
 
 def refuse_others(text: TextFile, quantities: Iterable[str]) -> None:
-    """Refuse a file that has values, but of acceleration none.
-
-    Raises
-    ------
-    InputError
-        Naming what it holds instead.
-    """
+    """Refuse a file that has values, but of acceleration none."""
     held = sorted(set(quantities))
     if held and "acceleration" not in held:
         text.refuse(f"this file holds {' and '.join(held)}, not acceleration")
 
 
 def positive_step(text: TextFile, dt: float, line: int) -> float:
-    """Return a sampling interval [s] that can be one.
-
-    Raises
-    ------
-    InputError
-        If it is not a number of seconds that recorders have.
-    """
+    """Return a sampling interval [s] that can be one."""
     if not (np.isfinite(dt) and SHORTEST_STEP <= dt <= LONGEST_STEP):
         text.fail(
             f"the header gives {dt:g} s as sampling interval; records have from "

@@ -33,13 +33,7 @@ def header_keys(lines: Iterable[str]) -> dict[str, str]:
 
 
 def number_of(text: TextFile, facts: Mapping[str, str], key: str) -> float:
-    """Return the number of a header's key, a positive one.
-
-    Raises
-    ------
-    InputError
-        If the key is missing or its value begins with no positive number.
-    """
+    """Return the number of a header's key, a positive one."""
     words = facts.get(key, "")
     match = re.match(r"\d+(?:\.\d*)?(?:[Ee][+-]?\d{1,3})?|\.\d+", words)
     value = float(match[0]) if match else 0.0

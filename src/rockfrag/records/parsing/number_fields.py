@@ -30,11 +30,6 @@ def parse_separated(text: bytes) -> NDArray[np.float64]:
     """Parse numbers separated by white space, shape (n,).
 
     Fortran's ``D`` exponents and exponents without a letter (``1.5-101``) are understood.
-
-    Raises
-    ------
-    NumberError
-        At the first token that is not a finite number.
     """
     body = text.strip()
     if not body:
@@ -48,13 +43,7 @@ def parse_separated(text: bytes) -> NDArray[np.float64]:
 
 
 def parse_columns(lines: list[bytes], width: int) -> NDArray[np.float64]:
-    """Parse fixed-width Fortran fields, which need no blank between them, shape (n,).
-
-    Raises
-    ------
-    NumberError
-        At the first line with a field that is not one finite number.
-    """
+    """Parse fixed-width Fortran fields, which need no blank between them, shape (n,)."""
     padded = []
     for line in lines:
         stripped = line.rstrip()

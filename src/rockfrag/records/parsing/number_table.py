@@ -14,36 +14,21 @@ _NEARLY_A_NUMBER = re.compile(
 )
 _DATE = re.compile(r"\d{1,4}-\d{1,2}-\d{1,4}")
 _MARKS = " \t#%!/\"'"
-_RUN = 4
-"""Rows of one width, one below the other, that are samples and not a header of numbers."""
-
-LOOKED_AT = 300
-"""First lines of a file from which its layout is told."""
+_RUN = 4  # rows of one width, one below the other, that are samples and not a header of numbers
+LOOKED_AT = 300  # first lines of a file from which its layout is told
 
 
 @dataclass(frozen=True)
 class NumberTable:
-    """Where the samples of a text file start and what stands above them.
+    """Where the samples of a text file start and what stands above them."""
 
-    Attributes
-    ----------
-    start
-        First row of samples, from zero.
-    columns
-        Numbers in it.
-    words
-        Number (from zero) and words of each line of words above, without the marks of comments.
-    numbers
-        Number (from zero) and numbers of each row of numbers above that is not one of the samples.
-    decimal_comma
-        Whether a comma is the decimal sign although no semicolon separates.
-    """
-
-    start: int
-    columns: int
+    start: int  # first row of samples, from zero
+    columns: int  # numbers in it
+    # number (from zero) and words of each line of words above, without the marks of comments
     words: tuple[tuple[int, str], ...]
+    # number (from zero) and numbers of each row of numbers above that is not one of the samples
     numbers: tuple[tuple[int, tuple[str, ...]], ...]
-    decimal_comma: bool
+    decimal_comma: bool  # whether a comma is the decimal sign although no semicolon separates
 
     @property
     def title(self) -> str:

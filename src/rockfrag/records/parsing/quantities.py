@@ -78,13 +78,7 @@ def quantity_of(unit: str) -> str:
 
 
 def asked_unit(unit: str) -> str:
-    """Check a unit that the user named and return its canonical spelling.
-
-    Raises
-    ------
-    InputError
-        If it is not one of :data:`ASKED_UNITS`.
-    """
+    """Check a unit that the user named and return its canonical spelling."""
     found = canonical_unit(unit)
     if found not in {canonical_unit(known) for known in ASKED_UNITS}:
         raise InputError(

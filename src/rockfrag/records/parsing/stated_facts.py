@@ -66,34 +66,18 @@ _SECONDS = {"ms": 1e-3, "mi": 1e-3, "us": 1e-6, "µs": 1e-6}
 
 @dataclass(frozen=True)
 class StatedFacts:
-    """What is stated, None or empty where it is not.
+    """What is stated, None or empty where it is not."""
 
-    Attributes
-    ----------
-    npts, dt
-        Number of samples and interval [s].
-    unit
-        Canonical unit of acceleration.
-    quantity
-        What the samples are, where words say so: ``acceleration``, ``velocity``, ``force``, …
-    components
-        Names of the components, in the order of the columns.
-    factor
-        A factor that the samples are still to be multiplied by, with its words.
-    details
-        ``earthquake`` and ``station``.
-    contradiction
-        Two statements that exclude each other, in words.
-    """
-
+    # npts, dt: number of samples and interval [s]
     npts: int | None = None
     dt: float | None = None
-    unit: str = ""
+    unit: str = ""  # canonical unit of acceleration
+    # what the samples are, where words say so: ``acceleration``, ``velocity``, ``force``, …
     quantity: str = ""
-    components: tuple[str, ...] = ()
-    factor: str = ""
-    details: dict[str, str] = field(default_factory=dict)
-    contradiction: str = ""
+    components: tuple[str, ...] = ()  # names of the components, in the order of the columns
+    factor: str = ""  # a factor that the samples are still to be multiplied by, with its words
+    details: dict[str, str] = field(default_factory=dict)  # ``earthquake`` and ``station``
+    contradiction: str = ""  # two statements that exclude each other, in words
 
 
 def stated_facts(lines: Sequence[str]) -> StatedFacts:

@@ -4,6 +4,7 @@ import gzip
 import os
 import re
 import zlib
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -15,29 +16,17 @@ from numpy.typing import NDArray
 from rockfrag.errors import InputError
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 
-HEAD_BYTES = 16_384
-"""How much of a file is looked at to recognise its format."""
-
+HEAD_BYTES = 16_384  # how much of a file is looked at to recognise its format
 MAX_BYTES = 256 * 2**20
 """No record is larger: three components of a day at 200 Hz are a third of it."""
 
-MAX_TEXT = 96 * 2**20
-"""Bytes of a text file: three components of a day at 200 Hz have as many."""
-
-MOST_NUMBERS = 20_000_000
-"""Numbers of a table: more than memory should hold beside the text."""
-
-MAX_LINE = 8_192
-"""No line of a known format is longer, comments and citations included."""
-
-MAX_LINES = 6_000_000
-"""No record has more: eight hours of samples at 200 Hz, one a line."""
-
+MAX_TEXT = 96 * 2**20  # bytes of a text file: three components of a day at 200 Hz have as many
+MOST_NUMBERS = 20_000_000  # numbers of a table: more than memory should hold beside the text
+MAX_LINE = 8_192  # no line of a known format is longer, comments and citations included
+MAX_LINES = 6_000_000  # no record has more: eight hours of samples at 200 Hz, one a line
 _BLOCK = 2**20
 _PIECE = 4 * _BLOCK
-_MOST_ZEROS = 4 * _BLOCK
-"""Bytes after which a file that has only zeros is given up."""
-
+_MOST_ZEROS = 4 * _BLOCK  # bytes after which a file that has only zeros is given up
 _TOUCHING = re.compile(rb"(?<=[\d.])([+-])(?=\d*\.)")
 """A sign that begins a number right behind another one, as in Fortran's ``-.12E-01-.13E-01``."""
 
@@ -83,23 +72,13 @@ def read_head(source: Source, size: int = HEAD_BYTES) -> bytes:
 
 @dataclass(frozen=True)
 class TextFile:
-    r"""The bytes of a text file with Unix line ends, read through numbered lines.
+    r"""The bytes of a text file with Unix line ends, read through numbered lines."""
 
-    Attributes
-    ----------
-    name
-        Name for messages.
-    data
-        All bytes, ``\n`` line ends.
-    encoding
-        Encoding of lines that are not UTF-8, where the format has another; empty if it has none.
-    cut_short
-        Whether fewer samples than the header promises are to be read and not refused.
-    """
-
-    name: str
-    data: bytes
+    name: str  # name for messages
+    data: bytes  # all bytes, ``\n`` line ends
+    # encoding of lines that are not UTF-8, where the format has another; empty if it has none
     encoding: str = ""
+    # whether fewer samples than the header promises are to be read and not refused
     cut_short: bool = False
 
     @cached_property
@@ -155,9 +134,30 @@ class TextFile:
         found = self.find(pattern, start)
         return len(self) if found < 0 else found
 
+    def parts(
+        self, head: re.Pattern[bytes], end: re.Pattern[bytes] | None = None
+    ) -> Iterator[tuple[int, int]]:
+        """Yield first line and end of each part that a ``head`` begins: up to its ``end`` or the next one."""
+        first = self.find(head)
+        while first >= 0:
+            stop = self.until(head, first + 1) if end is None else self.until(end, first)
+            yield first, stop
+            first = self.find(head, stop)
+
     def fail(self, what: str, line: int | None = None) -> NoReturn:
         """Raise an :class:`InputError` about a line (from zero) or the whole file."""
         raise InputError(self._sentence(what, line))
+
+    def check_count(
+        self, promised: int, found: int, line: int, noun: str = "samples", each: int = 1
+    ) -> None:
+        """Check that as many numbers were found, ``each`` of them a sample, as the header promises."""
+        if found != promised * each and not (self.cut_short and 0 < found < promised * each):
+            self.fail(
+                f"the header promises {promised} {noun} but {found / each:g} follow; "
+                "the file is cut short, or its header is wrong",
+                line,
+            )
 
     def refuse(self, what: str, line: int | None = None) -> NoReturn:
         """Raise :class:`NotAcceleration`: the file is in order, but holds something else."""
@@ -174,11 +174,6 @@ class TextFile:
 
         With ``width`` the lines are first taken as Fortran fields of that width; where they do not
         fit it (blanks edited away), as separated numbers.
-
-        Raises
-        ------
-        InputError
-            Naming the line of the first thing that is not a finite number.
         """
         stop = len(self) if stop is None else min(stop, len(self))
         body = self.data[self.offset(start) : self.offset(stop)]
@@ -199,24 +194,13 @@ class TextFile:
     def counted(
         self, start: int, stop: int | None, count: int, width: int | None = None
     ) -> NDArray[np.float64]:
-        """Parse lines as numbers and check that there are ``count`` of them, shape (count,).
-
-        Raises
-        ------
-        InputError
-            As :meth:`numbers`, and if there are more or fewer values than the header says.
-        """
+        """Parse lines as numbers and check that there are ``count`` of them, shape (count,)."""
         values = self.numbers(start, stop, width)
         if values.size != count and width is not None:
             # columns that are not where the format puts them may still be separated numbers
             separated = self._separated(start, stop)
             values = separated if separated.size == count else values
-        if values.size != count and not (self.cut_short and 0 < values.size < count):
-            self.fail(
-                f"the header promises {count} samples but {values.size} follow; "
-                "the file is cut short, or its header is wrong",
-                start,
-            )
+        self.check_count(count, values.size, start)
         return values
 
     def _separated(self, start: int, stop: int | None) -> NDArray[np.float64]:
@@ -235,14 +219,7 @@ class TextFile:
     def table(
         self, start: int, columns: int, stop: int | None = None, decimal_comma: bool = False
     ) -> NDArray[np.float64]:
-        """Parse lines as rows of numbers, shape (rows, columns), separated as in :meth:`rows`.
-
-        Raises
-        ------
-        InputError
-            Naming the line of the first thing that is not a number or the first row that has
-            another number of columns.
-        """
+        """Parse lines as rows of numbers, shape (rows, columns), separated as in :meth:`rows`."""
         values, widths = self.rows(start, stop, decimal_comma, columns)
         wrong = np.flatnonzero(widths != columns)
         if wrong.size:
@@ -275,11 +252,6 @@ class TextFile:
         columns
             Numbers that each row should have; a row of another width above what is no number is
             left to the caller to tell, and the values are then empty.
-
-        Raises
-        ------
-        InputError
-            Naming the line of the first thing that is not a number.
         """
         stop = len(self) if stop is None else min(stop, len(self))
         body = self.data[self.offset(start) : self.offset(stop)].rstrip(b" \t\r\n,;")
@@ -349,11 +321,6 @@ def read_text(source: Source, encoding: str = "") -> TextFile:
 
     A file whose name ends in ``.gz`` is unpacked. Lines that are not UTF-8 are of ``encoding``,
     where one is given.
-
-    Raises
-    ------
-    InputError
-        If it is not a readable file, is empty, too large or has a line too long for any record.
     """
     name = name_of(source)
     data = read_bytes(source)
@@ -370,13 +337,7 @@ def read_text(source: Source, encoding: str = "") -> TextFile:
 
 
 def check_file(path: str | os.PathLike[str]) -> None:
-    """Check that a path leads to a file of a size that a record can have.
-
-    Raises
-    ------
-    InputError
-        If it does not, saying what it is instead.
-    """
+    """Check that a path leads to a file of a size that a record can have."""
     file = Path(path)
     try:
         if file.is_symlink() and not file.exists():
@@ -397,13 +358,7 @@ def check_file(path: str | os.PathLike[str]) -> None:
 
 
 def check_unpacked(path: Path) -> None:
-    """Check that a ``.gz`` file unpacks to no more than a record can have.
-
-    Raises
-    ------
-    InputError
-        If it does not, or is damaged.
-    """
+    """Check that a ``.gz`` file unpacks to no more than a record can have."""
     if path.suffix.lower() != ".gz":
         return
     total = 0
@@ -418,13 +373,7 @@ def check_unpacked(path: Path) -> None:
 
 
 def read_bytes(source: Source) -> bytes:
-    """Read all bytes of a text file, refusing early what is too large or has too long a line.
-
-    Raises
-    ------
-    InputError
-        As :func:`read_text`.
-    """
+    """Read all bytes of a text file, refusing early what is too large or has too long a line."""
     name = name_of(source)
     if not isinstance(source, (str, os.PathLike)):
         return _read_blocks(source, name)

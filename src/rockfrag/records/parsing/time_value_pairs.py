@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.plausibility import LONGEST_STEP
-from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.channel import Channel, cut_short_step
 from rockfrag.records.parsing.fortran_sections import reals
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 from rockfrag.records.parsing.quantities import canonical_unit
@@ -46,13 +46,7 @@ class Pairs:
         """Return them as a channel of equally spaced samples."""
         steps: tuple[dict[str, Any], ...] = ()
         if self.promised > self.values.size:
-            steps = (
-                {
-                    "step": "read a file that is cut short",
-                    "samples_promised": self.promised,
-                    "samples_read": int(self.values.size),
-                },
-            )
+            steps = (cut_short_step(self.promised, int(self.values.size)),)
         if self.even:
             values, unit = self.values, self.unit
             return Channel(values.size, self.dt, values.copy, unit, details={"steps": steps})
@@ -72,13 +66,7 @@ def is_pairs_header(text: TextFile, first: int) -> bool:
 
 
 def read_pairs(text: TextFile, first: int, stop: int) -> Pairs:
-    """Read the channel whose header starts at line ``first`` and which ends before ``stop``.
-
-    Raises
-    ------
-    InputError
-        If the header states no count or unit, the number of pairs is another, or times do not rise.
-    """
+    """Read the channel whose header starts at line ``first`` and which ends before ``stop``."""
     header = text.lines(first, first + _MAX_HEADER)
     count = unit = None
     at_numbers = 0
@@ -103,12 +91,6 @@ def pairs_of(
     """Split times and accelerations that alternate, and tell whether the times are even.
 
     ``promised`` is the number of pairs that the header states.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two pairs, a time is before the one above it, or times lie further apart
-        than those of any record.
     """
     if text.cut_short:
         values = values[: 2 * (values.size // 2)]
@@ -146,10 +128,5 @@ def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float
             values = parse_columns([line[shift:] for line in lines], _FIELD)
         except NumberError as error:
             text.fail(str(error), start + error.line)
-    if values.size != count and not (text.cut_short and 0 < values.size < count):
-        text.fail(
-            f"the header promises {count // 2} points but {values.size / 2:g} follow; "
-            "the file is cut short, or its header is wrong",
-            start,
-        )
+    text.check_count(count // 2, values.size, start, "points", each=2)
     return values

@@ -16,8 +16,7 @@ _FINEST_DIGITS = 9
 _EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)
 """Sampling intervals [s] that unevenly digitised film records are interpolated to."""
 
-_COARSEST = 1.25
-"""Largest ratio of that interval to the mean distance of the digitised points."""
+_COARSEST = 1.25  # largest ratio of that interval to the mean distance of the digitised points
 
 _HOURS_BEHIND = {
     "UTC": 0,
@@ -45,26 +44,11 @@ _LAST_YEAR_OF_2000S = 30
 def step_of_times(
     times: NDArray[np.float64], text: TextFile, first_line: int, seconds: float = 1.0
 ) -> float:
-    """Return the sampling interval [s] of a column of equally spaced times.
+    """Return the sampling interval [s] of a column of equally spaced times, in units of ``seconds`` [s].
 
     The times may be rounded to the digits they are printed with, be that decimals or significant
     digits: each must be within half a unit of its last digit (and a ten-thousandth of a step) of
     ``t0 + i dt``.
-
-    Parameters
-    ----------
-    times
-        Times as the file has them, in units of ``seconds`` [s].
-    text, first_line
-        The file and the line (from zero) of the first time, for messages.
-    seconds
-        Seconds of a unit of the times: 0.001 for milliseconds.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two times, they do not rise, they are not equally spaced, or the
-        step looks itself like a rounded one.
     """
     if times.size < 2:
         text.fail("one time alone says nothing about the sampling interval", first_line)
@@ -107,13 +91,7 @@ def even_step(times: NDArray[np.float64]) -> float:
 
 
 def check_rising(times: NDArray[np.float64], text: TextFile, first_line: int) -> None:
-    """Check that each time is later than the one before.
-
-    Raises
-    ------
-    InputError
-        At the first that is not.
-    """
+    """Check that each time is later than the one before."""
     falls = np.flatnonzero(np.diff(times) <= 0)
     if falls.size:
         bad = int(falls[0])
@@ -183,15 +161,4 @@ _AMERICAN = re.compile(
 def american_time(words: str) -> UTCDateTime | None:
     """Return the time in words as ``05/02/83, 16:42:48.2 PDT``, or None."""
     match = _AMERICAN.search(words)
-    if match is None:
-        return None
-    parts = match.groupdict()
-    return clock_time(
-        parts["year"],
-        parts["month"],
-        parts["day"],
-        parts["hour"],
-        parts["minute"],
-        parts["second"],
-        parts["zone"] or "",
-    )
+    return None if match is None else clock_time(**match.groupdict(default=""))

@@ -13,13 +13,7 @@ from rockfrag.records.parsing.quantities import TO_SI
 def one_trace(
     stream: Stream, filename: str | os.PathLike[str]
 ) -> tuple[Trace, NDArray[np.float64]]:
-    """Return the only trace of a stream and its samples, shape (n,).
-
-    Raises
-    ------
-    InputError
-        If there are several traces or none, or a sample is not finite.
-    """
+    """Return the only trace of a stream and its samples, shape (n,)."""
     if len(stream) != 1:
         raise InputError(f"{filename}: a file holds one trace, not {len(stream)}; choose one.")
     samples = np.asarray(stream[0].data, dtype=np.float64)
@@ -29,13 +23,7 @@ def one_trace(
 
 
 def stated_unit(trace: Trace, filename: str | os.PathLike[str]) -> str:
-    """Return the unit of acceleration that ``stats.rockfrag.unit`` states.
-
-    Raises
-    ------
-    InputError
-        If it states none: what is not known is not labelled.
-    """
+    """Return the unit of acceleration that ``stats.rockfrag.unit`` states."""
     unit = str(trace.stats.get("rockfrag", {}).get("unit") or "")
     if unit not in TO_SI:
         raise InputError(

@@ -18,12 +18,8 @@ from rockfrag.errors import InputError
 from rockfrag.plain_text import printable
 from rockfrag.records.parsing.text_file import MAX_BYTES, read_head
 
-MAX_MEMBERS = 5_000
-"""Files of an archive; a download of a data centre has some hundred."""
-
-MAX_TOTAL = 2 * MAX_BYTES
-"""Bytes that an archive may unpack to."""
-
+MAX_MEMBERS = 5_000  # files of an archive; a download of a data centre has some hundred
+MAX_TOTAL = 2 * MAX_BYTES  # bytes that an archive may unpack to
 _BLOCK = 2**20
 _TAR_NAMES = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
 _UNREADABLE = (
@@ -61,11 +57,6 @@ def unpacked(path: str | os.PathLike[str]) -> Iterator[list[Member]]:
     """Give the files of an archive, in order of name, unpacked into a folder that is then removed.
 
     An archive within the archive is unpacked as well, one within that is not.
-
-    Raises
-    ------
-    InputError
-        If the archive is damaged, locked, an Excel workbook, or unpacks to too much.
     """
     with TemporaryDirectory(prefix="rockfrag.") as scratch:
         room = _Room(Path(scratch), MAX_TOTAL, MAX_MEMBERS)

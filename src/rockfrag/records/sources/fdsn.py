@@ -59,11 +59,6 @@ def parse_request(words: str) -> FdsnRequest:
 
     For instance ``NCEDC BK.CMB.00.HNE 2014-08-24T10:20:14 2014-08-24T10:22:44`` or ``NCEDC
     BK.CMB.*.HN? nc72282711 -10 +120``; times are UTC, an earthquake is the service's identifier.
-
-    Raises
-    ------
-    InputError
-        If it is of neither form.
     """
     match = _REQUEST.match(words.strip())
     if match is None:
@@ -102,12 +97,6 @@ def fetch_fdsn(words: str, records: Path) -> Path:
 
     A request that has been answered is not sent again. The records lie beside the StationXML of their
     channels, so that they are read like a user's own.
-
-    Raises
-    ------
-    InputError
-        If the request cannot be read, the service gives nothing, or the folder cannot be written; the
-        message names the folder, where the two files may also be put by hand.
     """
     request = parse_request(words)
     folder = Path(records) / "fdsn" / request.folder

@@ -14,9 +14,7 @@ from rockfrag.records.digest import sha256_of
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 
-_EQUAL = 1e-9
-"""Largest difference [s] between the time steps of one record."""
-
+_EQUAL = 1e-9  # largest difference [s] between the time steps of one record
 SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")
 """Record sets, each a file: ordinary motions, and near-fault ones with and without a pulse."""
 
@@ -25,11 +23,6 @@ def read_component(path: str | os.PathLike[str], member: str) -> Motion:
     """Read one component, ``record/component`` such as ``1/a``, as recorded and unscaled.
 
     The files store acceleration in g and the time of every sample.
-
-    Raises
-    ------
-    InputError
-        If the file is not readable, has no such member, or its times are not equally spaced.
     """
     file = Path(path)
     digest = sha256_of(file)

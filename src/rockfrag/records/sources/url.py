@@ -10,32 +10,16 @@ from rockfrag.files import whole_file
 from rockfrag.records.digest import sha256_of
 from rockfrag.records.parsing.text_file import MAX_BYTES
 
-_PATIENCE = 60.0
-"""Seconds that a server may keep silent."""
-
+_PATIENCE = 60.0  # seconds that a server may keep silent
 _BLOCK = 2**20
 
 
 def fetch_url(url: str, sha256: str, path: str | os.PathLike[str]) -> None:
-    """Put what an address gives at ``path``, if its digest is the one wanted.
+    """Put what an address gives at ``path``, if its SHA-256 is the one wanted.
 
     A file that is already there with the right digest is left alone, without network; one with
-    another digest is left alone as well, and an error.
-
-    Parameters
-    ----------
-    url
-        Address that begins with ``http://`` or ``https://``.
-    sha256
-        Digest of the file, 64 hexadecimal digits in lower case.
-    path
-        Where to put it; its folder is made.
-
-    Raises
-    ------
-    InputError
-        If the file there or the one that came has another digest, the address gives nothing, or the
-        path cannot be written. The message names the path, where the file may also be put by hand.
+    another digest is left alone as well, and an error. Messages name the path, where the file may also be
+    put by hand.
     """
     file = Path(path)
     if not url.startswith(("http://", "https://")):

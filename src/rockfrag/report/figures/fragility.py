@@ -21,6 +21,7 @@ from rockfrag.figure_style import (
     figure_style,
     letter_panels,
     new_figure,
+    one_panel,
     plain_log,
 )
 from rockfrag.fragility.compared import compared_curves
@@ -43,16 +44,10 @@ def fragility_figure(
 ) -> Figure:
     """Draw fragility curves of one measure, a panel per configuration, with bands and the outcomes behind them.
 
-    Parameters
-    ----------
-    curves
-        Rows of :func:`rockfrag.fragility.fragility_table`, a row per curve: ``configuration``,
-        ``im``, ``unit``, ``theta``, ``beta``; theta is missing where there is no curve.
-    bands, bins
-        Their points and outcomes, see :mod:`rockfrag.fragility.drawn_curves`.
-    nonparametric
-        Whether all have the nonparametric curve, with the lognormal one dotted. By default where the lognormal
-        curve of one of them is rejected; figures that are compared with each other need the same.
+    ``curves`` are rows of :func:`rockfrag.fragility.fragility_table`; theta is missing where there is no curve.
+    For bands and bins see :mod:`rockfrag.fragility.drawn_curves`. By default all panels have the nonparametric
+    curve, with the lognormal one dotted, where the lognormal curve of one of them is rejected; figures that are
+    compared with each other need the same.
     """
     compared = compared_curves(curves, nonparametric)
     first = curves.iloc[0]
@@ -159,9 +154,7 @@ def measures_figure(
 
 def calibration_figure(judged: Mapping[str, "GoodnessOfFit"]) -> Figure:
     """Draw observed against fitted fractions in bins; points on the diagonal are well calibrated."""
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 3.0)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 3.0) as (figure, axes):
         axes.plot([0, 1], [0, 1], color=GREY, linewidth=0.8)
         for k, (label, fit) in enumerate(judged.items()):
             table = fit.calibration

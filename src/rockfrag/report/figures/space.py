@@ -13,6 +13,7 @@ from rockfrag.figure_style import (
     RED,
     figure_style,
     new_figure,
+    one_panel,
     plain_log,
 )
 from rockfrag.rocking.space_medians import NO_LOSS, PLANAR
@@ -32,16 +33,8 @@ def words_of(row: pd.Series) -> str:
 
 
 def ratios_figure(medians: pd.DataFrame) -> Figure:
-    """Draw medians in space over the planar ones, with their limits.
-
-    Parameters
-    ----------
-    medians
-        Table of :func:`rockfrag.rocking.space_medians.medians`, a row each.
-    """
-    with figure_style():
-        figure = new_figure(PAGE_WIDTH, 0.6 + 0.2 * len(medians))
-        panel = figure.subplots()
+    """Draw medians in space over the planar ones, with their limits."""
+    with one_panel(PAGE_WIDTH, 0.6 + 0.2 * len(medians)) as (figure, panel):
         places = -np.arange(len(medians), dtype=float)
         for k, name in enumerate(PLANAR):
             value = medians[name].to_numpy()
@@ -65,13 +58,7 @@ def ratios_figure(medians: pd.DataFrame) -> Figure:
 
 
 def fractions_figure(fractions: pd.DataFrame) -> Figure:
-    """Draw the fraction of records that topple each body in space and in the plane, one panel a body.
-
-    Parameters
-    ----------
-    fractions
-        Table of :func:`rockfrag.rocking.space_medians.medians`, a row each level.
-    """
+    """Draw the fraction of records that topple each body in space and in the plane, one panel a body."""
     bodies = list(fractions.groupby(["base", "slenderness", "height_m"], sort=False))
     columns = min(len(bodies), 6)
     rows = -(-len(bodies) // columns)

@@ -51,23 +51,11 @@ def live_kernel(
 ) -> Markup:
     """Return the element of a page in which bodies rock under motions, live; one to a page.
 
-    Parameters
-    ----------
-    bodies
-        What may be chosen, by the name that a reader sees; only the names of those that the page's kernel
-        does not know are shown.
-    motions
-        Motions that may be chosen; no more than carry ``MOST_SAMPLES`` samples are taken, the first ones.
-    outcomes
-        Table of a study: ``configuration`` (a name of ``bodies``), ``motion``, ``amplitude_g``, ``overturned``,
-        the same amplitudes for all. Without it the amplitudes ``AMPLITUDES_G`` are tried here.
-    start
-        What is shown first; by default one of two bodies, if there is one, and a motion that overturns it.
-
-    Returns
-    -------
-    Markup
-        Needs the style of :func:`rockfrag.report.page.render`, and loads nothing; empty if no body is left.
+    It is empty if no body is left. Of bodies that the page's kernel does not know only the names are shown; of
+    the motions no more than carry ``MOST_SAMPLES`` samples are taken, the first ones. ``outcomes`` is a table of
+    a study (``configuration``, ``motion``, ``amplitude_g``, ``overturned``, the same amplitudes for all); without
+    it ``AMPLITUDES_G`` are tried here. What is shown first (``start``) is by default one of two bodies, if there
+    is one, and a motion that overturns it.
     """
     known = {name: system for name, system in bodies.items() if in_page(system)}
     if not known:

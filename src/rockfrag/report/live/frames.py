@@ -61,21 +61,7 @@ def _turned_about(point: Vector, angle: float, pivot: Vector) -> Vector:
 
 
 def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) -> tuple[Markup, str]:
-    """Draw a body at its largest rotation at each amplitude, and say what becomes of it.
-
-    Parameters
-    ----------
-    system
-        What is shaken.
-    motion
-        By what.
-    amplitudes_g
-        Peaks of the motion [g].
-
-    Returns
-    -------
-    The drawing, and its words.
-    """
+    """Draw a system at its largest rotation under a motion of each peak [g]; return the drawing and its words."""
     tall = system.height
     scale = min(120 / tall, 170 / (1.6 * tall))
     parts, words = [], []

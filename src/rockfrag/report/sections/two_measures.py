@@ -39,15 +39,7 @@ def _section(results: Results) -> Section | None:
 
 
 def two_measures_section(tables: VectorTables, confidence: float) -> Section | None:
-    """Return the section of fits in two measures; None where no tests allowed one.
-
-    Parameters
-    ----------
-    tables
-        The fits, with the column ``configuration``.
-    confidence
-        Level of their limits [-].
-    """
+    """Return the section of fits in two measures; None where no tests allowed one."""
     fits = tables.fits
     found = fits[fits["method"] != "none"]
     if found.empty:

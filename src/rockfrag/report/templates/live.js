@@ -165,18 +165,6 @@ function polygon(context, points, fill) {
   context.strokeStyle = colours.ink;
   context.stroke();
 }
-// displacement of the ground for the eye [m]: integrated twice, slow drift filtered out
-function displacementOf(samples, dt) {
-  const keep = Math.exp(-2 * Math.PI * 0.15 * dt);
-  const found = new Float64Array(samples.length);
-  let velocity = 0, place = 0;
-  for (let k = 1; k < samples.length; k++) {
-    velocity = keep * (velocity + samples[k] * dt);
-    place = keep * (place + velocity * dt);
-    found[k] = place;
-  }
-  return found;
-}
 function at(values, k) {
   const low = Math.min(Math.floor(k), response.done - 1), high = Math.min(low + 1, response.done - 1);
   return values[low] + (values[high] - values[low]) * (k - low);
@@ -191,7 +179,7 @@ function drawScene() {
   const broad = Math.max(outline.statue.width, outline.pedestal?.width ?? 0);
   const floor = height - 34;
   const scale = Math.min((floor - 14) / (1.12 * tall), width / (2.3 * tall + broad));
-  motion().moved ??= displacementOf(motion().samples, motion().dt);
+  motion().moved ??= rockfragDisplacement(motion().samples, motion().dt);
   const moved = motion().moved[Math.min(index, motion().moved.length - 1)] * scaleOf(chosen.amplitude);
   const shift = Math.max(-0.3, Math.min(0.3, (moved * scale) / width)) * width;
   const screen = ([x, y]) => [width / 2 + shift + x * scale, floor - y * scale];

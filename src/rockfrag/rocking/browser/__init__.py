@@ -1,8 +1,8 @@
 """The simulator in a page: the kernels as WebAssembly, and the scripts that call them.
 
-``integrate.wasm`` and ``ensemble.wasm`` are made from the kernels (``build``) and kept with the package;
-``module.js`` with ``integrate.js`` or ``ensemble.js`` is what a page, or Node, talks to them with.  Nothing of
-this is needed to compute in Python.
+``integrate.wasm``, ``ensemble.wasm`` and ``space.wasm`` are made from the kernels (``build``) and kept with the
+package; ``module.js`` with the script of a module is what a page, or Node, talks to them with.  Nothing of this is
+needed to compute in Python.
 """
 
 from pathlib import Path
@@ -21,14 +21,14 @@ _FOLDER = Path(__file__).parent
 
 
 def module_bytes(name: str = "integrate") -> bytes:
-    """Return the bytes of a module: ``integrate``, of one history, ``ensemble`` or ``ensemble-fused``."""
+    """Return the bytes of a module: ``integrate``, ``ensemble``, ``ensemble-fused`` or ``space``."""
     return (_FOLDER / f"{name}.wasm").read_bytes()
 
 
 def driver_text(name: str = "integrate") -> str:
     """Return the scripts of a module: plain text that defines ``async function rockfragKernel(bytes)``.
 
-    That of ``ensemble`` is ``rockfragEnsemble(bytes)``.
+    That of ``ensemble`` is ``rockfragEnsemble(bytes)``, that of ``space`` ``rockfragSpace(bytes)``.
     """
     return "\n".join(
         (_FOLDER / f"{part}.js").read_text(encoding="utf-8") for part in ("module", name)

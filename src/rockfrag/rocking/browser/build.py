@@ -1,9 +1,10 @@
 """Make the WebAssembly modules from the kernels: ``python -m rockfrag.rocking.browser.build``.
 
-``integrate.wasm`` has the kernel of one history, ``ensemble.wasm`` the lanes that count outcomes.  What
-``simulate`` and ``overturns`` call is compiled by numba to LLVM's language as always, and from there on for
-WebAssembly instead of this processor.  The linker is that of the package ``ziglang`` (``pip install
-'rockfrag[browser]'``), which nothing else needs.  The same versions make the same bytes on every machine.
+``integrate.wasm`` has the kernel of one history, ``ensemble.wasm`` the lanes that count outcomes, ``space.wasm``
+the kernel of a body in space, for both.  What ``simulate``, ``overturns`` and ``run_in_space`` call is compiled by
+numba to LLVM's language as always, and from there on for WebAssembly instead of this processor.  The linker is
+that of the package ``ziglang`` (``pip install 'rockfrag[browser]'``), which nothing else needs.  The same versions
+make the same bytes on every machine.
 """
 
 import json
@@ -26,6 +27,10 @@ from rockfrag.engines.kernels.jit import KNOWN, TESTED_NUMBA
 from rockfrag.engines.kernels.lanes.block import PIVOT
 from rockfrag.engines.kernels.lanes.case import BLOCK, OUTCOME
 from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
+from rockfrag.engines.spatial import _integrate as spatial
+from rockfrag.engines.spatial._body import MOST_VERTICES
+from rockfrag.engines.spatial.body import NEVER_SLIDES
+from rockfrag.engines.spatial.outcome import AFTER, CUT_OFF, RESTS, TOLERANCE
 from rockfrag.engines.steps import FREE_TIME, STACK_STEP, STEP
 from rockfrag.rocking.browser.ensemble import (
     SHAKEN,
@@ -35,6 +40,7 @@ from rockfrag.rocking.browser.ensemble import (
     multiply_add,
 )
 from rockfrag.rocking.browser.entry import CALL, describe, integrate_call
+from rockfrag.rocking.browser.space import SPACE, describe_solid, integrate_solid
 from rockfrag.units import GRAVITY
 
 TRIPLE = "wasm32-unknown-unknown"
@@ -74,11 +80,29 @@ def build_ensemble(*, fused: bool) -> bytes:
     return _module(entries, records, constants, fused=fused)
 
 
+def build_space() -> bytes:
+    """Return the bytes of the module of a body in space."""
+    call, tables = np.zeros(1, SPACE)[0], [np.zeros((1, n)) for n in (3, 2, spatial.COLUMNS)]
+    entries: Entries = {
+        "describe": (describe_solid, (call,)),
+        "integrate": (integrate_solid, (call, *tables)),
+    }
+    constants = {
+        "gravity": GRAVITY, "tolerance": TOLERANCE, "cut": CUT_OFF, "after": AFTER, "rests": RESTS,
+        "columns": spatial.COLUMNS, "outcome": spatial.OUTCOME, "most": MOST_VERTICES,
+        "sticks": NEVER_SLIDES, "fell": spatial.FELL, "certain": spatial.CERTAIN_TIME,
+        "azimuth": spatial.FALL_AZIMUTH, "peak": spatial.PEAK_RATIO, "tilt": spatial.PEAK_TILT,
+        "turned": spatial.TURN, "walk": spatial.WALK_X,
+    }  # fmt: skip
+    return _module(entries, {"call": SPACE}, constants, fused=None)
+
+
 _VECTORS = {None: "", False: ",+simd128", True: ",+simd128,+relaxed-simd"}
 """Features by whether multiply-adds are fused; None: there are none."""
 
 MODULES: Mapping[str, Callable[[], bytes]] = {
     "integrate": build_integrate,
+    "space": build_space,
     "ensemble": partial(build_ensemble, fused=False),
     "ensemble-fused": partial(build_ensemble, fused=True),
 }
@@ -227,7 +251,7 @@ def _described(dtype: np.dtype[Any]) -> dict[str, Any]:
             fields[name] = {"at": offset, **_described(kind)}
         elif kind.subdtype is None:
             fields[name] = [offset, kind.kind + str(kind.itemsize)]
-        elif dtype is SHAKEN:
+        else:
             fields[name] = [offset]  # of an array the place, which is all that is asked for
     return {"size": dtype.itemsize, "fields": fields}
 

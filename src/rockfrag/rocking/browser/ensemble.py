@@ -17,7 +17,12 @@ from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.engines.kernels.lanes.stack_constants import IMPACT, ONE, TWO
 from rockfrag.engines.kernels.taylor import SERIES
 from rockfrag.laws import momentum, position
-from rockfrag.rocking.browser.entry import BLOCK
+from rockfrag.rocking.browser.entry import (
+    BLOCK,
+    note_frequencies,
+    note_frequencies_of_pile,
+    shape_of,
+)
 from rockfrag.system import geometry
 
 _F, _I = np.float64, np.int64
@@ -59,7 +64,7 @@ def multiply_add(call):
 def describe_shaken(call):
     """Describe a block, or one on a pedestal, to the lanes; gravity stands in its record already."""
     body, g = call.body[0], call.body[0].gravity
-    upper, lower = _shape(call.statue), _shape(call.pedestal)
+    upper, lower = shape_of(call.statue), shape_of(call.pedestal)
     scaled = not (math.isnan(call.measured) and call.livelier == 1.0)
     body.measured = scaled
     call.fault = geometry.STANDS if geometry.can_stand(upper) else geometry.FALLS_ALONE
@@ -71,8 +76,7 @@ def describe_shaken(call):
         after_right = _ratio(call, upper, 1) if scaled else geometry.momentum_restitution(upper, 1)
         _fill_pivot(call.pivots[0], geometry.pivot_constants(upper, 1, after_left, g))
         _fill_pivot(call.pivots[1], geometry.pivot_constants(upper, -1, after_right, g))
-        call.fastest = max(geometry.frequency(upper, 1, g), geometry.frequency(upper, -1, g))
-        call.slowest = min(geometry.frequency(upper, 1, g), geometry.frequency(upper, -1, g))
+        note_frequencies(call, upper, g)
         for pivot in (1, -1):
             _note_uplift(call, geometry.arm(upper, pivot))
             call.largest = min(call.largest, geometry.largest_restitution(upper, pivot))
@@ -89,22 +93,12 @@ def describe_shaken(call):
     _fill_law(call, body.after1l, lower, -1, scaled)
     _fill_law(call, body.after2r, pile.upper, 1, scaled)
     _fill_law(call, body.after2l, pile.upper, -1, scaled)
-    call.fastest, call.slowest = 0.0, np.inf
+    note_frequencies_of_pile(call, pile, g)
     for pivot in (1, -1):
-        own = geometry.frequency(lower, pivot, g), geometry.frequency(pile.upper, pivot, g)
-        call.fastest = max(call.fastest, max(own[0], own[1]))
-        call.slowest = min(call.slowest, min(own[1], geometry.frequency(whole, pivot, g)))
         _note_uplift(call, geometry.common_arm(pile, pivot))
         _note_uplift(call, geometry.upper_arm(pile, pivot))
         call.largest = min(call.largest, geometry.largest_restitution(lower, pivot))
         call.largest = min(call.largest, geometry.largest_restitution(pile.upper, pivot))
-
-
-@kernel
-def _shape(given):
-    return geometry.shape_of(
-        given.width, given.height, given.mass, given.inertia, given.cg_height, given.cg_offset, given.lean
-    )  # fmt: skip
 
 
 @kernel

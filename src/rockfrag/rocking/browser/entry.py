@@ -59,8 +59,7 @@ _integrate = kernel(integrate.py_func)
 def describe(call):
     """Describe a body to the kernels: fill its record, in which its gravity stands already."""
     body, given = call.body, call.statue
-    statue = _shape(given)
-    g = body.gravity
+    statue = shape_of(given)
     body.measured = not (math.isnan(call.ground) and math.isnan(call.interface))
     call.fault = geometry.STANDS if geometry.can_stand(statue) else geometry.FALLS_ALONE
     if call.stacked == 0:
@@ -70,11 +69,10 @@ def describe(call):
             body.after2r.law, body.after2r.value = ratio.NUMBER, call.interface
             body.after2l.law, body.after2l.value = ratio.NUMBER, call.interface
             _check_restitution(call, statue, call.interface)
-        call.fastest = max(geometry.frequency(statue, 1, g), geometry.frequency(statue, -1, g))
-        call.slowest = min(geometry.frequency(statue, 1, g), geometry.frequency(statue, -1, g))
+        note_frequencies(call, statue, body.gravity)
         return
     given = call.pedestal
-    pedestal = _shape(given)
+    pedestal = shape_of(given)
     pile = geometry.pile_of(pedestal, statue, given.height, given.lean, call.offset)
     if not geometry.can_stand(pedestal):
         call.fault = geometry.FALLS_ALONE
@@ -83,22 +81,34 @@ def describe(call):
     geometry.fill_pile(body, pile)
     _measure(call, pedestal, call.ground, body.after1r, body.after1l)
     _measure(call, pile.upper, call.interface, body.after2r, body.after2l)
-    whole = geometry.joined(pile)
-    call.fastest = 0.0
-    call.slowest = np.inf
-    for pivot in (1, -1):
-        p1 = geometry.frequency(pedestal, pivot, g)
-        p2 = geometry.frequency(pile.upper, pivot, g)
-        p12 = geometry.frequency(whole, pivot, g)
-        call.fastest = max(call.fastest, max(p1, p2))
-        call.slowest = min(call.slowest, min(p2, p12))
+    note_frequencies_of_pile(call, pile, body.gravity)
 
 
 @kernel
-def _shape(given):
+def shape_of(given):
+    """A block that is given, as it stands."""
     return geometry.shape_of(
         given.width, given.height, given.mass, given.inertia, given.cg_height, given.cg_offset, given.lean
     )  # fmt: skip
+
+
+@kernel
+def note_frequencies(call, shape, g):
+    """Note the largest and the least frequency parameter of a lone block."""
+    right, left = geometry.frequency(shape, 1, g), geometry.frequency(shape, -1, g)
+    call.fastest, call.slowest = max(right, left), min(right, left)
+
+
+@kernel
+def note_frequencies_of_pile(call, pile, g):
+    """Note those of a block on a pedestal, by itself and together with it."""
+    whole = geometry.joined(pile)
+    call.fastest, call.slowest = 0.0, np.inf
+    for pivot in (1, -1):
+        lower = geometry.frequency(pile.lower, pivot, g)
+        upper = geometry.frequency(pile.upper, pivot, g)
+        call.fastest = max(call.fastest, max(lower, upper))
+        call.slowest = min(call.slowest, min(upper, geometry.frequency(whole, pivot, g)))
 
 
 @kernel

@@ -78,3 +78,16 @@ const ROCKFRAG_FAULTS = [
   "The statue could touch the ground beside its pedestal before anything has fallen.",
   "restitution: it would gain energy or is no ratio.",
 ];
+
+// displacement of the ground for the eye [m]: integrated twice, slow drift filtered out
+function rockfragDisplacement(samples, dt) {
+  const keep = Math.exp(-2 * Math.PI * 0.15 * dt);
+  const found = new Float64Array(samples.length);
+  let velocity = 0, place = 0;
+  for (let k = 1; k < samples.length; k++) {
+    velocity = keep * (velocity + samples[k] * dt);
+    place = keep * (place + velocity * dt);
+    found[k] = place;
+  }
+  return found;
+}

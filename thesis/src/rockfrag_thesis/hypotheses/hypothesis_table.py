@@ -1,9 +1,7 @@
 """The table of hypotheses: every hypothesis with its kind, its rule, what came out, and the word for it."""
 
-import math
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import pandas as pd
 
@@ -59,15 +57,6 @@ COLUMNS = (
     "remark",
 )
 """Columns of the table of hypotheses, ``hypotheses.csv``."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """A hypothesis and what came out."""
-
-    hypothesis: Hypothesis
-    result: Result
-    basis: str
 
 
 def theory_table(
@@ -136,7 +125,9 @@ def _hypotheses(theory: bool) -> list[Hypothesis]:
     return [HYPOTHESES[n] for n in sorted(HYPOTHESES) if (n in THEORY) == theory]
 
 
-def _row(hypothesis: Hypothesis, evidence: Setting | Evidence, basis: str) -> Row:
+def _row(
+    hypothesis: Hypothesis, evidence: Setting | Evidence, basis: str
+) -> dict[str, str | float]:
     try:
         with warnings.catch_warnings():
             # the hypotheses are about pure rocking, whose limits the chapter on validity counts
@@ -146,37 +137,20 @@ def _row(hypothesis: Hypothesis, evidence: Setting | Evidence, basis: str) -> Ro
         result = Result(Finding.OPEN, "no figure", remark=f"these data cannot decide it: {reason}")
     if hypothesis.kind is Kind.IDENTITY:
         basis = "computed"
-    return Row(hypothesis, result, result.basis or basis)
+    basis = result.basis or basis
+    return {
+        **vars(hypothesis),
+        **vars(result),
+        "hypothesis": hypothesis.text,
+        "kind": str(hypothesis.kind),
+        "finding": str(result.finding),
+        "outcome": outcome(hypothesis.kind, basis, result.finding),
+        "basis": basis,
+    }
 
 
-def _table(rows: Iterable[Row]) -> pd.DataFrame:
-    table = pd.DataFrame(
-        [
-            {
-                "number": row.hypothesis.number,
-                "hypothesis": row.hypothesis.text,
-                "source": row.hypothesis.source,
-                "kind": str(row.hypothesis.kind),
-                "evidence": row.hypothesis.evidence,
-                "rule": row.hypothesis.rule,
-                "error_rate": row.hypothesis.error_rate,
-                "finding": str(row.result.finding),
-                "outcome": outcome(row.hypothesis.kind, row.basis, row.result.finding),
-                "figure": row.result.figure,
-                "estimate": row.result.estimate,
-                "lower": row.result.lower,
-                "upper": row.result.upper,
-                "unit": row.result.unit,
-                "p": row.result.p,
-                "p_of": row.result.p_of,
-                "p_holm": math.nan,
-                "basis": row.basis,
-                "remark": row.result.remark,
-            }
-            for row in rows
-        ],
-        columns=list(COLUMNS),
-    )
+def _table(rows: Iterable[dict[str, str | float]]) -> pd.DataFrame:
+    table = pd.DataFrame(list(rows), columns=list(COLUMNS))
     # many hypotheses are tested on one table: what still stands when all of them are counted
     table["p_holm"] = holm(table["p"])
     return table

@@ -64,24 +64,22 @@ class Factor(NamedTuple):
         return self.level.format(level.replace("-", "−"))
 
 
-def _restitution(title: str) -> Factor:
-    return Factor(title, "× {}", f"{title} {{}}")
+RESTITUTIONS = {
+    "statue_restitution": "the object's restitution everywhere",
+    "interface_restitution": "the object's restitution on the pedestal",
+    "ground_restitution": "the pedestal's restitution",
+}
+"""Restitutions that are perturbed, in words."""
 
+IMPACT_LAWS = {"": "", "_couple": " (by a couple)", "_ratio": " (as a ratio)"}
+"""Impact laws that follow a perturbed restitution, in words; that of position is the usual one."""
 
 FACTORS = {
-    "statue_restitution": _restitution("the object's restitution everywhere"),
-    "interface_restitution": _restitution("the object's restitution on the pedestal"),
-    "ground_restitution": _restitution("the pedestal's restitution"),
-    "statue_restitution_couple": _restitution("the object's restitution everywhere (by a couple)"),
-    "interface_restitution_couple": _restitution(
-        "the object's restitution on the pedestal (by a couple)"
-    ),
-    "ground_restitution_couple": _restitution("the pedestal's restitution (by a couple)"),
-    "statue_restitution_ratio": _restitution("the object's restitution everywhere (as a ratio)"),
-    "interface_restitution_ratio": _restitution(
-        "the object's restitution on the pedestal (as a ratio)"
-    ),
-    "ground_restitution_ratio": _restitution("the pedestal's restitution (as a ratio)"),
+    **{
+        f"{name}{law}": Factor(f"{title}{words}", "× {}", f"{title}{words} {{}}")
+        for law, words in IMPACT_LAWS.items()
+        for name, title in RESTITUTIONS.items()
+    },
     "pedestal_lean_deg": Factor("a leaning pedestal", "{}°", "a pedestal leaning by {}"),
     "statue_offset_mm": Factor(
         "the object off the pedestal's middle", "{} mm", "the object {} off the pedestal's middle"

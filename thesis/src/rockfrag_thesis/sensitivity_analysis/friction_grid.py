@@ -20,6 +20,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Body, Stack
 from rockfrag.system.system import uplift_ratios
+from rockfrag_thesis.sensitivity_analysis.simulated import motion_columns
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -75,11 +76,7 @@ def friction_ratios(
                 pd.DataFrame(
                     {
                         "object": name,
-                        "earthquake": [
-                            str(m.metadata.get("earthquake") or m.name) for m in motions
-                        ],
-                        "floor": [str(m.metadata.get("floor") or "ground") for m in motions],
-                        "motion": [m.name for m in motions],
+                        **motion_columns(motions),
                         "ground": pair,
                         "interface": two,
                         "p_g": with_pedestal,

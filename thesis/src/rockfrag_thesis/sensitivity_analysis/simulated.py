@@ -330,6 +330,15 @@ def case_ratios(
     return pd.concat(tables, ignore_index=True).assign(resolution=step)
 
 
+def motion_columns(motions: Sequence[Motion]) -> dict[str, list[str]]:
+    """Earthquake, floor and name of each motion, as columns of a table of tests."""
+    return {
+        "earthquake": [str(motion.metadata.get("earthquake") or motion.name) for motion in motions],
+        "floor": [str(motion.metadata.get("floor") or "ground") for motion in motions],
+        "motion": [motion.name for motion in motions],
+    }
+
+
 def _rows(case: Case, motions: Sequence[Motion], stack: Floats, lone: Floats) -> pd.DataFrame:
     return pd.DataFrame(
         {
@@ -337,11 +346,7 @@ def _rows(case: Case, motions: Sequence[Motion], stack: Floats, lone: Floats) ->
             "level": case.level,
             "reference": False,
             "object": case.object,
-            "earthquake": [
-                str(motion.metadata.get("earthquake") or motion.name) for motion in motions
-            ],
-            "floor": [str(motion.metadata.get("floor") or "ground") for motion in motions],
-            "motion": [motion.name for motion in motions],
+            **motion_columns(motions),
             "replicate": case.replicate,
             "p_g": stack,
             "np_g": lone,

@@ -12,7 +12,7 @@ from rockfrag.stages.job import Job, Results
 from rockfrag.stages.protocol import protocol_of
 from rockfrag.study.study import Study
 from rockfrag.system.blocks import Stack
-from rockfrag_thesis.settings import settings_of
+from rockfrag_thesis.settings import SensitivityAnalysis, settings_of
 
 SIMULATED_PAIRS = 3
 """Closest pairs of perturbed parameters that are simulated together, since adding them up is an approximation."""
@@ -20,21 +20,21 @@ SIMULATED_PAIRS = 3
 
 def run(job: Job[Study]) -> Results:
     """Yield the ratio P/NP for every perturbed parameter of the ideal model, and effects."""
+    settings, motions = _settings(job.study), job.motions("motions/floors")
     ratios, effects = sensitivity_analysis_tables(
         job.study,
-        job.motions("motions/floors"),
+        motions,
         job.threads,
         lambda done, of: job.log.info("%d of at most %d bodies", done, of),
     )
     yield "sensitivity_analysis/ratios", ratios
     yield "sensitivity_analysis/effects", effects
     found = None
-    if _tries_friction(job.study):
-        found, means = friction_tables(job.study, job.motions("motions/floors"), job.threads)
+    if settings.friction:
+        found, means = friction_tables(job.study, motions, job.threads)
         yield "sensitivity_analysis/friction_ratios", found
         yield "sensitivity_analysis/friction", means
-    if _asks_for_an_effect(job.study):
-        motions = job.motions("motions/floors")
+    if settings.wanted_percent:
         yield (
             "sensitivity_analysis/inverse_problem",
             inverse_problem_table(job.study, ratios, motions, job.threads, found),
@@ -87,9 +87,7 @@ def sensitivity_analysis_tables(
         with_references,
     )
 
-    settings = settings_of(study).sensitivity_analysis
-    if settings is None:
-        raise ValueError("the study asks for no explanation")
+    settings = _settings(study)
     stacks = tested_stacks(study)
     ideal_cases = [ideal_case(object_name, stack) for object_name, stack in stacks.items()]
     rng = np.random.default_rng(study.seed)
@@ -120,14 +118,12 @@ def sensitivity_analysis_tables(
     return ratios, _in_order(where_laws_agree(explain(ratios), LAW_OF))
 
 
-def _asks_for_an_effect(study: Study) -> bool:
-    sensitivity_analysis = settings_of(study).sensitivity_analysis
-    return sensitivity_analysis is not None and bool(sensitivity_analysis.wanted_percent)
-
-
-def _tries_friction(study: Study) -> bool:
-    sensitivity_analysis = settings_of(study).sensitivity_analysis
-    return sensitivity_analysis is not None and bool(sensitivity_analysis.friction)
+def _settings(study: Study) -> SensitivityAnalysis:
+    """What a study says under ``sensitivity_analysis``."""
+    settings = settings_of(study).sensitivity_analysis
+    if settings is None:
+        raise ValueError("the study asks for no sensitivity analysis")
+    return settings
 
 
 def friction_tables(
@@ -148,15 +144,11 @@ def friction_tables(
     """
     from rockfrag_thesis.sensitivity_analysis.friction_grid import friction_effects, friction_ratios
 
-    settings = settings_of(study).sensitivity_analysis
-    if settings is None or not settings.friction:
-        raise ValueError("the study asks for no friction")
-    intensity_levels = protocol_of(study).amplitudes()
-    tried = settings.friction
+    tried = _settings(study).friction
     ratios = friction_ratios(
         tested_stacks(study),
         motions,
-        intensity_levels,
+        protocol_of(study).amplitudes(),
         tried["ground"],
         tried["interface"],
         threads,
@@ -205,10 +197,8 @@ def inverse_problem_table(
         perturbed_case,
     )
 
-    settings = settings_of(study).sensitivity_analysis
-    if settings is None or not settings.wanted_percent:
-        raise ValueError("the study asks for no effect")
-    wanted = {name: 1 + percent / 100 for name, percent in settings.wanted_percent.items()}
+    percents = _settings(study).wanted_percent
+    wanted = {name: 1 + percent / 100 for name, percent in percents.items()}
     stacks = tested_stacks(study)
     neutral = dict(NEUTRAL)
     widths = {stack.lower.width for stack in stacks.values()}

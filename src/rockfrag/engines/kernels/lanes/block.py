@@ -42,12 +42,8 @@ from rockfrag.engines.kernels.taylor import (
     travel,
 )
 
-LANES = 64
-"""As many as ``next_samples`` has bits for."""
-
-TOUCHES, FALLS = 1.0, 2.0
-"""Flags of a lane: it may have touched, or falls for certain."""
-
+LANES = 64  # as many as ``next_samples`` has bits for
+TOUCHES, FALLS = 1.0, 2.0  # flags of a lane: it may have touched, or falls for certain
 _F, _I = np.float64, np.int64
 
 PIVOT = np.dtype(
@@ -96,16 +92,10 @@ LANE = np.dtype(
 
 @by_reference
 class Worker(NamedTuple):
-    """Memory that a thread works in: ``worker()``.
+    """Memory that a thread works in: ``worker()``."""
 
-    Attributes
-    ----------
-    lane : LANE
-    tallies : (LANES,) of OUTCOME, of the lanes' cases so far; the pedestal's part stays zero
-    """
-
-    lane: Any
-    tallies: Any
+    lane: Any  # LANE
+    tallies: Any  # (LANES,) of OUTCOME, of the lanes' cases so far; the pedestal's part stays zero
 
 
 def worker() -> Worker:
@@ -185,18 +175,10 @@ def _advance(lane, upward):
 
 @entry_kernel
 def integrate_blocks(ensemble, motions, worker, outcomes):
-    """Integrate the cases of an ensemble of lone blocks until none is left.
+    """Integrate the cases of an ensemble of lone blocks until none is left; number of steps of lanes, in a tuple.
 
-    Parameters
-    ----------
-    ensemble : Ensemble, whose ``bodies`` are PIVOTs, right and left, and whose ``factors`` are over g
-    motions : Motions
-    worker : Worker, one for each thread; what two threads wrote side by side would cost them time
-    outcomes : (cases,) of OUTCOME
-
-    Returns
-    -------
-    Number of steps that lanes were advanced by, alone in a tuple.
+    The ensemble's ``bodies`` are PIVOTs, right and left, and its ``factors`` are over g.  Each thread has a worker
+    of its own: what two threads wrote side by side would cost them time.
     """
     lane, tallies = worker.lane, worker.tallies
     upward = motions.vertical.size > 0

@@ -8,15 +8,12 @@ from numpy.typing import NDArray
 from rockfrag.engines.kernels.by_reference import by_reference
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
-LANES = 16
-"""Lanes of each kind that stacks integrate in."""
-
+LANES = 16  # lanes of each kind that stacks integrate in
 WITHIN, QUIET, CLOSES, NEARS, RELEASE = -1.0, 0.0, 1.0, 2.0, 3.0
 """Flags of a lane after a pass: it has not yet reached the end of its sample, or has; positive ones are
 contact events: a contact closes, may have closed, or lets go."""
 
-BLOCK = 16
-"""Samples under one entry of the tables of extremes that rest is skipped with."""
+BLOCK = 16  # samples under one entry of the tables of extremes that rest is skipped with
 
 OUTCOME = np.dtype(
     [
@@ -35,55 +32,40 @@ OUTCOME = np.dtype(
 
 @by_reference
 class Motions(NamedTuple):
-    """All motions end to end, sampled as densely as the bodies need.
+    """All motions end to end, sampled as densely as the bodies need."""
 
-    Attributes
-    ----------
-    samples : accelerations of the ground [m/s²]; each motion ends with a sample of zero
-    vertical : likewise upwards, such that factors make of it parts of gravity; none if the ground does not move so
-    highest, lowest : extremes of each BLOCK of ``samples``
-    ahead_high, ahead_low : likewise from the beginning of each BLOCK to the end of its motion
-    upward_high, upward_low : likewise of ``vertical``
-    offsets : (sampled motions + 1,) where each begins
-    lasts : (sampled motions,) its last sample
-    """
-
+    # accelerations of the ground [m/s²]; each motion ends with a sample of zero
     samples: NDArray[np.float64]
+    # likewise upwards, such that factors make of it parts of gravity; none if the ground does not
+    # move so
     vertical: NDArray[np.float64]
+    # highest, lowest: extremes of each BLOCK of ``samples``
     highest: NDArray[np.float64]
     lowest: NDArray[np.float64]
+    # ahead_high, ahead_low: likewise from the beginning of each BLOCK to the end of its motion
     ahead_high: NDArray[np.float64]
     ahead_low: NDArray[np.float64]
+    # upward_high, upward_low: likewise of ``vertical``
     upward_high: NDArray[np.float64]
     upward_low: NDArray[np.float64]
-    offsets: NDArray[np.int64]
-    lasts: NDArray[np.int64]
+    offsets: NDArray[np.int64]  # (sampled motions + 1,) where each begins
+    lasts: NDArray[np.int64]  # (sampled motions,) its last sample
 
 
 @by_reference
 class Ensemble(NamedTuple):
-    """Bodies × motions × scales, the scale running fastest.
+    """Bodies × motions × scales, the scale running fastest."""
 
-    Attributes
-    ----------
-    counter : (1,) the next case to take, shared by all threads
-    count : number of cases
-    bodies : (bodies,) of BODY, or (bodies, motions, 2) of ``block.PIVOT`` for lone blocks
-    factors : (motions, scales) on the samples
-    rows : (bodies, motions) which of the sampled motions to use
-    intervals : (bodies, motions) sampling interval of that [s]
-    parts : (bodies, motions) largest part of it that a step of two rotations may take
-    free : (bodies, motions) samples of free rocking after it, at most
-    """
-
-    counter: NDArray[np.int64]
-    count: int
+    counter: NDArray[np.int64]  # (1,) the next case to take, shared by all threads
+    count: int  # number of cases
+    # (bodies,) of BODY, or (bodies, motions, 2) of ``block.PIVOT`` for lone blocks
     bodies: NDArray[Any]
-    factors: NDArray[np.float64]
-    rows: NDArray[np.int64]
-    intervals: NDArray[np.float64]
+    factors: NDArray[np.float64]  # (motions, scales) on the samples
+    rows: NDArray[np.int64]  # (bodies, motions) which of the sampled motions to use
+    intervals: NDArray[np.float64]  # (bodies, motions) sampling interval of that [s]
+    # (bodies, motions) largest part of it that a step of two rotations may take
     parts: NDArray[np.float64]
-    free: NDArray[np.int64]
+    free: NDArray[np.int64]  # (bodies, motions) samples of free rocking after it, at most
 
 
 @inlined_kernel
@@ -113,12 +95,8 @@ def weights_ahead(motions, k, factor):
 def next_uplift(motions, k, tau, last, factor, interval):
     """Sample and time within it at which a body at rest rises, and acceleration and weight then; -1 if it stays.
 
-    Parameters
-    ----------
-    k, tau : the time: ``tau`` after sample k
-    last : last sample of the motion
-    factor : on its samples
-    interval : (low, high), which holds 0, that the acceleration over the weight has to leave (Kirkpatrick, 1927)
+    The time is ``tau`` after sample k; ``interval`` is (low, high), which holds 0, that the acceleration over the
+    weight has to leave (Kirkpatrick, 1927).
     """
     samples = motions.samples
     low, high = interval
@@ -174,14 +152,8 @@ def _first_outside(motions, k, last, low, high):
 def next_samples(lane, factor, lanes, motions):
     """Give the lanes that have reached the end of their sample the next one; the bits of those that must stop.
 
-    A lane stops for a contact event, and at the end of its motion and after it.
-
-    Parameters
-    ----------
-    lane : the lanes, of any kind
-    factor : the row of factors on the samples
-    lanes : number of lanes
-    motions : Motions
+    A lane stops for a contact event, and at the end of its motion and after it.  ``factor`` is the row of factors
+    on the samples.
     """
     samples, vertical = motions.samples, motions.vertical
     stops = 0

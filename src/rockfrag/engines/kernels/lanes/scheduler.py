@@ -35,18 +35,9 @@ from rockfrag.engines.kernels.lanes.stack_case import (
 
 @entry_kernel
 def integrate_stacks(ensemble, motions, worker, outcomes):
-    """Integrate the cases of an ensemble of stacks until none is left.
+    """Integrate the cases of an ensemble of stacks until none is left, with a worker for each thread.
 
-    Parameters
-    ----------
-    ensemble : Ensemble
-    motions : Motions
-    worker : Worker, one for each thread
-    outcomes : (cases,) of OUTCOME
-
-    Returns
-    -------
-    Numbers of steps that lanes of one rotation and of two were advanced by.
+    Returned are the numbers of steps that lanes of one rotation and of two were advanced by.
     """
     g = ensemble.bodies[0].gravity
     upward = motions.vertical.size > 0

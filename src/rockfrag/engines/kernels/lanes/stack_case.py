@@ -61,8 +61,7 @@ from rockfrag.engines.kernels.roots import slope, value
 from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP, resolve_impact
 from rockfrag.engines.kernels.taylor import SERIES, quick_sine_cosine
 
-SLOTS = 2 * LANES
-"""Cases in flight, so that lanes of one kind or the other can always be filled."""
+SLOTS = 2 * LANES  # cases in flight, so that lanes of one kind or the other can always be filled
 
 CASE = np.dtype(
     [
@@ -95,32 +94,23 @@ CASE = np.dtype(
 
 @by_reference
 class Worker(NamedTuple):
-    """Memory that a thread works in: ``worker()``.
+    """Memory that a thread works in: ``worker()``."""
 
-    Attributes
-    ----------
-    one, two : lanes of either kind
-    cases : (SLOTS,) of CASE
-    waiting : (2, SLOTS) slots that wait for a lane of either kind
-    waits, busy : (2,) how many wait, and how many lanes are taken
-    ones, twos, impacts : (SLOTS, 9) constants of the slots' bodies in every contact state
-    restoring : (SLOTS,)
-    series : (LANES,) of the steps that contact events are looked for in
-    state : of a case, with rates per second, for what the constants do not cover
-    """
-
+    # one, two: lanes of either kind
     one: Any
     two: Any
-    cases: Any
-    waiting: Any
+    cases: Any  # (SLOTS,) of CASE
+    waiting: Any  # (2, SLOTS) slots that wait for a lane of either kind
+    # waits, busy: (2,) how many wait, and how many lanes are taken
     waits: Any
     busy: Any
+    # ones, twos, impacts: (SLOTS, 9) constants of the slots' bodies in every contact state
     ones: Any
     twos: Any
     impacts: Any
-    restoring: Any
-    series: Any
-    state: Any
+    restoring: Any  # (SLOTS,)
+    series: Any  # (LANES,) of the steps that contact events are looked for in
+    state: Any  # of a case, with rates per second, for what the constants do not cover
 
 
 def worker() -> Worker:
@@ -150,8 +140,7 @@ def worker() -> Worker:
 
 # --------------------------------------------------------------------------- phases of a case
 
-NO_CASE, ONE_ROTATES, BOTH_ROTATE = -1, 0, 1
-"""What lane a case needs."""
+NO_CASE, ONE_ROTATES, BOTH_ROTATE = -1, 0, 1  # what lane a case needs
 
 
 @inlined_kernel
@@ -284,9 +273,7 @@ def _ahead(case, motions):
 def contact_event_of_one(i, case, worker, ensemble, motions, g):
     """Take a case in lane i of those of one rotation through its contact event, or to the step's end.
 
-    Returns
-    -------
-    Whether ground and interface close and ``general_impact`` has to say what comes of it.
+    Returned is whether ground and interface close and ``general_impact`` has to say what comes of it.
     """
     lane, series = worker.one, worker.series[i]
     if lane.flag[i] == RELEASE and lane.has_before[i] == 1.0:
@@ -348,12 +335,7 @@ def find_contact_events_of_two(stops, worker):
 
 @kernel
 def contact_event_of_two(i, case, worker, ensemble, motions, g):
-    """Take a case in lane i of those of two rotations through the contact event found, or to the step's end.
-
-    Returns
-    -------
-    Whether ground and interface close and ``general_impact`` has to say what comes of it.
-    """
+    """Take a case in lane i of those of two rotations through the contact event found; see the one above."""
     lane, series = worker.two, worker.series[i]
     left = lane.was_left[i]
     span = stack_two.span_of(left, lane.part[i])
@@ -396,12 +378,8 @@ def general_impact(case, worker, body, closes, motions):
     _, gave_way = resolve_impact(body, state, closes, restoring, ahead, OUTCOME, _forced(case))
     case.given_way += gave_way
     h = case.interval
-    case.c1, case.c2, case.omega1, case.omega2 = (
-        state.c1,
-        state.c2,
-        state.omega1 * h,
-        state.omega2 * h,
-    )
+    case.c1, case.c2 = state.c1, state.c2
+    case.omega1, case.omega2 = state.omega1 * h, state.omega2 * h
 
 
 @inlined_kernel

@@ -58,8 +58,7 @@ LANE = np.dtype(
 )  # fmt: skip
 """The lanes: a row of LANES numbers for each quantity."""
 
-REMNANT = 1e-12
-"""Part of a sample that is not worth a step of its own."""
+REMNANT = 1e-12  # part of a sample that is not worth a step of its own
 
 
 @inlined_kernel

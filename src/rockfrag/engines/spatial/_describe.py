@@ -1,0 +1,83 @@
+"""The rest of a body's record from its base, inertia and height: plain arithmetic, also for kernels (see ``jit``).
+
+So a body has the same bits on every processor, and in a page.
+"""
+
+import math
+from typing import Any
+
+from rockfrag.elementary import hypot, sin_cos
+
+FEET = 32
+"""Points of a rim of which four carry a round body that slides flat."""
+
+
+def fill_body(body: Any, g: float) -> bool:
+    """Complete the record of a body; return whether it can stand.
+
+    Parameters
+    ----------
+    body
+        A BODY with its inertia, height and friction, and the plan of its vertices, or its rim.
+    g
+        Acceleration of gravity [m/s²].
+    """
+    _invert(body.inertia, body.inverse)
+    if body.rim > 0:
+        _fill_rim(body)
+    else:
+        _reach_of_polygon(body)
+    body.barrier = g * (hypot(body.nearest, body.height) - body.height)
+    for i in range(body.count):
+        body.points[i, 2] = -body.height
+        _fill_about(body, i)
+    return bool(body.nearest > 0)
+
+
+def _fill_rim(body: Any) -> None:
+    radius, x, y = body.rim, body.centre[0], body.centre[1]
+    body.count = FEET
+    for i in range(FEET):
+        sine, cosine = sin_cos(i * 2 * math.pi / FEET)
+        body.points[i, 0], body.points[i, 1] = x + radius * cosine, y + radius * sine
+    off = hypot(x, y)
+    body.nearest, body.furthest = radius - off, radius + off
+    across = (body.inertia[0, 0] + body.inertia[1, 1]) / 2
+    square = radius * radius
+    body.pass_turn = math.pi * math.sqrt(1 + square / (across + body.height * body.height))
+    body.slide_turn = math.pi * math.sqrt(1 + square / across)
+
+
+def _reach_of_polygon(body: Any) -> None:
+    body.nearest, body.furthest = math.inf, 0.0
+    for i in range(body.count):
+        j = i + 1 if i + 1 < body.count else 0
+        x, y = body.points[i, 0], body.points[i, 1]
+        along, across = body.points[j, 0] - x, body.points[j, 1] - y
+        edge = (across * x - along * y) / hypot(along, across)
+        body.nearest = min(body.nearest, edge)
+        body.furthest = max(body.furthest, hypot(x, y))
+
+
+def _fill_about(body: Any, i: int) -> None:
+    """Tensor about point i."""
+    p, about = body.points[i], body.about[i]
+    square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
+    for j in range(3):
+        for k in range(3):
+            about[j, k] = body.inertia[j, k] - p[j] * p[k]
+        about[j, j] += square
+    _invert(about, body.about_inverse[i])
+
+
+def _invert(of: Any, into: Any) -> None:
+    """Inverse of a symmetric matrix by its cofactors, which are divided by its largest entry before."""
+    size = max(of[0, 0], of[1, 1], of[2, 2])
+    a, b, c = of[0, 0] / size, of[0, 1] / size, of[0, 2] / size
+    d, e, f = of[1, 1] / size, of[1, 2] / size, of[2, 2] / size
+    p, q, s = d * f - e * e, c * e - b * f, b * e - c * d
+    scale = 1.0 / ((a * p + b * q + c * s) * size)
+    into[0, 0], into[1, 1], into[2, 2] = p * scale, (a * f - c * c) * scale, (a * d - b * b) * scale
+    into[0, 1] = into[1, 0] = q * scale
+    into[0, 2] = into[2, 0] = s * scale
+    into[1, 2] = into[2, 1] = (b * c - a * e) * scale

@@ -1,0 +1,58 @@
+"""Random objects as they are typed into the page of ``rockfrag app``, and as ``rockfrag assess`` takes them."""
+
+import random
+from collections.abc import Mapping
+from typing import Any
+
+
+def some_form(rng: random.Random) -> dict[str, str]:
+    """A random object at a random place, as it is typed; some with decimal commas."""
+    width = rng.uniform(0.05, 0.8)
+    height = width * rng.uniform(2, 6)
+    form = {"width": f"{100 * width:.3g} cm", "height": f"{height:.3g} m"}
+    some = {
+        "mass": f"{rng.uniform(300, 5000) * width * width * height:.4g} kg",
+        "cg_height": f"{rng.uniform(0.35, 0.6) * height:.3g} m",
+        "cg_offset": f"{rng.uniform(-5, 5) * width:.3g} cm",
+        "restitution": f"{rng.uniform(0.6, 0.9):.2f}",
+    }
+    form |= {key: value for key, value in some.items() if rng.random() < 0.35}
+    if rng.random() < 0.35:
+        form["pedestal_width"] = f"{100 * width * rng.uniform(0.9, 2):.3g} cm"
+        form["pedestal_height"] = f"{rng.uniform(0.1, 1.2):.3g} m"
+        if rng.random() < 0.5:
+            form["pedestal_mass"] = f"{rng.uniform(100, 900):.4g} kg"
+    if rng.random() < 0.4:
+        storeys = rng.randint(1, 6)
+        form["floor"] = f"{rng.randint(0, storeys)}/{storeys}"
+    measure, level = rng.choice(
+        [("PGA", f"{rng.uniform(0.05, 0.8):.3g} g"), ("PGV", f"{rng.uniform(5, 90):.3g} cm/s")]
+    )
+    form |= {"measure": measure, "level": level}
+    if rng.random() < 0.7:
+        form["years"] = rng.choice(["475", "975", "72"])
+    return form
+
+
+def settings_of(form: Mapping[str, str]) -> dict[str, Any]:
+    """What ``rockfrag assess`` is told of a form."""
+    plain = ("width", "height", "mass", "cg_height", "cg_offset", "floor")
+    settings: dict[str, Any] = {key: form[key] for key in plain if key in form}
+    if "restitution" in form:
+        settings["restitution"] = float(form["restitution"])
+    pedestal = {
+        key: form[f"pedestal_{key}"]
+        for key in ("width", "height", "mass")
+        if f"pedestal_{key}" in form
+    }
+    settings |= {"pedestal": pedestal} if pedestal else {}
+    settings |= {form["measure"].lower(): form["level"]}
+    return settings | ({"return_period": form["years"]} if "years" in form else {})
+
+
+def options_of(form: Mapping[str, str]) -> list[str]:
+    """Options of the command line for a form."""
+    settings = {key: value for key, value in settings_of(form).items() if key != "pedestal"}
+    options = [f"--{key.replace('_', '-')}={value}" for key, value in settings.items()]
+    pedestal = settings_of(form).get("pedestal", {})
+    return options + (["--pedestal", *pedestal.values()] if pedestal else [])
