@@ -318,7 +318,9 @@ def test_all_languages_have_the_same_texts():
     missing = set(english) - set(italian)
     assert not missing, sorted(missing)
     for key, text in italian.items():
-        if isinstance(text, str):
+        if (
+            isinstance(text, str) and key != "motions"
+        ):  # whose words are English, and their number Italian
             assert set(_places(text)) == set(_places(english[key])), key
 
 

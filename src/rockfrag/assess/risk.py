@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special, stats
 
-from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
 from rockfrag.assess.outcomes import ObjectOutcomes, fraction_at
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
@@ -64,15 +64,7 @@ def _rate_weights(levels: bytes, hazard: HazardCurve, shift: float) -> Floats:
     inside = knots[(knots > x[0]) & (knots < x[-1])]
     ends = np.union1d(x, inside)
     fraction = np.array([np.interp(ends, x, unit) for unit in np.eye(x.size)])
-    rate = hazard.rate(np.exp(ends))
-    slope = -np.diff(np.log(rate)) / np.diff(ends)
-    width = np.diff(ends)
-    low, high = fraction[:, :-1], fraction[:, 1:]
-    # ∫ (P0 + b u) k H0 e^{-ku} du over u = 0..w is P0 H0 - P1 H1 + b (H0 - H1) / k
-    parts = (
-        low * rate[:-1] - high * rate[1:] + (high - low) / width * (rate[:-1] - rate[1:]) / slope
-    )
-    return np.asarray(parts.sum(axis=1) + fraction[:, -1] * rate[-1])
+    return np.asarray(fraction @ rate_weights(hazard, np.exp(ends)))
 
 
 def probability_in(rate: float, years: float) -> float:

@@ -70,6 +70,14 @@ def _percent(row: Row) -> str:
     return estimate(100 * row["right"], 100 * row["lower"], 100 * row["upper"], 1) + " %"
 
 
+def _better(row: Row) -> str:
+    """By how many percentage points the simulation is better, with limits."""
+    middle, low, high = (
+        number(100 * row[name], 1) for name in ("better", "better_lower", "better_upper")
+    )
+    return f"{middle} [{low}, {high}]"
+
+
 def _who(name: str) -> str:
     """Who predicted the outcomes, in words: thresholds by their measure, codes by their name."""
     if name in (OURS, IN_PLANE):
@@ -159,12 +167,6 @@ def _beside_plane(ours: Row, plane: Row) -> Finding:
     )
 
 
-def _better(row: Row) -> str:
-    """By how much the simulation is right more often, with limits, which may be negative [percentage points]."""
-    low, high = (number(100 * row[f"better_{end}"], 1) for end in ("lower", "upper"))
-    return f"{number(100 * row['better'], 1)} [{low}, {high}]"
-
-
 def _against_rivals(others: Sequence[Row]) -> list[Finding]:
     # what is read off the tests themselves is the ceiling of all models, not one of them
     rivals = [row for row in others if row["who"] != REPEATS]
@@ -234,7 +236,7 @@ def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
 
 
 def _ordering(fragility: pd.DataFrame) -> str:
-    """The measure that orders the tests best is the one in which a curve says most."""
+    """Return the measure in which the measured curve has the least dispersion."""
     measured = fragility[fragility["who"] == "measured"]
     return str(measured.set_index("measure")["beta"].fillna(math.inf).idxmin())
 
@@ -254,8 +256,7 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         who=[_who(name) for name in agreement["who"]],
         right_text=[_percent(row) for row in agreement.to_dict("records")],
         better_text=[
-            "–" if not pd.notna(row["better"]) else _better(row)
-            for row in agreement.to_dict("records")
+            _better(row) if pd.notna(row["better"]) else "–" for row in agreement.to_dict("records")
         ],
         p_text=[probability(p) for p in agreement["p"]],
     )

@@ -124,6 +124,7 @@ const objects = (data) => {
   const BUILDING = ["storey_height", "material", "period"];
   function placeOf(form) {
     if (data.onFloor || !form.floor?.trim()) {
+      if (form.storey_height?.trim() || form.period?.trim()) refuse("floor", "missing", { example: "2/4" });
       return { ground: true, key: "", floors: {}, assumed: data.onFloor ? "" : "on_ground" };
     }
     const { own } = data, found = /^\s*(\d{1,3})\s*\/\s*(\d{1,3})\s*$/.exec(form.floor);

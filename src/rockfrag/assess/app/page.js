@@ -38,7 +38,7 @@ function choose(language) {
   say = (id, values = {}) => (texts[id] ?? id).replace(/\{(\w+)\}/g, (whole, name) => String(values[name] ?? whole));
   document.title = say("title");
   for (const element of document.querySelectorAll("[data-text]")) element.textContent = say(element.dataset.text);
-  find("lead").textContent = say("lead", { motions: texts.motions ?? data.motions });
+  find("lead").textContent = say("lead", { motions: linesOf.motions });
   find("made").hidden = !data.made;
   find("made").textContent = say("made");
   find("progress").setAttribute("aria-label", say("answer"));
@@ -62,6 +62,7 @@ function field(name, old) {
   const input = name === "hazard" ? make("textarea", { rows: 3, value }) : options
     ? make("select", {}, ...options.map((id) => make("option", { value: id, textContent: say(id) })))
     : make("input", name === "round" ? { type: "checkbox", checked: Boolean(value) } : { type: "text", value, maxLength: 80 });
+  if (name === "floor") input.placeholder = "2/4";
   if (options) input.value = options.includes(value) ? value : options[0];
   input.id = `field-${name}`;
   input.setAttribute("aria-describedby", `${input.id}-error`);
@@ -223,7 +224,7 @@ function show(told) {
   shown = told;
   const { run: { request, since }, found } = told, said = linesOf(request, found);
   find("answer").classList.remove("stale");
-  find("headline").textContent = said.headline;
+  find("headline").textContent = find("bar").textContent = said.headline;
   find("lines").replaceChildren(...linesAs(said, told.last));
   find("note").hidden = !request.place.computed;
   find("note").textContent = say("computed_floor");
@@ -239,10 +240,10 @@ function linesAs(said, helps = true) {
 }
 // what was typed, in a line
 function typedIn(form) {
-  const plain = ALL.filter((name) => form[name] && !["measure", "material", "hazard", "level"].includes(name));
+  const plain = ALL.filter((name) => (form[name] === true || form[name]?.trim?.()) && !["measure", "material", "hazard", "level"].includes(name));
   const told = plain.map((name) => (form[name] === true ? say(name) : `${say(name)}: ${form[name]}`));
-  if (form.level) told.push(`${form.measure}: ${form.level}`);
-  if (form.hazard) told.push(say("curve_of", { measure: form.measure, count: form.hazard.trim().split("\n").length }));
+  if (form.level.trim()) told.push(`${form.measure}: ${form.level}`);
+  if (form.hazard.trim()) told.push(say("curve_of", { measure: form.measure, count: form.hazard.trim().split("\n").length }));
   return told.join("; ") + ".";
 }
 
@@ -296,7 +297,9 @@ async function draw(told) {
   Object.assign(scene, { dt: motion.dt, statue, pedestal, at: 0 });
   const { unit } = data.measures[measure], level = `${measure} ${Number(deciding.level.toPrecision(2))} ${unit}`;
   scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level, what: say(scene.response.fallen ? "falls" : "stays") });
+  scene.title = () => say(deciding.falls ? "scene" : "scene_other");
   find("scene-words").textContent = scene.words();
+  find("scene-title").textContent = scene.title();
   find("scene").setAttribute("aria-label", scene.words());
   const { theta2, done } = scene.response;
   let most = 0;
@@ -366,6 +369,7 @@ function drawKept() {
   keepOne.disabled = document.body.dataset.stage !== "complete";
   find("tools").replaceChildren(keepOne, button("save_csv", saveCsv), button("save_yaml", () => save("statue.yaml", lists.yamlOf(formTexts(), say))),
     button("open", () => file.click()), button(kept.length ? "print_all" : "print", () => print()), file);
+  find("columns").closest(".wide").hidden = !kept.length;
   find("columns").replaceChildren(...headings(), make("td"));
   const risk = ({ told: { found } }) => found.probabilityValue ?? found.value;
   kept.sort((a, b) => risk(b) - risk(a));
@@ -393,8 +397,8 @@ async function keep() {
 // what is drawn of an object, without its motion
 function stillOf(run) {
   if (scene.of !== run || !scene.response) return null;
-  const { response: { theta1, theta2 }, statue, pedestal, at, words } = scene;
-  return { statue, pedestal, words, at: 0, response: { theta1: [theta1[at]], theta2: [theta2[at]] } };
+  const { response: { theta1, theta2 }, statue, pedestal, at, words, title } = scene;
+  return { statue, pedestal, words, title, at: 0, response: { theta1: [theta1[at]], theta2: [theta2[at]] } };
 }
 function fillForm(values) {
   for (const name of ALL) {
@@ -447,11 +451,11 @@ function drawSheets() {
     const sheet = make("section", { className: "sheet" }, make("h2", { textContent: said.headline }), make("p", { textContent: typedIn(form) }), make("dl", {}, ...linesAs(said)));
     find("sheets").append(sheet);
     if (still) {
-      sheet.append(make("figure", {}, canvas, make("figcaption", { textContent: still.words() })));
+      sheet.append(make("figure", {}, canvas, make("figcaption", { textContent: `${still.title()}: ${still.words()}` })));
       paint(still, canvas);
     }
     if (request.place.computed) sheet.append(make("p", { className: "message", textContent: say("computed_floor") }));
-    sheet.append(make("p", { className: "message", textContent: `${data.made ? say("made") + " " : ""}${say("no_substitute")} ${new Date().toLocaleDateString(document.documentElement.lang)}` }));
+    sheet.append(make("p", { className: "message", textContent: `${data.made ? say("made") + " " : ""}${say("no_substitute")} ${new Date().toISOString().slice(0, 10)}` }));
   }
 }
 function rankedSheet() {
@@ -493,6 +497,7 @@ function translate() {
   if (shown) {
     show(shown);
     if (scene.words) find("scene-words").textContent = scene.words();
+    if (scene.title) find("scene-title").textContent = scene.title();
   }
 }
 begin();

@@ -49,6 +49,8 @@ const words = (data, texts) => {
   const capital = (text) => text.slice(0, 1).toUpperCase() + text.slice(1);
   const listed = (all) => (all.length < 2 ? all.join("") : `${all.slice(0, -1).join(", ")} ${say("and")} ${all.at(-1)}`);
 
+  const [source = ""] = /\s*\([^)]*\)$/.exec(data.motions) ?? [];
+  const motions = say("motions", { words: data.motions, motions: data.earthquakes.length, earthquakes: Math.max(...data.earthquakes) + 1, source });
   const nameOf = (request) => (request.name === data.texts.en.the_object ? say("the_object") : request.name);
   function linesOf(request, found) {
     const { measure, place, pedestal, statue } = request, { unit } = data.measures[measure];
@@ -132,7 +134,7 @@ const words = (data, texts) => {
     }
     function sure() {
       if (!main) return "";
-      const total = Object.values(main.sources).reduce((sum, s) => sum + s * s, 0), lines = [`${texts.motions ?? data.motions}.`];
+      const total = Object.values(main.sources).reduce((sum, s) => sum + s * s, 0), lines = [`${motions}.`];
       const ranked = Number.isFinite(total) && total > 0 ? Object.entries(main.sources).map(([key, s]) => [key, (s * s) / total]).sort((a, b) => b[1] - a[1]) : [];
       const named = ranked.filter(([, part]) => part >= LEAST_PART).slice(0, MOST_SOURCES);
       if (named.length) lines.push(say("variance", { all: listed(named.map(([key, part]) => say("part_from", { part: whole(100 * part), what: texts.sources[key] }))) }));
@@ -153,7 +155,7 @@ const words = (data, texts) => {
     }
     return { headline: headline(), result: result(), risk: risk(), position: position(), helps: helps(), sure: sure(), mitigation };
   }
-  return Object.assign(linesOf, { nameOf });
+  return Object.assign(linesOf, { nameOf, motions });
 
   // what was not given: text, what stands in it, and the sources that it widens; the place first
   function assumptions({ place, statue, pedestal, massGiven, restitution }) {
