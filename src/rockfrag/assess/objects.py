@@ -72,7 +72,8 @@ class Objects:
     facing_deg: float = 0.0
     # Whether nobody said how it faces the shaking, which counts in space
     faces_anywhere: bool = False
-    # By how much corners of the base lie elsewhere in space, over its extent, other for each record [-]
+    # By how much corners of the base lie elsewhere in space, over its extent, and it is turned [rad], other for
+    # each record [-]
     base_spread: float = 0.0
     # The scan and the ways in which it may stand; None where dimensions were given
     scan: Scan | None = None
@@ -172,7 +173,7 @@ class Objects:
             return System((self._changed(self.scanned, top),), (Contact(),))
         if self.round:
             across = top.centroidal_inertia
-            along = top.mass * top.width**2 / 8
+            along = top.mass * top.width * top.width / 8
             return replace(top, round=True, inertia=diagonal(across, across, along)).system()
         return turned_about_vertical(self._box(top, whole=whole).system(), self.facing_deg)
 
@@ -189,10 +190,10 @@ class Objects:
         width, depth, mass = self.block.width, self.depth, self.block.mass
         across = top.centroidal_inertia
         # moments of uniform boxes about x and y differ by what their sides do
-        aside = mass * (depth**2 - width**2) / 12
-        along = mass * (width**2 + depth**2) / 12
+        aside = mass * (depth * depth - width * width) / 12
+        along = mass * (width * width + depth * depth) / 12
         if whole:
-            along += (top.mass - mass) * top.width**2 / 6
+            along += (top.mass - mass) * top.width * top.width / 6
             depth = max(depth, top.width)
         return replace(top, depth=depth, inertia=diagonal(across + aside, across, along))
 

@@ -34,7 +34,7 @@ from rockfrag.report.wording import (
     probability,
     sentence,
 )
-from rockfrag.stages.campaign import OURS, TABLES, VOTES
+from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
 from rockfrag.study.campaign import CampaignStudy
 
 
@@ -80,8 +80,8 @@ def _better(row: Row) -> str:
 
 def _who(name: str) -> str:
     """Who predicted the outcomes, in words: thresholds by their measure, codes by their name."""
-    if name == OURS:
-        return "simulation"
+    if name in (OURS, IN_PLANE):
+        return "simulation" + name.removeprefix(OURS)
     for start in ("threshold on ", "probit on "):
         if name.startswith(start):
             measures = name.removeprefix(start).split(" and ")
@@ -119,7 +119,8 @@ def _said(study: CampaignStudy) -> str:
 
 
 def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
-    ours, *rivals = tables["agreement"].to_dict("records")
+    ours, *others = tables["agreement"].to_dict("records")
+    rivals = [row for row in others if row["who"] != IN_PLANE]
     found = [
         Finding(
             f"The simulation predicts {number(100 * ours['right'], 1)} % of the outcomes",
@@ -127,6 +128,7 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
             f"{counted(round(ours['false_alarms']), 'test')} in the simulation only.",
             f"Tests whose motions were not used to fit unmeasured properties: {_percent(ours)} predicted.",
         ),
+        *(_beside_plane(ours, row) for row in others if row["who"] == IN_PLANE),
         *_against_rivals(rivals),
         *_fragility_found(tables["fragility"]),
     ]
@@ -143,6 +145,26 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
             )
         )
     return found
+
+
+def _beside_plane(ours: Row, plane: Row) -> Finding:
+    """Whether three dimensions predict better than one plane."""
+    known = plane["p"] < LEVEL
+    said = (
+        "is better than in one plane"
+        if known and plane["better_lower"] > 0
+        else "is worse than in one plane"
+        if known and plane["better_upper"] < 0
+        else "is no gain over one plane"
+    )
+    return Finding(
+        f"Simulation in space {said}: {number(100 * ours['right'], 1)} and {number(100 * plane['right'], 1)} % of "
+        "the outcomes predicted",
+        "All other figures here are of the simulation in space.",
+        f"In one plane {_percent(plane)} with {counted(round(plane['missed']), 'test')} missed and "
+        f"{counted(round(plane['false_alarms']), 'false alarm')}: in space better by {_better(plane)} percentage "
+        f"points (p {_p(plane['p'])}).",
+    )
 
 
 def _against_rivals(others: Sequence[Row]) -> list[Finding]:

@@ -174,12 +174,12 @@ _OF_A_MESH = ("direction_deg", "contact_tolerance_mm")
 
 def _check_object(source: Path, thing: Mapping[str, Any], unknowns: Mapping[str, Any]) -> None:
     where = f"{source}: key object"
-    slides, piled = "friction" in unknowns, "pedestal" in thing
-    possible = piled or "mesh" in thing if slides else not piled
-    if ("restitution" in unknowns) == slides or not possible:
+    slides, bounces, piled = "friction" in unknowns, "restitution" in unknowns, "pedestal" in thing
+    in_space = slides and "mesh" in thing
+    if not (in_space or (slides != bounces and slides == piled)):
         raise InputError(
-            f"{source}: key unknowns: expected the range of restitution, of a planar body, or that of "
-            "friction, of a mesh in space or an object on a pedestal."
+            f"{source}: key unknowns: expected the range of restitution, of a planar body, that of friction, of a "
+            "mesh in space or an object on a pedestal, or both, of a mesh in space beside the planar body."
         )
     if "mesh" in thing:
         strange = [key for key in (*_BY_HAND, "pedestal") if key in thing and key != "mass_kg"]
