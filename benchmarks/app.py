@@ -1,9 +1,12 @@
-"""How long a user of the assessment's page waits, in Chromium, and what it takes of memory.
+"""How long a user of the assessment's page waits in Chromium, and of the command; and the memory of the page.
 
-``python benchmarks/app.py`` writes the page with the default motions, opens it from its file and types a width;
-``make bench`` runs it too.  Seconds go from opening the file, and then from the key stroke.
+``python benchmarks/app.py`` writes the page with the default motions, opens it from its file and types a width,
+then a pedestal; ``make bench`` runs it too.  Seconds go from opening the file, and then from the key stroke; those
+of the command from its start to its end.
 """
 
+import json
+import subprocess
 import sys
 import tempfile
 import time
@@ -20,11 +23,19 @@ from rockfrag.cli import main  # noqa: E402
 STAGES = ("first", "complete")
 """The first figures, and all of the answer."""
 
-TYPE = """(() => {
-  const field = document.getElementById("field-width");
-  field.value = "30 cm";
+OBJECT = ("--width=30cm", "--height=1.2m", "--pga=0.4g", "--return-period=475")
+WAITS = {
+    "first answer": {},
+    "further answer": {"width": "30 cm"},
+    "on a pedestal": {"pedestal_width": "50 cm", "pedestal_height": "90 cm"},
+}
+"""What is typed before each answer."""
+
+TYPE = """for (const [name, text] of Object.entries({fields})) {{
+  const field = document.getElementById(`field-${{name}}`);
+  field.value = text;
   field.dispatchEvent(new Event("input"));
-})()"""
+}}"""
 
 
 def app_seconds() -> dict[str, float]:
@@ -36,15 +47,24 @@ def app_seconds() -> dict[str, float]:
         page = Path(folder) / "assess.html"
         main(["app", "--records", str(ROOT / "resources/records"), "--output", str(page)])
         browser.open(page)
-        for name in ("first answer", "further answer"):
+        for name, fields in WAITS.items():
+            browser.run(TYPE.format(fields=json.dumps(fields)))
+            time.sleep(0.5)
             _wait(browser)
             told = browser.run("({...document.body.dataset})")
             found |= {f"{name}: {stage}": float(told[stage]) / 1000 for stage in STAGES}
-            browser.run(TYPE)
-            time.sleep(0.5)
         family = psutil.Process(browser._process.pid).children(recursive=True)
         pages = [each for each in family if "--type=renderer" in each.cmdline()]
         found["memory of the page [MB]"] = max(each.memory_info().rss for each in pages) / 1e6
+        program = Path(sys.executable).with_name("rockfrag")
+        command = [program, "assess", *OBJECT, "--output", folder]
+        for name, more in (
+            ("command", []),
+            ("command, on a pedestal", ["--pedestal", "50cm", "90cm"]),
+        ):
+            start = time.perf_counter()
+            subprocess.run([*command, *more], cwd=ROOT, capture_output=True, check=True)
+            found[name] = time.perf_counter() - start
     return found
 
 

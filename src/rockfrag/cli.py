@@ -11,7 +11,7 @@ from rockfrag import __version__
 from rockfrag.assess.app.commands import add_app_command
 from rockfrag.assess.commands import add_assess_commands
 from rockfrag.errors import InputError
-from rockfrag.record_commands import add_record_commands
+from rockfrag.record_commands import add_record_commands, read_told
 from rockfrag.survival.commands import add_survival_commands
 from rockfrag.units import quantity
 
@@ -182,7 +182,7 @@ def _vertical(options: argparse.Namespace, factor: float) -> "Motion | None":
     """Return the vertical component that the options tell, scaled as the record is."""
     if options.vertical is None:
         return None
-    up = _motion(options.vertical, options, None)
+    up = read_told(options.vertical, options, None)
     return up.after("scale", factor * up.acceleration, factor=factor)
 
 
@@ -209,18 +209,7 @@ def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
 
     below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
     body = stacked([*below, _block("--body", options.body)])
-    return body, _motion(options.record, options, options.channel)
-
-
-def _motion(record: str, options: argparse.Namespace, channel: str | None) -> "Motion":
-    """Read a record as the options say, with errors that name them."""
-    from rockfrag.records.read import read_motion
-    from rockfrag.records.wording import for_command_line
-
-    try:
-        return read_motion(record, options.unit, channel, options.dt)
-    except InputError as error:
-        raise InputError(for_command_line(error, force=False)) from None
+    return body, read_told(options.record, options, options.channel)
 
 
 def _play(options: argparse.Namespace) -> int:

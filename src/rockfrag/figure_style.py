@@ -89,6 +89,14 @@ def new_figure(width: float = PAGE_WIDTH, height: float = 3.0) -> Figure:
     return figure
 
 
+@contextmanager
+def one_panel(width: float, height: float) -> Iterator[tuple[Figure, Axes]]:
+    """Draw an empty figure [in] and its only panel inside this block."""
+    with figure_style():
+        figure = new_figure(width, height)
+        yield figure, figure.subplots()
+
+
 def plain_log(axes: Axes, which: str) -> None:
     """Label a logarithmic axis, ``x`` or ``y``, with 0.1, 0.2, 0.5, 1, … instead of powers of ten."""
     axis = axes.xaxis if which == "x" else axes.yaxis

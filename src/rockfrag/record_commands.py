@@ -98,14 +98,15 @@ def _add_write(commands: Any) -> None:
     write.set_defaults(run=_write)
 
 
-def _read(file: str, options: argparse.Namespace) -> "Motion":
-    """Read a record as the options say, with errors that name them."""
+def read_told(file: str, options: argparse.Namespace, channel: str | None) -> "Motion":
+    """Read a record as the options of a command say, with errors that name those that it has."""
     from rockfrag.records.read import read_motion
 
+    force = getattr(options, "force", None)
     try:
-        return read_motion(file, options.unit, options.channel, options.dt, force=options.force)
+        return read_motion(file, options.unit, channel, options.dt, force=bool(force))
     except InputError as error:
-        raise InputError(for_command_line(error)) from None
+        raise InputError(for_command_line(error, force=force is not None)) from None
 
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for ObsPy
@@ -125,7 +126,7 @@ def _info(options: argparse.Namespace) -> int:
     if options.picture:
         if len(options.files) != 1:
             raise InputError("--picture draws one record; name one FILE.")
-        motion = _read(options.files[0], options)
+        motion = read_told(options.files[0], options, options.channel)
         draw_record(motion, options.picture)
         print(f"drawn in {options.picture}", file=sys.stderr)
     if options.pictures:
@@ -204,6 +205,6 @@ def _write(options: argparse.Namespace) -> int:
         for path in write_motions(motions, options.target, form, options.in_unit):
             print(path)
         return 0
-    motion = _read(options.source, options)
+    motion = read_told(options.source, options, options.channel)
     print(write_motion(motion, options.target, options.format, options.in_unit))
     return 0

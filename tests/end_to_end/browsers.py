@@ -26,8 +26,15 @@ class Browser(Protocol):
     def run(self, script: str) -> Any:
         """Return what an expression, or a promise of it, comes to in the page."""
 
+    def press(self, *keys: str) -> None:
+        """Press keys, by the names in ``KEYS``, or type a text into what has the focus."""
+
     def picture(self) -> bytes:
         """Return what is seen, as PNG."""
+
+
+KEYS = {"Tab": (9, "", "\ue004"), "Enter": (13, "\r", "\ue007"), "Space": (32, " ", " ")}
+"""Keys by name: their number and text in Chromium, and their letter in WebDriver."""
 
 
 class Chromium:
@@ -112,6 +119,17 @@ class Chromium:
         if "exceptionDetails" in found:
             raise AssertionError(str(found["exceptionDetails"]))
         return found["result"].get("value")
+
+    def press(self, *keys: str) -> None:
+        """Press keys, by the names in ``KEYS``, or type a text into what has the focus."""
+        for key in keys:
+            if key not in KEYS:
+                self._ask("Input.insertText", text=key)
+                continue
+            number, text, _ = KEYS[key]
+            about = {"key": text or key, "code": key, "windowsVirtualKeyCode": number}
+            self._ask("Input.dispatchKeyEvent", type="keyDown", text=text, **about)
+            self._ask("Input.dispatchKeyEvent", type="keyUp", **about)
 
     def picture(self) -> bytes:
         """Return what is seen, as PNG."""
@@ -231,6 +249,15 @@ class Firefox:
         )
         self.console = list(errors)
         return found
+
+    def press(self, *keys: str) -> None:
+        """Press keys, by the names in ``KEYS``, or type a text into what has the focus."""
+        letters = [letter for key in keys for letter in (KEYS[key][2] if key in KEYS else key)]
+        both = ({"type": kind, "value": a} for a in letters for kind in ("keyDown", "keyUp"))
+        self._ask(
+            "WebDriver:PerformActions",
+            actions=[{"type": "key", "id": "keyboard", "actions": list(both)}],
+        )
 
     def picture(self) -> bytes:
         """Return what is seen, as PNG."""

@@ -187,6 +187,53 @@ def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
     assert browser.console == []
 
 
+HOSTILE = (
+    "<img src=x onerror=document.title='hit'>",
+    "${document.title='hit'}",
+    "=HYPERLINK(1)",
+    "1e999 m",
+    "-1 kg",
+    "\\u202e12 cm",
+    "a" * 5000,
+)
+
+TRIED = """
+(async () => {{
+  const found = [], wait = (ms) => new Promise(done => setTimeout(done, ms));
+  for (const field of document.querySelectorAll('#form input[type=text], #form textarea')) {{
+    const before = field.value;
+    for (const text of {texts}) {{
+      field.value = text;
+      field.dispatchEvent(new Event('input', {{bubbles: true}}));
+      await wait(160);
+      const said = [...document.querySelectorAll('#form small')].map(one => one.textContent).filter(Boolean);
+      found.push([field.id, text.slice(0, 20), said]);
+      field.value = before;
+    }}
+  }}
+  return found;
+}})()
+"""
+
+
+@pytest.mark.slow
+def test_hostile_text_in_every_field_gets_a_sentence(browser, app_page):
+    browser.open(app_page)
+    assert browser.run(STAGE)
+    title = browser.run("document.title")
+    found = browser.run(TRIED.format(texts=json.dumps(HOSTILE)))
+    assert len(found) > 12 * len(HOSTILE)
+    for field, text, said in found:
+        # a name may be anything, and a negative offset is one
+        if field == "field-name":
+            assert not said
+        elif field != "field-cg_offset":
+            assert len(said) == 1 and said[0].endswith("."), (field, text, said)
+    assert browser.run("document.querySelectorAll('main img, main script').length") == 0
+    assert browser.run("document.title") == title
+    assert browser.console == []
+
+
 @pytest.mark.parametrize(
     ("allowed", "instead", "words"),
     [

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from rockfrag.figure_style import figure_style, new_figure
 from rockfrag.report.page import MOST_TABLE_ROWS, Column, cell, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import draw
+from rockfrag.report.study_report import draw_all
 
 
 def drawing() -> Figure:
@@ -31,13 +31,12 @@ def page(folder: Path) -> str:
     columns = [Column("name", "Name"), Column("value", "Value [g]", 2)]
     specs = [spec("one"), spec("two")]
     parts = [table_html(table, columns, "A"), *specs]
-    pictures = {spec.name: draw(spec, folder) for spec in specs}
     return render(
         title="T",
         lead="lead",
         answer=Answer("Does it fall?", [Finding("Found", "this")], specs[0]),
         sections=[Section("one", "One", "Message <s>", ["Text & more"], [parts[0], specs[1]])],
-        pictures=pictures,
+        pictures=draw_all(specs, folder),
         provenance={"Seed": "1"},
     )
 

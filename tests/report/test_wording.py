@@ -43,8 +43,8 @@ def test_an_estimate_has_limits_only_where_they_say_something(
 
 
 def test_a_column_of_estimates_has_one_number_of_decimals():
-    table = pd.DataFrame({"a": [12.34, 0.123], "b": [10.0, 0.1], "c": [15.0, 0.2]})
-    assert estimates(table, ("a", "b", "c")) == ["12.340 [10.000, 15.000]", "0.123 [0.100, 0.200]"]
+    table = pd.DataFrame({"a": [12.34, 0.123], "a_lower": [10.0, 0.1], "a_upper": [15.0, 0.2]})
+    assert estimates(table, "a") == ["12.340 [10.000, 15.000]", "0.123 [0.100, 0.200]"]
 
 
 def test_p_values_are_never_zero():

@@ -5,6 +5,7 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -89,7 +90,8 @@ def add_request_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_object(about: Any) -> None:
-    about.add_argument("--name", action=_Once, help="what it is called")
+    once = partial(about.add_argument, action=_Once)
+    once("--name", help="what it is called")
     for name, words in (
         ("width", "of the base, or the diameter of a round one"),
         ("height", "of the whole"),
@@ -99,47 +101,35 @@ def _add_object(about: Any) -> None:
         ("cg-offset", "of the centre of gravity from the middle of the base"),
     ):
         metavar = "SIZE" if name != "mass" else "MASS"
-        about.add_argument(f"--{name}", action=_Once, metavar=metavar, help=words)
-    about.add_argument(
+        once(f"--{name}", metavar=metavar, help=words)
+    once(
         "--facing",
-        action=_Once,
         type=float,
         metavar="DEGREES",
         help="direction of the width, or of a mesh's x axis, from the first component of each record",
     )
-    about.add_argument(
+    once(
         "--base-spread",
-        action=_Once,
         type=float,
         metavar="FRACTION",
-        help="by how much corners of the base lie elsewhere in space, over its size: 0.001",
+        help="by how much corners of the base lie elsewhere in space, over its size, and it is turned: 0.001",
     )
     about.add_argument("--round", action="store_true", help="the base is round")
-    about.add_argument(
-        "--mesh", action=_Once, metavar="FILE", help="mesh of it (OBJ, PLY, STL, GLB) instead"
-    )
-    about.add_argument("--up", action=_Once, choices="xyz", help="axis of the mesh that points up")
+    once("--mesh", metavar="FILE", help="mesh of it (OBJ, PLY, STL, GLB) instead")
+    once("--up", choices="xyz", help="axis of the mesh that points up")
     about.add_argument(
         "--hull", action="store_true", help="take the convex hull of a mesh that is not closed"
     )
-    about.add_argument(
-        "--mesh-unit", action=_Once, choices=list(_METRES), help="unit of the mesh, m if not given"
-    )
-    about.add_argument(
+    once("--mesh-unit", choices=list(_METRES), help="unit of the mesh, m if not given")
+    once(
         "--contact-tolerance",
-        action=_Once,
         metavar="SIZE",
         help="height up to which points of the mesh carry, 2mm if not given",
     )
-    about.add_argument(
-        "--restitution", action=_Once, type=float, help="measured ratio of angular velocities"
-    )
-    about.add_argument(
-        "--friction", action=_Once, type=float, help="coefficient: it may slide at that level"
-    )
-    about.add_argument(
+    once("--restitution", type=float, help="measured ratio of angular velocities")
+    once("--friction", type=float, help="coefficient: it may slide at that level")
+    once(
         "--pad-friction",
-        action=_Once,
         type=float,
         help="coefficient of a pad under the object, tried as a mitigation",
     )
@@ -153,75 +143,46 @@ def _add_object(about: Any) -> None:
 
 
 def _add_place(place: Any) -> None:
-    place.add_argument(
+    once = partial(place.add_argument, action=_Once)
+    once(
         "--floor",
-        action=_Once,
         metavar="LEVEL/STOREYS",
         help="such as 2/4, with 0 for the ground: level 2 is the second floor in Europe, the third in America",
     )
-    place.add_argument(
-        "--building", action=_Once, metavar="FILE", help="YAML file with the building"
-    )
-    place.add_argument(
+    once("--building", metavar="FILE", help="YAML file with the building")
+    once(
         "--storey-height",
-        action=_Once,
         nargs="+",
         metavar="SIZE",
         help="of every storey, or of each from below; 3.5m if not given",
     )
-    place.add_argument(
-        "--period", action=_Once, metavar="TIME", help="first period of the building: 0.4s"
-    )
-    place.add_argument(
+    once("--period", metavar="TIME", help="first period of the building: 0.4s")
+    once(
         "--material",
-        action=_Once,
         choices=["masonry", "concrete", "steel"],
         help="of the building: its period follows from that and its height",
     )
-    place.add_argument("--pga", action=_Once, metavar="ACCELERATION", help="of the ground: 0.25g")
-    place.add_argument(
-        "--pgv",
-        action=_Once,
-        metavar="VELOCITY",
-        help="of the ground, alone or beside the other: 20cm/s",
-    )
-    place.add_argument(
-        "--sa", action=_Once, nargs=2, metavar=("PERIOD", "ACCELERATION"), help="0.3s 0.6g"
-    )
-    place.add_argument("--return-period", action=_Once, metavar="YEARS", help="of that level")
-    place.add_argument(
-        "--hazard", action=_Once, nargs="+", metavar="FILE", help="hazard curves of the site"
-    )
-    place.add_argument(
-        "--years", action=_Once, type=float, help="time of the probability, 50 if not given"
-    )
-    place.add_argument(
-        "--magnitude", action=_Once, type=float, help="of the earthquakes that matter most there"
-    )
-    place.add_argument(
-        "--distance", action=_Once, type=float, metavar="KM", help="of these earthquakes"
-    )
+    once("--pga", metavar="ACCELERATION", help="of the ground: 0.25g")
+    once("--pgv", metavar="VELOCITY", help="of the ground, alone or beside the other: 20cm/s")
+    once("--sa", nargs=2, metavar=("PERIOD", "ACCELERATION"), help="0.3s 0.6g")
+    once("--return-period", metavar="YEARS", help="of that level")
+    once("--hazard", nargs="+", metavar="FILE", help="hazard curves of the site")
+    once("--years", type=float, help="time of the probability, 50 if not given")
+    once("--magnitude", type=float, help="of the earthquakes that matter most there")
+    once("--distance", type=float, metavar="KM", help="of these earthquakes")
 
 
 def _add_motions(motions: Any) -> None:
-    motions.add_argument(
+    once = partial(motions.add_argument, action=_Once)
+    once(
         "--record",
-        action=_Once,
         nargs="+",
         metavar="PATH",
         help="own records, folders or catalogues instead of the default set",
     )
     motions.add_argument("--on-floor", action="store_true", help="they were recorded on that floor")
-    motions.add_argument(
-        "--unit", action=_Once, help="unit of records that do not state theirs: g, m/s2, cm/s2"
-    )
-    motions.add_argument(
-        "--dt",
-        action=_Once,
-        type=float,
-        metavar="S",
-        help="sampling interval of records without one",
-    )
+    once("--unit", help="unit of records that do not state theirs: g, m/s2, cm/s2")
+    once("--dt", type=float, metavar="S", help="sampling interval of records without one")
     motions.add_argument(
         "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
     )

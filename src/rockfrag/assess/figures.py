@@ -5,7 +5,13 @@ from matplotlib.figure import Figure
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.words import NAMES
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, figure_style, new_figure, plain_log
+from rockfrag.figure_style import (
+    BLUE,
+    COLUMN_WIDTH,
+    OKABE_ITO,
+    one_panel,
+    plain_log,
+)
 
 _REACHED = 0.995
 """Fraction of motions up to which the curves are shown."""
@@ -13,9 +19,7 @@ _REACHED = 0.995
 
 def fractions_figure(found: Assessment) -> Figure:
     """Fraction of the motions that topple the object over the level of shaking, for each arrangement."""
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 2.7)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 2.7) as (figure, axes):
         ends = []
         for colour, (name, outcomes) in zip(OKABE_ITO, found.arrangements.items(), strict=False):
             levels, fractions = outcomes.intensity_levels.levels, outcomes.fractions()
@@ -58,9 +62,7 @@ def sources_figure(found: Assessment) -> Figure:
         for name, value in sorted(found.main.sources.items(), key=lambda item: item[1])
         if np.isfinite(value)
     }
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 0.6 + 0.24 * len(known))
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 0.6 + 0.24 * len(known)) as (figure, axes):
         axes.barh(list(known), list(known.values()), color=BLUE, height=0.6)
         axes.set(xlabel="Standard deviation on the scale of the interval")
     return figure

@@ -5,7 +5,6 @@ import os
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import pandas as pd
@@ -22,14 +21,13 @@ from rockfrag.figure_style import (
     BLUE,
     COLUMN_WIDTH,
     PAGE_WIDTH,
-    figure_style,
-    new_figure,
+    one_panel,
     plain_log,
 )
 from rockfrag.files import write_table, write_text
-from rockfrag.report.page import Column, render, table_html
+from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import draw
+from rockfrag.report.study_report import page_text
 
 MOST_DRAWN = 40
 """Objects of which the correlation is drawn: those that add most."""
@@ -88,11 +86,8 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
         "the geometric mean of both rates. Equal objects on one floor have 1.",
         lambda: correlation_figure(joint),
     )
-    drawn = [numbers, correlation, *([losses] if valued and len(joint.losses) > 1 else [])]
-    with TemporaryDirectory(prefix="rockfrag.") as scratch:
-        pictures = {spec.name: draw(spec, Path(scratch)) for spec in drawn}
     count = len(inventory.found)
-    return render(
+    return page_text(
         title=f"What {count} objects risk together",
         lead=f"{count} objects, shaken by the same {len(inventory.motions.ground)} motions.",
         answer=Answer(
@@ -105,10 +100,9 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
         ),
         sections=[
             _ranking(inventory, joint, "loss" if valued else "number"),
-            _numbers(joint, drawn[2:]),
+            _numbers(joint, [losses] if valued and len(joint.losses) > 1 else []),
             _correlation(joint, correlation),
         ],
-        pictures=pictures,
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
     )
 
@@ -196,9 +190,7 @@ def numbers_figure(joint: JointRisk, years: float) -> Figure:
         for name in ("probability", "probability_lower", "probability_upper")
     )
     bars = [np.maximum(middle - low, 0), np.maximum(high - middle, 0)]
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 2.5)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.errorbar(at, middle, yerr=bars, fmt="o", color=BLUE, capsize=2)
         axes.set(
             xscale="log",
@@ -216,9 +208,7 @@ def losses_figure(joint: JointRisk, years: float) -> Figure:
     """How probably a loss is exceeded in one earthquake."""
     losses = joint.losses
     chance = [100 * probability_in(rate, years) for rate in losses["annual_rate"]]
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 2.5)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.step(losses["loss"], chance, where="pre", color=BLUE)
         axes.set(
             xscale="log",
@@ -237,9 +227,7 @@ def correlation_figure(joint: JointRisk) -> Figure:
     names = list(joint.objects["name"][:MOST_DRAWN])
     table = joint.correlation.loc[names, names].to_numpy()
     side = min(PAGE_WIDTH, 2.4 + 0.11 * len(names))
-    with figure_style():
-        figure = new_figure(side, 0.8 * side)
-        axes = figure.subplots()
+    with one_panel(side, 0.8 * side) as (figure, axes):
         image = axes.imshow(table, vmin=0, vmax=1, cmap="Blues")
         short = [name if len(name) <= 18 else f"{name[:17]}…" for name in names]
         axes.set_xticks(range(len(names)), short, rotation=90, fontsize=6)

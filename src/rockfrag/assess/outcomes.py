@@ -4,6 +4,7 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +71,14 @@ AT_REST = 1e-9
 def believable_scales(base: Sequence[Motion]) -> Floats:
     """Largest factor on each motion at which it is still one that a floor may feel, shape (motions, 1)."""
     return np.array([[(1 - 1e-9) * LARGEST_PEAK / motion.pga] for motion in base])
+
+
+def _factors(
+    intensity_levels: IntensityLevels, shaking: Sequence[Motion], rows: Any = slice(None)
+) -> Floats:
+    """Factors on what shakes, by the rows of the levels; at rest what is not counted, shape (rows, levels)."""
+    scales = np.minimum(intensity_levels.scales[rows], believable_scales(shaking))
+    return np.where(intensity_levels.allowed[rows], scales, AT_REST)
 
 
 def make_intensity_levels(
@@ -249,19 +258,8 @@ def _shaken_in_plane(
     """Outcomes of planar bodies, by components as recorded."""
     if not systems:
         return []
-    scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)
-    scales = np.minimum(scales, believable_scales(motions.base))
-    result, light = simulated(systems, motions.base, scales)
-    states = _reached(result)
-    return [
-        _object_outcomes(
-            {name: cases[i] for name, cases in states.items()},
-            motions,
-            intensity_levels,
-            light[i],
-        )
-        for i in range(len(systems))
-    ]
+    result, light = simulated(systems, motions.base, _factors(intensity_levels, motions.base))
+    return _each_system(_reached(result), motions, intensity_levels, light)
 
 
 def _reached(result: Outcomes) -> dict[str, NDArray[np.bool_]]:
@@ -269,14 +267,21 @@ def _reached(result: Outcomes) -> dict[str, NDArray[np.bool_]]:
     return {state.name: state.reached(result) for state in limit_states() if not state.slipping}
 
 
-def _object_outcomes(
-    states: dict[str, NDArray[np.bool_]],
+def _each_system(
+    states: Mapping[str, NDArray[np.bool_]],
     motions: MotionSet,
     intensity_levels: IntensityLevels,
-    light: bool = False,
-) -> ObjectOutcomes:
-    fell, rocked = states.pop(OVERTURNS), states.pop(ROCKS)
-    return ObjectOutcomes(intensity_levels, fell, rocked, motions.earthquakes, light, states)
+    light: Sequence[bool] = (False,),
+    place: Any = slice(None),
+) -> list[ObjectOutcomes]:
+    """Outcomes of each system, of the row of the states in whose place each motion stands."""
+    found = []
+    for i, may_fly in enumerate(light):
+        own = {name: cases[i][place] for name, cases in states.items()}
+        fell, rocked = own.pop(OVERTURNS), own.pop(ROCKS)
+        earthquakes = motions.earthquakes
+        found.append(ObjectOutcomes(intensity_levels, fell, rocked, earthquakes, may_fly, own))
+    return found
 
 
 def flip_rate(
@@ -330,22 +335,20 @@ def in_space(
 ) -> ObjectOutcomes:
     """Outcomes of a body in space under both components of each record, where it has two.
 
-    Corners of its base lie elsewhere by ``spread`` over its extent [-].
+    Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
     """
     paired = {i for pair in motions.pairs for i in pair}
     shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]
     shaking += [GroundMotion(m) for i, m in enumerate(motions.base) if i not in paired]
     first = [pair[0] for pair in motions.pairs]
     first += [i for i in range(len(motions.base)) if i not in paired]
-    scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)[first]
-    scales = np.minimum(scales, believable_scales(motions.base)[first])
+    scales = _factors(intensity_levels, [motions.base[i] for i in first], first)
     result = run_in_space([body], shaking, scales, spread=spread, threads=checked_threads(None))
     place = np.zeros(len(motions.base), dtype=np.intp)
     place[first] = np.arange(len(first))
     for own, other in motions.pairs:
         place[other] = place[own]
-    states = {name: cases[0][place] for name, cases in _reached(result).items()}
-    return _object_outcomes(states, motions, intensity_levels)
+    return _each_system(_reached(result), motions, intensity_levels, place=place)[0]
 
 
 def _shaken_from_all_sides(
@@ -357,9 +360,7 @@ def _shaken_from_all_sides(
     records = motions.turned(WORST_STEP_DEG)
     shaking = [motion for _, turned in records for motion in turned]
     of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])
-    scales = np.minimum(intensity_levels.scales[of_row], believable_scales(shaking))
-    scales = np.where(intensity_levels.allowed[of_row], scales, AT_REST)
-    result, light = simulated(systems, shaking, scales)
+    result, light = simulated(systems, shaking, _factors(intensity_levels, shaking, of_row))
     # the place of the record that stands for each motion
     place = np.arange(len(motions.base))
     for first, second in motions.pairs:
@@ -368,17 +369,8 @@ def _shaken_from_all_sides(
     states = {}
     for name, cases in _reached(result).items():
         states[name] = np.zeros((len(systems), *intensity_levels.scales.shape), dtype=bool)
-        for i, found in enumerate(states[name]):
-            np.logical_or.at(found, of_row, cases[i])
-    return [
-        _object_outcomes(
-            {name: cases[i][place] for name, cases in states.items()},
-            motions,
-            intensity_levels,
-            light[i],
-        )
-        for i in range(len(systems))
-    ]
+        np.logical_or.at(states[name].swapaxes(0, 1), of_row, cases.swapaxes(0, 1))
+    return _each_system(states, motions, intensity_levels, light, place)
 
 
 def on_pad(
@@ -389,10 +381,9 @@ def on_pad(
     *below, pad = system.contacts
     pad = replace(pad, friction=Friction(friction, friction))
     system = replace(system, contacts=(*below, pad))
-    scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)
+    scales = _factors(intensity_levels, motions.base)
     result = overturns(system, motions.base, scales=scales)
-    states = {name: cases[0] for name, cases in _reached(result).items()}
-    outcomes = _object_outcomes(states, motions, intensity_levels)
+    (outcomes,) = _each_system(_reached(result), motions, intensity_levels)
     return outcomes, result.peak_slip[0, ..., -1]
 
 

@@ -1,8 +1,6 @@
 """The page of one object, and the files that are written beside it."""
 
 import os
-import tempfile
-from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 
@@ -38,9 +36,10 @@ from rockfrag.assess.words import (
 )
 from rockfrag.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
-from rockfrag.report.page import Column, Picture, render, table_html
+from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import draw
+from rockfrag.report.study_report import page_text
+from rockfrag.report.wording import sentence
 
 MOTIONS_SHOWN = 15
 """Rows of the table of motions that topple the object first."""
@@ -61,22 +60,18 @@ def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
 
 def page_of(found: Assessment) -> str:
     """Return the page as HTML, which loads nothing from outside."""
-    answer, sections = _answer(found), _sections(found)
-    specs = [part for section in sections for part in section.parts if isinstance(part, FigureSpec)]
-    return render(
+    return page_text(
+        _answer(found),
+        _sections(found),
         title=headline(found),
-        lead=f"{_capital(found.request.name)} {found.request.place.words}, shaken by {found.motions.words}.",
-        answer=answer,
-        sections=sections,
-        pictures=_drawn([*([answer.figure] if answer.figure else []), *specs]),
-        provenance=_provenance(found),
+        lead=f"{sentence(found.request.name)} {found.request.place.words}, shaken by {found.motions.words}.",
+        provenance={
+            "Program": f"rockfrag {version('rockfrag')}",
+            "Motions": found.motions.words,
+            "Hazard": found.hazard.source if found.hazard else "none",
+        },
         live=live_of(found),
     )
-
-
-def _drawn(specs: list[FigureSpec]) -> Mapping[str, Picture]:
-    with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
-        return {spec.name: draw(spec, Path(scratch)) for spec in specs}
 
 
 def _answer(found: Assessment) -> Answer:
@@ -107,10 +102,6 @@ def _answer(found: Assessment) -> Answer:
     )
 
 
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
 def _sections(found: Assessment) -> list[Section]:
     return [
         _mitigations(found),
@@ -125,43 +116,30 @@ def _sections(found: Assessment) -> list[Section]:
 
 
 def _mitigations(found: Assessment) -> Section:
-    table = pd.DataFrame(
+    changes = found.mitigations
+    table = text_table(
         {
-            "name": [_capital(mitigation.name) for mitigation in found.mitigations],
-            "value": [value_words(found, mitigation.value) for mitigation in found.mitigations],
-            "effect": [
-                _capital(mitigation_words(found, mitigation)) for mitigation in found.mitigations
+            "Change": [sentence(change.name) for change in changes],
+            "With it": [value_words(found, change.value) for change in changes],
+            "What it does (90 % interval)": [
+                sentence(mitigation_words(found, change)) for change in changes
             ],
-        }
+        },
+        "Each change is simulated with the same motions and compared with the object as it stands.",
+        ["With it"],
     )
-    columns = (
-        Column("name", "Change"),
-        Column("value", "With it", numeric=True),
-        Column("effect", "What it does (90 % interval)"),
-    )
-    return Section(
-        "mitigations",
-        "What helps",
-        helps(found),
-        without_simulation(),
-        [
-            table_html(
-                table,
-                columns,
-                "Each change is simulated with the same motions and compared with the object as it stands.",
-            )
-        ],
-    )
+    return Section("mitigations", "What helps", helps(found), without_simulation(), [table])
 
 
 def _arrangements(found: Assessment) -> Section:
-    table = pd.DataFrame(
+    table = text_table(
         {
-            "name": list(found.by_arrangement),
-            "value": [value_words(found, value) for value in found.by_arrangement.values()],
-        }
+            "How it stands": list(found.by_arrangement),
+            "Estimate": [value_words(found, value) for value in found.by_arrangement.values()],
+        },
+        "The same object under the same motions.",
+        ["Estimate"],
     )
-    columns = (Column("name", "How it stands"), Column("value", "Estimate", numeric=True))
     words = []
     directions = found.directions
     if directions and np.isfinite(directions.factor):
@@ -180,14 +158,8 @@ def _arrangements(found: Assessment) -> Section:
     if len(found.by_arrangement) > 1:
         stand = found.request.objects.stand
         words.append(f"On the floor is also what remains with the {stand} fixed to it.")
-    message = positions(found)
-    return Section(
-        "arrangements",
-        "How it stands best, and the worst direction",
-        message,
-        words,
-        [table_html(table, columns, "The same object under the same motions.")],
-    )
+    title = "How it stands best, and the worst direction"
+    return Section("arrangements", title, positions(found), words, [table])
 
 
 def _sure(found: Assessment) -> Section:
@@ -216,57 +188,43 @@ def _sure(found: Assessment) -> Section:
 
 def _sources(found: Assessment) -> Markup:
     """The sources of the interval, what each adds to it, where its size comes from, and what would narrow it."""
-    rows = []
-    for name, part in parts_of(found.main.sources).items():
-        source = SOURCES[name]
-        measurement = source.measurement
-        rows.append(
-            {
-                "name": _capital(source.words),
-                "part": f"{100 * part:.0f} %",
-                "basis": source.basis,
-                "measure": _capital(measurement.words) if measurement else "–",
-            }
-        )
-    columns = (
-        Column("name", "Not known"),
-        Column("part", "Part of the variance", numeric=True),
-        Column("basis", "Where its size comes from"),
-        Column("measure", "What would narrow it"),
+    parts = parts_of(found.main.sources)
+    sources = [SOURCES[name] for name in parts]
+    return text_table(
+        {
+            "Not known": [sentence(source.words) for source in sources],
+            "Part of the variance": [f"{100 * part:.0f} %" for part in parts.values()],
+            "Where its size comes from": [source.basis for source in sources],
+            "What would narrow it": [
+                sentence(source.measurement.words) if source.measurement else "–"
+                for source in sources
+            ],
+        },
+        "Sources of the interval, the largest first.",
+        ["Part of the variance"],
     )
-    return table_html(pd.DataFrame(rows), columns, "Sources of the interval, the largest first.")
 
 
 def _effects(found: Assessment) -> Markup:
-    rows = [
+    effects = found.effects
+    return text_table(
         {
-            "name": _capital(NAMES[effect.name]),
-            "spread": f"± {100 * effect.spread:g} %",
-            "lower": value_words(found, effect.lower),
-            "upper": value_words(found, effect.upper),
-        }
-        for effect in found.effects
-    ]
-    columns = (
-        Column("name", "What is not known exactly"),
-        Column("spread", "Standard deviation", numeric=True),
-        Column("lower", "If less", numeric=True),
-        Column("upper", "If more", numeric=True),
-    )
-    return table_html(
-        pd.DataFrame(rows),
-        columns,
+            "What is not known exactly": [sentence(NAMES[effect.name]) for effect in effects],
+            "Standard deviation": [f"± {100 * effect.spread:g} %" for effect in effects],
+            "If less": [value_words(found, effect.lower) for effect in effects],
+            "If more": [value_words(found, effect.upper) for effect in effects],
+        },
         "What the answer is with each property moved by its standard deviation.",
+        ["Standard deviation", "If less", "If more"],
     )
 
 
 def _assumed(found: Assessment) -> Section:
-    lines = assumptions(found)
     return Section(
         "assumed",
         "What was assumed",
         "What was not given, and what the model leaves out; that first which matters most.",
-        lines,
+        assumptions(found),
     )
 
 
@@ -370,15 +328,12 @@ def _years(period: float) -> str:
 
 
 def _glossary(found: Assessment) -> Section:
-    table = pd.DataFrame(words_used(found), columns=["word", "meaning"])
-    columns = (Column("word", "Word"), Column("meaning", "What it means here"))
-    return Section(
-        "glossary",
-        "Words used here",
-        "What the words of earthquake engineers mean.",
-        (),
-        [table_html(table, columns, "Words and abbreviations of this page.")],
+    words, meanings = zip(*words_used(found), strict=True)
+    table = text_table(
+        {"Word": words, "What it means here": meanings}, "Words and abbreviations of this page."
     )
+    message = "What the words of earthquake engineers mean."
+    return Section("glossary", "Words used here", message, (), [table])
 
 
 def _motions(found: Assessment) -> Section:
@@ -415,12 +370,3 @@ def _motions(found: Assessment) -> Section:
         (),
         [table_html(table, columns, "The motions that need the least shaking.")],
     )
-
-
-def _provenance(found: Assessment) -> dict[str, str]:
-    kept = {
-        "Program": f"rockfrag {version('rockfrag')}",
-        "Motions": found.motions.words,
-        "Hazard": found.hazard.source if found.hazard else "none",
-    }
-    return kept

@@ -28,8 +28,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special, stats
 
-from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
 from rockfrag.assess.outcomes import ObjectOutcomes, fraction_at
+from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 Floats = NDArray[np.float64]
@@ -63,15 +64,7 @@ def _rate_weights(levels: bytes, hazard: HazardCurve, shift: float) -> Floats:
     inside = knots[(knots > x[0]) & (knots < x[-1])]
     ends = np.union1d(x, inside)
     fraction = np.array([np.interp(ends, x, unit) for unit in np.eye(x.size)])
-    rate = hazard.rate(np.exp(ends))
-    slope = -np.diff(np.log(rate)) / np.diff(ends)
-    width = np.diff(ends)
-    low, high = fraction[:, :-1], fraction[:, 1:]
-    # ∫ (P0 + b u) k H0 e^{-ku} du over u = 0..w is P0 H0 - P1 H1 + b (H0 - H1) / k
-    parts = (
-        low * rate[:-1] - high * rate[1:] + (high - low) / width * (rate[:-1] - rate[1:]) / slope
-    )
-    return np.asarray(parts.sum(axis=1) + fraction[:, -1] * rate[-1])
+    return np.asarray(fraction @ rate_weights(hazard, np.exp(ends)))
 
 
 def probability_in(rate: float, years: float) -> float:
@@ -230,7 +223,7 @@ def estimate(
 
     sources: dict[str, float] = {}
     left_out = target.without_each(outcomes)
-    sources["motions"] = _jackknife(left_out, middle)
+    sources["motions"] = _jackknife(left_out)
     for name, (lower, upper) in moved.items():
         sources[name] = _half_width(near(lower), near(upper), near(outcomes))
     for name, spread in shifts.items():
@@ -265,16 +258,12 @@ def _shifted(
     return max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
 
 
-def _jackknife(left_out: Floats, middle: float) -> float:
+def _jackknife(left_out: Floats) -> float:
     """Standard error from values without one earthquake each (Tukey); infinite where one carries it all."""
-    groups = len(left_out)
-    if groups < 2:
+    # where nothing rocks without one of them, what others would say is open
+    if len(left_out) < 2 or not np.isfinite(left_out).all():
         return math.inf
-    finite = np.isfinite(left_out)
-    if not finite.all():
-        # nothing rocks without one of them: what others would say is open
-        return math.inf
-    return float(np.sqrt((groups - 1) / groups * ((left_out - left_out.mean()) ** 2).sum()))
+    return float(jackknife_error(left_out))
 
 
 def _half_width(low: float, high: float, middle: float) -> float:

@@ -11,7 +11,7 @@ from rockfrag.assess.outcomes import LARGEST_FACTOR
 from rockfrag.assess.risk import LEVEL, Estimate
 from rockfrag.assess.scale import SCALE_WORDS, classes
 from rockfrag.assess.sources import SOURCES, parts_of
-from rockfrag.report.wording import counted
+from rockfrag.report.wording import counted, listed, sentence
 
 NAMES: Mapping[str, str] = {name: source.words for name, source in SOURCES.items()}
 """Sources of uncertainty and assumptions as a reader may know them."""
@@ -141,8 +141,7 @@ def not_decidable(found: Assessment) -> bool:
 
 
 def _subject(found: Assessment) -> str:
-    name = found.request.name
-    return name[:1].upper() + name[1:]
+    return sentence(found.request.name)
 
 
 def _where(found: Assessment) -> str:
@@ -349,7 +348,7 @@ def helps(found: Assessment) -> str:
         return "Too few of the motions by which changes are compared topple it to show what a change is worth."
     if not best:
         return "None of the changes that were tried helps."
-    return _capital("; ".join(mitigation_words(found, mitigation) for mitigation in best)) + "."
+    return sentence("; ".join(mitigation_words(found, mitigation) for mitigation in best)) + "."
 
 
 def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
@@ -392,7 +391,7 @@ def uncertainty(found: Assessment) -> list[str]:
         if part >= LEAST_PART
     ]
     if named:
-        lines.append(f"The variance of the interval comes to {_listed(named[:MOST_SOURCES])}.")
+        lines.append(f"The variance of the interval comes to {listed(named[:MOST_SOURCES])}.")
     named_already = not_decidable(found) and main is found.fraction
     if (found.probability or found.fraction) and not named_already and (said := _narrowing(main)):
         lines.append(said)
@@ -404,10 +403,6 @@ def main_assumptions(found: Assessment) -> list[str]:
     return [assumption.words for assumption in all_assumed(found) if assumption.short][
         :MOST_ASSUMPTIONS
     ]
-
-
-def _listed(words: list[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def _assumed(found: Assessment) -> list[str]:
@@ -453,7 +448,7 @@ def assumptions(found: Assessment) -> list[str]:
         )
     if math.isfinite(found.flip_rate):
         lines.append(
-            "If the corners of its base lie elsewhere by a millionth of its size, "
+            "If the corners of its base lie elsewhere by a millionth of its size, and it is turned by as little, "
             f"{fraction_words(found.flip_rate)} of the outcomes in space at that level change."
         )
     if math.isfinite(found.sliding_fraction) and found.fraction is not None:
@@ -525,7 +520,3 @@ def _influential(found: Assessment) -> list[tuple[str, float]]:
     names = outcomes.earthquakes[fell]
     counts = {name: (names == name).mean() for name in dict.fromkeys(names)}
     return [(str(name), float(fraction)) for name, fraction in counts.items() if fraction > 0.5]
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,6 @@ from markupsafe import Markup
 from rockfrag.campaign.repeats import REPEATS
 from rockfrag.campaign.trials import preferred_edges
 from rockfrag.campaign.validation import FEWEST_VOTERS
-from rockfrag.files import write_text
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector_tables import VectorTables
 from rockfrag.report.figures.campaign import (
@@ -21,10 +19,11 @@ from rockfrag.report.figures.campaign import (
     footprint_figure,
     tests_figure,
 )
-from rockfrag.report.page import Column, render, table_html
+from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, opened
+from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.two_measures import two_measures_section
-from rockfrag.report.study_report import FIGURES, draw, write_captions
+from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import (
     agree,
     counted,
@@ -35,8 +34,7 @@ from rockfrag.report.wording import (
     probability,
     sentence,
 )
-from rockfrag.stages.campaign import OURS, TABLES, VOTES
-from rockfrag.stages.digest import package_digest
+from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
 from rockfrag.study.campaign import CampaignStudy
 
 
@@ -51,32 +49,18 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         _object(study, tables),
         _conditioning(study, tables),
     ]
-    answer = _answer(study, tables, sections)
-    pictures = {
-        spec.name: draw(spec, folder / FIGURES)
-        for section in sections
-        for spec in section.parts
-        if isinstance(spec, FigureSpec)
-    }
-    write_captions(answer, sections, folder / FIGURES)
     tests = tables["tests"]
-    page = render(
+    write_page(
+        folder,
+        _answer(study, tables, sections),
+        sections,
         title=study.title,
         lead=f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, "
         f"{int(tests['overturned'].sum())} of them overturned; each is simulated with the motion "
         f"{_said(study)} the table.",
-        answer=answer,
-        sections=sections,
-        pictures=pictures,
-        provenance={
-            "Configuration": study.source.name,
-            "Tests": study.tests.name,
-            "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
-        },
+        provenance=provenance(study, {"Tests": study.tests.name}),
         basis="measured",
     )
-    write_text(page, folder / "report.html")
 
 
 Row = Mapping[Any, Any]
@@ -86,10 +70,18 @@ def _percent(row: Row) -> str:
     return estimate(100 * row["right"], 100 * row["lower"], 100 * row["upper"], 1) + " %"
 
 
+def _better(row: Row) -> str:
+    """By how many percentage points the simulation is better, with limits."""
+    middle, low, high = (
+        number(100 * row[name], 1) for name in ("better", "better_lower", "better_upper")
+    )
+    return f"{middle} [{low}, {high}]"
+
+
 def _who(name: str) -> str:
     """Who predicted the outcomes, in words: thresholds by their measure, codes by their name."""
-    if name == OURS:
-        return "simulation"
+    if name in (OURS, IN_PLANE):
+        return "simulation" + name.removeprefix(OURS)
     for start in ("threshold on ", "probit on "):
         if name.startswith(start):
             measures = name.removeprefix(start).split(" and ")
@@ -127,7 +119,8 @@ def _said(study: CampaignStudy) -> str:
 
 
 def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
-    ours, *rivals = tables["agreement"].to_dict("records")
+    ours, *others = tables["agreement"].to_dict("records")
+    rivals = [row for row in others if row["who"] != IN_PLANE]
     found = [
         Finding(
             f"The simulation predicts {number(100 * ours['right'], 1)} % of the outcomes",
@@ -135,6 +128,7 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
             f"{counted(round(ours['false_alarms']), 'test')} in the simulation only.",
             f"Tests whose motions were not used to fit unmeasured properties: {_percent(ours)} predicted.",
         ),
+        *(_beside_plane(ours, row) for row in others if row["who"] == IN_PLANE),
         *_against_rivals(rivals),
         *_fragility_found(tables["fragility"]),
     ]
@@ -151,6 +145,26 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
             )
         )
     return found
+
+
+def _beside_plane(ours: Row, plane: Row) -> Finding:
+    """Whether three dimensions predict better than one plane."""
+    known = plane["p"] < LEVEL
+    said = (
+        "is better than in one plane"
+        if known and plane["better_lower"] > 0
+        else "is worse than in one plane"
+        if known and plane["better_upper"] < 0
+        else "is no gain over one plane"
+    )
+    return Finding(
+        f"Simulation in space {said}: {number(100 * ours['right'], 1)} and {number(100 * plane['right'], 1)} % of "
+        "the outcomes predicted",
+        "All other figures here are of the simulation in space.",
+        f"In one plane {_percent(plane)} with {counted(round(plane['missed']), 'test')} missed and "
+        f"{counted(round(plane['false_alarms']), 'false alarm')}: in space better by {_better(plane)} percentage "
+        f"points (p {_p(plane['p'])}).",
+    )
 
 
 def _against_rivals(others: Sequence[Row]) -> list[Finding]:
@@ -173,10 +187,7 @@ def _against_rivals(others: Sequence[Row]) -> list[Finding]:
         f"{counted(len(rivals), 'alternative')}"
     )
     if best["better_lower"] <= 0:  # an estimate with a negative limit is not written as a ratio is
-        more = (
-            f"{number(100 * best['better'], 1)} [{number(100 * best['better_lower'], 1)}, "
-            f"{number(100 * best['better_upper'], 1)}]"
-        )
+        more = _better(best)
     return [
         Finding(
             headline,
@@ -225,7 +236,7 @@ def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
 
 
 def _ordering(fragility: pd.DataFrame) -> str:
-    """The measure that orders the tests best is the one in which a curve says most."""
+    """Return the measure in which the measured curve has the least dispersion."""
     measured = fragility[fragility["who"] == "measured"]
     return str(measured.set_index("measure")["beta"].fillna(math.inf).idxmin())
 
@@ -245,11 +256,7 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         who=[_who(name) for name in agreement["who"]],
         right_text=[_percent(row) for row in agreement.to_dict("records")],
         better_text=[
-            "–"
-            if not pd.notna(row["better"])
-            else f"{number(100 * row['better'], 1)} [{number(100 * row['better_lower'], 1)}, "
-            f"{number(100 * row['better_upper'], 1)}]"
-            for row in agreement.to_dict("records")
+            _better(row) if pd.notna(row["better"]) else "–" for row in agreement.to_dict("records")
         ],
         p_text=[probability(p) for p in agreement["p"]],
     )
@@ -425,20 +432,6 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
 def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     trials, contact, footprint = tables["trials"], tables["contact"], tables["footprint"]
     likely = trials[trials["plausible"]]
-    unknown = [
-        c
-        for c in (
-            "direction_deg",
-            "contact_tolerance_mm",
-            "edge_retreat_mm",
-            "restitution",
-            "friction",
-            "left_m",
-            "right_m",
-            "alpha_deg",
-        )
-        if c in trials
-    ]
     titles = {
         "direction_deg": "Direction of shaking [°]",
         "contact_tolerance_mm": "Contact tolerance [mm]",
@@ -449,20 +442,8 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
         "right_m": "Right edge to the centre of gravity [m]",
         "alpha_deg": "Smaller critical angle [°]",
     }
-    rows = [
-        {
-            "what": titles[name],
-            "tried": f"{trials[name].min():.3g} to {trials[name].max():.3g}",
-            "plausible": f"{likely[name].min():.3g} to {likely[name].max():.3g}",
-            "median": f"{likely[name].median():.3g}",
-        }
-        for name in unknown
-    ]
-    columns = (
-        Column("what", "Property"),
-        Column("tried", "Range tried", numeric=True),
-        Column("plausible", "Plausible range", numeric=True),
-        Column("median", "Median of the plausible", numeric=True),
+    tried, plausible = (
+        {name: part[name] for name in titles if name in trials} for part in (trials, likely)
     )
     parts: list[object] = []
     if not footprint.empty:
@@ -477,10 +458,15 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
             )
         )
     parts.append(
-        table_html(
-            pd.DataFrame(rows),
-            columns,
+        text_table(
+            {
+                "Property": [titles[name] for name in tried],
+                "Range tried": [f"{x.min():.3g} to {x.max():.3g}" for x in tried.values()],
+                "Plausible range": [f"{x.min():.3g} to {x.max():.3g}" for x in plausible.values()],
+                "Median of the plausible": [f"{x.median():.3g}" for x in plausible.values()],
+            },
             "Unmeasured properties: ranges tried, and ranges that agree with the tests.",
+            ["Range tried", "Plausible range", "Median of the plausible"],
         )
     )
     contact_columns = (

@@ -44,7 +44,7 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
         return None
     measure, unit = rows["im"].iloc[0], rows["unit"].iloc[0]
     decimals = min(max(decimals_of(value, 2) for value in rows["theta"]), 3)
-    texts = estimates(rows, ("theta", "theta_lower", "theta_upper"), decimals)
+    texts = estimates(rows, "theta", decimals)
     named = [f"{name} {text}" for name, text in zip(rows["configuration"], texts, strict=True)]
     printed = [number(value, decimals) for value in rows["theta"]]
     least, most = (

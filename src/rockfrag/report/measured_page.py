@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -10,15 +9,14 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from rockfrag.figure_style import note_figure
-from rockfrag.files import write_text
 from rockfrag.fragility.user_table import UserFragility
 from rockfrag.report.figures.fragility import calibration_figure, measures_figure
-from rockfrag.report.page import Column, render, table_html
+from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.two_measures import two_measures_section
-from rockfrag.report.study_report import FIGURES, draw, write_captions
+from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import counted, estimates, listed, probability
-from rockfrag.stages.digest import package_digest
 from rockfrag.study.measured_table import MeasuredTable
 
 _CAPTIONS = {
@@ -87,26 +85,18 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
     both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
     if both:
         sections.append(both)
-        specs |= {part.name: part for part in both.parts if isinstance(part, FigureSpec)}
-    pictures = {name: draw(spec, folder / FIGURES) for name, spec in specs.items()}
-    write_captions(answer, sections, folder / FIGURES)
-    page = render(
+    digest = tables["fragility"]["record_set_sha256"].iloc[0]
+    values = f"{study.table.name}, SHA-256 of the values used {digest}"
+    write_page(
+        folder,
+        answer,
+        sections,
         title=study.title,
         lead=f"{counted(len(tests), 'measured test')} with {counted(motions, 'motion')}, "
         f"{fell} of them overturned.",
-        answer=answer,
-        sections=sections,
-        pictures=pictures,
-        provenance={
-            "Configuration": study.source.name,
-            "Table": f"{study.table.name}, SHA-256 of the values used "
-            f"{tables['fragility']['record_set_sha256'].iloc[0]}",
-            "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
-        },
+        provenance=provenance(study, {"Table": values}),
         basis="measured",
     )
-    write_text(page, folder / "report.html")
 
 
 def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, FigureSpec]) -> Answer:
@@ -118,8 +108,8 @@ def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, Figu
     best = best[best["im"] == name] if name in set(best["im"]) else best
     if len(best):
         row = best.to_dict("records")[0]
-        (theta,) = estimates(best.head(1), ("theta", "theta_lower", "theta_upper"))
-        (beta,) = estimates(best.head(1), ("beta", "beta_lower", "beta_upper"))
+        (theta,) = estimates(best.head(1), "theta")
+        (beta,) = estimates(best.head(1), "beta")
         unit = f" {row['unit']}" if row["unit"] else ""
         sentences.append(
             Finding(
@@ -203,8 +193,8 @@ def _curves(
     warnings = list(dict.fromkeys(note for note in fitted["warnings"] if note))
     goodness = goodness.assign(p_text=[probability(p) for p in goodness["p_value"]])
     fitted = fitted.assign(
-        theta_text=estimates(fitted, ("theta", "theta_lower", "theta_upper")),
-        beta_text=estimates(fitted, ("beta", "beta_lower", "beta_upper")),
+        theta_text=estimates(fitted, "theta"),
+        beta_text=estimates(fitted, "beta"),
     )
     return Section(
         "fragility",

@@ -4,7 +4,6 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -107,6 +106,14 @@ def table_html(
     return framed(caption, head, rows, room)
 
 
+def text_table(
+    texts: Mapping[str, Sequence[str]], caption: str, numeric: Sequence[str] = ()
+) -> Markup:
+    """Render texts by the titles of their columns; those that are of numbers stand to the right."""
+    columns = [Column(title, title, numeric=title in numeric) for title in texts]
+    return table_html(pd.DataFrame(dict(texts)), columns, caption)
+
+
 def cell_html(content: str | Markup, title: str, kind: str) -> Markup:
     """One cell, which carries the title of its column to narrow screens."""
     return Markup('<td class="{}" data-title="{}">{}</td>').format(kind, title, content)
@@ -176,11 +183,6 @@ def inline_svg(svg: str, name: str, alt: str) -> Markup:
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
         'viewBox="{}" role="img" aria-label="{}" stroke-linejoin="round">{}</svg>'
     ).format(box[1] if box else "", alt, Markup(inner.strip()))
-
-
-def read_picture(spec: FigureSpec, path: Path) -> Picture:
-    """Return the figure drawn in an SVG file."""
-    return Picture(spec, path.read_text(encoding="utf-8"))
 
 
 @dataclass(frozen=True)

@@ -1,19 +1,17 @@
 """The report of a study of bodies in space: medians over planar ones, and what they come from."""
 
-from importlib.metadata import version
 from pathlib import Path
 
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.files import write_text
 from rockfrag.report.figures.space import WORDS, fractions_figure, ratios_figure, words_of
-from rockfrag.report.page import Column, render, table_html
+from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import FIGURES, draw, write_captions
+from rockfrag.report.provenance import provenance
+from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import counted, estimates
 from rockfrag.rocking.space_medians import LOSS, PLANAR
-from rockfrag.stages.digest import package_digest
 from rockfrag.study.space import SpaceStudy
 
 _RATIOS = (
@@ -48,23 +46,19 @@ def write_space_report(
         Section("medians", "Medians", f"{findings[0].headline}.", [], [_table(medians), ratios]),
         Section("fractions", "Fractions by level", "What the medians come from.", [], [levels]),
     ]
-    pictures = {spec.name: draw(spec, folder / FIGURES) for spec in (ratios, levels)}
-    write_captions(answer, sections, folder / FIGURES)
-    records = "all records" if study.every == 1 else f"one in {study.every} records"
-    page = render(
+    if study.catalogue_file is not None:
+        records = f"the records of {study.catalogue_file.name}"
+    else:
+        records = f"{'all' if study.every == 1 else f'one in {study.every}'} records of FEMA P-695"
+    write_page(
+        folder,
+        answer,
+        sections,
         title=study.title,
         lead=f"{counted(len(fractions.groupby(['base', 'slenderness', 'height_m'])), 'body', 'bodies')} under "
-        f"both components of {records} of FEMA P-695 at {study.sweep.levels} levels.",
-        answer=answer,
-        sections=sections,
-        pictures=pictures,
-        provenance={
-            "Configuration": study.source.name,
-            "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
-        },
+        f"both components of {records} at {study.sweep.levels} levels.",
+        provenance=provenance(study, {}),
     )
-    write_text(page, folder / "report.html")
 
 
 def _finding(base: str, medians: pd.DataFrame) -> Finding:
@@ -81,10 +75,7 @@ def _finding(base: str, medians: pd.DataFrame) -> Finding:
 def _table(medians: pd.DataFrame) -> Markup:
     shown = medians.assign(
         body=[words_of(row) for _, row in medians.iterrows()],
-        **{
-            f"{name}_text": estimates(medians, (name, f"{name}_lower", f"{name}_upper"), 2)
-            for name in PLANAR
-        },
+        **{f"{name}_text": estimates(medians, name, 2) for name in PLANAR},
     )
     columns = [
         Column("body", "Base"),

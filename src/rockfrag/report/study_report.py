@@ -3,6 +3,8 @@
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
 
 from markupsafe import Markup
 
@@ -10,7 +12,7 @@ from rockfrag.figure_style import save_figure
 from rockfrag.files import write_text
 from rockfrag.processes import in_processes
 from rockfrag.report.live import live_kernel
-from rockfrag.report.page import Picture, read_picture, render
+from rockfrag.report.page import Picture, render
 from rockfrag.report.part import (
     Answer,
     FigureSpec,
@@ -18,7 +20,7 @@ from rockfrag.report.part import (
     Results,
     Section,
 )
-from rockfrag.report.provenance import provenance
+from rockfrag.report.provenance import study_provenance
 from rockfrag.report.wording import counted
 from rockfrag.study.study import Study
 
@@ -41,13 +43,42 @@ def write_report(
     results = Results(study, folder)
     asked = [part for part in parts if part.asked(study)]
     sections = [section for part in asked if (section := part.section(results)) is not None]
-    first = answer(results)
-    specs = [part for section in sections for part in section.parts if isinstance(part, FigureSpec)]
-    specs += [first.figure] if first.figure else []
-    pictures = draw_all(specs, folder / FIGURES, processes)
-    write_captions(first, sections, folder / FIGURES)
-    page = study_page(results, first, sections, pictures)
-    write_text(page, folder / "report.html")
+    write_page(
+        folder,
+        answer(results),
+        sections,
+        processes,
+        title=study.title,
+        lead=_lead(results),
+        provenance=study_provenance(results),
+        live=_live(results),
+    )
+
+
+def write_page(
+    folder: Path, answer: Answer, sections: Sequence[Section], processes: int = 1, **page: Any
+) -> None:
+    """Draw the figures of a page into a folder, and write the page there, ``report.html``.
+
+    What else it shows goes to :func:`rockfrag.report.page.render`.
+    """
+    pictures = draw_all(figures_of(answer, sections), folder / FIGURES, processes)
+    write_captions(answer, sections, folder / FIGURES)
+    text = render(answer=answer, sections=sections, pictures=pictures, **page)
+    write_text(text, folder / "report.html")
+
+
+def page_text(answer: Answer, sections: Sequence[Section], **page: Any) -> str:
+    """Return a page with its figures as HTML, which loads nothing from outside; see :func:`write_page`."""
+    with TemporaryDirectory(prefix="rockfrag.") as scratch:
+        pictures = draw_all(figures_of(answer, sections), Path(scratch))
+        return render(answer=answer, sections=sections, pictures=pictures, **page)
+
+
+def figures_of(answer: Answer, sections: Sequence[Section]) -> list[FigureSpec]:
+    """Return the figures of a page, each once."""
+    parts = [answer.figure, *(part for section in sections for part in section.parts)]
+    return list({part.name: part for part in parts if isinstance(part, FigureSpec)}.values())
 
 
 def write_captions(answer: Answer, sections: Sequence[Section], folder: Path) -> None:
@@ -68,16 +99,14 @@ def write_captions(answer: Answer, sections: Sequence[Section], folder: Path) ->
     write_text(json.dumps(captions, ensure_ascii=False, indent=1) + "\n", folder / "captions.json")
 
 
-def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int) -> dict[str, Picture]:
+def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int = 1) -> dict[str, Picture]:
     """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
     # what processes hand over should be small: the name of a file, and not what is in it
     files = in_processes(lambda spec: _drawn(spec, folder), specs, processes)
-    return {spec.name: read_picture(spec, file) for spec, file in zip(specs, files, strict=True)}
-
-
-def draw(spec: FigureSpec, folder: Path) -> Picture:
-    """Draw a figure into a folder as SVG and PNG, and return it for the page."""
-    return read_picture(spec, _drawn(spec, folder))
+    return {
+        spec.name: Picture(spec, file.read_text(encoding="utf-8"))
+        for spec, file in zip(specs, files, strict=True)
+    }
 
 
 def _drawn(spec: FigureSpec, folder: Path) -> Path:
@@ -85,25 +114,6 @@ def _drawn(spec: FigureSpec, folder: Path) -> Path:
     svg = folder / f"{spec.name}.svg"
     save_figure(spec.draw(), svg, folder / f"{spec.name}.png")
     return svg
-
-
-def study_page(
-    results: Results,
-    answer: Answer,
-    sections: Sequence[Section],
-    pictures: dict[str, Picture],
-) -> str:
-    """Return the page of a study as HTML."""
-    study = results.study
-    return render(
-        title=study.title,
-        lead=_lead(results),
-        answer=answer,
-        sections=sections,
-        pictures=pictures,
-        provenance=provenance(results),
-        live=_live(results),
-    )
 
 
 def _live(results: Results) -> Markup:

@@ -53,14 +53,12 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
     return f"{middle} [{low}, {high}]"
 
 
-def estimates(
-    table: pd.DataFrame, columns: tuple[str, str, str], decimals: int | None = None
-) -> list[str]:
-    """Estimates of a table in words, by its columns of the value and its limits.
+def estimates(table: pd.DataFrame, name: str, decimals: int | None = None) -> list[str]:
+    """Estimates of a table in words, of a column and those of its limits, with ``_lower`` and ``_upper``.
 
     The decimals are the same for all; by default they show three digits of the smallest value.
     """
-    values = table[list(columns)].to_numpy(dtype=float)
+    values = table[[name, f"{name}_lower", f"{name}_upper"]].to_numpy(dtype=float)
     if decimals is None:
         decimals = min(max((decimals_of(value) for value in values[:, 0]), default=3), 3)
     return [estimate(value, lower, upper, decimals) for value, lower, upper in values]

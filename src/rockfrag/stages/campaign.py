@@ -35,8 +35,8 @@ from rockfrag.system.blocks import Block, Column
 from rockfrag.system.mesh import Shape, read_shape
 from rockfrag.units import GRAVITY
 
-OURS, VOTES = "rockfrag", "rockfrag by votes"
-"""Who gave the simulated outcomes, and the votes behind them, in the tables."""
+OURS, VOTES, IN_PLANE = "rockfrag", "rockfrag by votes", "rockfrag in one plane"
+"""Who gave the simulated outcomes, the votes behind them, and planar ones beside those in space, in the tables."""
 
 TABLES = (
     *("tests", "trials", "agreement", "rocking", "fragility"),
@@ -56,18 +56,22 @@ def run(job: Job[CampaignStudy]) -> Results:
     campaign, motions = campaign_with_motions(study, job.log)
     thing = standing_object(study)
     trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
-    outcomes, rocked = simulate_tests(trials, motions, job.threads)
+    outcomes, rocked = simulate_tests(trials.systems, motions, job.threads)
     tests = campaign.tests
     measured = tests[MEASURED].to_numpy()
     groups = pd.factorize(tests["group"])[0]
-    validated = _validated(study, outcomes, measured, groups)
+    validated = cross_validate(outcomes, measured, groups, **study.division)
     job.log.info(
         "%d tests under %d motions: %.1f %% of the outcomes right",
         len(tests), groups.max() + 1, 100 * (validated.outcomes == measured).mean(),
     )  # fmt: skip
     yield "tests", judged_tests(tests, validated, measured)
     yield "trials", _judged_trials(trials, outcomes, measured, groups)
-    yield "agreement", _agreement(study, campaign, validated, groups)
+    plane = None
+    if trials.planar:
+        flat, _ = simulate_tests(trials.planar, motions, job.threads)
+        plane = cross_validate(flat, measured, groups, **study.division)
+    yield "agreement", _agreement(study, campaign, validated, plane, groups)
     yield "rocking", _rocking(study, campaign, outcomes, rocked, groups)
     yield "fragility", _fragility(study, campaign, validated, groups)
     both = _two_measures(study, campaign, validated)
@@ -164,12 +168,6 @@ def _block(given: Mapping[str, Any]) -> Block:
     )
 
 
-def _validated(study: CampaignStudy, outcomes: Any, measured: Any, groups: Any) -> Validated:
-    return cross_validate(
-        outcomes, measured, groups, folds=study.folds, repeats=study.repeats, seed=study.seed
-    )
-
-
 def _judged_trials(trials: Trials, outcomes: Any, measured: Any, groups: Any) -> pd.DataFrame:
     """Trials with their agreement over all tests: in sample, so it only shows where the plausible ones lie."""
     right = (outcomes == measured).mean(axis=1)
@@ -180,21 +178,24 @@ def _judged_trials(trials: Trials, outcomes: Any, measured: Any, groups: Any) ->
 
 
 def _agreement(
-    study: CampaignStudy, campaign: Campaign, validated: Validated, groups: Any
+    study: CampaignStudy,
+    campaign: Campaign,
+    validated: Validated,
+    plane: Validated | None,
+    groups: Any,
 ) -> pd.DataFrame:
-    """Who is right how often: the simulation, thresholds on measures, other codes; each compared with ours."""
+    """Who is right how often: simulations, thresholds on measures, other codes; each compared with ours."""
     tests, level = campaign.tests, study.confidence
     measured = tests[MEASURED].to_numpy()
-    rivals = {}
-    chosen = {"folds": study.folds, "repeats": study.repeats, "seed": study.seed}
+    rivals = {} if plane is None else {IN_PLANE: plane.outcomes}
     for name in campaign.measures:
         rivals[f"threshold on {name}"] = cross_validated_threshold(
-            tests[name].to_numpy(), measured, groups, **chosen
+            tests[name].to_numpy(), measured, groups, **study.division
         )
     if len(campaign.measures) > 1:
         both = list(campaign.measures[:2])
         rivals[f"probit on {' and '.join(both)}"] = cross_validated_threshold(
-            tests[both].to_numpy(), measured, groups, **chosen
+            tests[both].to_numpy(), measured, groups, **study.division
         )
     codes = {f"code {name}": campaign.codes[name].to_numpy() for name in campaign.codes}
     rows = [agreement_row(OURS, validated.outcomes, measured, groups, level)]
@@ -230,10 +231,8 @@ def _rocking(
         outcomes,
         campaign.tests[MEASURED].to_numpy(),
         groups,
-        folds=study.folds,
-        repeats=study.repeats,
-        seed=study.seed,
         asked=rocked,
+        **study.division,
     )
     noted = campaign.tests["rocked"].to_numpy()
     return pd.DataFrame([agreement_row(OURS, found.outcomes, noted, groups, study.confidence)])
@@ -294,8 +293,8 @@ def _conditioning(
         "as configured, fewer trials": study.conditioning,
         **study.varied_conditioning,
     }.items():
-        outcomes, _ = simulate_tests(trials, _motions(study, campaign, steps), job.threads)
-        found = _validated(study, outcomes, measured, groups)
+        outcomes, _ = simulate_tests(trials.systems, _motions(study, campaign, steps), job.threads)
+        found = cross_validate(outcomes, measured, groups, **study.division)
         rows.append(
             {
                 **agreement_row(name, found.outcomes, measured, groups, study.confidence),

@@ -9,6 +9,7 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.schema import checked
+from rockfrag.study.heading import Heading, heading_of
 from rockfrag.study.steps import Steps, checked_steps
 
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
@@ -28,14 +29,9 @@ class PublicFile:
 
 
 @dataclass(frozen=True)
-class CampaignStudy:
+class CampaignStudy(Heading):
     """Everything that the configuration of a campaign says, checked."""
 
-    # Folder under ``results/``, heading of the report, seed of every random number
-    name: str
-    title: str
-    seed: int
-    source: Path  # The configuration file
     fetch: tuple[PublicFile, ...]  # Public files that are fetched if they are not there
     # Table of tests, its columns, and a table of other programs' outcomes or None
     tests: Path
@@ -67,6 +63,11 @@ class CampaignStudy:
     mesh: Path | None = field(default=None)
 
     @property
+    def division(self) -> dict[str, Any]:
+        """How tests are divided into folds: their number, that of divisions, and the seed."""
+        return {"folds": self.folds, "repeats": self.repeats, "seed": self.seed}
+
+    @property
     def summary(self) -> str:
         """What it computes, in a line."""
         return f"the campaign {self.tests}, {self.trials} trials"
@@ -81,11 +82,6 @@ class CampaignStudy:
         return [str(path) for path in paths if path not in fetched]
 
 
-def is_campaign(content: Mapping[str, Any]) -> bool:
-    """Say whether a configuration is one of a campaign on a shake table."""
-    return CAMPAIGN_KEY in content
-
-
 def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> CampaignStudy:
     """Make the study of a campaign from a configuration that was read from ``path``."""
     source = Path(path)
@@ -96,6 +92,10 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         for i, wanted in enumerate(content.get("fetch", ()))
     )
     fetched = {source.path for source in fetch}
+
+    def existing(key: str, name: str | None) -> Path | None:
+        return None if name is None else _existing(source, key, _beside(source, name), fetched)
+
     _check_object(source, thing, content["unknowns"])
     _check_columns(source, campaign["columns"], isinstance(campaign["motions"], Mapping))
     conditioning = checked_steps(source, "conditioning", content.get("conditioning", ()))
@@ -117,19 +117,12 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         motions = str(_beside(source, campaign["motions"]))
     if motions.endswith(".npz"):
         _existing(source, "campaign.motions", Path(motions), fetched)
-    other = campaign.get("other_codes")
-    mesh = thing.get("mesh")
     return CampaignStudy(
-        name=content["study"],
-        title=content["title"],
-        seed=content["seed"],
-        source=source,
+        **heading_of(content, path),
         fetch=fetch,
         tests=_existing(source, "campaign.tests", _beside(source, campaign["tests"]), fetched),
         columns=dict(campaign["columns"]),
-        other_codes=None
-        if other is None
-        else _existing(source, "campaign.other_codes", _beside(source, other), fetched),
+        other_codes=existing("campaign.other_codes", campaign.get("other_codes")),
         motions=motions,
         pulse_cycles=pulse_cycles,
         unit=campaign.get("unit"),
@@ -147,9 +140,7 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         folds=content.get("folds", 5),
         repeats=content.get("repeats", 20),
         confidence=content.get("confidence", 0.9),
-        mesh=None
-        if mesh is None
-        else _existing(source, "object.mesh", _beside(source, mesh), fetched),
+        mesh=existing("object.mesh", thing.get("mesh")),
     )
 
 
@@ -183,12 +174,12 @@ _OF_A_MESH = ("direction_deg", "contact_tolerance_mm")
 
 def _check_object(source: Path, thing: Mapping[str, Any], unknowns: Mapping[str, Any]) -> None:
     where = f"{source}: key object"
-    slides, piled = "friction" in unknowns, "pedestal" in thing
-    possible = piled or "mesh" in thing if slides else not piled
-    if ("restitution" in unknowns) == slides or not possible:
+    slides, bounces, piled = "friction" in unknowns, "restitution" in unknowns, "pedestal" in thing
+    in_space = slides and "mesh" in thing
+    if not (in_space or (slides != bounces and slides == piled)):
         raise InputError(
-            f"{source}: key unknowns: expected the range of restitution, of a planar body, or that of "
-            "friction, of a mesh in space or an object on a pedestal."
+            f"{source}: key unknowns: expected the range of restitution, of a planar body, that of friction, of a "
+            "mesh in space or an object on a pedestal, or both, of a mesh in space beside the planar body."
         )
     if "mesh" in thing:
         strange = [key for key in (*_BY_HAND, "pedestal") if key in thing and key != "mass_kg"]

@@ -5,7 +5,7 @@ use. Only what is in the user's records is left to :mod:`rockfrag.study.records`
 """
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
-from rockfrag.study.campaign import CampaignStudy, campaign_from, is_campaign
+from rockfrag.study.campaign import CAMPAIGN_KEY, CampaignStudy, campaign_from
 from rockfrag.study.configurations import (
     each_alone,
     read_configurations,
@@ -29,13 +29,14 @@ from rockfrag.study.configurations import (
     with_friction,
     with_restitution,
 )
+from rockfrag.study.heading import heading_of
 from rockfrag.study.measured_table import (
+    TABLE_KEY,
     MeasuredTable,
-    is_measured_table,
     measured_table_from,
 )
 from rockfrag.study.paths import check_file, existing_file
-from rockfrag.study.space import SpaceStudy, is_space_study, space_study_from
+from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from
@@ -63,13 +64,13 @@ def load_any(path: str | os.PathLike[str]) -> AnyStudy:
 
 def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnyStudy:
     """Make a study of any kind of a configuration that was read from ``path``."""
-    if is_measured_table(content):
-        return measured_table_from(content, path)
-    if is_campaign(content):
-        return campaign_from(content, path)
-    if is_space_study(content):
-        return space_study_from(content, path)
-    return study_from(content, path)
+    kinds: dict[str, Callable[..., AnyStudy]] = {
+        TABLE_KEY: measured_table_from,
+        CAMPAIGN_KEY: campaign_from,
+        SPACE_KEY: space_study_from,
+    }
+    of_kind = next((make for key, make in kinds.items() if key in content), study_from)
+    return of_kind(content, path)
 
 
 def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
@@ -93,10 +94,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         source, _chosen(source, known, bodies.get("use")), specimens, bodies.get("restitution")
     )
     study = Study(
-        name=content["study"],
-        title=content["title"],
-        seed=content["seed"],
-        source=source,
+        **heading_of(content, path),
         catalogue_file=catalogue_file,
         catalogue=_rows(source, read_catalogue(catalogue_file), motions.get("use")),
         processing=checked_steps(source, "motions.processing", motions.get("processing", ())),
@@ -146,27 +144,29 @@ def _amplitudes(source: Path, content: Mapping[str, float]) -> Amplitudes:
 
 
 def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.DataFrame:
+    """Rows of the motions that a study uses, in its order; all of them if it names none."""
     if names is None:
         return table
-    known = list(table["name"])
+    _check_used(source, "motions", names, list(table["name"]), "motions")
+    return table.set_index("name", drop=False).loc[list(names)].reset_index(drop=True)
+
+
+def _check_used(
+    source: Path, key: str, names: Sequence[str], known: Sequence[str], what: str
+) -> None:
     for i, name in enumerate(names):
         if name not in known:
             raise InputError(
-                f"{source}: key motions.use[{i}]: expected one of the motions {', '.join(known)}, found {name}."
+                f"{source}: key {key}.use[{i}]: expected one of the {what} {', '.join(known)}, found {name}."
             )
-    return table.set_index("name", drop=False).loc[list(names)].reset_index(drop=True)
 
 
 def _chosen(
     source: Path, known: Sequence[System], names: Sequence[str] | None
 ) -> tuple[System, ...]:
-    by_name = {motion.name: motion for motion in known}
-    for i, name in enumerate(names or ()):
-        if name not in by_name:
-            raise InputError(
-                f"{source}: key bodies.use[{i}]: expected one of the configurations "
-                f"{', '.join(by_name)}, found {name}."
-            )
+    """Configurations that a study uses, in its order; all of them if it names none."""
+    by_name = {configuration.name: configuration for configuration in known}
+    _check_used(source, "bodies", names or (), list(by_name), "configurations")
     return tuple(by_name[name] for name in names) if names is not None else tuple(known)
 
 

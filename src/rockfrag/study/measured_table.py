@@ -9,6 +9,7 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.schema import checked
+from rockfrag.study.heading import Heading, heading_of
 from rockfrag.tabular import read_cells
 
 TABLE_KEY = "table"
@@ -16,14 +17,9 @@ TABLE_KEY = "table"
 
 
 @dataclass(frozen=True)
-class MeasuredTable:
+class MeasuredTable(Heading):
     """Everything that the configuration of a measured table says, checked."""
 
-    # Folder under ``results/``, heading of the report, seed of every random number
-    name: str
-    title: str
-    seed: int
-    source: Path  # The configuration file
     table: Path  # CSV with one row per test
     # For each intensity measure the columns and numbers whose product it is
     measures: Mapping[str, tuple[str | float, ...]]
@@ -41,11 +37,6 @@ class MeasuredTable:
         return f"the table {self.table}"
 
 
-def is_measured_table(content: Mapping[str, Any]) -> bool:
-    """Say whether a configuration is one of a measured table and not of a simulated study."""
-    return TABLE_KEY in content
-
-
 def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> MeasuredTable:
     """Make a study of a measured table from a configuration that was read from ``path``."""
     source = Path(path)
@@ -59,10 +50,7 @@ def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]
     columns = content["columns"]
     _check_columns(source, table, content)
     return MeasuredTable(
-        name=content["study"],
-        title=content["title"],
-        seed=content["seed"],
-        source=source,
+        **heading_of(content, path),
         table=table,
         measures={name: tuple(factors) for name, factors in content["measures"].items()},
         overturned=columns["overturned"],

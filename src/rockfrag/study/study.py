@@ -11,8 +11,10 @@ import pandas as pd
 from rockfrag.building.model import ShearBuilding
 from rockfrag.files import file_name, is_file
 from rockfrag.plausibility import size_warning
+from rockfrag.records.catalogue import own_records
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.study.amplitudes import Amplitudes
+from rockfrag.study.heading import Heading
 from rockfrag.study.supplementary import Supplementary
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
@@ -43,14 +45,9 @@ class FragilitySettings:
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(Heading):
     """Everything that a study's configuration says, checked; see :mod:`rockfrag.study.loading`."""
 
-    # Folder under ``results/``, heading of the report, seed of every random number
-    name: str
-    title: str
-    seed: int
-    source: Path  # The configuration file
     # Path of the table of motions, and its rows that are used, in order
     catalogue_file: Path
     catalogue: pd.DataFrame
@@ -199,9 +196,7 @@ class Study:
     @property
     def own_records(self) -> list[Path]:
         """Files of the user's own records."""
-        folder = self.catalogue_file.parent
-        own = self.catalogue["file"][self.catalogue["source"] == "folder"]
-        return list(dict.fromkeys(folder / name.partition("#")[0] for name in own))
+        return own_records(self.catalogue, self.catalogue_file.parent)
 
     def record_files(self, records: str) -> list[str]:
         """Files that must exist before the records can be read, fetched ones under ``records``."""

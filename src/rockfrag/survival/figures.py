@@ -10,8 +10,7 @@ from rockfrag.figure_style import (
     COLUMN_WIDTH,
     ORANGE,
     WIDEST,
-    figure_style,
-    new_figure,
+    one_panel,
     plain_log,
 )
 from rockfrag.survival.answer import Constrained
@@ -29,9 +28,7 @@ def curves_figure(found: Constrained) -> Figure:
     measure = found.site.measure
     curves = found.result.curves(measure)
     level = curves["level"].to_numpy()
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 2.8)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 2.8) as (figure, axes):
         for when, colour, line, words in (
             ("before", ORANGE, "--", "before"),
             ("after", BLUE, "-", "after survival"),
@@ -70,9 +67,7 @@ def weights_figure(found: Constrained) -> Figure:
     ]
     table = table.sort_values("weight_after", kind="stable")
     place = np.arange(len(table))
-    with figure_style():
-        figure = new_figure(WIDEST, 0.7 + 0.2 * len(table))
-        axes = figure.subplots()
+    with one_panel(WIDEST, 0.7 + 0.2 * len(table)) as (figure, axes):
         axes.hlines(
             place, table["weight_before"], table["weight_after"], color="#999999", linewidth=0.8
         )

@@ -2,16 +2,15 @@
 
 import json
 import os
-import tempfile
 from importlib.metadata import version
 from pathlib import Path
 
 import pandas as pd
 
 from rockfrag.files import file_name, write_table, write_text
-from rockfrag.report.page import Column, render, table_html
+from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import draw
+from rockfrag.report.study_report import page_text
 from rockfrag.survival.answer import DECISION_RATE, LIMITS, RULED_OUT, Constrained
 from rockfrag.survival.figures import curves_figure, weights_figure
 
@@ -139,9 +138,7 @@ def page_of(found: Constrained) -> str:
         lambda: weights_figure(found),
     )
     names = ", ".join(body.name for body in found.site.objects)
-    with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
-        pictures = {spec.name: draw(spec, Path(scratch)) for spec in (curves, weights)}
-    return render(
+    return page_text(
         title=f"What {names} say about the hazard of {found.site.name}",
         lead=f"{len(found.result.branches)} branches of the hazard reweighted by what still stands: {names}.",
         answer=Answer(
@@ -155,7 +152,6 @@ def page_of(found: Constrained) -> str:
             rests_on=LIMITS,
         ),
         sections=[_hazard(found), _branches(found, weights), _objects(found), _hangs_on(found)],
-        pictures=pictures,
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
     )
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
 from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
 from rockfrag.errors import InputError
 from rockfrag.motions.declared import IntensityMeasure
@@ -45,23 +45,6 @@ class ShakingRates:
     # Annual rate of each point [1/year], shape (branches, points).  Their sum over points above a
     # level is how often that level is exceeded
     rates: Floats
-
-
-def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
-    """Weights with which a function linear in ln level is integrated over a hazard curve [1/year], shape (n,).
-
-    ∫ P(x) |dν(x)| from the first of n ≥ 2 rising levels on, where ν is a power law between levels and P stays as
-    it is above the last one, is the sum of P at the levels times these weights.
-    """
-    rate = curve.rate(levels)
-    fall = -np.diff(np.log(rate))
-    # mean of ν over a piece in ln x, (ν0 - ν1) / ln(ν0/ν1)
-    mean = rate[:-1] * np.where(fall > 1e-12, -np.expm1(-fall) / np.maximum(fall, 1e-300), 1.0)
-    weights = np.zeros(levels.size)
-    weights[:-1] += rate[:-1] - mean
-    weights[1:] += mean - rate[1:]
-    weights[-1] += rate[-1]
-    return weights
 
 
 def shaking_rates(

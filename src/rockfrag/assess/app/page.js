@@ -15,7 +15,7 @@ const make = (tag, attributes = {}, ...children) => {
 };
 const FIELDS = {
   object: ["name", "width", "height", "mass"],
-  more: ["depth", "round", "cg_height", "cg_offset", "restitution"],
+  more: ["depth", "facing", "round", "cg_height", "cg_offset", "restitution"],
   pedestal: ["pedestal_width", "pedestal_height", "pedestal_mass"],
   place: ["floor", "storey_height", "material", "period"],
   shaking: ["measure", "level", "years", "hazard"],
@@ -38,7 +38,7 @@ function choose(language) {
   say = (id, values = {}) => (texts[id] ?? id).replace(/\{(\w+)\}/g, (whole, name) => String(values[name] ?? whole));
   document.title = say("title");
   for (const element of document.querySelectorAll("[data-text]")) element.textContent = say(element.dataset.text);
-  find("lead").textContent = say("lead", { motions: texts.motions ?? data.motions });
+  find("lead").textContent = say("lead", { motions: linesOf.motions });
   find("made").hidden = !data.made;
   find("made").textContent = say("made");
   find("progress").setAttribute("aria-label", say("answer"));
@@ -62,6 +62,7 @@ function field(name, old) {
   const input = name === "hazard" ? make("textarea", { rows: 3, value }) : options
     ? make("select", {}, ...options.map((id) => make("option", { value: id, textContent: say(id) })))
     : make("input", name === "round" ? { type: "checkbox", checked: Boolean(value) } : { type: "text", value, maxLength: 80 });
+  if (name === "floor") input.placeholder = "2/4";
   if (options) input.value = options.includes(value) ? value : options[0];
   input.id = `field-${name}`;
   input.setAttribute("aria-describedby", `${input.id}-error`);
@@ -92,7 +93,7 @@ let number = 0, current = null, other = null;
 async function startWorkers() {
   const url = URL.createObjectURL(new Blob([find("computing").textContent], { type: "text/javascript" }));
   const count = Math.max(1, Math.min(4, navigator.hardwareConcurrency ?? 2));
-  const modules = { fused: bytesOf(data.modules.fused), plain: bytesOf(data.modules.plain) }, samples = bytesOf(data.packed);
+  const modules = { fused: bytesOf(data.modules.fused), plain: bytesOf(data.modules.plain), space: bytesOf(data.modules.space) }, samples = bytesOf(data.packed);
   const { packed, modules: _, ...rest } = data;
   return Promise.all(Array.from({ length: count }, () => {
     const worker = { post: started(url), busy: true };
@@ -223,7 +224,7 @@ function show(told) {
   shown = told;
   const { run: { request, since }, found } = told, said = linesOf(request, found);
   find("answer").classList.remove("stale");
-  find("headline").textContent = said.headline;
+  find("headline").textContent = find("bar").textContent = said.headline;
   find("lines").replaceChildren(...linesAs(said, told.last));
   find("note").hidden = !request.place.computed;
   find("note").textContent = say("computed_floor");
@@ -239,10 +240,10 @@ function linesAs(said, helps = true) {
 }
 // what was typed, in a line
 function typedIn(form) {
-  const plain = ALL.filter((name) => form[name] && !["measure", "material", "hazard", "level"].includes(name));
+  const plain = ALL.filter((name) => (form[name] === true || form[name]?.trim?.()) && !["measure", "material", "hazard", "level"].includes(name));
   const told = plain.map((name) => (form[name] === true ? say(name) : `${say(name)}: ${form[name]}`));
-  if (form.level) told.push(`${form.measure}: ${form.level}`);
-  if (form.hazard) told.push(say("curve_of", { measure: form.measure, count: form.hazard.trim().split("\n").length }));
+  if (form.level.trim()) told.push(`${form.measure}: ${form.level}`);
+  if (form.hazard.trim()) told.push(say("curve_of", { measure: form.measure, count: form.hazard.trim().split("\n").length }));
   return told.join("; ") + ".";
 }
 
@@ -289,26 +290,50 @@ async function draw(told) {
   const motion = (await ask(null, { kind: "motion", motion: deciding.motion })).told;
   if (scene.of !== of) return;
   const { statue, pedestal, restitution, measure, place } = { measure: "PGA", ...of.request };
+  scene.dt = motion.dt;
+  canvasOf(of.request.solid);
+  if (of.request.solid) {
+    inSpaceScene ??= sceneInSpace(data, find("scene"), () => paint());
+    const response = await inSpaceScene.respond(of.request, deciding, async (m) => (await ask(null, { kind: "motion", motion: m })).told, () => unpacked(data.modules.space));
+    if (scene.of !== of) return;
+    Object.assign(scene, { response, statue, pedestal, dt: response.dt });
+    describe(deciding, measure);
+    scene.at = response.most;
+    return paint();
+  }
   const ground = place.ground ? motion : building.floorMotion(place.floors[""], motion);
   const body = kernel.bodyOf({ statue, pedestal, restitution: pedestal && restitution !== null ? [restitution, restitution] : restitution });
   const scale = deciding.level / data.measures[measure].values[deciding.motion];
   scene.response = kernel.integrate({ body, samples: ground.samples, dt: motion.dt, scale });
-  Object.assign(scene, { dt: motion.dt, statue, pedestal, at: 0 });
-  const { unit } = data.measures[measure], level = `${measure} ${Number(deciding.level.toPrecision(2))} ${unit}`;
-  scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level, what: say(scene.response.fallen ? "falls" : "stays") });
-  find("scene-words").textContent = scene.words();
-  find("scene").setAttribute("aria-label", scene.words());
+  Object.assign(scene, { statue, pedestal, at: 0 });
+  describe(deciding, measure);
   const { theta2, done } = scene.response;
   let most = 0;
   for (let k = 0; k < done; k++) if (Math.abs(theta2[k]) > Math.abs(theta2[most]) && Math.abs(theta2[k]) < 0.6) most = k;
   scene.at = most;
   paint();
 }
+let inSpaceScene = null;
+// in space the picture can be turned by keys
+function canvasOf(solid) {
+  find("scene").tabIndex = solid ? 0 : -1;
+  find("scene").setAttribute("role", solid ? "application" : "img");
+}
+function describe(deciding, measure) {
+  const { unit } = data.measures[measure], level = `${measure} ${Number(deciding.level.toPrecision(2))} ${unit}`;
+  scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level, what: say(scene.response.fallen ? "falls" : "stays") });
+  const turned = scene.response.history ? ` ${say("turn_view")}` : "";
+  scene.title = () => say(deciding.falls ? "scene" : "scene_other");
+  find("scene-words").textContent = scene.words() + turned;
+  find("scene-title").textContent = scene.title();
+  find("scene").setAttribute("aria-label", scene.words() + turned);
+}
 const unpacked = async (text) => new Uint8Array(await new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
 function paint(what = scene, canvas = find("scene")) {
   const { response, statue, pedestal, at } = what, context = canvas.getContext("2d");
   if (!response) return;
   const style = getComputedStyle(canvas), colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  if (response.history) return inSpaceScene.paint(context, response, at, colour);
   const below = pedestal?.height ?? 0, tall = below + statue.height, zoom = Math.min(230 / tall, 320 / Math.max(tall, statue.width));
   context.clearRect(0, 0, 600, 300);
   context.fillStyle = colour("rule");
@@ -366,6 +391,7 @@ function drawKept() {
   keepOne.disabled = document.body.dataset.stage !== "complete";
   find("tools").replaceChildren(keepOne, button("save_csv", saveCsv), button("save_yaml", () => save("statue.yaml", lists.yamlOf(formTexts(), say))),
     button("open", () => file.click()), button(kept.length ? "print_all" : "print", () => print()), file);
+  find("columns").closest(".wide").hidden = !kept.length;
   find("columns").replaceChildren(...headings(), make("td"));
   const risk = ({ told: { found } }) => found.probabilityValue ?? found.value;
   kept.sort((a, b) => risk(b) - risk(a));
@@ -393,8 +419,9 @@ async function keep() {
 // what is drawn of an object, without its motion
 function stillOf(run) {
   if (scene.of !== run || !scene.response) return null;
-  const { response: { theta1, theta2 }, statue, pedestal, at, words } = scene;
-  return { statue, pedestal, words, at: 0, response: { theta1: [theta1[at]], theta2: [theta2[at]] } };
+  const { response, response: { theta1, theta2 }, statue, pedestal, at, words, title } = scene;
+  if (response.history) return { response, statue, pedestal, at, words, title };
+  return { statue, pedestal, words, title, at: 0, response: { theta1: [theta1[at]], theta2: [theta2[at]] } };
 }
 function fillForm(values) {
   for (const name of ALL) {
@@ -447,11 +474,11 @@ function drawSheets() {
     const sheet = make("section", { className: "sheet" }, make("h2", { textContent: said.headline }), make("p", { textContent: typedIn(form) }), make("dl", {}, ...linesAs(said)));
     find("sheets").append(sheet);
     if (still) {
-      sheet.append(make("figure", {}, canvas, make("figcaption", { textContent: still.words() })));
+      sheet.append(make("figure", {}, canvas, make("figcaption", { textContent: `${still.title()}: ${still.words()}` })));
       paint(still, canvas);
     }
     if (request.place.computed) sheet.append(make("p", { className: "message", textContent: say("computed_floor") }));
-    sheet.append(make("p", { className: "message", textContent: `${data.made ? say("made") + " " : ""}${say("no_substitute")} ${new Date().toLocaleDateString(document.documentElement.lang)}` }));
+    sheet.append(make("p", { className: "message", textContent: `${data.made ? say("made") + " " : ""}${say("no_substitute")} ${new Date().toISOString().slice(0, 10)}` }));
   }
 }
 function rankedSheet() {
@@ -493,6 +520,7 @@ function translate() {
   if (shown) {
     show(shown);
     if (scene.words) find("scene-words").textContent = scene.words();
+    if (scene.title) find("scene-title").textContent = scene.title();
   }
 }
 begin();

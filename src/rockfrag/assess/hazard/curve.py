@@ -98,6 +98,23 @@ class HazardCurve:
         return np.asarray(np.searchsorted(self.levels, np.asarray(level)) - 1)
 
 
+def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
+    """Weights with which a function linear in ln level is integrated over a hazard curve [1/year], shape (n,).
+
+    ∫ P(x) |dν(x)| from the first of n ≥ 2 rising levels on, where ν is a power law between levels and P stays as
+    it is above the last one, is the sum of P at the levels times these weights.
+    """
+    rate = curve.rate(levels)
+    fall = -np.diff(np.log(rate))
+    # mean of ν over a piece in ln x, (ν0 - ν1) / ln(ν0/ν1)
+    mean = rate[:-1] * np.where(fall > 1e-12, -np.expm1(-fall) / np.maximum(fall, 1e-300), 1.0)
+    weights = np.zeros(levels.size)
+    weights[:-1] += rate[:-1] - mean
+    weights[1:] += mean - rate[1:]
+    weights[-1] += rate[-1]
+    return weights
+
+
 def make_curve(
     measure: IntensityMeasure,
     levels: Sequence[float],

@@ -12,8 +12,7 @@ from rockfrag.figure_style import (
     BLUE,
     COLUMN_WIDTH,
     ORANGE,
-    figure_style,
-    new_figure,
+    one_panel,
     plain_log,
 )
 from rockfrag.report.figures.amplitudes import GREY, SIDE_NAME, drawn_tests
@@ -29,9 +28,7 @@ _BOUNDS = {"up": 5, "down": 4}  # carets to the right and to the left
 def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[str]) -> Figure:
     """Draw a row for each configuration: its tests, and its curves with medians of PGA [g], if any."""
     shown = list(names)[:MOST_ROWS]
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 0.8 + 0.33 * len(shown))
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 0.8 + 0.33 * len(shown)) as (figure, axes):
         for y, name in enumerate(shown):
             rows = drawn_tests(tests[tests["configuration"] == name])
             side = str(rows["pedestal"].iloc[0])

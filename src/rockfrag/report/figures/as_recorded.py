@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from rockfrag.figure_style import BLACK, WIDEST, figure_style, new_figure
+from rockfrag.figure_style import BLACK, WIDEST, one_panel
 from rockfrag.report.wording import label, shortened
 
 MOST_ROWS = 30
@@ -31,9 +31,7 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
     )
     table = table.reindex(index=rows, columns=names)
     sensitive = shown[shown["fraction_near"].between(0, 1, inclusive="neither")]
-    with figure_style():
-        figure = new_figure(WIDEST, 1.35 + 0.185 * len(rows))
-        axes = figure.subplots()
+    with one_panel(WIDEST, 1.35 + 0.185 * len(rows)) as (figure, axes):
         colours = _SHADES.with_extremes(over=_OVERTURNED, bad="#ffffff")
         mesh = axes.pcolormesh(
             np.arange(len(names) + 1) - 0.5,

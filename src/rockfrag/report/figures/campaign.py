@@ -12,8 +12,7 @@ from rockfrag.figure_style import (
     GREEN,
     ORANGE,
     RED,
-    figure_style,
-    new_figure,
+    one_panel,
     plain_log,
 )
 from rockfrag.report.wording import label
@@ -25,9 +24,7 @@ _BINS = 8
 def agreement_figure(agreement: pd.DataFrame) -> Figure:
     """Draw the fraction of outcomes that the simulation and others predict right, with intervals."""
     rows = agreement.iloc[::-1].reset_index(drop=True)
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 0.7 + 0.24 * len(rows))
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 0.7 + 0.24 * len(rows)) as (figure, axes):
         for place, row in enumerate(rows.to_dict("records")):
             colour = BLUE if place == len(rows) - 1 else BLACK
             filled = row["judged"] == "by other motions"
@@ -49,9 +46,7 @@ def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label
     x = np.geomspace(values.min(), values.max(), 200)
     edges = np.unique(np.quantile(values, np.linspace(0, 1, _BINS + 1)))
     bins = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 2.4)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 2.4) as (figure, axes):
         styles = (("measured", "overturned", BLACK, "o"), ("rockfrag", "simulated", BLUE, "s"))
         for who, column, colour, marker in styles:
             middle = [np.exp(np.log(values[bins == k]).mean()) for k in range(len(edges) - 1)]
@@ -74,9 +69,7 @@ def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label
 
 def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -> Figure:
     """Draw every test in two measures: what happened by colour, wrong predictions as crosses."""
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 2.8)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 2.8) as (figure, axes):
         for fell, colour, word in ((False, _GREY, "survived"), (True, ORANGE, "overturned")):
             rows = tests[(tests["overturned"] == fell) & tests["right"]]
             axes.plot(rows[x], rows[y], ls="", marker="o", ms=2.6, color=colour, label=word)
@@ -99,9 +92,7 @@ def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -
 
 def footprint_figure(footprint: pd.DataFrame, trials: pd.DataFrame) -> Figure:
     """Draw the object from above: outline, contact polygons, centre of gravity, plausible directions."""
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 3.2)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 3.2) as (figure, axes):
         styles = {
             "outline": (_GREY, "-", "outline"),
             "contact, low": (GREEN, ":", None),

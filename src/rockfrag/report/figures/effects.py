@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, figure_style, new_figure
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, one_panel
 from rockfrag.report.figures.amplitudes import BAND, GREY
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import counted, shortened
@@ -32,9 +32,7 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
     labels = [_label(*row) for row in effects[names].itertuples(index=False, name=None)]
     columns = ["lower", "ratio", "upper", "p_holm"]
     figures = effects[columns].to_numpy(dtype=float)
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH + 1.1, 0.9 + 0.19 * float(place[-1] + 1))
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH + 1.1, 0.9 + 0.19 * float(place[-1] + 1)) as (figure, axes):
         axes.axvspan(*NONE, color=BAND, lw=0)
         axes.axvline(1.0, color=GREY, lw=0.8)
         for y, (lower, ratio, upper, p) in zip(place, figures, strict=True):

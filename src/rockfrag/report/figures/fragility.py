@@ -21,6 +21,7 @@ from rockfrag.figure_style import (
     figure_style,
     letter_panels,
     new_figure,
+    one_panel,
     plain_log,
 )
 from rockfrag.fragility.compared import compared_curves
@@ -153,9 +154,7 @@ def measures_figure(
 
 def calibration_figure(judged: Mapping[str, "GoodnessOfFit"]) -> Figure:
     """Draw observed against fitted fractions in bins; points on the diagonal are well calibrated."""
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 3.0)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 3.0) as (figure, axes):
         axes.plot([0, 1], [0, 1], color=GREY, linewidth=0.8)
         for k, (label, fit) in enumerate(judged.items()):
             table = fit.calibration

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from rockfrag.figure_style import (
     CONFIGURATION_COLOURS,
     WIDEST,
-    figure_style,
-    new_figure,
+    one_panel,
 )
 from rockfrag.report.wording import label, shortened
 
@@ -35,9 +34,7 @@ def outcome_map(ida: pd.DataFrame, configurations: Sequence[str]) -> Figure:
             bottom = line[motion] + 0.4 - (list(configurations).index(str(name)) + 1) * height
             bars[str(name)] += _bars(group, bottom, height)
     low, high = rows["amplitude_g"].min(), rows["amplitude_g"].max()
-    with figure_style():
-        figure = new_figure(WIDEST, 0.9 + 0.22 * len(motions))
-        axes = figure.subplots()
+    with one_panel(WIDEST, 0.9 + 0.22 * len(motions)) as (figure, axes):
         handles = []
         for name, colour in zip(configurations, CONFIGURATION_COLOURS, strict=False):
             axes.add_collection(PolyCollection(bars[name], facecolor=colour, linewidth=0))

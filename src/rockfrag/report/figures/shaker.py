@@ -5,7 +5,7 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rockfrag.figure_style import OKABE_ITO, WIDEST, figure_style, new_figure
+from rockfrag.figure_style import OKABE_ITO, WIDEST, one_panel
 from rockfrag.report.figures.amplitudes import GREY, MARKERS, drawn_tests
 from rockfrag.report.figures.ida import MOST_ROWS
 from rockfrag.report.wording import label, shortened
@@ -19,9 +19,7 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
     rows = drawn_tests(lone if len(lone) else tests)
     rows = rows[rows["motion"].isin(motions)]
     names = list(dict.fromkeys(rows["configuration"]))
-    with figure_style():
-        figure = new_figure(WIDEST, 1.2 + 0.22 * len(motions))
-        axes = figure.subplots()
+    with one_panel(WIDEST, 1.2 + 0.22 * len(motions)) as (figure, axes):
         largest = limits.set_index("motion")["limit_g"]
         axes.barh(range(len(motions)), largest[motions], color="#dddddd", height=0.8)
         handles: list[Artist] = [

@@ -13,6 +13,7 @@ from rockfrag.figure_style import (
     RED,
     figure_style,
     new_figure,
+    one_panel,
     plain_log,
 )
 from rockfrag.rocking.space_medians import NO_LOSS, PLANAR
@@ -33,9 +34,7 @@ def words_of(row: pd.Series) -> str:
 
 def ratios_figure(medians: pd.DataFrame) -> Figure:
     """Draw medians in space over the planar ones, with their limits."""
-    with figure_style():
-        figure = new_figure(PAGE_WIDTH, 0.6 + 0.2 * len(medians))
-        panel = figure.subplots()
+    with one_panel(PAGE_WIDTH, 0.6 + 0.2 * len(medians)) as (figure, panel):
         places = -np.arange(len(medians), dtype=float)
         for k, name in enumerate(PLANAR):
             value = medians[name].to_numpy()

@@ -8,8 +8,7 @@ from matplotlib.ticker import PercentFormatter
 from rockfrag.figure_style import (
     BLUE,
     COLUMN_WIDTH,
-    figure_style,
-    new_figure,
+    one_panel,
     plain_log,
 )
 from rockfrag.fragility.observations import name_and_unit
@@ -27,9 +26,7 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
     """
     first, second = str(cells["first"].iloc[0]), str(cells["second"].iloc[0])
     x, y = cells["at_first"].to_numpy(), cells["at_second"].to_numpy()
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 3.2)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 3.2) as (figure, axes):
         shown = axes.scatter(
             x,
             y,

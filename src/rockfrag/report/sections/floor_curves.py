@@ -31,8 +31,8 @@ def _section(results: Results) -> Section | None:
     labels = {state.name: state.label for state in limit_states()}
     shown = shown.assign(
         state_text=shown["state"].map(labels),
-        theta_text=estimates(shown, ("theta", "theta_lower", "theta_upper")),
-        beta_text=estimates(shown, ("beta", "beta_lower", "beta_upper")),
+        theta_text=estimates(shown, "theta"),
+        beta_text=estimates(shown, "beta"),
     )
     words = [
         "Each floor by itself, as a function of the peak acceleration of that floor. Curves in other measures "

@@ -130,8 +130,8 @@ def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
     ):
         shown = rows.assign(
             **_nonparametric_texts(rows),
-            theta_text=estimates(rows, ("theta", "theta_lower", "theta_upper")),
-            beta_text=estimates(rows, ("beta", "beta_lower", "beta_upper")),
+            theta_text=estimates(rows, "theta"),
+            beta_text=estimates(rows, "beta"),
             p_text=[probability(p) for p in rows["p_fit"]],
             lean_text=[_lean(row) for row in rows.to_dict("records")],
         )
@@ -162,17 +162,13 @@ def _rejected_words(curves: pd.DataFrame) -> list[str]:
     ]
 
 
-_TEXTS = {
-    "theta": ("theta_isotonic", "theta_isotonic_lower", "theta_isotonic_upper"),
-    "beta": ("beta_isotonic", "beta_isotonic_lower", "beta_isotonic_upper"),
-}
-
-
 def _nonparametric_texts(rows: pd.DataFrame) -> dict[str, list[str]]:
     """Median and dispersion of the nonparametric curves, of all rows where one lognormal curve is rejected."""
     if not (rows["p_fit"] < REJECTED).any():
         return {}
-    return {f"{name}_fraction_text": estimates(rows, columns) for name, columns in _TEXTS.items()}
+    return {
+        f"{name}_fraction_text": estimates(rows, f"{name}_isotonic") for name in ("theta", "beta")
+    }
 
 
 def _nonparametric_columns(rows: pd.DataFrame) -> tuple[Column, ...]:

@@ -5,7 +5,7 @@ import pandas as pd
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from rockfrag.figure_style import COLUMN_WIDTH, figure_style, new_figure
+from rockfrag.figure_style import COLUMN_WIDTH, one_panel
 from rockfrag.report.figures.amplitudes import (
     GREY,
     SIDE_COLOUR,
@@ -57,7 +57,7 @@ def _section(results: Results) -> Section:
         )
     shown = beside.assign(text=[amplitude(row) for row in beside.to_dict("records")])
     curves = results.table("measured/fragility")
-    curves = curves.assign(theta_text=estimates(curves, ("theta", "theta_lower", "theta_upper")))
+    curves = curves.assign(theta_text=estimates(curves, "theta"))
     effects = results.table("measured/effects")
     parts += [
         table_html(shown, _TESTS, "Measured tests beside simulated ones."),
@@ -85,9 +85,7 @@ def _words(beside: pd.DataFrame) -> str:
 def measured_beside(beside: pd.DataFrame) -> Figure:
     """Draw measured against simulated amplitudes."""
     known = drawn_tests(beside.dropna(subset=["simulated_g"]))
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 3.2)
-        axes = figure.subplots()
+    with one_panel(COLUMN_WIDTH, 3.2) as (figure, axes):
         largest = 1.15 * float(known[["a", "simulated_g"]].to_numpy(dtype=float).max())
         axes.plot([0, largest], [0, largest], color=GREY, lw=0.8)
         for side, name in SIDE_NAME.items():

@@ -61,14 +61,7 @@ class Evidence:
 
     @cached_property
     def pairs(self) -> Pairs:
-        """Tests in pairs.
-
-        Raises
-        ------
-        Undecidable
-            If no object was tested under the same motion with and without pedestal, or the slenderness of
-            one is not known.
-        """
+        """Tests in pairs; raises Undecidable if there is no pair, or the slenderness of an object is not known."""
         try:
             return pair_tests(self.tests, self.slenderness)
         except InputError as reason:
@@ -76,13 +69,7 @@ class Evidence:
 
     @property
     def table(self) -> pd.DataFrame:
-        """Pairs with a figure.
-
-        Raises
-        ------
-        Undecidable
-            If there is none.
-        """
+        """Pairs with a figure; raises Undecidable if there is none."""
         if self.pairs.table.empty:
             raise Undecidable("every pair has a test that never overturned")
         return self.pairs.table
@@ -98,13 +85,7 @@ class Evidence:
         )
 
     def part(self, **levels: str) -> pd.DataFrame:
-        """Pairs at the given levels, such as ``floor="GF", object="T1"``.
-
-        Raises
-        ------
-        Undecidable
-            If there is none.
-        """
+        """Pairs at the given levels, such as ``floor="GF", object="T1"``; raises Undecidable if there is none."""
         rows = self.table
         for column, level in levels.items():
             rows = rows[rows[column] == self.level(column, level)]
@@ -113,13 +94,7 @@ class Evidence:
         return rows
 
     def level(self, column: str, wanted: str) -> str:
-        """The level as the table spells it ("Loma Prieta" may be "loma_prieta" there).
-
-        Raises
-        ------
-        Undecidable
-            If the table has no such level.
-        """
+        """The level as the table spells it ("loma_prieta"); raises Undecidable if the table has no such level."""
         try:
             return self._spelled[column, _plain(wanted)]
         except KeyError:

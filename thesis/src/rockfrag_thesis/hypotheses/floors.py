@@ -133,15 +133,17 @@ def c41(tests: Evidence) -> Parts:
     return parts
 
 
+def _over(rows: pd.DataFrame, floor: str, other: str) -> Part:
+    """By how much the amplitudes on one floor exceed those on another."""
+    return Part(contrast(rows, "floor", floor, other, value="ln_a"))
+
+
 def _leading_floor(tests: Evidence, side: str, floor: str) -> Parts:
     """By how much the amplitudes of a side on one floor exceed those on the others."""
     rows = tests.amplitudes[tests.amplitudes["side"] == side]
     top = tests.level("floor", floor)
     others = [tests.level("floor", name) for name in FLOORS if name != floor]
-    return {
-        f"{side} on {top} over {other}": Part(contrast(rows, "floor", top, other, value="ln_a"))
-        for other in others
-    }
+    return {f"{side} on {top} over {other}": _over(rows, top, other) for other in others}
 
 
 @order_hypothesis(
@@ -178,9 +180,7 @@ def c44(tests: Evidence) -> Parts:
     """The other floors over the 3rd, for every tower on both sides."""
     low, *others = (tests.level("floor", name) for name in (THIRD, GROUND, FIFTH))
     return {
-        f"{name} {side} on {other} over {low}": Part(
-            contrast(rows, "floor", other, low, value="ln_a")
-        )
+        f"{name} {side} on {other} over {low}": _over(rows, other, low)
         for (name, side), rows in tests.amplitudes.groupby(["object", "side"])
         for other in others
     }
@@ -225,7 +225,7 @@ def floor_steps(tests: Evidence) -> Parts:
     rows = tests.amplitudes[tests.amplitudes["side"] == "NP"]
     third, fifth, ground = (tests.level("floor", name) for name in (THIRD, FIFTH, GROUND))
     return {
-        f"NP on {first} over {other}": Part(contrast(rows, "floor", first, other, value="ln_a"))
+        f"NP on {first} over {other}": _over(rows, first, other)
         for first, other in ((fifth, third), (ground, fifth))
     }
 

@@ -146,20 +146,10 @@ def survived_amplitudes(
     levels_g: Floats,
     threads: int = 1,
 ) -> Floats:
-    """Largest amplitude survived before the first overturning, climbing a series of levels from rest.
+    """Largest amplitude [g] survived before the first overturning, climbing a series of levels from rest.
 
-    Parameters
-    ----------
-    body
-        A block or a stack.
-    frictions
-        Coefficients of its interfaces, the ground first.
-    motions, levels_g, threads
-        As of :func:`friction_ratios`.
-
-    Returns
-    -------
-    Amplitudes [g], shape (frictions, motions); NaN where nothing or everything was survived.
+    ``frictions`` has the coefficients of the interfaces, the ground first. Shape (frictions, motions); NaN where
+    nothing or everything was survived.
     """
     mu = np.array([(*friction, math.inf)[:2] for friction in frictions])
     # coefficients [q] at which a response of [p] holds: any higher one, or the same if it slid

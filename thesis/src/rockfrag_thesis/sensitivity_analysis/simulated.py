@@ -255,22 +255,9 @@ def level_amplitudes(
     levels_g: Floats,
     threads: int = 1,
 ) -> Floats:
-    """Largest amplitude survived before the first overturning, climbing a series of levels from rest.
+    """Largest amplitude [g] survived before the first overturning, climbing rising levels from rest.
 
-    Parameters
-    ----------
-    systems
-        What stands on the table.
-    motions
-        Motions of the table.
-    levels_g
-        Amplitudes, rising [g].
-    threads
-        Threads to use; the result does not depend on it.
-
-    Returns
-    -------
-    Amplitudes [g], shape (systems, motions); NaN where nothing or everything was survived.
+    Shape (systems, motions); NaN where nothing or everything was survived.
     """
     scales = np.array([factors_to_pga(motion, levels_g) for motion in motions])
     fell = np.zeros((len(systems), *scales.shape), dtype=bool)
@@ -308,7 +295,7 @@ def case_ratios(
     cases
         What is tested.
     motions, levels_g, threads
-        As of :func:`level_amplitudes`.
+        Motions of the table, amplitudes that are climbed [g], and threads to use.
     progress
         Called with the number of bodies done.
 
