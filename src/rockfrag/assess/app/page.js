@@ -146,9 +146,10 @@ function later() {
   timer = setTimeout(update, 120);
 }
 function update() {
+  const form = formTexts();
   let request;
   try {
-    request = bodies.requestOf(formTexts());
+    request = bodies.requestOf(form);
   } catch (error) {
     if (!error.field) throw error;
     current = other = null;
@@ -158,7 +159,7 @@ function update() {
   }
   complain(null);
   find("blocked").hidden = true;
-  current = { id: ++number, request, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
+  current = { id: ++number, request, form, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
   document.body.dataset.stage = "";
   other = null;
   compute(current, (told) => {
@@ -295,8 +296,9 @@ async function draw(told) {
   const scale = deciding.level / data.measures[measure].values[deciding.motion];
   scene.response = kernel.integrate({ body, samples: ground.samples, dt: motion.dt, scale });
   Object.assign(scene, { dt: motion.dt, statue, pedestal, at: 0 });
-  const { unit } = data.measures[measure], level = `${measure} ${Number(deciding.level.toPrecision(2))} ${unit}`;
-  scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level, what: say(scene.response.fallen ? "falls" : "stays") });
+  const { unit } = data.measures[measure], { fallen } = scene.response;
+  const level = () => `${measure} ${new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 2 }).format(deciding.level)} ${unit}`;
+  scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level: level(), what: say(fallen ? "falls" : "stays") });
   scene.title = () => say(deciding.falls ? "scene" : "scene_other");
   find("scene-words").textContent = scene.words();
   find("scene-title").textContent = scene.title();
@@ -389,7 +391,7 @@ function rowOf({ told: { run: { request }, found } }, i) {
   return make("tr", {}, ...texts.map((text) => make("td", { textContent: text })));
 }
 async function keep() {
-  const item = { form: formTexts(), told: shown };
+  const item = { form: shown.run.form, told: shown };
   await scene.drawn;
   kept.push(Object.assign(item, { scene: stillOf(item.told.run) }));
   drawKept();
@@ -444,7 +446,7 @@ function answered(form) {
 // ---- on paper: a sheet for each object that is kept, or for the one that is shown
 
 function drawSheets() {
-  const items = kept.length ? kept : shown ? [{ form: formTexts(), told: shown, scene: stillOf(shown.run) }] : [];
+  const items = kept.length ? kept : shown ? [{ form: shown.run.form, told: shown, scene: stillOf(shown.run) }] : [];
   find("sheets").replaceChildren(...(kept.length > 1 ? [rankedSheet()] : []));
   for (const { form, told: { run: { request }, found }, scene: still } of items) {
     const said = linesOf(request, found), canvas = make("canvas", { width: 600, height: 300 });
