@@ -99,7 +99,7 @@ def test_a_floor_of_a_building_shakes_more_than_the_ground(motions):
 
 def test_the_narrower_side_decides(motions):
     wide = asked(width="60 cm", depth="35 cm", height="120 cm", mass="250 kg")
-    assert wide.objects.statue == Block(0.35, 1.2, 250.0)
+    assert wide.objects.block == Block(0.35, 1.2, 250.0)
     assert "narrower" in wide.objects.plane
 
 

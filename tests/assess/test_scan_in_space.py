@@ -77,7 +77,7 @@ def test_changes_of_the_object_change_it_in_space(folder):
         if change.name == "width":
             lower, upper = (side.solid(side.body).bodies[0] for side in change.sides)
             assert lower.width < as_it_is.width < upper.width
-    heavier = replace(objects.statue, mass=360.0, inertia=objects.statue.centroidal_inertia + 5.0)
+    heavier = replace(objects.block, mass=360.0, inertia=objects.block.centroidal_inertia + 5.0)
     changed = objects.solid(heavier).bodies[0]
     assert changed.mass == pytest.approx(360.0)
     np.testing.assert_allclose(np.diag(changed.tensor - as_it_is.tensor), [5, 5, 0], atol=1e-9)

@@ -114,7 +114,7 @@ def test_how_a_scan_stands_is_a_source_until_it_is_measured(on_feet, motions):
     low, high = (scan.block(at).width for at in (0.05, 0.95))
     assert 0.18 < low < 0.29 < high < 0.43
     measured = of(contact_tolerance="2 mm", edge_retreat="0 mm", direction_deg=0)
-    assert measured.objects.statue.width == pytest.approx(0.3, rel=1e-3)
+    assert measured.objects.block.width == pytest.approx(0.3, rel=1e-3)
 
     def sources(item):
         return assess_with(item, motions, brief=True).amplitudes[0.5].sources

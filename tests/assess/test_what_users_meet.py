@@ -358,7 +358,7 @@ def test_a_mesh_that_cannot_be_used_is_told_the_way_out(
 
 def test_glb_is_read_with_y_up(column):
     same = [
-        asked(mesh={"file": str(column / name)}, mass="200 kg").objects.statue
+        asked(mesh={"file": str(column / name)}, mass="200 kg").objects.block
         for name in ("z.stl", "box.glb")
     ]
     assert same[0].width == pytest.approx(same[1].width, rel=1e-6)

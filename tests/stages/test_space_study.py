@@ -1,6 +1,7 @@
 """A study of bodies in space: medians under both components over those of planar rocking."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -67,6 +68,47 @@ def test_a_study_of_bodies_in_space_gives_medians_and_a_report(tmp_path, monkeyp
     np.testing.assert_array_equal(fractions[lossless]["space"], rolls["space"])
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "Base round: in space" in page
+
+
+@pytest.fixture
+def pairs_of_a_catalogue(tmp_path, made_motions):
+    """A catalogue of two pairs of components, of which one stands there once more in another direction."""
+    rows = ["name,earthquake,file,second,unit,direction,scale_factor"]
+    for i, motion in enumerate(made_motions(4)):
+        table = np.column_stack([motion.time, motion.acceleration / 9.81])
+        np.savetxt(tmp_path / f"{i}.txt", table, "%.7f")
+    rows += ["a,first,0.txt,1.txt,g,,2", "a stronger,first,1.txt,0.txt,g,stronger,2"]
+    rows += ["b,second,2.txt,3.txt,g,,"]
+    (tmp_path / "mine.csv").write_text("\n".join(rows) + "\n")
+    return tmp_path
+
+
+def of_a_catalogue(folder):
+    space = {key: value for key, value in SMALL["space"].items() if key != "every"}
+    return any_study(SMALL | {"space": space | {"catalogue": "mine.csv"}}, folder / "space.yaml")
+
+
+def test_the_pairs_of_a_catalogue_shake_bodies_in_space(pairs_of_a_catalogue, made_motions):
+    study = of_a_catalogue(pairs_of_a_catalogue)
+    named = {Path(file).name for file in study.files}
+    assert named == {"mine.csv", *(f"{i}.txt" for i in range(4))}
+    pairs, earthquakes = stage.own_pairs(study)
+    assert earthquakes == ["first", "second"]
+    for factor, pair, first in zip((2, 1), pairs, (0, 2), strict=True):
+        for motion, made in zip(pair, made_motions(4)[first : first + 2], strict=True):
+            np.testing.assert_allclose(motion.acceleration, factor * made.acceleration, atol=1e-5)
+    folder = run_stages(study, pairs_of_a_catalogue / "results")
+    assert "the records of mine.csv" in (folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_record_of_one_component_and_two_sources_of_records_are_told(pairs_of_a_catalogue):
+    catalogue = pairs_of_a_catalogue / "mine.csv"
+    catalogue.write_text(catalogue.read_text() + "c,third,0.txt,,g,,\n")
+    with pytest.raises(InputError, match="motion c has no second component"):
+        of_a_catalogue(pairs_of_a_catalogue)
+    both = SMALL | {"space": SMALL["space"] | {"catalogue": "mine.csv"}}
+    with pytest.raises(InputError, match="give either every"):
+        any_study(both, pairs_of_a_catalogue / "space.yaml")
 
 
 def test_a_base_that_is_not_known_is_told():

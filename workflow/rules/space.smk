@@ -3,6 +3,8 @@
 
 rule space:
     """Shake every body in space and in the plane, and compare the medians of overturning."""
+    input:
+        STUDY.files,
     output:
         table("medians", "fractions"),
     log:

@@ -112,7 +112,7 @@ def _add_object(about: Any) -> None:
         "--base-spread",
         type=float,
         metavar="FRACTION",
-        help="by how much corners of the base lie elsewhere in space, over its size: 0.001",
+        help="by how much corners of the base lie elsewhere in space, over its size, and it is turned: 0.001",
     )
     about.add_argument("--round", action="store_true", help="the base is round")
     once("--mesh", metavar="FILE", help="mesh of it (OBJ, PLY, STL, GLB) instead")

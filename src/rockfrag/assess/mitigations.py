@@ -45,25 +45,25 @@ class Mitigation:
 
 def mitigations_of(objects: Objects) -> dict[str, Body]:
     """Bodies that result from each change of the object."""
-    statue, pedestals = objects.statue, objects.pedestals
+    block, pedestals = objects.block, objects.pedestals
     lower = {
-        f"a centre of gravity {100 * (1 - LOWER):.0f} % lower": higher(statue, LOWER),
-        f"ballast of {100 * BALLAST:.0f} % of its mass in its foot": with_ballast(statue),
+        f"a centre of gravity {100 * (1 - LOWER):.0f} % lower": higher(block, LOWER),
+        f"ballast of {100 * BALLAST:.0f} % of its mass in its foot": with_ballast(block),
     }
     if not pedestals:
-        return {_plate_words(statue, "it"): on_plate(statue), **lower}
+        return {_plate_words(block, "it"): on_plate(block), **lower}
     lowest, highest = pedestals[0], pedestals[-1]
     where = "the lowest pedestal" if objects.many else "the pedestal"
-    found = {_plate_words(lowest, where): stacked((on_plate(lowest), *pedestals[1:], statue))}
-    if WIDER * statue.width <= highest.width:
+    found = {_plate_words(lowest, where): stacked((on_plate(lowest), *pedestals[1:], block))}
+    if WIDER * block.width <= highest.width:
         # beyond the pedestal's edges a plate carries no further out
-        found[_plate_words(statue, "the object")] = stacked((*pedestals, on_plate(statue)))
+        found[_plate_words(block, "the object")] = stacked((*pedestals, on_plate(block)))
     found |= {name: stacked((*pedestals, body)) for name, body in lower.items()}
     half = replace(
         lowest, height=PEDESTAL_HEIGHT * lowest.height, mass=PEDESTAL_HEIGHT * lowest.mass
     )
     found[f"another pedestal, {100 * half.height:.3g} cm high and as wide"] = stacked(
-        (half, *pedestals[1:], statue)
+        (half, *pedestals[1:], block)
     )
     return found | _fixed(objects)
 
@@ -94,11 +94,11 @@ def with_ballast(block: Block) -> Block:
 
 def _fixed(objects: Objects) -> dict[str, Body]:
     """Bodies that result where a joint is closed for good, each by itself and all."""
-    blocks = (*objects.pedestals, objects.statue)
+    blocks = (*objects.pedestals, objects.block)
     if not objects.many:
         return {
             "fixing the object to its pedestal": stacked(blocks).rigidly_joined(),
-            "fixing the pedestal to the floor": objects.statue,
+            "fixing the pedestal to the floor": objects.block,
         }
     found: dict[str, Body] = {}
     for k in range(len(blocks) - 1):
@@ -113,7 +113,7 @@ def _fixed(objects: Objects) -> dict[str, Body]:
     return found | {
         "fixing the object and its pedestals to each other": stacked(blocks).rigidly_joined(),
         "fixing the lowest pedestal to the floor": stacked(blocks[1:]),
-        "fixing all pedestals to the floor": objects.statue,
+        "fixing all pedestals to the floor": objects.block,
     }
 
 

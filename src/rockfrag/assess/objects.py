@@ -56,7 +56,7 @@ ALONE = "on the floor"
 class Objects:
     """The object in the plane in which it rocks, and what it stands on."""
 
-    statue: Block  # The object
+    block: Block  # The object itself
     pedestals: tuple[Block, ...]  # What it stands on, from below; empty if it stands on the floor
     # Measured ratio of angular velocities at an impact [-]; None conserves momentum
     restitution: float | None
@@ -72,7 +72,8 @@ class Objects:
     facing_deg: float = 0.0
     # Whether nobody said how it faces the shaking, which counts in space
     faces_anywhere: bool = False
-    # By how much corners of the base lie elsewhere in space, over its extent, other for each record [-]
+    # By how much corners of the base lie elsewhere in space, over its extent, and it is turned [rad], other for
+    # each record [-]
     base_spread: float = 0.0
     # The scan and the ways in which it may stand; None where dimensions were given
     scan: Scan | None = None
@@ -88,7 +89,7 @@ class Objects:
     @property
     def body(self) -> Body:
         """The object as it stands."""
-        return stacked((*self.pedestals, self.statue))
+        return stacked((*self.pedestals, self.block))
 
     @property
     def kind(self) -> str:
@@ -115,7 +116,7 @@ class Objects:
         return {
             f"on its {self.stand}": body,
             f"fixed to its {self.stand}": joined,
-            ALONE: self.statue,
+            ALONE: self.block,
         }
 
     @property
@@ -129,7 +130,7 @@ class Objects:
         if self.restitution is None and self.livelier == 1 and not self.round:
             return system
         # on the floor it stands on its own base, fixed to its pedestal on that of the pedestal
-        rolls = self.round and body.blocks[-1].height == self.statue.height
+        rolls = self.round and body.blocks[-1].height == self.block.height
         *below, top = system.carried
         each = [*(self._ratios(shape, rolls=False) for shape in below), self._ratios(top, rolls)]
         return system_of(system, restitution=each if below else each[0])
@@ -165,34 +166,34 @@ class Objects:
         Under it a pedestal stays where it is.
         """
         top = body.blocks[-1]
-        whole = top.height > self.statue.height * HIGHER
+        whole = top.height > self.block.height * HIGHER
         if not self.in_space or (whole and self.depth is None):
             return None
         if self.scanned is not None:
             return System((self._changed(self.scanned, top),), (Contact(),))
         if self.round:
             across = top.centroidal_inertia
-            along = top.mass * top.width**2 / 8
+            along = top.mass * top.width * top.width / 8
             return replace(top, round=True, inertia=diagonal(across, across, along)).system()
         return turned_about_vertical(self._box(top, whole=whole).system(), self.facing_deg)
 
     def _changed(self, scanned: RigidBody, top: Block) -> RigidBody:
         """The scan in space with what another block differs by from the object's."""
-        added = top.centroidal_inertia - self.statue.centroidal_inertia
-        factors = (top.width / self.statue.width, top.h / self.statue.h, top.mass / scanned.mass)
+        added = top.centroidal_inertia - self.block.centroidal_inertia
+        factors = (top.width / self.block.width, top.h / self.block.h, top.mass / scanned.mass)
         about = checked_tensor(scanned.tensor + np.diag([added, added, 0.0]))
         return replace(stretched(scanned, *factors), inertia=about)
 
     def _box(self, top: Block, *, whole: bool) -> Block:
         """The object on a rectangular base, or one with what it is fixed to, whose base is square or as deep."""
         assert self.depth is not None
-        width, depth, mass = self.statue.width, self.depth, self.statue.mass
+        width, depth, mass = self.block.width, self.depth, self.block.mass
         across = top.centroidal_inertia
         # moments of uniform boxes about x and y differ by what their sides do
-        aside = mass * (depth**2 - width**2) / 12
-        along = mass * (width**2 + depth**2) / 12
+        aside = mass * (depth * depth - width * width) / 12
+        along = mass * (width * width + depth * depth) / 12
         if whole:
-            along += (top.mass - mass) * top.width**2 / 6
+            along += (top.mass - mass) * top.width * top.width / 6
             depth = max(depth, top.width)
         return replace(top, depth=depth, inertia=diagonal(across + aside, across, along))
 
@@ -203,7 +204,7 @@ class Objects:
             "cg_height": partial(_higher, self),
         }
         if not self.round:  # of a body in space that of the planar answer
-            moves["restitution"] = partial(_livelier, self)
+            moves["restitution"] = lambda factor: replace(self, livelier=self.livelier * factor)
         if self.pedestals:
             moves["mass"] = partial(_heavier, self)
         found = moved_to_both_sides(moves, self.tolerances)
@@ -228,7 +229,7 @@ def _standing(objects: Objects, scan: Scan) -> list[Moved[Objects]]:
     for name in dict.fromkeys((*planar, *bodies)):
         low, high, spread = planar.get(name, (0.5, 0.5, space.get(name, (0, 0, 0.0))[2]))
         sides = zip((low, high), bodies.get(name, (objects.scanned,) * 2), strict=True)
-        lower, upper = (replace(objects, statue=scan.block(at), scanned=body) for at, body in sides)
+        lower, upper = (replace(objects, block=scan.block(at), scanned=body) for at, body in sides)
         found.append(Moved(name, spread, lower, upper))
     return found
 
@@ -250,6 +251,7 @@ def stretched(body: RigidBody, width: float, height: float, mass: float) -> Rigi
 
 
 def _stretched(objects: Objects, *factors: float) -> RigidBody | None:
+    """The scan in space, if there is one, by the factors of :func:`stretched`."""
     return None if objects.scanned is None else stretched(objects.scanned, *factors)
 
 
@@ -258,7 +260,7 @@ def _wider(objects: Objects, factor: float) -> Objects:
     return replace(
         objects,
         depth=None if objects.depth is None else objects.depth * factor,
-        statue=wider(objects.statue, factor),
+        block=wider(objects.block, factor),
         scanned=_stretched(objects, factor, 1.0, 1.0),
         pedestals=tuple(wider(block, factor) for block in objects.pedestals),
     )
@@ -271,7 +273,7 @@ def wider(block: Block, factor: float) -> Block:
 
 def _higher(objects: Objects, factor: float) -> Objects:
     scanned = _stretched(objects, 1.0, factor, 1.0)
-    return replace(objects, statue=higher(objects.statue, factor), scanned=scanned)
+    return replace(objects, block=higher(objects.block, factor), scanned=scanned)
 
 
 def higher(block: Block, factor: float) -> Block:
@@ -283,14 +285,10 @@ def higher(block: Block, factor: float) -> Block:
     )
 
 
-def _livelier(objects: Objects, factor: float) -> Objects:
-    return replace(objects, livelier=objects.livelier * factor)
-
-
 def _heavier(objects: Objects, factor: float) -> Objects:
-    statue = objects.statue
-    heavier = replace(statue, mass=statue.mass * factor, inertia=statue.centroidal_inertia * factor)
-    return replace(objects, statue=heavier, scanned=_stretched(objects, 1.0, 1.0, factor))
+    block = objects.block
+    heavier = replace(block, mass=block.mass * factor, inertia=block.centroidal_inertia * factor)
+    return replace(objects, block=heavier, scanned=_stretched(objects, 1.0, 1.0, factor))
 
 
 def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
@@ -301,24 +299,24 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
     scan = None
     if "mesh" in settings:
         settings = _facing_mesh(settings)
-        scan, statue, plane = _from_mesh(settings, folder, assumed)
+        scan, block, plane = _from_mesh(settings, folder, assumed)
     else:
-        statue, plane = _from_dimensions(settings, assumed, quality_flags)
+        block, plane = _from_dimensions(settings, assumed, quality_flags)
     depth, facing = _in_plan(settings)
     pedestals = _pedestals(settings, assumed)
     try:
-        stacked((*pedestals, statue))
+        stacked((*pedestals, block))
     except InputError as error:
         raise InputError(f"key pedestal: {error}") from None
-    for block in (statue, *pedestals):
-        if quality_flag := size_warning(block.width, block.height):
+    for each in (block, *pedestals):
+        if quality_flag := size_warning(each.width, each.height):
             quality_flags.append(quality_flag + ".")
     first = [_of_the_base(is_round, "mesh" in settings, depth is not None)]
     if not is_round and "restitution" not in settings:
         first.append(_ON_POINTS if scan else _RESTITUTION)
     on_points = scan is not None and not is_round and "restitution" not in settings
     objects = Objects(
-        statue=statue,
+        block=block,
         pedestals=pedestals,
         restitution=settings.get("restitution"),
         friction=settings.get("friction"),

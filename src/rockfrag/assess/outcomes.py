@@ -335,7 +335,7 @@ def in_space(
 ) -> ObjectOutcomes:
     """Outcomes of a body in space under both components of each record, where it has two.
 
-    Corners of its base lie elsewhere by ``spread`` over its extent [-].
+    Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
     """
     paired = {i for pair in motions.pairs for i in pair}
     shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]

@@ -448,7 +448,7 @@ def assumptions(found: Assessment) -> list[str]:
         )
     if math.isfinite(found.flip_rate):
         lines.append(
-            "If the corners of its base lie elsewhere by a millionth of its size, "
+            "If the corners of its base lie elsewhere by a millionth of its size, and it is turned by as little, "
             f"{fraction_words(found.flip_rate)} of the outcomes in space at that level change."
         )
     if math.isfinite(found.sliding_fraction) and found.fraction is not None:

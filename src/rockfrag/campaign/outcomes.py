@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.campaign.trials import Trials
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.ground_motion import GroundMotion
@@ -28,17 +27,17 @@ def shaken(systems: Sequence[System], motions: Sequence[Motion], threads: int | 
 
 
 def simulate_tests(
-    trials: Trials,
+    systems: Sequence[System],
     motions: Sequence[Motion],
     threads: int | None = None,
     done: Callable[[int], None] = lambda count: None,
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Simulate each test under each trial.
+    """Simulate each test with what stood on the table in each trial.
 
     Parameters
     ----------
-    trials
-        What stood on the table in each.
+    systems
+        What stood on the table in each trial.
     motions
         Motion of the table in each test.
     threads
@@ -50,13 +49,13 @@ def simulate_tests(
     -------
     Whether a body overturns, and whether any rocks at all, each of shape (trials, tests).
     """
-    overturned, rocked = np.zeros((2, len(trials.systems), len(motions)), dtype=bool)
+    overturned, rocked = np.zeros((2, len(systems), len(motions)), dtype=bool)
     for first in range(0, len(motions), BATCH):
         batch = motions[first : first + BATCH]
         with warnings.catch_warnings():
             # a guess may be squat where the object is not
             warnings.simplefilter("ignore", LightBodies)
-            result = shaken(trials.systems, batch, threads)
+            result = shaken(systems, batch, threads)
         overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
         rocked[:, first : first + len(batch)] = (result.peak_rotation[:, :, 0] > 0).any(axis=-1)
         done(first + len(batch))

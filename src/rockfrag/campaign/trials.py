@@ -45,11 +45,14 @@ class Trials:
         What stood on the table in each trial.
     refused
         Guesses under which the object could not have stood.
+    planar
+        The planar block of each, where both ``friction`` and ``restitution`` are unknown; none elsewhere.
     """
 
     table: pd.DataFrame
     systems: tuple[System, ...]
     refused: int
+    planar: tuple[System, ...] = ()
 
     __repr__ = short_repr
 
@@ -65,7 +68,8 @@ def sample_trials(
         The object: a shape, or the planar block itself where its edges were measured, or blocks on each other.
     ranges
         Lowest and highest value of each of :data:`UNKNOWNS`; for a block without direction and tolerance. A shape
-        with ``friction`` instead of ``restitution`` is a body in space; a column has ``friction`` too.
+        with ``friction`` is a body in space, beside the planar block if it has ``restitution`` as well; a column
+        has ``friction`` too.
     count
         Number of guesses; a power of two fills the ranges most evenly.
     seed
@@ -82,7 +86,7 @@ def sample_trials(
     """
     names = [name for name in UNKNOWNS if name in ranges]
     points = qmc.Sobol(len(names), scramble=True, rng=np.random.default_rng(seed)).random(count)
-    rows, systems = [], []
+    rows, systems, planar = [], [], []
     for point in points:
         guess = {name: _value(name, ranges[name], u) for name, u in zip(names, point, strict=True)}
         try:
@@ -90,6 +94,8 @@ def sample_trials(
             systems.append(_standing(thing, body, guess))
         except InputError:
             continue
+        if "friction" in guess and "restitution" in guess:
+            planar.append(_in_plane(body, guess))
         block = body.blocks[-1]
         angle = min(block.critical_angle(+1), block.critical_angle(-1))
         rows.append(
@@ -105,7 +111,13 @@ def sample_trials(
             f"unknowns: under none of {count} guesses could the object have stood; widen contact_tolerance_mm "
             "or lower edge_retreat_mm."
         )
-    return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows))
+    return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows), tuple(planar))
+
+
+def _in_plane(planar: Block | Column, guess: Mapping[str, float]) -> System:
+    """A planar block with the restitution of a guess, as far as it gains no energy."""
+    restitution = possible_restitution(planar.blocks[-1], guess["restitution"])
+    return system_of(planar, restitution=restitution)
 
 
 def _standing(
@@ -113,8 +125,7 @@ def _standing(
 ) -> System:
     """What stands on the table: planar blocks, or the shape in space on the points that carry."""
     if "friction" not in guess:
-        restitution = possible_restitution(planar.blocks[-1], guess["restitution"])
-        return system_of(planar, restitution=restitution)
+        return _in_plane(planar, guess)
     if isinstance(thing, Shape):
         tolerance, retreat = guess["contact_tolerance_mm"] / 1e3, guess["edge_retreat_mm"] / 1e3
         body = thing.body(guess["direction_deg"], tolerance, retreat)

@@ -84,6 +84,20 @@ def components_of_row(row: dict[str, Any], folder: Path, records: Path) -> dict[
     return dict(zip(files, common_time(motions, verticals), strict=True))
 
 
+def pair_of_row(row: dict[str, Any], folder: Path, records: Path) -> tuple[Motion, Motion]:
+    """Read both horizontal components that a row names, with its factor, at common times.
+
+    Raises
+    ------
+    InputError
+        If the row names no second component, a record is wrong, or they have no time in common.
+    """
+    if not row.get("second"):
+        raise InputError(f"{row['name']}: the catalogue names no second component of it.")
+    components = components_of_row({**row, "vertical": ""}, folder, records)
+    return scaled(components["first"], row), scaled(components["second"], row)
+
+
 def measure_records(
     rows: Sequence[dict[str, Any]],
     folder: Path,
@@ -106,10 +120,7 @@ def measure_records(
             continue
         pair = frozenset((row["file"], row["second"]))
         if pair not in known:
-            components = components_of_row({**row, "vertical": ""}, folder, records)
-            first, second = (
-                process(scaled(component, row), processing) for component in components.values()
-            )
-            known[pair] = measure_pair(first, second)
+            first, second = pair_of_row(row, folder, records)
+            known[pair] = measure_pair(process(first, processing), process(second, processing))
         table.append({"name": row["name"], **known[pair]})
     return pd.DataFrame(table)

@@ -3,7 +3,7 @@
 import math
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -69,6 +69,15 @@ def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
         Naming line and column of everything that is wrong.
     """
     return _checked(path)[0]
+
+
+def own_records(
+    table: pd.DataFrame, folder: Path, columns: Sequence[str] = ("file",)
+) -> list[Path]:
+    """Files of the user's own records that columns of a catalogue name, which lies in ``folder``."""
+    rows = table[table["source"] == "folder"]
+    names = (name for column in columns for name in rows[column])
+    return list(dict.fromkeys(folder / name.partition("#")[0] for name in names))
 
 
 def repeated_motions(table: pd.DataFrame) -> list[str]:

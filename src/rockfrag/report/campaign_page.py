@@ -34,7 +34,7 @@ from rockfrag.report.wording import (
     probability,
     sentence,
 )
-from rockfrag.stages.campaign import OURS, TABLES, VOTES
+from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
 from rockfrag.study.campaign import CampaignStudy
 
 
@@ -70,10 +70,18 @@ def _percent(row: Row) -> str:
     return estimate(100 * row["right"], 100 * row["lower"], 100 * row["upper"], 1) + " %"
 
 
+def _better(row: Row) -> str:
+    """By how many percentage points the simulation is better, with limits."""
+    middle, low, high = (
+        number(100 * row[name], 1) for name in ("better", "better_lower", "better_upper")
+    )
+    return f"{middle} [{low}, {high}]"
+
+
 def _who(name: str) -> str:
     """Who predicted the outcomes, in words: thresholds by their measure, codes by their name."""
-    if name == OURS:
-        return "simulation"
+    if name in (OURS, IN_PLANE):
+        return "simulation" + name.removeprefix(OURS)
     for start in ("threshold on ", "probit on "):
         if name.startswith(start):
             measures = name.removeprefix(start).split(" and ")
@@ -111,7 +119,8 @@ def _said(study: CampaignStudy) -> str:
 
 
 def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
-    ours, *rivals = tables["agreement"].to_dict("records")
+    ours, *others = tables["agreement"].to_dict("records")
+    rivals = [row for row in others if row["who"] != IN_PLANE]
     found = [
         Finding(
             f"The simulation predicts {number(100 * ours['right'], 1)} % of the outcomes",
@@ -119,6 +128,7 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
             f"{counted(round(ours['false_alarms']), 'test')} in the simulation only.",
             f"Tests whose motions were not used to fit unmeasured properties: {_percent(ours)} predicted.",
         ),
+        *(_beside_plane(ours, row) for row in others if row["who"] == IN_PLANE),
         *_against_rivals(rivals),
         *_fragility_found(tables["fragility"]),
     ]
@@ -135,6 +145,26 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
             )
         )
     return found
+
+
+def _beside_plane(ours: Row, plane: Row) -> Finding:
+    """Whether three dimensions predict better than one plane."""
+    known = plane["p"] < LEVEL
+    said = (
+        "is better than in one plane"
+        if known and plane["better_lower"] > 0
+        else "is worse than in one plane"
+        if known and plane["better_upper"] < 0
+        else "is no gain over one plane"
+    )
+    return Finding(
+        f"Simulation in space {said}: {number(100 * ours['right'], 1)} and {number(100 * plane['right'], 1)} % of "
+        "the outcomes predicted",
+        "All other figures here are of the simulation in space.",
+        f"In one plane {_percent(plane)} with {counted(round(plane['missed']), 'test')} missed and "
+        f"{counted(round(plane['false_alarms']), 'false alarm')}: in space better by {_better(plane)} percentage "
+        f"points (p {_p(plane['p'])}).",
+    )
 
 
 def _against_rivals(others: Sequence[Row]) -> list[Finding]:
@@ -157,10 +187,7 @@ def _against_rivals(others: Sequence[Row]) -> list[Finding]:
         f"{counted(len(rivals), 'alternative')}"
     )
     if best["better_lower"] <= 0:  # an estimate with a negative limit is not written as a ratio is
-        more = (
-            f"{number(100 * best['better'], 1)} [{number(100 * best['better_lower'], 1)}, "
-            f"{number(100 * best['better_upper'], 1)}]"
-        )
+        more = _better(best)
     return [
         Finding(
             headline,
@@ -209,7 +236,7 @@ def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
 
 
 def _ordering(fragility: pd.DataFrame) -> str:
-    """The measure that orders the tests best is the one in which a curve says most."""
+    """Return the measure in which the measured curve has the least dispersion."""
     measured = fragility[fragility["who"] == "measured"]
     return str(measured.set_index("measure")["beta"].fillna(math.inf).idxmin())
 
@@ -229,11 +256,7 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         who=[_who(name) for name in agreement["who"]],
         right_text=[_percent(row) for row in agreement.to_dict("records")],
         better_text=[
-            "–"
-            if not pd.notna(row["better"])
-            else f"{number(100 * row['better'], 1)} [{number(100 * row['better_lower'], 1)}, "
-            f"{number(100 * row['better_upper'], 1)}]"
-            for row in agreement.to_dict("records")
+            _better(row) if pd.notna(row["better"]) else "–" for row in agreement.to_dict("records")
         ],
         p_text=[probability(p) for p in agreement["p"]],
     )

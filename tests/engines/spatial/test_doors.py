@@ -6,10 +6,13 @@ import pytest
 from rockfrag import find_thresholds, overturns, simulate
 from rockfrag.engines.spatial import (
     flip_rate,
+    robustness,
     run_in_space,
     simulate_in_space,
     spread_vertices,
 )
+from rockfrag.engines.spatial.body import kernel_body
+from rockfrag.engines.spatial.outcome import run_case
 from rockfrag.errors import InputError
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
@@ -76,6 +79,18 @@ def test_flip_rate_counts_cases_that_end_otherwise():
     other = spread_vertices(BOX, 0.01, np.random.default_rng(0))
     moved = np.array(other.bodies[0].base.vertices) - np.array(BOX.bodies[0].base.vertices)
     assert 0 < np.abs(moved).max() <= 0.0035
+
+
+def test_a_spread_turns_the_body_as_well(monkeypatch):
+    monkeypatch.setattr(robustness, "spread_vertices", lambda system, spread, rng: system)
+    motion = ground_motion(1, 0.4)
+    system, turned = robustness.perturbed(BOX, 0.02, np.random.default_rng([0, 0, 0]))
+    assert system is BOX
+    assert 0 < abs(turned) <= 0.02
+    found = run_in_space([BOX], [motion], spread=0.02)
+    expected, _ = run_case(kernel_body(BOX), motion.accelerations, DT, turned=turned)
+    assert found.turn[0, 0, 0, 0] == expected.turn
+    assert found.turn[0, 0, 0, 0] != run_in_space([BOX], [motion]).turn[0, 0, 0, 0]
 
 
 BLOCKS = [Block(0.35, 1.2, 300.0, depth=0.35), Block(0.3, 1.0, 100.0, round=True)]

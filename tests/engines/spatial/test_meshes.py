@@ -57,6 +57,6 @@ def test_trials_with_friction_are_bodies_in_space(shape):
     assert not any(system.planar for system in trials.systems)
     rng = np.random.default_rng(2)
     motions = [Motion(synthetic_motion(rng, 1)[:, 0] * peak, DT) for peak in (0.1, 0.5, 1.5)]
-    overturned, rocked = simulate_tests(trials, motions, 1)
+    overturned, rocked = simulate_tests(trials.systems, motions, 1)
     assert not overturned[:, 0].any() and overturned[:, 2].any()
     assert (overturned <= rocked).all()

@@ -92,7 +92,8 @@ MANY = 40
 """Contact events in one interval after which the velocity below which contacts stay closed is doubled [-]."""
 
 HURRY = 1000
-"""Steps in one interval after which errors of COARSE are allowed: slip that hardly begins is stiff [-]."""
+"""Steps in one interval after which errors of COARSE are allowed to what slides: slip that hardly begins is
+stiff.  What rolls keeps its tolerance, as it may pass near flat, where such errors feed energy [-]."""
 
 GIVE_UP = 2000
 """Steps in one interval after which a body that is next to flat is laid flat; after twice as many more the
@@ -766,7 +767,8 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
                 ahead = dt
                 if kind_of(s) == REST:
                     break
-            allowed = tolerance if many < HURRY else max(tolerance, COARSE)
+            hurries = many >= HURRY and slides_any(s)
+            allowed = max(tolerance, COARSE) if hurries else tolerance
             tau, ahead, h = advance(body, tau, dt, ahead, y, allowed, cut, stuck, s, out)
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1

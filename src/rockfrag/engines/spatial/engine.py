@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
 from rockfrag.engines.spatial.body import kernel_body, later_peaks
 from rockfrag.engines.spatial.outcome import AFTER, SpatialOutcome, history_table, run_case
-from rockfrag.engines.spatial.robustness import spread_vertices
+from rockfrag.engines.spatial.robustness import perturbed
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.records.ground_motion import GroundMotion
@@ -104,14 +104,17 @@ class SpatialEngine:
 
         def run_pair(task: tuple[int, int]) -> None:
             i, j = task
-            motion, body = cases.motions[j], bodies[i]
+            motion, body, turned = cases.motions[j], bodies[i], 0.0
             if spread > 0:
                 rng = np.random.default_rng([seed, i, j])
-                body = kernel_body(spread_vertices(cases.systems[i], spread, rng), g)
+                system, turned = perturbed(cases.systems[i], spread, rng)
+                body = kernel_body(system, g)
             ground = motion.accelerations
             later = later_peaks(ground)
             for k, scale in enumerate(cases.scales[j]):
-                found, _ = run_case(body, ground, motion.dt, float(scale), g=g, peaks=later)
+                found, _ = run_case(
+                    body, ground, motion.dt, float(scale), g=g, turned=turned, peaks=later
+                )
                 _write(result, (i, j, k), found, _least_gravity_ratio(ground, float(scale), g))
 
         with ThreadPoolExecutor(cases.threads) as pool:
@@ -186,8 +189,9 @@ def run_in_space(
     scales
         Factors on all components, shape (scales,) or (motions, scales).
     spread
-        Largest displacement of each vertex of the base over its extent, drawn anew for each motion [-]: an ideal
-        base has outcomes that no real one has.
+        Largest displacement of each vertex of the base over its extent, and largest angle by which the body is
+        turned about the vertical [rad], drawn anew for each motion [-]: an ideal base has outcomes that no real
+        one has.
     seed
         Seed of the displacements.
     threads

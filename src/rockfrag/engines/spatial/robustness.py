@@ -52,6 +52,11 @@ def spread_vertices(system: System, spread: float, rng: np.random.Generator) -> 
     return replace(system, bodies=(replace(body, base=base),))
 
 
+def perturbed(system: System, spread: float, rng: np.random.Generator) -> tuple[System, float]:
+    """Return a body with its vertices spread, and an angle within ± spread by which it is turned [rad]."""
+    return spread_vertices(system, spread, rng), float(rng.uniform(-spread, spread))
+
+
 def flip_rate(
     system: System,
     motion: GroundMotion,
@@ -98,8 +103,7 @@ def flip_rate(
     rng = np.random.default_rng(seed)
     flips = 0
     for _ in range(repeats):
-        other = spread_vertices(system, perturbation, rng)
-        turned = float(rng.uniform(-perturbation, perturbation))
+        other, turned = perturbed(system, perturbation, rng)
         flips += _falls(other, ground, later, motion.dt, scale, turned, g) != first
     return first, flips / repeats
 

@@ -183,11 +183,11 @@ def _motion(motion: Motion) -> dict[str, Any]:
 
 
 def _body(name: str, system: System) -> dict[str, Any]:
-    *below, statue = map(_block, system.in_plane().bodies, system.contacts)
+    *below, upper = map(_block, system.in_plane().bodies, system.contacts)
     offset = system.contacts[-1].offset[0]
     return {
         "name": name,
-        "statue": statue,
+        "statue": upper,
         "pedestal": below[0] if below else None,
         "offset": offset,
     }
