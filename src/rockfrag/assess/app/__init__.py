@@ -79,8 +79,10 @@ def data_of(motions: MotionSet, request: Request | None = None) -> dict[str, Any
     request
         Where they were recorded, and the building and hazard that the form does not tell; nothing if None.
     """
-    asked = [] if request is None else [item for item in (request.level, *request.hazard) if item]
-    measures = dict.fromkeys((PGA, PGV, *(item.measure for item in asked)))
+    asked = (
+        [] if request is None else [known for known in (request.level, *request.hazard) if known]
+    )
+    measures = dict.fromkeys((PGA, PGV, *(known.measure for known in asked)))
     intervals = sorted({motion.dt for motion in motions.ground})
     names = list(dict.fromkeys(motions.earthquakes))
     return {
