@@ -36,10 +36,11 @@ def some_form(rng: random.Random) -> dict[str, str]:
 
 def settings_of(form: Mapping[str, str]) -> dict[str, Any]:
     """What ``rockfrag assess`` is told of a form."""
-    plain = ("width", "height", "mass", "cg_height", "cg_offset", "floor")
+    plain = ("width", "height", "mass", "cg_height", "cg_offset", "floor", "depth", "round")
     settings: dict[str, Any] = {key: form[key] for key in plain if key in form}
-    if "restitution" in form:
-        settings["restitution"] = float(form["restitution"])
+    for key, name in (("restitution", "restitution"), ("facing", "facing_deg")):
+        if key in form:
+            settings[name] = float(form[key])
     pedestal = {
         key: form[f"pedestal_{key}"]
         for key in ("width", "height", "mass")

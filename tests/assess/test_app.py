@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import zlib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -36,7 +37,7 @@ const { data, forms, modules, packed } = JSON.parse(fs.readFileSync(process.argv
 const bytes = (text) => Uint8Array.from(Buffer.from(text, "base64"));
 const finite = (key, v) => (typeof v === "number" && !Number.isFinite(v) ? null : v);
 const plain = (value) => JSON.parse(JSON.stringify(value, finite));
-const unpacked = { fused: bytes(modules.fused), plain: bytes(modules.plain) };
+const unpacked = Object.fromEntries(Object.entries(modules).map(([name, text]) => [name, bytes(text)]));
 begin({ data, modules: unpacked, samples: bytes(packed) }).then(() => {
   const lines = words(data, data.texts.en);
   const found = forms.map((form, id) => {
@@ -111,12 +112,26 @@ def check(found: Assessment, said) -> None:
 def check_words(found: Assessment, said) -> None:
     """The lines that both have in full are the same."""
     titles = {"Result": "result", "Risk": "risk", "What helps": "helps"}
+    titles |= {"Position": "position"} if found.motions.both else {}
     for line in five_lines(found):
         title, _, words = line.partition(": ")
         if title == "Risk" and found.probability is None:
             continue  # options of the command line are no words of a page
         if title in titles:
             assert said["lines"][titles[title]] == words
+
+
+def some_form_in_space(rng: random.Random) -> dict[str, str]:
+    """A random box or round object, without a measured restitution; boxes on pedestals too."""
+    form = some_form(rng)
+    form.pop("restitution", None)
+    if rng.random() < 0.3:
+        pedestal = [key for key in form if key.startswith("pedestal")]
+        return {key: value for key, value in form.items() if key not in pedestal} | {"round": True}
+    form["depth"] = f"{float(form['width'].split()[0]) * rng.uniform(0.6, 2):.3g} cm"
+    if rng.random() < 0.5:
+        form["facing"] = f"{rng.uniform(0, 360):.1f}"
+    return form
 
 
 def compare(folder, motions, forms) -> int:
@@ -148,6 +163,25 @@ def test_the_page_says_what_assess_does(tmp_path, motions):
 def test_the_page_says_what_assess_does_of_200_objects(tmp_path, motions):
     rng = random.Random(6)
     assert compare(tmp_path, motions, [some_form(rng) for _ in range(200)]) >= 180
+
+
+@needs_node
+def test_the_page_says_of_bodies_in_space_what_assess_does(tmp_path, motions):
+    rng = random.Random(8)
+    few = replace(
+        motions, ground=motions.ground[:13], base=motions.base[:13], pairs=motions.pairs[:6]
+    )
+    forms = [some_form_in_space(rng) for _ in range(3)] + [
+        {"width": "30 cm", "height": "1 m", "round": True, "measure": "PGA", "level": "0.3 g"}
+    ]
+    assert compare(tmp_path, few, forms) == 4
+
+
+@pytest.mark.slow
+@needs_node
+def test_the_page_says_of_100_bodies_in_space_what_assess_does(tmp_path, motions):
+    rng = random.Random(9)
+    assert compare(tmp_path, motions, [some_form_in_space(rng) for _ in range(100)]) >= 80
 
 
 HOSTILE = (
@@ -344,7 +378,7 @@ def test_the_command_writes_a_page(tmp_path, command):
 
 
 def test_what_the_page_cannot_say_is_refused(tmp_path, command, capsys):
-    for more in (["--round"], ["--friction", "0.5"], ["--pga", "0.4g"], ["--pgv", "20cm/s"]):
+    for more in (["--friction", "0.5"], ["--pga", "0.4g"], ["--pgv", "20cm/s"]):
         assert main([*command, *more, "--output", str(tmp_path / "a.html")]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
     assert not Path(tmp_path / "a.html").exists()

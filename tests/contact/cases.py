@@ -1,30 +1,11 @@
 """Bodies, motions and comparisons of the tests with friction."""
 
-import math
-
 import numpy as np
 
 from rockfrag.rocking import Block, Body, Stack
 
-# the specimens of the thesis (Table 3.1)
-T1 = Block(0.124, 0.372, 2.172)
-T2 = Block(0.124, 0.496, 2.790)
-T3 = Block(0.124, 0.620, 3.456)
-P = Block(0.184, 0.208, 2.300)
-
 STILL = np.zeros(50)
 DT = 0.01
-
-
-def random_motion(rng: np.random.Generator, samples: int = 300) -> np.ndarray:
-    """Eight sines under a half-sine window, peak 0.2 to 1 g [m/s²]."""
-    t = np.arange(samples) * DT
-    waves = sum(
-        rng.normal() * np.sin(2 * math.pi * f * t + rng.uniform(0, 2 * math.pi))
-        for f in rng.uniform(0.3, 6, 8)
-    )
-    motion = waves * np.sin(math.pi * t / t[-1])
-    return 9.81 * rng.uniform(0.2, 1.0) * motion / np.abs(motion).max()
 
 
 def random_block(rng: np.random.Generator) -> Block:

@@ -8,7 +8,8 @@ import pytest
 
 from ..oracle.contact_reference import simulate_reference
 from ..oracle.time_stepping import time_stepping
-from .cases import DT, as_friction, random_block, random_frictions, random_motion, random_stack
+from ..rocking.reference_bodies import random_motion
+from .cases import DT, as_friction, random_block, random_frictions, random_stack
 from .with_friction import simulate_with_friction
 
 

@@ -7,7 +7,8 @@ import pytest
 
 from rockfrag.rocking import Block, Stack
 
-from .cases import STILL, T1, P
+from ..rocking.reference_bodies import T1, P
+from .cases import STILL
 from .with_friction import simulate_with_friction
 
 G = 9.81

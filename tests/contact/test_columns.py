@@ -15,7 +15,8 @@ from rockfrag.system.contact import Contact
 from ..oracle.cases import drum_column, drum_pulse
 from ..oracle.contact_reference import simulate_reference
 from ..oracle.time_stepping import time_stepping
-from .cases import DT, random_motion
+from ..rocking.reference_bodies import random_motion
+from .cases import DT
 from .columns import Found, is_critical, random_column, run, with_contacts
 
 

@@ -14,7 +14,8 @@ from rockfrag.engines.planar.solve import look_at
 from rockfrag.rocking import MeasuredRestitution, simulate
 from rockfrag.system import ImpactLaw, System, geometry
 
-from .cases import DT, random_block, random_motion, random_stack
+from ..rocking.reference_bodies import random_motion
+from .cases import DT, random_block, random_stack
 from .columns import Found, G, random_column, run, with_contacts
 
 LAWS = ("position", "couple", "ratio")

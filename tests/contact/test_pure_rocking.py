@@ -8,7 +8,8 @@ import pytest
 from rockfrag.rocking import Block, Stack, overturns, simulate
 from rockfrag.rocking.ensemble import LIGHT, LightBodies
 
-from .cases import DT, random_block, random_motion, random_stack
+from ..rocking.reference_bodies import random_motion
+from .cases import DT, random_block, random_stack
 from .with_friction import simulate_with_friction
 
 SCALES = np.linspace(0.3, 1.5, 10)

@@ -154,11 +154,6 @@ class Model:
         m11, m12, m22, _, _ = self.terms((state[0] or 1, state[1] or 1), theta, omega, (0.0, 0.0))
         return (m11 * omega[0] ** 2 + 2 * m12 * omega[0] * omega[1] + m22 * omega[1] ** 2) / 2
 
-    def potential_energy(self, state: State, theta: Pair) -> float:
-        """Weight times height of the centres above the ground as it lies [J]."""
-        r1, d, r2 = self.fields((state[0] or 1, state[1] or 1), theta)
-        return self.g * (self.m1 * r1.y + self.m2 * (d.y + r2.y))
-
     # ----------------------------------------------------------- persistence
 
     def margins(

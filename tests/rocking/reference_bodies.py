@@ -1,10 +1,10 @@
-"""Bodies and motions of the tests around the reference integrator."""
+"""Bodies and motions that tests of rocking, free and with friction, share."""
 
 import math
 
 import numpy as np
 
-from rockfrag.rocking import Block, Stack
+from rockfrag.rocking import Block
 
 # the thesis's specimens (Table 3.1)
 T1 = Block(0.124, 0.372, 2.172)
@@ -18,27 +18,6 @@ def uniform(p: float, alpha: float, g: float = 9.81) -> Block:
     """Uniform block with this frequency parameter [1/s] and critical angle [rad]."""
     radius = 3 * g / (4 * p**2)
     return Block(2 * radius * math.sin(alpha), 2 * radius * math.cos(alpha), 100.0)
-
-
-def random_stack(rng: np.random.Generator) -> Stack:
-    """General stack: any inertia, centres of gravity off the middle, an uneven base, an offset."""
-    lower = Block(
-        rng.uniform(0.3, 0.6),
-        rng.uniform(0.2, 0.8),
-        rng.uniform(20, 200),
-        cg_offset=rng.uniform(-0.02, 0.02),
-        lean=rng.uniform(-0.01, 0.01),
-    )
-    width = rng.uniform(0.3, 0.9) * lower.width
-    height = width * rng.uniform(2, 5)
-    upper = Block(
-        width,
-        height,
-        rng.uniform(5, 100),
-        cg_height=height * rng.uniform(0.35, 0.6),
-        cg_offset=rng.uniform(-0.1, 0.1) * width,
-    )
-    return Stack(lower, upper, offset=rng.uniform(-0.01, 0.01))
 
 
 def random_motion(rng: np.random.Generator, samples: int = 300, dt: float = 0.01) -> np.ndarray:

@@ -9,7 +9,6 @@ from rockfrag.errors import InputError
 from rockfrag.rocking import Block, Response, simulate
 from rockfrag.rocking.restitution import (
     peak_after,
-    quarter_period,
     restitution_from_history,
     restitution_from_impacts,
     restitution_from_peaks,
@@ -76,19 +75,6 @@ def test_linear_decay_of_t2_is_that_of_the_closed_relation() -> None:
     fit = restitution_from_peaks(T2, np.array(phi) * alpha, linear=True)
     assert fit.restitution == pytest.approx(e, abs=1e-9)
     assert fit.computed == pytest.approx(0.911765, abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("block", "expected"),
-    [
-        (Block(0.124, 0.372, 2.172), 0.215637),
-        (T2, 0.245912),
-        (Block(0.124, 0.620, 3.456), 0.273302),
-    ],
-    ids=["T1", "T2", "T3"],
-)
-def test_nonlinear_quarter_period(block: Block, expected: float) -> None:
-    assert quarter_period(block, block.alpha / 2) == pytest.approx(expected, abs=1e-6)
 
 
 def test_noisy_peaks_and_times_cover_the_truth_as_often_as_promised() -> None:

@@ -1,15 +1,17 @@
-"""Ensembles written to a file: the numbers of overturns(), whatever the row groups and threads."""
+"""Outcomes and histories written to a file: the numbers of overturns() and simulate(), however they are cut."""
+
+import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import parquet
-from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking import Block, Stack, overturns, parquet, simulate, stream_histories
 from rockfrag.rocking.parquet import stream_overturns
-from rockfrag.system.blocks import Block, Stack
 
 DT = 0.01
 TIME = np.arange(600) * DT
@@ -20,6 +22,50 @@ MOTIONS = [
 BLOCK = Block(width=0.3, height=1.2, mass=200.0)
 BODIES = [BLOCK, Stack(Block(width=0.4, height=0.3, mass=100.0), BLOCK)]
 SCALES = np.linspace(0.2, 1.4, 7)
+TWO = [motion[100:500] for motion in MOTIONS[:2]]
+THREE = np.array([0.2, 0.5, 0.9])
+
+
+@pytest.mark.parametrize(
+    ("stream", "rows"),
+    [(stream_overturns, rows) for rows in (2, 5, 7)]
+    + [(stream_histories, rows) for rows in (300, 1000, 3000)],
+)
+def test_row_groups_are_bounded_and_change_no_number(tmp_path, monkeypatch, stream, rows):
+    stream(BODIES, TWO, DT, THREE, tmp_path / "whole")
+    monkeypatch.setattr(parquet, "ROWS", rows)
+    stream(BODIES, TWO, DT, THREE, tmp_path / "cut")
+    file = pq.ParquetFile(tmp_path / "cut")
+    groups = [file.metadata.row_group(i).num_rows for i in range(file.num_row_groups)]
+    assert max(groups) <= rows
+    assert len(groups) > 1
+    pd.testing.assert_frame_equal(
+        pd.read_parquet(tmp_path / "whole"), pd.read_parquet(tmp_path / "cut"), check_exact=True
+    )
+
+
+@pytest.mark.parametrize(("stream", "rows"), [(stream_overturns, 5), (stream_histories, 1000)])
+def test_threads_change_no_byte(tmp_path, monkeypatch, stream, rows):
+    monkeypatch.setattr(parquet, "ROWS", rows)
+    for threads in (1, 2, 5):
+        stream(BODIES, TWO, DT, THREE, tmp_path / f"{threads}", threads=threads)
+    assert (tmp_path / "1").read_bytes() == (tmp_path / "2").read_bytes()
+    assert (tmp_path / "1").read_bytes() == (tmp_path / "5").read_bytes()
+
+
+@pytest.mark.parametrize(("stream", "rows"), [(stream_overturns, 5), (stream_histories, 1000)])
+def test_a_run_that_fails_leaves_the_file_that_was_there(tmp_path, monkeypatch, stream, rows):
+    path = tmp_path / "e.parquet"
+    path.write_bytes(b"earlier")
+    monkeypatch.setattr(parquet, "ROWS", rows)
+
+    def stop(done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stream(BODIES, TWO, DT, THREE, path, progress=stop)
+    assert path.read_bytes() == b"earlier"
+    assert list(tmp_path.iterdir()) == [path]
 
 
 @pytest.mark.parametrize("which", ["cases", "bodies", "contacts"])
@@ -47,30 +93,6 @@ def test_outcomes_alone_take_no_other_columns(tmp_path):
     assert columns == ["system", "motion", "scale", "overturned", "overturned_body"]
 
 
-@pytest.mark.parametrize("rows", [2, 5, 7, 20, 30])
-def test_row_groups_change_no_number(tmp_path, monkeypatch, rows):
-    stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "whole.parquet", table="bodies")
-    monkeypatch.setattr(parquet, "ROWS", rows)
-    stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "cut.parquet", table="bodies")
-    file = pq.ParquetFile(tmp_path / "cut.parquet")
-    groups = [file.metadata.row_group(i).num_rows for i in range(file.num_row_groups)]
-    assert max(groups) <= rows
-    pd.testing.assert_frame_equal(
-        pd.read_parquet(tmp_path / "whole.parquet"),
-        pd.read_parquet(tmp_path / "cut.parquet"),
-        check_exact=True,
-    )
-
-
-def test_threads_change_no_byte(tmp_path, monkeypatch):
-    monkeypatch.setattr(parquet, "ROWS", 9)
-    for threads in (1, 2):
-        stream_overturns(
-            BODIES, MOTIONS, DT, SCALES, tmp_path / f"{threads}.parquet", threads=threads
-        )
-    assert (tmp_path / "1.parquet").read_bytes() == (tmp_path / "2.parquet").read_bytes()
-
-
 def test_scales_and_restitutions_go_with_their_motion_and_body(tmp_path, monkeypatch):
     monkeypatch.setattr(parquet, "ROWS", 2)
     scales = np.array([[0.5, 1.0], [0.8, 1.6], [1.1, 2.2]])
@@ -84,20 +106,126 @@ def test_scales_and_restitutions_go_with_their_motion_and_body(tmp_path, monkeyp
     pd.testing.assert_frame_equal(table, result.table("bodies"), check_dtype=False)
 
 
-def test_a_run_that_fails_leaves_the_file_that_was_there(tmp_path, monkeypatch):
-    path = tmp_path / "e.parquet"
-    path.write_bytes(b"earlier")
-    monkeypatch.setattr(parquet, "ROWS", 5)
-
-    def stop(done: int, total: int) -> None:
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        stream_overturns(BODIES, MOTIONS, DT, SCALES, path, progress=stop)
-    assert path.read_bytes() == b"earlier"
-    assert list(tmp_path.iterdir()) == [path]
-
-
 def test_wrong_columns_are_named(tmp_path):
     with pytest.raises(InputError, match="columns: 'a' is no column of 'cases'"):
         stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "x", columns="all")
+
+
+# --------------------------------------------------------------------------- histories
+
+
+@pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
+def test_the_file_holds_the_history_of_every_case_in_order(tmp_path):
+    path = tmp_path / "histories.parquet"
+    seen = []
+    scales = np.array([THREE, 1.1 * THREE])
+    dts = [DT, 2 * DT]
+    restitution = [0.9, (0.5, None)]
+    count = stream_histories(
+        BODIES,
+        TWO,
+        dts,
+        scales,
+        path,
+        restitution=restitution,
+        progress=lambda *n: seen.append(n),
+    )
+    assert count == 12
+    assert seen[-1] == (12, 12)
+    table = pd.read_parquet(path)
+    first, fallen = 0, 0
+    for b, m, s in np.ndindex(2, *scales.shape):
+        response = simulate(BODIES[b], scales[m, s] * TWO[m], dts[m], restitution=restitution[b])
+        bodies = response.theta.shape[1]
+        n = bodies * len(response.time)
+        rows = table.iloc[first : first + n]
+        first += n
+        fallen += response.overturned
+        assert (rows["system"] == b).all()
+        assert (rows["motion"] == m).all()
+        assert (rows["scale"] == scales[m, s]).all()
+        for i in range(bodies):
+            own = rows[rows["body"] == i + 1]
+            np.testing.assert_array_equal(own["time_s"], response.time)
+            np.testing.assert_array_equal(own["theta_rad"], response.theta[:, i])
+            np.testing.assert_array_equal(own["omega_rad_s"], response.omega[:, i])
+            np.testing.assert_array_equal(own["state"], response.state[:, i])
+    assert first == len(table)
+    assert 0 < fallen < 12
+
+
+def test_a_shorter_step_and_another_gravity_are_used(tmp_path):
+    for name, arguments in {"a": {}, "b": {"step": 0.02}, "c": {"g": 1.62}}.items():
+        stream_histories(BLOCK, TWO[0], DT, [0.5], tmp_path / name, **arguments)
+    item, finer, moon = (pd.read_parquet(tmp_path / name) for name in "abc")
+    assert len(finer) == len(item)
+    assert 0 < np.abs(finer["theta_rad"] - item["theta_rad"]).max() < 1e-8
+    expected = simulate(BLOCK, 0.5 * TWO[0], DT, g=1.62)
+    np.testing.assert_array_equal(moon["theta_rad"], expected.theta[:, 0])
+
+
+def test_few_histories_are_in_memory_however_many_cases_there_are():
+    started = 0
+
+    def work(case):
+        nonlocal started
+        started += 1
+        return pa.table({"case": [case[0]]})
+
+    cases = ((i, 0, 0) for i in range(1000))
+    with ThreadPoolExecutor(2) as pool:
+        for i, table in enumerate(parquet._in_order(pool, work, cases, 4)):
+            assert table["case"].to_pylist() == [i]
+            assert started <= i + 5
+    assert started == 1000
+
+
+def test_memory_is_flat_in_the_number_of_cases(tmp_path, monkeypatch):
+    monkeypatch.setattr(parquet, "ROWS", 5000)
+    most = []
+    tracemalloc.start()
+    for count in (1, 10, 200):  # the first loads the kernel
+        scales = np.linspace(0.3, 0.4, count)
+        tracemalloc.reset_peak()
+        before = tracemalloc.get_traced_memory()[0]
+        stream_histories(BLOCK, TWO, DT, scales, tmp_path / "h", threads=1)
+        most.append(tracemalloc.get_traced_memory()[1] - before)
+    tracemalloc.stop()
+    # 0.8 MB, where the longest run has 15 MB of rows
+    assert most[2] < most[1] + 1e6
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        (
+            {"bodies": [BLOCK, "T2"]},
+            r"bodies\[1\]: expected a Block, a Stack, a Column or a System, got 'T2'",
+        ),
+        ({"motions": [TWO[0], [1.0]]}, r"motions\[1\]: a motion needs"),
+        ({"dt": [DT, DT, DT]}, "dt: expected one number or 2, got 3"),
+        ({"dt": 0.0}, "dt: expected a positive number"),
+        ({"dt": [DT, 1e6]}, "is too long for a block"),
+        ({"scales": [np.nan]}, "scales: expected finite numbers"),
+        ({"restitution": [0.9]}, "restitution: expected 2 entries, one per body, got 1"),
+        ({"restitution": [0.9, 0.9]}, "a pair"),
+        ({"step": 0.0}, "step: expected a positive number"),
+        ({"g": -1.0}, "g: expected a positive number"),
+    ],
+)
+def test_wrong_arguments_are_named_before_anything_is_written(tmp_path, changed, message):
+    arguments = {"bodies": BODIES, "motions": TWO, "dt": DT, "scales": THREE} | changed
+    with pytest.raises(InputError, match=message) as caught:
+        stream_histories(**arguments, path=tmp_path / "h.parquet")
+    assert str(caught.value).count(". ") == 0
+    assert not list(tmp_path.iterdir())
+
+
+def test_no_case_is_a_file_without_rows(tmp_path):
+    assert stream_histories(BODIES, TWO, DT, [], tmp_path / "none") == 0
+    assert stream_histories(BODIES, [], DT, [1.0], tmp_path / "none") == 0
+    table = pq.read_table(tmp_path / "none")
+    assert len(table) == 0
+    assert table.schema.names == [
+        "system", "motion", "scale", "time_s", "body", "theta_rad", "omega_rad_s", "state",
+    ]  # fmt: skip

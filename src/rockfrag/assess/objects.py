@@ -173,7 +173,7 @@ class Objects:
             return System((self._changed(self.scanned, top),), (Contact(),))
         if self.round:
             across = top.centroidal_inertia
-            along = top.mass * top.width**2 / 8
+            along = top.mass * top.width * top.width / 8
             return replace(top, round=True, inertia=diagonal(across, across, along)).system()
         return turned_about_vertical(self._box(top, whole=whole).system(), self.facing_deg)
 
@@ -190,10 +190,10 @@ class Objects:
         width, depth, mass = self.block.width, self.depth, self.block.mass
         across = top.centroidal_inertia
         # moments of uniform boxes about x and y differ by what their sides do
-        aside = mass * (depth**2 - width**2) / 12
-        along = mass * (width**2 + depth**2) / 12
+        aside = mass * (depth * depth - width * width) / 12
+        along = mass * (width * width + depth * depth) / 12
         if whole:
-            along += (top.mass - mass) * top.width**2 / 6
+            along += (top.mass - mass) * top.width * top.width / 6
             depth = max(depth, top.width)
         return replace(top, depth=depth, inertia=diagonal(across + aside, across, along))
 
@@ -204,7 +204,7 @@ class Objects:
             "cg_height": partial(_higher, self),
         }
         if not self.round:  # of a body in space that of the planar answer
-            moves["restitution"] = partial(_livelier, self)
+            moves["restitution"] = lambda factor: replace(self, livelier=self.livelier * factor)
         if self.pedestals:
             moves["mass"] = partial(_heavier, self)
         found = moved_to_both_sides(moves, self.tolerances)
@@ -283,10 +283,6 @@ def higher(block: Block, factor: float) -> Block:
         cg_height=min(block.h * factor, block.height),
         inertia=block.centroidal_inertia,
     )
-
-
-def _livelier(objects: Objects, factor: float) -> Objects:
-    return replace(objects, livelier=objects.livelier * factor)
 
 
 def _heavier(objects: Objects, factor: float) -> Objects:

@@ -115,6 +115,7 @@ def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:
 
 
 def _cells(checks: VectorChecks, pair: tuple[str, str]) -> pd.DataFrame:
+    """Name the measures of the non-parametric surface alike for every pair, whose tables are joined."""
     return checks.surface.rename(columns={pair[0]: "at_first", pair[1]: "at_second"})
 
 

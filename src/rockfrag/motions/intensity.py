@@ -421,6 +421,7 @@ def _pulse_velocity(pulse: StrongestPulse) -> float:
 
 @intensity_measure("", power=0, label="pulse explained", name="pulse_explained", shared=_pulse)
 def _pulse_explained(pulse: StrongestPulse) -> float:
+    # fraction of the record's ∫ v² dt that goes with the pulse
     return pulse.explained
 
 

@@ -89,6 +89,7 @@ def _checked_steps(
 
 
 def _checked(number: int, entry: Mapping[str, Any]) -> tuple[Callable[..., Motion], dict[str, Any]]:
+    """Return the function of the ``number``-th entry of a list of steps, and the parameters that it names."""
     if not isinstance(entry, Mapping) or "step" not in entry:
         raise InputError(
             f"processing, entry {number}: {entry!r} is not a mapping with a key 'step'."

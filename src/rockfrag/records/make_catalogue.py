@@ -270,6 +270,7 @@ def _look_through(
 def _components(
     file: Path, unit: str | None, dt: float | None, folder: Path, draft: CatalogueDraft
 ) -> list[Component]:
+    """Read every component of a file; what is wrong with it goes into the errors of ``draft``."""
     record, dt_given = _read(file, dt, draft)
     if record is None:
         return []

@@ -5,7 +5,7 @@ To add a part, write a module in ``report/sections/`` with one :class:`Part`, an
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -173,10 +173,6 @@ class Results:
         )
 
 
-def _always(_: Study) -> bool:
-    return True
-
-
 @dataclass(frozen=True)
 class Part:
     """A part of the report."""
@@ -184,4 +180,4 @@ class Part:
     tables: tuple[str, ...]  # Names of the tables that it reads
     # Writes its section, or None where there is nothing to show
     section: Callable[[Results], Section | None]
-    asked: Callable[[Study], bool] = field(default=_always)  # Whether a study has it
+    asked: Callable[[Study], bool] = lambda _: True  # Whether a study has it

@@ -55,6 +55,7 @@ def _sine(omega: float, p: float, phase: float) -> float:
     _positive(omega=omega, p=p)
 
     def part(angle: float) -> float:
+        # antiderivative of exp(-p t) sin ωt where ωt is this angle, divided by exp(-p t)
         return -(p * math.sin(angle) + omega * math.cos(angle)) / (p**2 + omega**2)
 
     def excess(x: float) -> float:

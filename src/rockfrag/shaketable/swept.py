@@ -57,6 +57,7 @@ def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swe
 
 
 def _swept(part: pa.Table, reached: str, path: Path) -> Swept:
+    """Turn rows of a motion and an amplitude each into tables of motions by amplitudes; messages name ``path``."""
     amplitude = part["amplitude_g"].to_numpy()
     motion = part["motion"].combine_chunks()
     code = motion.indices.to_numpy()

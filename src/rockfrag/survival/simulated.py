@@ -57,7 +57,9 @@ def simulate_object(
     request = replace(request, level=Level(measure, ANY_LEVEL[measure.openquake]))
     motions = motion_set(request.records, request.place, records)
     found = assess_with(request, motions, brief=True)
-    coefficients = _in_two(found) if with_velocity else _in_one(found)
+    coefficients = None if with_velocity else _in_one(found)
+    if with_velocity and found.conversion:
+        coefficients = found.conversion.fragility.surface.coefficients
     sources = dict(found.amplitudes[0.5].sources)
     if with_velocity:
         sources.pop("conversion", None)
@@ -75,7 +77,3 @@ def _in_one(found: Assessment) -> tuple[float, ...] | None:
     if not (math.isfinite(curve.theta) and curve.beta > 0):
         return None
     return -math.log(curve.theta) / curve.beta, 1.0 / curve.beta
-
-
-def _in_two(found: Assessment) -> tuple[float, ...] | None:
-    return found.conversion.fragility.surface.coefficients if found.conversion else None

@@ -9,7 +9,7 @@ R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwi
 import math
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, TypeGuard
@@ -111,14 +111,14 @@ class Block:
     round: bool = False
 
     def __post_init__(self) -> None:
-        positive_number("Block: width", self.width, "metres")
-        positive_number("Block: height", self.height, "metres")
-        positive_number("Block: mass", self.mass, "kilograms")
+        self._check_number("width", "metres", positive_number)
+        self._check_number("height", "metres", positive_number)
+        self._check_number("mass", "kilograms", positive_number)
         self._check_space()
         if self.cg_height is not None:
-            positive_number("Block: cg_height", self.cg_height, "metres")
-        real_number("Block: cg_offset", self.cg_offset, "metres")
-        real_number("Block: lean", self.lean, "radians")
+            self._check_number("cg_height", "metres", positive_number)
+        self._check_number("cg_offset", "metres", real_number)
+        self._check_number("lean", "radians", real_number)
         if self.cg_height is not None and self.cg_height > self.height:
             raise InputError(
                 f"Block: cg_height {self.cg_height} m is above the top, which is at height {self.height} m."
@@ -134,18 +134,26 @@ class Block:
                 f"gravity is not above its base of {self.width} m, so it cannot stand."
             )
 
+    def _check_number(
+        self, name: str, unit: str, check: Callable[[str, object, str], float]
+    ) -> None:
+        """Refuse what is no number, and keep numpy's float32, a fraction and their like as a float."""
+        number = check(f"Block: {name}", getattr(self, name), unit)
+        if not isinstance(getattr(self, name), float | int):
+            object.__setattr__(self, name, number)
+
     def _check_space(self) -> None:
         """Refuse an inertia, depth or roundness that do not fit together."""
         if not isinstance(self.round, bool):
             raise InputError(f"Block: round: expected True or False, got {shown(self.round)}.")
         if self.depth is not None:
-            positive_number("Block: depth", self.depth, "metres")
+            self._check_number("depth", "metres", positive_number)
             if self.round:
                 raise InputError("Block: a round block has its width as depth; leave depth out.")
         if self.inertia is not None and self.in_space:
             object.__setattr__(self, "inertia", checked_tensor(self.inertia))
         elif self.inertia is not None:
-            positive_number("Block: inertia", self.inertia, "kg m²")
+            self._check_number("inertia", "kg m²", positive_number)
 
     @classmethod
     def from_edges(

@@ -7,11 +7,11 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from scipy import special, stats
 
 from rockfrag.assess import mitigations, narrowing, objects, place, risk, sources, words
-from rockfrag.assess.conversion import MOST_LEVELS, OF_DISPLACEMENT, VelocityRelation
+from rockfrag.assess.app.space import in_space, ratios_of
+from rockfrag.assess.conversion import MOST_LEVELS, OF_DISPLACEMENT
 from rockfrag.assess.hazard.curve import (
     DAMAGING,
     EC8_SLOPE,
@@ -30,7 +30,7 @@ from rockfrag.assess.outcomes import (
     make_intensity_levels,
 )
 from rockfrag.assess.place import Place
-from rockfrag.assess.request import LONGEST_PERIOD, Records, Request
+from rockfrag.assess.request import LONGEST_PERIOD, Request
 from rockfrag.assess.scale import STEPS
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.modes import find_modes
@@ -50,7 +50,7 @@ from rockfrag.plausibility import (
 from rockfrag.rocking.browser import driver_text
 from rockfrag.units import DIMENSIONS, EXAMPLES, GRAVITY
 
-SCRIPTS = ("statistics", "risk", "conversion", "building", "objects", "answer")
+SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
 """Scripts that compute, in the order in which they need each other."""
 
 TABLED_STOREYS = 8
@@ -64,7 +64,9 @@ def script(name: str) -> str:
 
 def computing() -> str:
     """Return the script that computes an answer, in a worker of a page or in Node."""
-    return "\n".join([driver_text("ensemble"), *(script(f"{name}.js") for name in SCRIPTS)])
+    return "\n".join(
+        [driver_text("ensemble", "space"), *(script(f"{name}.js") for name in SCRIPTS)]
+    )
 
 
 def data_of(motions: MotionSet, request: Request | None = None) -> dict[str, Any]:
@@ -77,8 +79,10 @@ def data_of(motions: MotionSet, request: Request | None = None) -> dict[str, Any
     request
         Where they were recorded, and the building and hazard that the form does not tell; nothing if None.
     """
-    asked = [] if request is None else [item for item in (request.level, *request.hazard) if item]
-    measures = dict.fromkeys((PGA, PGV, *(item.measure for item in asked)))
+    asked = (
+        [] if request is None else [known for known in (request.level, *request.hazard) if known]
+    )
+    measures = dict.fromkeys((PGA, PGV, *(known.measure for known in asked)))
     intervals = sorted({motion.dt for motion in motions.ground})
     names = list(dict.fromkeys(motions.earthquakes))
     return {
@@ -86,6 +90,7 @@ def data_of(motions: MotionSet, request: Request | None = None) -> dict[str, Any
         "motions": motions.words,
         "names": [motion.name for motion in motions.ground],
         "measures": {measure.imt: _measure(motions, measure) for measure in measures},
+        "both": in_space(motions, measures),
         "onFloor": request is not None and request.records.on_floor,
         "quantiles": [] if request is None else _quantiles(request.hazard),
         "measurements": {
@@ -109,21 +114,12 @@ def _measure(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any]:
         make_intensity_levels(motions, measure, (), count).levels.tolist()
         for count in (LEVELS, FEW_LEVELS)
     )
-    ratios = None
-    if measure != PGV:
-        logs = motions.log_ratios(measure)
-        relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
-        ratios = {
-            "logs": logs.tolist(),
-            "median": float(np.median(logs)),
-            "spread": relation.unknown(Records()),
-        }
     return {
         "unit": measure.unit,
         "levels": levels,
         "few": few,
         "values": motions.values(measure).tolist(),
-        "ratios": ratios,
+        "ratios": ratios_of(motions, measure),
         "highest": HIGHEST[measure.openquake],
         "damaging": DAMAGING[measure.openquake],
     }

@@ -2,24 +2,25 @@
 const answer = (data) => {
   "use strict";
   const { constants: { AT_REST, LARGEST_FACTOR, LARGEST_PEAK, MODEL, SPACE }, measures } = data;
-  const judge = risk(data), shiftOf = conversion(data);
+  const judge = risk(data), spatial = inSpace(data), shiftOf = conversion(data);
 
-  // levels of a request: the asked one among those of the measure
-  function levelsOf(request, few) {
-    const { levels, few: coarse } = measures[request.measure], all = [...(few ? coarse : levels)];
+  // levels of a run: the asked one among those of the measure
+  function levelsOf(request, run) {
+    const { levels, few, fewer } = tableOf(request), all = [...(run.fewer ? fewer : run.few ? few : levels)];
     const asked = siteLevel(request);
     if (!all.includes(asked)) all.push(asked);
     return all.sort((a, b) => a - b);
   }
+  const tableOf = (request) => (request.solid ? data.both.measures : measures)[request.measure];
   const hazardOf = ({ curve, years, level }) => curve ?? (years === null ? null : judge.curveOfOneLevel(level, years));
   const siteLevel = (request) => request.level ?? judge.levelOf(request.curve, 1 / 475);
 
   // factors on some motions at all levels, and which of them count
-  function scalesOf(request, few, first, shaking) {
-    const levels = levelsOf(request, few), { values } = measures[request.measure];
+  function scalesOf(request, run, places, shaking) {
+    const levels = levelsOf(request, run), { values } = tableOf(request);
     const scales = new Float64Array(levels.length * shaking.length), allowed = new Uint8Array(scales.length);
     shaking.forEach(({ peak }, m) => levels.forEach((level, k) => {
-      const scale = level / values[first + m], most = ((1 - 1e-9) * LARGEST_PEAK) / peak, at = m * levels.length + k;
+      const scale = level / values[places[m]], most = ((1 - 1e-9) * LARGEST_PEAK) / peak, at = m * levels.length + k;
       allowed[at] = scale <= LARGEST_FACTOR && scale >= 1 / LARGEST_FACTOR && scale <= most ? 1 : 0;
       scales[at] = Math.min(allowed[at] ? scale : AT_REST, most);
     }));
@@ -27,11 +28,14 @@ const answer = (data) => {
   }
 
   // a worker's part: outcomes of a run under some of the motions
-  function counter(ensemble, motions) {
-    const floors = new Map(), parts = new Map(), described = new Map();
+  function counter(ensemble, motions, space) {
+    const solids = spatial.counter(ensemble, space), floors = new Map();
+    let standing = "";
     function shakingOf(place, floor, part) {
+      // floors of one place are kept, and the ground
+      if (!place.ground && place.key !== standing) for (const key of floors.keys()) if (key) floors.delete(key);
+      if (!place.ground) standing = place.key;
       const key = place.ground ? "" : `${place.key} ${floor}`, known = floors.get(key) ?? new Map();
-      if (floors.size > 8 && !floors.has(key)) floors.clear();
       floors.set(key, known);
       if (!known.has(part)) known.set(part, partOf(part).map((motion) => {
         const moved = place.ground ? motion : building.floorMotion(place.floors[floor], motion);
@@ -44,11 +48,23 @@ const answer = (data) => {
       return motions.slice(Number(first), Number(last));
     };
     return function count(request, run, first, last) {
-      const shaking = shakingOf(request.place, run.floor ?? "", `${first}-${last}`), { scales, allowed } = scalesOf(request, run.few, first, shaking);
+      if (request.solid) return countInSpace(request, run, first, last);
+      const places = Array.from({ length: last - first }, (_, i) => first + i);
+      const shaking = shakingOf(request.place, run.floor ?? "", `${first}-${last}`), { scales, allowed } = scalesOf(request, run, places, shaking);
       // what is allowed follows from the floor as it is, on whatever floor it is counted
-      const own = run.floor ? scalesOf(request, run.few, first, shakingOf(request.place, "", `${first}-${last}`)) : null;
+      const own = run.floor ? scalesOf(request, run, places, shakingOf(request.place, "", `${first}-${last}`)) : null;
       return { ...ensemble.count(ensemble.bodyOf(run.body), shaking, own ? moved(own, shaking) : scales), allowed: own?.allowed ?? allowed };
     };
+    function countInSpace(request, run, first, last) {
+      const on = (floor) => (m) => shakingOf(request.place, floor, `${m}-${m + 1}`)[0], shaken = on(run.floor ?? "");
+      return solids(run, first, last, shaken, (places) => {
+        const own = scalesOf(request, run, places, places.map(on("")));
+        return { ...own, scales: run.floor ? moved(own, places.map(shaken)) : own.scales, factors: (k, counts, samples) => {
+          const most = ((1 - 1e-9) * LARGEST_PEAK) / samples.reduce((peak, a) => Math.max(peak, Math.abs(a)), 0);
+          return counts ? Math.min(own.levels[k] / tableOf(request).values[places[0]], most) : AT_REST;
+        } };
+      });
+    }
   }
   function moved({ levels, scales }, shaking) {
     return scales.map((scale, at) => Math.min(scale, ((1 - 1e-9) * LARGEST_PEAK) / shaking[Math.floor(at / levels.length)].peak));
@@ -56,7 +72,7 @@ const answer = (data) => {
 
   // all parts of a run put together
   function joined(request, run, parts) {
-    const levels = levelsOf(request, run.few), found = { levels };
+    const levels = levelsOf(request, run), found = { levels, motions: run.fewer ? spatial.fewer : null };
     for (const name of ["overturned", "rocked", "allowed"]) {
       found[name] = new Uint8Array(levels.length * data.earthquakes.length);
       for (const part of parts) found[name].set(part[name], part.first * levels.length);
@@ -64,12 +80,12 @@ const answer = (data) => {
     return found;
   }
 
-  const ESTIMATED = ["fraction", "rocking", "probability", "main", "narrowed", "wide"];
+  const ESTIMATED = ["fraction", "rocking", "probability", "main", "narrowed", "narrowedFraction", "wide"];
   // what is known so far of runs whose outcomes are complete; `outcomes` by the place of the run in the plan, `earlier`
   // what was found when there were fewer
   function found(request, runs, outcomes, ensemble, earlier) {
     const now = outcomes[0], level = siteLevel(request), hazard = hazardOf(request), { place } = request;
-    const exact = request.measure === "PGA" && place.ground;
+    const exact = request.measure === "PGA" && place.ground && !request.solid;
     const known = (role) => runs.map((run, i) => ({ ...run, outcomes: outcomes[i] })).filter((run) => run.role === role && run.outcomes);
     const target = hazard ? judge.riskTarget(hazard, 50) : judge.fractionTarget(level);
     const answer = { level, years: 50, counts: countsOf(now, level), rocksFrom: rocksFrom(request, now, exact, ensemble), shares: judge.fractions(now), levels: now.levels };
@@ -82,7 +98,7 @@ const answer = (data) => {
     answer.complete = runs.every((run, i) => run.role !== "moved" || outcomes[i]);
     if (earlier?.complete) for (const name of ESTIMATED) answer[name] = earlier[name];
     else if (answer.complete) {
-      const shifts = { model: MODEL, space: SPACE }, fit = measures[request.measure].ratios ? shiftOf(now, measures[request.measure].ratios) : null;
+      const shifts = { model: MODEL, ...(request.solid ? {} : { space: SPACE }) }, { ratios } = tableOf(request), fit = ratios ? shiftOf(now, ratios) : null;
       if (fit) shifts.conversion = fit.shift;
       const fraction = judge.estimate(judge.fractionTarget(level), now, sides, {}, shifts);
       const rocking = judge.estimateRocking(level, now, sides, exact);
@@ -92,11 +108,13 @@ const answer = (data) => {
       Object.assign(answer, { fraction, rocking });
       if (hazard) answer.probability = judge.estimate(target, now, sides, judge.ofQuantiles(now, hazard), shifts);
       const main = answer.probability ?? fraction;
-      Object.assign(answer, { main, narrowed: judge.narrowed(main), wide: judge.isWide(fraction) });
+      Object.assign(answer, { main, narrowed: judge.narrowed(main), narrowedFraction: judge.narrowed(fraction), wide: judge.isWide(fraction) });
     }
     answer.arrangements = [["on_its_pedestal", judge.valueOf(target, now)], ...known("arrangement").map((run) => [run.name, judge.valueOf(target, run.outcomes)])];
+    const [before] = known("before"), [planar] = known("planar"), as = { mitigation: before?.outcomes ?? now, arrangement: now };
+    answer.planar = planar ? judge.valueOf(target, planar.outcomes) : null;
     const changes = [...known("mitigation"), ...known("arrangement")].filter(({ change }) => change);
-    answer.mitigations = changes.map(({ change, values, outcomes: with_ }) => ({ name: change, values, ...judge.compared(target, now, with_) }))
+    answer.mitigations = changes.map(({ role, change, values, outcomes: with_ }) => ({ name: change, values, ...judge.compared(target, as[role], with_) }))
       .sort((a, b) => Number.isNaN(a.factor) - Number.isNaN(b.factor) || (a.factor || 0) - (b.factor || 0) || a.value - b.value);
     return answer;
   }

@@ -15,9 +15,29 @@ _OBJECT = {"width": "35 cm", "height": "1.2 m"}
 _SHAKING = {"pga": "0.4 g", "return_period": "475"}
 """What stands in the form where no object, and no shaking, is given."""
 
-_FORM = ("name", "width", "height", "mass", "cg_height", "cg_offset", "restitution", "floor")
+_FORM = (
+    "name",
+    "width",
+    "height",
+    "mass",
+    "cg_height",
+    "cg_offset",
+    "restitution",
+    "floor",
+    "depth",
+)
 _LEVELS = ("pga", "pgv", "sa")
-_KEYS = (*_FORM, "pedestal", "building", *_LEVELS, "return_period", "hazard", "records")
+_KEYS = (
+    *_FORM,
+    "round",
+    "facing_deg",
+    "pedestal",
+    "building",
+    *_LEVELS,
+    "return_period",
+    "hazard",
+    "records",
+)
 """Keys of ``statue.yaml`` that the page has a field for, or is written with."""
 
 
@@ -26,7 +46,7 @@ def add_app_command(commands: Any) -> None:
     parser = commands.add_parser(
         "app",
         help="write the assessment as one page that needs no installation",
-        description="One HTML file that computes what 'rockfrag assess' says of objects that rock in a plane. "
+        description="One HTML file that computes what 'rockfrag assess' says of an object. "
         "What is given stands in its form at first; records are those that it computes with.",
     )
     parser.add_argument("file", nargs="?", help="statue.yaml that says all this")
@@ -64,6 +84,8 @@ def _app(options: argparse.Namespace) -> int:
 def form_of(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
     """What stands in the form at first."""
     form = {key: str(settings[key]) for key in _FORM if key in settings}
+    form |= {"facing": str(settings["facing_deg"])} if "facing_deg" in settings else {}
+    form |= {"round": "true"} if settings.get("round") else {}
     pedestal, building = settings.get("pedestal") or {}, settings.get("building") or {}
     if isinstance(pedestal, list):
         raise InputError("key pedestal: the page has one; rockfrag assess takes several.")

@@ -48,16 +48,22 @@ const objects = (data) => {
 
   // the form's texts, by field, as a request in SI
   function requestOf(form) {
-    if (form.round) refuse("round", "round");
-    if (form.depth?.trim()) refuse("depth", "depth");
-    const width = positive("width", form.width, "length"), height = positive("height", form.height, "length");
-    if (width === null) refuse("width", "missing", { example: "35 cm" });
+    const round = Boolean(form.round), side = positive("width", form.width, "length"), height = positive("height", form.height, "length");
+    if (side === null) refuse("width", "missing", { example: "35 cm" });
     if (height === null) refuse("height", "missing", { example: "1.2 m" });
     const mass = positive("mass", form.mass, "mass"), cgHeight = positive("cg_height", form.cg_height, "length");
     if (cgHeight !== null && cgHeight >= height) refuse("cg_height", "above_top");
     const cgOffset = quantity("cg_offset", form.cg_offset, "length") ?? 0;
-    const statue = { width, height, mass: mass ?? STONE * width * width * height, cgHeight, cgOffset };
+    const { width, depth, facing } = planOfBase(form, side, round), [low, high] = DENSITIES;
+    const statue = { width, height, mass: mass ?? STONE * width * depth * height * (round ? Math.PI / 4 : 1), cgHeight, cgOffset };
     checkDensity("mass", statue);
+    const density = statue.mass / (width * depth * height);
+    if (form.depth?.trim() && !(density >= low && density <= high)) refuse("mass", "density");
+    if (round) statue.inertia = (statue.mass * (0.75 * width * width + height * height)) / 12;
+    const restitution = number("restitution", form.restitution, "restitution", 0, 1);
+    if (round && restitution !== null) refuse("restitution", "rolls");
+    const deep = Boolean(form.depth?.trim()) && !round && restitution === null && data.both.records.length > 0;
+    if (deep) statue.depth = depth;
     let pedestal = null;
     if (form.pedestal_width?.trim() || form.pedestal_height?.trim()) {
       const wide = positive("pedestal_width", form.pedestal_width, "length"), high = positive("pedestal_height", form.pedestal_height, "length");
@@ -68,10 +74,18 @@ const objects = (data) => {
       checkDensity("pedestal_mass", pedestal);
     } else if (form.pedestal_mass?.trim()) refuse("pedestal_width", "missing", { example: "50 cm" });
     return {
-      name: short(form.name ?? "") || data.texts.en.the_object, statue, pedestal, massGiven: mass !== null,
-      restitution: number("restitution", form.restitution, "restitution", 0, 1),
-      place: placeOf(form), ...shakingOf(form),
+      name: short(form.name ?? "") || data.texts.en.the_object, statue, pedestal, massGiven: mass !== null, depthGiven: Boolean(form.depth?.trim()), restitution,
+      solid: round || deep ? { round, facing, anywhere: !form.facing?.trim() } : null, place: placeOf(form), ...shakingOf(form),
     };
+  }
+  // the narrower side of the base, the other one, and the direction of the narrower one [degrees]
+  function planOfBase(form, width, round) {
+    const depth = positive("depth", form.depth, "length"), facing = number("facing", form.facing, "facing", -1e-300, 360);
+    if (round && depth !== null && depth !== width) refuse("depth", "round_depth");
+    if (facing !== null && (round || depth === null)) refuse("facing", "no_facing");
+    if (round && form.pedestal_width?.trim()) refuse("round", "round_pedestal");
+    if (depth === null || !(depth < width)) return { width, depth: depth ?? width, facing: facing ?? 0 };
+    return { width: depth, depth: width, facing: (facing ?? 0) + 90 };
   }
   function checkDensity(field, { width, height, mass }) {
     const most = mass / (width * height * DEPTHS[0] * width), least = mass / (width * height * DEPTHS[1] * Math.max(width, height));
@@ -158,7 +172,7 @@ const objects = (data) => {
 
   const inertiaOf = (block) => block.inertia ?? (block.mass * (block.width * block.width + block.height * block.height)) / 12;
   const heightOf = (block) => block.cgHeight ?? block.height / 2;
-  const wider = (block, factor) => ({ ...block, width: block.width * factor, inertia: inertiaOf(block) });
+  const wider = (block, factor) => ({ ...block, width: block.width * factor, inertia: inertiaOf(block), ...(block.depth ? { depth: block.depth * factor } : {}) });
   const higher = (block, factor) => ({ ...block, cgHeight: Math.min(heightOf(block) * factor, block.height), inertia: inertiaOf(block) });
 
   // what is shaken: roles, and bodies as the module takes them; the object as it stands first
@@ -203,7 +217,7 @@ const objects = (data) => {
       helps("lower_pedestal", body(statue, half), { height: 100 * half.height });
     }
     for (const { body: each } of runs) stands(each, ensemble);
-    return runs;
+    return request.solid ? inSpace(data).planOf(request, runs) : runs;
   }
   // what cannot stand is said beside the width
   function stands(body, ensemble) {

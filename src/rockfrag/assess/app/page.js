@@ -15,7 +15,7 @@ const make = (tag, attributes = {}, ...children) => {
 };
 const FIELDS = {
   object: ["name", "width", "height", "mass"],
-  more: ["depth", "round", "cg_height", "cg_offset", "restitution"],
+  more: ["depth", "facing", "round", "cg_height", "cg_offset", "restitution"],
   pedestal: ["pedestal_width", "pedestal_height", "pedestal_mass"],
   place: ["floor", "storey_height", "material", "period"],
   shaking: ["measure", "level", "years", "hazard"],
@@ -93,7 +93,7 @@ let number = 0, current = null, other = null;
 async function startWorkers() {
   const url = URL.createObjectURL(new Blob([find("computing").textContent], { type: "text/javascript" }));
   const count = Math.max(1, Math.min(4, navigator.hardwareConcurrency ?? 2));
-  const modules = { fused: bytesOf(data.modules.fused), plain: bytesOf(data.modules.plain) }, samples = bytesOf(data.packed);
+  const modules = { fused: bytesOf(data.modules.fused), plain: bytesOf(data.modules.plain), space: bytesOf(data.modules.space) }, samples = bytesOf(data.packed);
   const { packed, modules: _, ...rest } = data;
   return Promise.all(Array.from({ length: count }, () => {
     const worker = { post: started(url), busy: true };
@@ -120,16 +120,18 @@ function started(url) {
     throw new Error("no_workers");
   }
 }
-// the first of those that wait for a worker which is free; what an older request asked for is dropped
+// a free worker takes what waits of its own motions, whose floors and tables it has, else what waits first; what an older
+// request asked for is dropped
 function next() {
-  for (const worker of pool) {
-    while (!worker.busy && waiting.length) {
-      const task = waiting.shift();
-      if (task.of && task.of !== current && task.of !== other) continue;
-      worker.busy = true;
-      worker.task = task;
-      worker.post.postMessage(task.message);
-    }
+  for (const [i, worker] of pool.entries()) {
+    if (worker.busy) continue;
+    for (let k = waiting.length - 1; k >= 0; k--) if (waiting[k].of && waiting[k].of !== current && waiting[k].of !== other) waiting.splice(k, 1);
+    const own = waiting.findIndex(({ message: { first = i * PART } }) => Math.floor(first / PART) % pool.length === i);
+    const [task] = waiting.splice(Math.max(own, 0), 1);
+    if (!task) return;
+    worker.busy = true;
+    worker.task = task;
+    worker.post.postMessage(task.message);
   }
 }
 function ask(of, message, first = false) {
@@ -146,9 +148,10 @@ function later() {
   timer = setTimeout(update, 120);
 }
 function update() {
+  const form = formTexts();
   let request;
   try {
-    request = bodies.requestOf(formTexts());
+    request = bodies.requestOf(form);
   } catch (error) {
     if (!error.field) throw error;
     current = other = null;
@@ -158,7 +161,7 @@ function update() {
   }
   complain(null);
   find("blocked").hidden = true;
-  current = { id: ++number, request, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
+  current = { id: ++number, request, form, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
   document.body.dataset.stage = "";
   other = null;
   compute(current, (told) => {
@@ -290,28 +293,51 @@ async function draw(told) {
   const motion = (await ask(null, { kind: "motion", motion: deciding.motion })).told;
   if (scene.of !== of) return;
   const { statue, pedestal, restitution, measure, place } = { measure: "PGA", ...of.request };
+  scene.dt = motion.dt;
+  canvasOf(of.request.solid);
+  if (of.request.solid) {
+    inSpaceScene ??= sceneInSpace(data, find("scene"), () => paint());
+    const response = await inSpaceScene.respond(of.request, deciding, async (m) => (await ask(null, { kind: "motion", motion: m })).told, () => unpacked(data.modules.space));
+    if (scene.of !== of) return;
+    Object.assign(scene, { response, statue, pedestal, dt: response.dt });
+    describe(deciding, measure);
+    scene.at = response.most;
+    return paint();
+  }
   const ground = place.ground ? motion : building.floorMotion(place.floors[""], motion);
   const body = kernel.bodyOf({ statue, pedestal, restitution: pedestal && restitution !== null ? [restitution, restitution] : restitution });
   const scale = deciding.level / data.measures[measure].values[deciding.motion];
   scene.response = kernel.integrate({ body, samples: ground.samples, dt: motion.dt, scale });
-  Object.assign(scene, { dt: motion.dt, statue, pedestal, at: 0 });
-  const { unit } = data.measures[measure], level = `${measure} ${Number(deciding.level.toPrecision(2))} ${unit}`;
-  scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level, what: say(scene.response.fallen ? "falls" : "stays") });
-  scene.title = () => say(deciding.falls ? "scene" : "scene_other");
-  find("scene-words").textContent = scene.words();
-  find("scene-title").textContent = scene.title();
-  find("scene").setAttribute("aria-label", scene.words());
+  Object.assign(scene, { statue, pedestal, at: 0 });
+  describe(deciding, measure);
   const { theta2, done } = scene.response;
   let most = 0;
   for (let k = 0; k < done; k++) if (Math.abs(theta2[k]) > Math.abs(theta2[most]) && Math.abs(theta2[k]) < 0.6) most = k;
   scene.at = most;
   paint();
 }
+let inSpaceScene = null;
+// in space the picture can be turned by keys
+function canvasOf(solid) {
+  find("scene").tabIndex = solid ? 0 : -1;
+  find("scene").setAttribute("role", solid ? "application" : "img");
+}
+function describe(deciding, measure) {
+  const { unit } = data.measures[measure], { fallen, history } = scene.response;
+  const level = () => `${measure} ${new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 2 }).format(deciding.level)} ${unit}`;
+  scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level: level(), what: say(fallen ? "falls" : "stays") });
+  const turned = history ? ` ${say("turn_view")}` : "";
+  scene.title = () => say(deciding.falls ? "scene" : "scene_other");
+  find("scene-words").textContent = scene.words() + turned;
+  find("scene-title").textContent = scene.title();
+  find("scene").setAttribute("aria-label", scene.words() + turned);
+}
 const unpacked = async (text) => new Uint8Array(await new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
 function paint(what = scene, canvas = find("scene")) {
   const { response, statue, pedestal, at } = what, context = canvas.getContext("2d");
   if (!response) return;
   const style = getComputedStyle(canvas), colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  if (response.history) return inSpaceScene.paint(context, response, at, colour);
   const below = pedestal?.height ?? 0, tall = below + statue.height, zoom = Math.min(230 / tall, 320 / Math.max(tall, statue.width));
   context.clearRect(0, 0, 600, 300);
   context.fillStyle = colour("rule");
@@ -389,7 +415,7 @@ function rowOf({ told: { run: { request }, found } }, i) {
   return make("tr", {}, ...texts.map((text) => make("td", { textContent: text })));
 }
 async function keep() {
-  const item = { form: formTexts(), told: shown };
+  const item = { form: shown.run.form, told: shown };
   await scene.drawn;
   kept.push(Object.assign(item, { scene: stillOf(item.told.run) }));
   drawKept();
@@ -397,7 +423,8 @@ async function keep() {
 // what is drawn of an object, without its motion
 function stillOf(run) {
   if (scene.of !== run || !scene.response) return null;
-  const { response: { theta1, theta2 }, statue, pedestal, at, words, title } = scene;
+  const { response, response: { theta1, theta2 }, statue, pedestal, at, words, title } = scene;
+  if (response.history) return { response, statue, pedestal, at, words, title };
   return { statue, pedestal, words, title, at: 0, response: { theta1: [theta1[at]], theta2: [theta2[at]] } };
 }
 function fillForm(values) {
@@ -444,7 +471,7 @@ function answered(form) {
 // ---- on paper: a sheet for each object that is kept, or for the one that is shown
 
 function drawSheets() {
-  const items = kept.length ? kept : shown ? [{ form: formTexts(), told: shown, scene: stillOf(shown.run) }] : [];
+  const items = kept.length ? kept : shown ? [{ form: shown.run.form, told: shown, scene: stillOf(shown.run) }] : [];
   find("sheets").replaceChildren(...(kept.length > 1 ? [rankedSheet()] : []));
   for (const { form, told: { run: { request }, found }, scene: still } of items) {
     const said = linesOf(request, found), canvas = make("canvas", { width: 600, height: 300 });

@@ -90,11 +90,12 @@ const risk = (data) => {
     forward: (value) => (value > 0 ? Math.log(value) : -Infinity),
     back: Math.exp, state: "overturned", added: 0, certain: Infinity,
   });
-  const groups = Math.max(...data.earthquakes) + 1;
+  // earthquakes of the motions that were tried
+  const groupsOf = ({ motions }) => [...new Set(motions ? motions.map((m) => data.earthquakes[m]) : data.earthquakes)];
   function onScale(target, outcomes, { without = -1, shift = 0, added = 0 } = {}) {
     let shares = fractions(outcomes, target.state, without);
     if (added) {
-      const count = groups - (without >= 0 ? 1 : 0), could = fractions(outcomes, "rocked", without);
+      const count = groupsOf(outcomes).length - (without >= 0 ? 1 : 0), could = fractions(outcomes, "rocked", without);
       shares = shares.map((share, k) => (count * share + (could[k] > 0 ? added : 0)) / (count + 2 * added));
     }
     return target.forward(target.of(outcomes.levels, shares, shift));
@@ -103,7 +104,7 @@ const risk = (data) => {
 
   // ---- intervals
 
-  const all = Array.from({ length: groups }, (_, i) => i);
+  const all = groupsOf({}), groups = all.length;
   function withoutEach(target, outcomes) {
     const found = all.map((without) => onScale(target, outcomes, { without, added: target.added }));
     return found.every(Number.isFinite) ? found : all.map((without) => onScale(target, outcomes, { without, added: HALF }));
@@ -188,9 +189,9 @@ const risk = (data) => {
     const found = { value: after, factor: NaN, lower: NaN, upper: NaN, helps };
     if (!(Number.isFinite(before) && before > 0 && Number.isFinite(after))) return found;
     found.factor = after / before;
-    const pairs = all.map((without) => [valueOf(target, changed, without), valueOf(target, now, without)]);
-    if (groups < 2 || !pairs.flat().every((value) => Number.isFinite(value) && value > 0)) return found;
-    const half = quantile(groups - 1) * jackknife(pairs.map(([a, b]) => Math.log(a / b)));
+    const shaken = groupsOf(now), pairs = shaken.map((without) => [valueOf(target, changed, without), valueOf(target, now, without)]);
+    if (shaken.length < 2 || !pairs.flat().every((value) => Number.isFinite(value) && value > 0)) return found;
+    const half = quantile(shaken.length - 1) * jackknife(pairs.map(([a, b]) => Math.log(a / b)));
     return { ...found, lower: found.factor * Math.exp(-half), upper: found.factor * Math.exp(half) };
   }
 

@@ -72,9 +72,9 @@ const words = (data, texts) => {
       if (number === total) return say("all_of", { total, verb: verb(true) });
       return say(number === 1 ? "one_of" : "some_of", { number, total, verb: verb(number !== 1) });
     }
-    function narrowing() {
-      if (!found.narrowed || range(found.narrowed) === range(main)) return "";
-      return say("narrowing", { what: listed(found.narrowed.known.map((key) => texts.measurements[key])), range: range(found.narrowed) });
+    function narrowing(better = found.narrowed, of = main) {
+      if (!better || range(better) === range(of)) return "";
+      return say("narrowing", { what: listed(better.known.map((key) => texts.measurements[key])), range: range(better) });
     }
     function result() {
       const who = `${capital(name)} ${where}`;
@@ -87,7 +87,7 @@ const words = (data, texts) => {
       }
       const said = say("said", { topples: counted(1), interval: interval(fraction), rocks: counted(0) });
       if (fraction && found.wide) {
-        const more = main === fraction && narrowing() ? ` ${capital(narrowing())}.` : "";
+        const better = narrowing(found.narrowedFraction, fraction), more = better ? ` ${capital(better)}.` : "";
         return say("not_decidable", { name, where, at, said }) + more;
       }
       const may = value >= MANY ? "likely" : value === 0 ? "unlikely" : "may";
@@ -108,8 +108,12 @@ const words = (data, texts) => {
         : best === worst ? names[middle] : say("reaches", { step: names[middle], best: names[best], worst: names[worst] });
       return `${first}. ${say("on_our_scale", { step, scale: texts.scale })} ${texts.advice[middle]} ${say("all_shaking", { level: amount(found.level) })}`;
     }
+    function inSpaceWords() {
+      const what = say(request.solid.round ? "rolls_in_space" : "moves_in_space");
+      return typeof found.planar === "number" ? `${what}${say("beside_planar", { value: found.planar === 0 ? say("none_of_motions") : percent(found.planar) })}` : `${what}.`;
+    }
     function position() {
-      const plane = say("plane", { width: g(100 * statue.width, 4) }) + " " + say("any_direction");
+      const plane = request.solid ? inSpaceWords() : say("plane", { width: g(100 * statue.width, 4) }) + " " + say("any_direction");
       if (!pedestal || found.arrangements.length < 3) return plane;
       const shown = (v) => (v === 0 ? say("none_of_motions") : percent(v));
       const ranked = [...found.arrangements].sort((a, b) => a[1] - b[1]), all = ranked.map(([id, v]) => `${say(id)} ${shown(v)}`).join(", ");
@@ -129,12 +133,14 @@ const words = (data, texts) => {
     function helps() {
       if (!main) return "";
       if (main.value === 0) return say(found.wide ? "none_can_show" : "no_change_needed");
+      if (found.mitigations.length && found.mitigations.every(({ factor, helps: better }) => Number.isNaN(factor) && !better)) return say("too_few");
       const best = found.mitigations.filter((item) => item.helps).slice(0, 3);
       return best.length ? `${capital(best.map(mitigation).join("; "))}.` : say("none_helps");
     }
     function sure() {
       if (!main) return "";
-      const total = Object.values(main.sources).reduce((sum, s) => sum + s * s, 0), lines = [`${motions}.`];
+      const records = request.solid && data.both.records.length;
+      const total = Object.values(main.sources).reduce((sum, s) => sum + s * s, 0), lines = [`${records ? say("motions_in_space", { motions, records }) : motions}.`];
       const ranked = Number.isFinite(total) && total > 0 ? Object.entries(main.sources).map(([key, s]) => [key, (s * s) / total]).sort((a, b) => b[1] - a[1]) : [];
       const named = ranked.filter(([, part]) => part >= LEAST_PART).slice(0, MOST_SOURCES);
       if (named.length) lines.push(say("variance", { all: listed(named.map(([key, part]) => say("part_from", { part: whole(100 * part), what: texts.sources[key] }))) }));
@@ -158,14 +164,14 @@ const words = (data, texts) => {
   return Object.assign(linesOf, { nameOf, motions });
 
   // what was not given: text, what stands in it, and the sources that it widens; the place first
-  function assumptions({ place, statue, pedestal, massGiven, restitution }) {
+  function assumptions({ place, statue, pedestal, massGiven, restitution, solid, depthGiven }) {
     const found = [];
     if (place.assumed === "on_ground") found.push(["assumed_ground", {}, []]);
     if (place.assumed === "elastic") found.push(["assumed_elastic", {}, ["period", "damping"]]);
     if (place.assumed === "building") found.push(["assumed_building", { total: g(place.total, 3), period: g(place.period, 2) }, ["period", "damping"]]);
-    found.push(["assumed_rectangular", {}, []]);
-    if (restitution === null) found.push(["assumed_momentum", {}, ["restitution"]]);
-    found.push(["assumed_depth", { depth: g(100 * statue.width, 4) }, []]);
+    found.push([solid?.round ? "assumed_rolling" : "assumed_rectangular", {}, []]);
+    if (restitution === null && !solid?.round) found.push(["assumed_momentum", {}, ["restitution"]]);
+    if (!depthGiven && !solid) found.push(["assumed_depth", { depth: g(100 * statue.width, 4) }, []]);
     if (!massGiven) found.push(["assumed_mass", { mass: g(statue.mass, 3) }, ["mass"]]);
     if (statue.cgHeight === null) found.push(["assumed_half", {}, ["cg_height"]]);
     if (pedestal && !pedestal.massGiven) found.push(["assumed_pedestal", { mass: g(pedestal.mass, 3) }, ["mass"]]);

@@ -7,7 +7,7 @@ async function begin({ data, modules, samples }) {
   if (!ensemble?.roundsOnce()) ensemble = await rockfragEnsemble(await unpacked(modules.plain));
   const motions = decoded(data, await unpacked(samples));
   const made = answer(data);
-  tools = { ensemble, made, motions, bodies: objects(data), count: made.counter(ensemble, motions), plans: new Map() };
+  tools = { ensemble, made, motions, bodies: objects(data), count: made.counter(ensemble, motions, await rockfragSpace(await unpacked(modules.space))), plans: new Map() };
 }
 // samples are decimals: whole numbers over powers of ten, times the factor of their unit; bytes of equal rank together
 function decoded({ samples: { counts, dts, factor, decimal } }, bytes) {

@@ -77,7 +77,12 @@ def page_of(
 ) -> str:
     """Return the page as HTML, which loads nothing."""
     packed, about = packed_samples(motions.ground)
-    modules = {"fused": "ensemble-fused", "plain": "ensemble", "history": "integrate"}
+    modules = {
+        "fused": "ensemble-fused",
+        "plain": "ensemble",
+        "history": "integrate",
+        "space": "space",
+    }
     data = {
         **data_of(motions, request),
         "form": dict(form),
@@ -95,9 +100,10 @@ def page_of(
         undefined=StrictUndefined,
     )
     style = environment.get_template("style.css").render() + script("app.css")
-    shown = ("words", "lists", "page")
+    view = environment.get_template("view.js").render()
+    parts = ("building", "space", "objects", "words", "lists", "scene", "page")
     scripts = "\n".join(
-        [driver_text(), *(script(f"{name}.js") for name in ("building", "objects", *shown))]
+        [driver_text("integrate", "space"), view, *(script(f"{name}.js") for name in parts)]
     )
     return environment.from_string(script("app.html.j2")).render(
         title=data["texts"]["en"]["title"],

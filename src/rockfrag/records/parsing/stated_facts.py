@@ -206,6 +206,7 @@ def _is_factor(line: str) -> bool:
 
 
 def _close(found: Iterable[float | int | str]) -> bool:
+    """Tell whether statements of one fact are numbers that differ by rounding only, to a ten-thousandth."""
     values = list(found)
     if not all(isinstance(value, float) for value in values):
         return False

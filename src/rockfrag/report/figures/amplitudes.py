@@ -44,6 +44,9 @@ AMPLITUDE = "Overturning amplitude [g]"
 MOST_MARKS = 150
 """Of more tests than this a figure shows the distribution, not every one."""
 
+BOX = "median, 25–75 %, 5–95 %"
+"""What a box of that distribution shows."""
+
 _ARROW = np.array([(0, 0), (0, 1.6), (-0.4, 1.0), (0, 1.6), (0.4, 1.0)])
 _STROKES = [Path.MOVETO, Path.LINETO, Path.MOVETO, Path.LINETO, Path.LINETO]
 _UP = Path(_ARROW, _STROKES)
@@ -88,32 +91,23 @@ def top(rows: pd.DataFrame) -> float:
     return 1.15 * float(rows["a"].max())
 
 
-def _top_of_sides(rows: pd.DataFrame, by: str) -> float:
-    return _highest_box(rows, by) if len(rows) > MOST_MARKS else top(rows)
-
-
 def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     """Amplitudes of each object, without and with a pedestal, in tests of one definition, with their means."""
-    known = means[means["by"] == "configuration"]
-    objects = list(dict.fromkeys(tests["object"]))
-    width = COLUMN_WIDTH if len(objects) <= 5 else PAGE_WIDTH
-    with one_panel(width, 2.8) as (figure, axes):
-        rows = drawn_tests(tests)
-        _sides_panel(axes, rows, "object", objects, known)
-        axes.set_ylim(0, _top_of_sides(rows, "object"))
-        _finish_sides(figure, axes, tests, len(known.dropna(subset=["mean_g"])) > 0)
-    return figure
+    return _amplitudes_by("object", tests, means[means["by"] == "configuration"])
 
 
 def amplitudes_by_floor(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     """Amplitudes on each floor, without and with a pedestal, in tests of one definition, with their means."""
-    floors = list(dict.fromkeys(tests["floor"]))
-    rows = drawn_tests(tests)
-    known = means[means["by"] == "floor"]
-    with one_panel(COLUMN_WIDTH, 2.8) as (figure, axes):
-        _sides_panel(axes, rows, "floor", floors, known)
-        axes.set_ylim(0, _top_of_sides(rows, "floor"))
-        _finish_sides(figure, axes, tests, len(known.dropna(subset=["mean_g"])) > 0)
+    return _amplitudes_by("floor", tests, means[means["by"] == "floor"])
+
+
+def _amplitudes_by(by: str, tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
+    levels, rows = list(dict.fromkeys(tests[by])), drawn_tests(tests)
+    width = PAGE_WIDTH if by == "object" and len(levels) > 5 else COLUMN_WIDTH
+    with one_panel(width, 2.8) as (figure, axes):
+        _sides_panel(axes, rows, by, levels, means)
+        axes.set_ylim(0, _highest_box(rows, by) if len(rows) > MOST_MARKS else top(rows))
+        _finish_sides(figure, axes, tests, bool(means["mean_g"].notna().any()))
     return figure
 
 
@@ -181,7 +175,7 @@ def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) 
             Line2D([], [], ls="", marker="_", ms=12, mew=2.4, color=GREY, label="geometric mean")
         )
     if len(tests) > MOST_MARKS:
-        handles.append(Line2D([], [], color=GREY, label="median, 25–75 %, 5–95 %"))
+        handles.append(Line2D([], [], color=GREY, label=BOX))
     else:
         handles += bound_handle(tests)
     if handles:
@@ -249,7 +243,7 @@ def slenderness_figure(
         for axes, side in zip(grid, SIDES, strict=True):
             part = rows[rows["pedestal"] == side]
             if crowded:
-                _boxes(axes, part)
+                _box_at(axes, part, "x", sorted(part["x"].unique()), 0.3, BLUE)
             else:
                 _against_slenderness(axes, part, earthquakes)
             own = known[known["pedestal"] == side]
@@ -261,17 +255,12 @@ def slenderness_figure(
         figure.supxlabel("Slenderness H/B", fontsize=8)
         letter_panels(grid)
         figure.supylabel(AMPLITUDE, fontsize=8)
-        handles = (
-            _box_handles() if crowded else _earthquake_handles(earthquakes) + bound_handle(tests)
-        )
+        handles = [Line2D([], [], color=BLUE, label=BOX)]
+        if not crowded:
+            handles = _earthquake_handles(earthquakes) + bound_handle(tests)
         handles.append(Line2D([], [], color=BLACK, marker="_", ms=10, label="geometric mean"))
         figure.legend(handles=handles, loc="outside upper center", ncols=3, handletextpad=0.3)
     return figure
-
-
-def _boxes(axes: Axes, part: pd.DataFrame) -> None:
-    """Distribution of many tests at each slenderness: median, quartiles, 5 to 95 %."""
-    _box_at(axes, part, "x", sorted(part["x"].unique()), 0.3, BLUE)
 
 
 def _highest_box(rows: pd.DataFrame, by: str) -> float:
@@ -294,10 +283,6 @@ def _box_at(
         capprops={"color": colour},
         medianprops={"color": colour, "linewidth": 1.6},
     )
-
-
-def _box_handles() -> list[Line2D]:
-    return [Line2D([], [], color=BLUE, label="median, 25–75 %, 5–95 %")]
 
 
 def _earthquake_handles(earthquakes: Sequence[str]) -> list[Line2D]:

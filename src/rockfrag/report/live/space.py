@@ -109,13 +109,16 @@ def _sizes(body: RigidBody) -> dict[str, Any] | None:
 
 
 def _motion(motion: GroundMotion) -> dict[str, Any]:
-    level = [one for one in (motion.x, motion.y) if one is not None]
+    level = [component for component in (motion.x, motion.y) if component is not None]
     each = [*level, *([] if motion.z is None else [motion.z])]
     return {
         "name": motion.name,
         "dt": motion.dt,
-        "peak_g": float(np.prod([one.pga for one in level]) ** (1 / len(level))) / GRAVITY,
-        "samples": [_text(np.asarray(one.acceleration, "<f8").tobytes()) for one in each],
+        "peak_g": float(np.prod([component.pga for component in level]) ** (1 / len(level)))
+        / GRAVITY,
+        "samples": [
+            _text(np.asarray(component.acceleration, "<f8").tobytes()) for component in each
+        ],
     }
 
 

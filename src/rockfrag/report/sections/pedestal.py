@@ -54,17 +54,15 @@ def shown_effects(effects: pd.DataFrame) -> pd.DataFrame:
         level=effects["level"].str.replace("/", ", "),
         ratio_text=[ratio_text(row) for row in rows],
         equivalent=["yes" if _width(row) and row["equivalent"] else "–" for row in rows],
-        detectable_text=[_detectable(row) for row in rows],
+        detectable_text=[
+            number(row["detectable_ratio"], 2) if _width(row) else "–" for row in rows
+        ],
         p_text=[probability(row["p_holm"]) if _width(row) else "–" for row in rows],
     )
 
 
 def _width(row: Mapping[Hashable, Any]) -> bool:
     return has_interval(row["lower"], row["upper"], 3)
-
-
-def _detectable(row: Mapping[Hashable, Any]) -> str:
-    return number(row["detectable_ratio"], 2) if _width(row) else "–"
 
 
 def _section(results: Results) -> Section:

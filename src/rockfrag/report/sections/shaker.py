@@ -5,7 +5,6 @@ from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import listed, of_all
 from rockfrag.stages.shaker import LIMITED
-from rockfrag.study.study import Study
 
 _COLUMNS = (
     Column("motion", "Motion"),
@@ -14,10 +13,6 @@ _COLUMNS = (
     Column("limit_g", "Fits up to [g]", 3),
     Column("limited_by", "Limited by"),
 )
-
-
-def _asked(study: Study) -> bool:
-    return study.more.shaker is not None
 
 
 def _section(results: Results) -> Section:
@@ -60,4 +55,4 @@ def _section(results: Results) -> Section:
     )
 
 
-SHAKER = Part(("shaker", "tests"), _section, asked=_asked)
+SHAKER = Part(("shaker", "tests"), _section, asked=lambda study: study.more.shaker is not None)

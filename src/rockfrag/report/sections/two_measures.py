@@ -12,7 +12,6 @@ from rockfrag.report.figures.two_measures import two_measures_figure
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import agree, of_all, sentence
-from rockfrag.study.study import Study
 
 _COLUMNS = (
     Column("configuration", "Object"),
@@ -25,10 +24,6 @@ _COLUMNS = (
     Column("p_interaction", "p of no interaction", 3),
     Column("p_fit", "p of the fit", 3),
 )
-
-
-def _asked(study: Study) -> bool:
-    return bool(study.fragility.pairs)
 
 
 def _section(results: Results) -> Section | None:
@@ -109,5 +104,7 @@ def _figures(tables: VectorTables, found: pd.DataFrame) -> list[FigureSpec]:
 
 
 TWO_MEASURES = Part(
-    ("fragility_two_measures", "fragility_contours", "fragility_cells"), _section, _asked
+    ("fragility_two_measures", "fragility_contours", "fragility_cells"),
+    _section,
+    lambda study: bool(study.fragility.pairs),
 )

@@ -78,11 +78,13 @@ function rockfragView(canvas, redraw) {
       path(context, face.map(show));
       context.fillStyle = colour;
       context.fill();
+      const side = smooth && face.length === 4;
+      context.strokeStyle = side ? colour : ink;
+      if (side) context.stroke();
       const light = dot(normal, LIGHT);
       context.fillStyle = light > 0 ? `rgba(255,255,255,${0.38 * light})` : `rgba(0,0,0,${-0.45 * light})`;
       context.fill();
-      context.strokeStyle = smooth && face.length === 4 ? context.fillStyle : ink;
-      context.stroke();
+      if (!side) context.stroke();
     }
   }
   function path(context, places) {

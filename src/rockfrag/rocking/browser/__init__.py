@@ -25,13 +25,14 @@ def module_bytes(name: str = "integrate") -> bytes:
     return (_FOLDER / f"{name}.wasm").read_bytes()
 
 
-def driver_text(name: str = "integrate") -> str:
-    """Return the scripts of a module: plain text that defines ``async function rockfragKernel(bytes)``.
+def driver_text(*names: str) -> str:
+    """Return the scripts of modules: plain text that defines ``async function rockfragKernel(bytes)``.
 
     That of ``ensemble`` is ``rockfragEnsemble(bytes)``, that of ``space`` ``rockfragSpace(bytes)``.
     """
     return "\n".join(
-        (_FOLDER / f"{part}.js").read_text(encoding="utf-8") for part in ("module", name)
+        (_FOLDER / f"{part}.js").read_text(encoding="utf-8")
+        for part in ("module", *(names or ("integrate",)))
     )
 
 

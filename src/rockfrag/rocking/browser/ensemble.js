@@ -56,7 +56,7 @@ async function rockfragEnsemble(bytes) {
 
   // ---- motions end to end, sampled as densely as a body needs, with extremes of each block of samples
 
-  const packed = new Map();
+  const packed = new WeakMap();
   let loaded = null;
 
   function pack(motions, times) {
