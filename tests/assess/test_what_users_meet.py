@@ -121,6 +121,17 @@ def test_what_helps_says_what_the_positions_say(motions):
     )
 
 
+def test_a_list_with_objects_in_the_plane_and_in_space_shakes_each_by_its_own_motions(motions):
+    """Sets that were thinned for one and for the other are not the same motions."""
+    place = asked(width="30 cm", height="1 m", floor="1/2").place
+    for fewer in (motions.thinned(), motions.with_both_components().thinned(), motions.thinned()):
+        floors = fewer.at(place).base
+        names = [motion.name.removesuffix("_floor") for motion in floors]
+        assert names == [motion.name for motion in fewer.ground]
+        quarter = fewer.thinned()
+        assert len(quarter.at(place).base) == len(quarter.ground)
+
+
 def test_limits_near_certainty_are_told_apart():
     assert range_words(0.9963, 0.99998) == "99.6 to 99.998 %"
     assert range_words(0.12, 1.0) == "12 to 100 %"

@@ -48,8 +48,8 @@ class MotionSet:
     warnings: tuple[str, ...] = ()  # Sentences that a reader must know
     # Motions of floors that were needed before, by :attr:`Place.key`
     floors: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
-    # Those of the thinned set
-    halves: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
+    # Those of thinned sets, in the plane and in space, by how many motions are left
+    halves: dict[object, dict[object, tuple[Motion, ...]]] = field(default_factory=dict)
     # Whether both components of each record act at once: both stand for the record, and their level
     # is the geometric mean of theirs
     both: bool = False
@@ -121,9 +121,8 @@ class MotionSet:
         """Every second motion, one component of each record of the default set: enough to compare."""
         if self.both:
             return self._fewer_records()
-        return replace(
-            self, ground=self.ground[::2], base=self.base[::2], pairs=(), floors=self.halves
-        )
+        floors = self.halves.setdefault((False, len(self.ground[::2])), {})
+        return replace(self, ground=self.ground[::2], base=self.base[::2], pairs=(), floors=floors)
 
     def _fewer_records(self) -> "MotionSet":
         """Every second record of those with two components, and those with one."""
@@ -132,7 +131,8 @@ class MotionSet:
         kept += [i for i in range(len(self.ground)) if i not in paired]
         ground, base = (tuple(motions[i] for i in kept) for motions in (self.ground, self.base))
         pairs = tuple((2 * n, 2 * n + 1) for n in range(len(self.pairs[::2])))
-        return replace(self, ground=ground, base=base, pairs=pairs, floors=self.halves)
+        floors = self.halves.setdefault((True, len(ground)), {})
+        return replace(self, ground=ground, base=base, pairs=pairs, floors=floors)
 
     def at(self, place: Place) -> "MotionSet":
         """The same motions on another floor; known floors are not shaken again."""

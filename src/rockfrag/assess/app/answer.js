@@ -29,10 +29,13 @@ const answer = (data) => {
 
   // a worker's part: outcomes of a run under some of the motions
   function counter(ensemble, motions, space) {
-    const solids = spatial.counter(ensemble, space), floors = new Map(), parts = new Map(), described = new Map();
+    const solids = spatial.counter(ensemble, space), floors = new Map();
+    let standing = "";
     function shakingOf(place, floor, part) {
+      // floors of one place are kept, and the ground
+      if (!place.ground && place.key !== standing) for (const key of floors.keys()) if (key) floors.delete(key);
+      if (!place.ground) standing = place.key;
       const key = place.ground ? "" : `${place.key} ${floor}`, known = floors.get(key) ?? new Map();
-      if (floors.size > 8 && !floors.has(key)) floors.clear();
       floors.set(key, known);
       if (!known.has(part)) known.set(part, partOf(part).map((motion) => {
         const moved = place.ground ? motion : building.floorMotion(place.floors[floor], motion);

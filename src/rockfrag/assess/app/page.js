@@ -120,16 +120,18 @@ function started(url) {
     throw new Error("no_workers");
   }
 }
-// the first of those that wait for a worker which is free; what an older request asked for is dropped
+// a free worker takes what waits of its own motions, whose floors and tables it has, else what waits first; what an older
+// request asked for is dropped
 function next() {
-  for (const worker of pool) {
-    while (!worker.busy && waiting.length) {
-      const task = waiting.shift();
-      if (task.of && task.of !== current && task.of !== other) continue;
-      worker.busy = true;
-      worker.task = task;
-      worker.post.postMessage(task.message);
-    }
+  for (const [i, worker] of pool.entries()) {
+    if (worker.busy) continue;
+    for (let k = waiting.length - 1; k >= 0; k--) if (waiting[k].of && waiting[k].of !== current && waiting[k].of !== other) waiting.splice(k, 1);
+    const own = waiting.findIndex(({ message: { first = i * PART } }) => Math.floor(first / PART) % pool.length === i);
+    const [task] = waiting.splice(Math.max(own, 0), 1);
+    if (!task) return;
+    worker.busy = true;
+    worker.task = task;
+    worker.post.postMessage(task.message);
   }
 }
 function ask(of, message, first = false) {
@@ -146,9 +148,10 @@ function later() {
   timer = setTimeout(update, 120);
 }
 function update() {
+  const form = formTexts();
   let request;
   try {
-    request = bodies.requestOf(formTexts());
+    request = bodies.requestOf(form);
   } catch (error) {
     if (!error.field) throw error;
     current = other = null;
@@ -158,7 +161,7 @@ function update() {
   }
   complain(null);
   find("blocked").hidden = true;
-  current = { id: ++number, request, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
+  current = { id: ++number, request, form, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
   document.body.dataset.stage = "";
   other = null;
   compute(current, (told) => {
@@ -320,9 +323,10 @@ function canvasOf(solid) {
   find("scene").setAttribute("role", solid ? "application" : "img");
 }
 function describe(deciding, measure) {
-  const { unit } = data.measures[measure], level = `${measure} ${Number(deciding.level.toPrecision(2))} ${unit}`;
-  scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level, what: say(scene.response.fallen ? "falls" : "stays") });
-  const turned = scene.response.history ? ` ${say("turn_view")}` : "";
+  const { unit } = data.measures[measure], { fallen, history } = scene.response;
+  const level = () => `${measure} ${new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 2 }).format(deciding.level)} ${unit}`;
+  scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level: level(), what: say(fallen ? "falls" : "stays") });
+  const turned = history ? ` ${say("turn_view")}` : "";
   scene.title = () => say(deciding.falls ? "scene" : "scene_other");
   find("scene-words").textContent = scene.words() + turned;
   find("scene-title").textContent = scene.title();
@@ -411,7 +415,7 @@ function rowOf({ told: { run: { request }, found } }, i) {
   return make("tr", {}, ...texts.map((text) => make("td", { textContent: text })));
 }
 async function keep() {
-  const item = { form: formTexts(), told: shown };
+  const item = { form: shown.run.form, told: shown };
   await scene.drawn;
   kept.push(Object.assign(item, { scene: stillOf(item.told.run) }));
   drawKept();
@@ -467,7 +471,7 @@ function answered(form) {
 // ---- on paper: a sheet for each object that is kept, or for the one that is shown
 
 function drawSheets() {
-  const items = kept.length ? kept : shown ? [{ form: formTexts(), told: shown, scene: stillOf(shown.run) }] : [];
+  const items = kept.length ? kept : shown ? [{ form: shown.run.form, told: shown, scene: stillOf(shown.run) }] : [];
   find("sheets").replaceChildren(...(kept.length > 1 ? [rankedSheet()] : []));
   for (const { form, told: { run: { request }, found }, scene: still } of items) {
     const said = linesOf(request, found), canvas = make("canvas", { width: 600, height: 300 });
