@@ -1,11 +1,16 @@
 """A box under three components, 40 s at 0.01 s: the engine in space beside MuJoCo in steps of 1 ms.
 
-Prints cases per second of process time of both, in one run, the fractions overturned, and whether one and two
-threads give the same bits.  ``python benchmarks/space.py [motions]``
+Prints cases per second of process time of both, in one run, the fractions overturned, whether one and two
+threads give the same bits, and by how much the peak memory grows in space and in the
+plane.  ``python benchmarks/space.py [motions]``
 """
 
+import multiprocessing
+import resource
 import sys
 import time
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +19,15 @@ from scipy.signal import butter, sosfilt
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
+from rockfrag.rocking.ensemble import overturns
 from rockfrag.system.blocks import Block
 
 DT = 0.01
 G = 9.81
 SIZE = (0.35, 0.35, 1.2)
 SCALES = (0.35, 0.45, 0.6)
+MANY = 1000
+"""Scales of one motion, whose cases in space and in the plane are held against each other in memory."""
 PASSES = 10
 """Passes of the engine, each of a tenth of a second; the fastest counts."""
 SCENE = """
@@ -65,6 +73,23 @@ def mujoco_falls(ground: Array, friction: float = 1.0) -> bool:
     return False
 
 
+def grown(work: Callable[[list[float]], object]) -> float:
+    """Peak memory by which many cases take more than one, in a process of their own [MiB]."""
+    work([0.2])
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    work([0.1 + 0.6 * k / MANY for k in range(MANY)])
+    return (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
+
+
+def memory(body: Block, motion: GroundMotion) -> None:
+    """Print how much memory many cases take in space and in the plane."""
+    flat = Block(body.width, body.height, body.mass)
+    works = (partial(run_in_space, [body], [motion]), partial(overturns, [flat], [motion.x], None))
+    with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as pool:
+        space, plane = pool.map(grown, works, chunksize=1)
+    print(f"memory of {MANY} cases: {space:.1f} MiB in space, {plane:.1f} MiB in the plane")
+
+
 def main(count: int) -> None:
     """Run both and print."""
     made = motions(count)
@@ -83,6 +108,7 @@ def main(count: int) -> None:
     )
     print(f"engine in space: {ours:.1f} cases/s, overturned {first.overturned[0].mean(axis=0)}")
     print(f"one and two threads give the same bits: {equal}")
+    memory(body, shaken[0])
     start = time.process_time()
     fallen = np.array([[mujoco_falls(item * scale) for scale in SCALES] for item in made])
     theirs = fallen.size / (time.process_time() - start)

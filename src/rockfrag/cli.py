@@ -1,10 +1,12 @@
 """The command line: whether an object topples, what is in a record, how a body rocks, whether a study is right."""
 
 import argparse
+import math
 import os
 import sys
 import warnings
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, TextIO
 
 from rockfrag import __version__
@@ -13,7 +15,7 @@ from rockfrag.assess.commands import add_assess_commands
 from rockfrag.errors import InputError
 from rockfrag.record_commands import add_record_commands, read_told
 from rockfrag.survival.commands import add_survival_commands
-from rockfrag.units import quantity
+from rockfrag.units import GRAVITY, quantity
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
@@ -78,6 +80,12 @@ def make_parser() -> argparse.ArgumentParser:
     command.add_argument(
         "--vertical", metavar="RECORD", help="file with the vertical component of the record"
     )
+    command.add_argument(
+        "--second", metavar="RECORD",
+        help="file with the second horizontal component: the body then moves in space, with --depth or --round",
+    )  # fmt: skip
+    command.add_argument("--depth", metavar="SIZE", help="side of the base across its width")
+    command.add_argument("--round", action="store_true", help="the base is round")
     command.add_argument("--plot", metavar="IMAGE", help="draw the response, as .png or .svg")
     command.add_argument(
         "--all-contact-events", action="store_true", help="print the whole history of rocking modes"
@@ -121,7 +129,6 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
 def _simulate(options: argparse.Namespace) -> int:
     from rockfrag.motions.scaling import scale_to_pga
     from rockfrag.rocking import simulate
-    from rockfrag.units import GRAVITY
 
     _check_image(options.plot)
     body, motion = _case(options)
@@ -132,7 +139,12 @@ def _simulate(options: argparse.Namespace) -> int:
         acceleration = scale_to_pga(motion, options.pga).acceleration
     if quality_flag := _acceleration_flag(float(abs(acceleration).max()), body):
         print(f"warning: {options.record}: {quality_flag}", file=sys.stderr)
-    up = _vertical(options, acceleration.max() / motion.acceleration.max())
+    factor = acceleration.max() / motion.acceleration.max()
+    if options.second is not None:
+        return _simulate_in_space(options, body, motion, factor)
+    if options.depth is not None or options.round:
+        raise InputError("--depth and --round are of a body in space; give --second as well.")
+    up = _vertical(options, factor)
     restitution = options.restitution
     if restitution is not None and options.pedestal:
         restitution = (restitution,) * len(body.blocks)
@@ -161,6 +173,50 @@ def _simulate(options: argparse.Namespace) -> int:
         from rockfrag.figure_style import save_figure
 
         save_figure(response.plot(f"{motion.name}, peak {peak:.3f} g"), options.plot)
+        print(f"drawn in {options.plot}")
+    return 0
+
+
+def _simulate_in_space(
+    options: argparse.Namespace, body: "Body", motion: "Motion", factor: float
+) -> int:
+    """Shake one body by both horizontal components of a record, and the vertical one if it is told."""
+    from rockfrag.engines.spatial import SpatialResponse
+    from rockfrag.motions.time_base import common_time
+    from rockfrag.records.ground_motion import GroundMotion
+    from rockfrag.rocking import simulate
+
+    if options.pedestal:
+        raise InputError("--second: a body in space stands on the ground; leave out --pedestal.")
+    others = [name for name in (options.second, options.vertical) if name is not None]
+    told = [motion, *(read_told(name, options, None) for name in others)]
+    scaled = [
+        item.after("scale", factor * item.acceleration, factor=factor)
+        for item in common_time(told, verticals=(2,))
+    ]
+    depth = None if options.depth is None else quantity(options.depth, "m", "m")
+    block = replace(body.blocks[0], depth=depth, round=options.round)
+    settings = {"restitution": options.restitution, "friction": _friction(options)}
+    response = simulate(block, GroundMotion(*scaled), **settings)
+    assert isinstance(response, SpatialResponse)
+    found = response.outcome
+    print(f"{options.record}: peaks {', '.join(f'{item.pga / GRAVITY:.4f}' for item in scaled)} g")
+    if found.overturned:
+        towards = math.degrees(found.fall_direction)
+        print(
+            f"overturned over {found.fell_over}, {towards:.0f}° from the first component towards the second, "
+            f"certain at {found.certain_time:.3f} s"
+        )
+    else:
+        print("not overturned")
+    print(f"largest tilt [rad]: {found.peak_tilt:.5f}")
+    print(f"turned about the vertical [°]: {math.degrees(found.turn):.2f}")
+    print(f"walked [mm]: {1000 * math.hypot(*found.walk):.1f}")
+    print(f"impacts: {found.impacts}")
+    if options.plot:
+        from rockfrag.figure_style import save_figure
+
+        save_figure(response.plot(motion.name), options.plot)
         print(f"drawn in {options.plot}")
     return 0
 
@@ -253,7 +309,6 @@ def _acceleration_flag(peak: float, body: "Body") -> str:
     """Say that the motion looks as if it were in another unit, or return an empty text."""
     from rockfrag.plausibility import peak_warning
     from rockfrag.system.system import uplift_ratios
-    from rockfrag.units import GRAVITY
 
     return peak_warning(peak, GRAVITY * min(uplift_ratios(body.system())))
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rockfrag import find_thresholds, overturns, simulate
+from rockfrag.cli import main
 from rockfrag.engines.spatial import (
     flip_rate,
     robustness,
@@ -18,6 +19,7 @@ from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.system import Block, Contact, System, as_system
 from rockfrag.system.system import box, cylinder
+from rockfrag.units import GRAVITY
 
 from .samples import DT, synthetic_motion
 
@@ -126,3 +128,34 @@ def test_planar_bodies_and_stacks_are_refused_in_one_sentence():
         run_in_space([as_system(Block(0.3, 1.0, 100.0))], [ground_motion(0, 0.3)])
     with pytest.raises(InputError, match="expected one body"):
         flip_rate(as_system(Block(0.3, 1.0, 100.0)), ground_motion(0, 0.3))
+
+
+@pytest.fixture
+def two_files(tmp_path):
+    """Both components of a synthetic motion as texts of seconds and g."""
+    motion = ground_motion(2, 0.6)
+    for name, item in (("x", motion.x), ("y", motion.y)):
+        table = np.column_stack([item.time, item.acceleration / GRAVITY])
+        np.savetxt(tmp_path / f"{name}.txt", table, "%.9f")
+    return [str(tmp_path / name) for name in ("x.txt", "y.txt")]
+
+
+def test_the_command_line_shakes_a_body_by_both_components(two_files, tmp_path, capsys):
+    first, second = two_files
+    case = ["simulate", first, "--unit", "g", "--second", second, "--body", "0.35", "1.2", "300"]
+    assert main([*case, "--depth", "35cm", "--plot", str(tmp_path / "box.svg")]) == 0
+    said = capsys.readouterr().out
+    motion = ground_motion(2, 0.6)
+    outcome = simulate(BLOCKS[0], GroundMotion(motion.x, motion.y)).outcome
+    assert f"overturned over {outcome.fell_over}" in said
+    assert "turned about the vertical" in said
+    assert (tmp_path / "box.svg").stat().st_size > 1000
+    assert main([*case, "--round"]) == 0
+    assert "overturned over rim" in capsys.readouterr().out
+    for wrong in (
+        [*case],
+        [*case, "--round", "--pedestal", "1", "1"],
+        [*case[:4], *case[6:], "--round"],
+    ):
+        assert main(wrong) == 2
+        assert capsys.readouterr().err.count("\n") == 1
