@@ -191,8 +191,8 @@ def _simulate_in_space(
     others = [name for name in (options.second, options.vertical) if name is not None]
     told = [motion, *(read_told(name, options, None) for name in others)]
     scaled = [
-        item.after("scale", factor * item.acceleration, factor=factor)
-        for item in common_time(told, verticals=(2,))
+        component.after("scale", factor * component.acceleration, factor=factor)
+        for component in common_time(told, verticals=(2,))
     ]
     depth = None if options.depth is None else quantity(options.depth, "m", "m")
     block = replace(body.blocks[0], depth=depth, round=options.round)
@@ -200,7 +200,9 @@ def _simulate_in_space(
     response = simulate(block, GroundMotion(*scaled), **settings)
     assert isinstance(response, SpatialResponse)
     found = response.outcome
-    print(f"{options.record}: peaks {', '.join(f'{item.pga / GRAVITY:.4f}' for item in scaled)} g")
+    print(
+        f"{options.record}: peaks {', '.join(f'{component.pga / GRAVITY:.4f}' for component in scaled)} g"
+    )
     if found.overturned:
         towards = math.degrees(found.fall_direction)
         print(
