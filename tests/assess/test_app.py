@@ -7,7 +7,6 @@ import re
 import shutil
 import subprocess
 import zlib
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,7 @@ from rockfrag.assess.answer import Assessment, assess_with
 from rockfrag.assess.app import computing, script
 from rockfrag.assess.app.commands import form_of
 from rockfrag.assess.app.writing import page_of, texts
+from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import make_request
 from rockfrag.assess.words import five_lines
 from rockfrag.cli import main
@@ -168,9 +168,8 @@ def test_the_page_says_what_assess_does_of_200_objects(tmp_path, motions):
 @needs_node
 def test_the_page_says_of_bodies_in_space_what_assess_does(tmp_path, motions):
     rng = random.Random(8)
-    few = replace(
-        motions, ground=motions.ground[:13], base=motions.base[:13], pairs=motions.pairs[:6]
-    )
+    ground = motions.ground[:13]
+    few = MotionSet(ground, ground, motions.pairs[:6], "made motions")
     forms = [some_form_in_space(rng) for _ in range(3)] + [
         {"width": "30 cm", "height": "1 m", "round": True, "measure": "PGA", "level": "0.3 g"}
     ]
