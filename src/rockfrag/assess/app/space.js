@@ -23,9 +23,12 @@ const inSpace = (data) => {
 
   // what is shaken in a plane, with what moves in space beside it
   function planOf({ statue, solid }, runs) {
+    // a round base rolls on its rim; what it is fixed to stands on another one
+    const rolling = ({ height }) => (height === statue.height ? both.rolling : NaN);
     const found = runs.filter(({ name }) => !(solid.round && name === "restitution")).map((run) => {
       const own = run.role === "moved" ? run.body.statue : statue;
       return { ...run, few: false, fewer: Boolean(run.role === "moved" || run.role === "mitigation"),
+        body: solid.round ? { ...run.body, rolling: rolling(run.body.statue) } : run.body, worst: solid.round,
         solid: run.name === "restitution" ? null : solidOf(run.body.statue, own, solid) };
     });
     const now = found[0];
@@ -34,8 +37,7 @@ const inSpace = (data) => {
       found.push(facing(-both.aside), facing(both.aside));
     }
     // of fewer motions the object as it stands, and in one plane along one component
-    if (runs.length > 1) found.push({ ...now, role: "before", fewer: true }, { ...now, role: "planar", solid: null });
-    for (const run of found) run.worst = solid.round && run.role !== "planar" && !run.solid;
+    if (runs.length > 1) found.push({ ...now, role: "before", fewer: true }, { ...now, role: "planar", solid: null, worst: false, body: runs[0].body });
     return found;
   }
 
@@ -73,14 +75,16 @@ const inSpace = (data) => {
       kept.forEach((m, i) => put("allowed", m, allowed.subarray(i * each, (i + 1) * each)));
       if (!kept.length) return found;
       const note = (m, told, i) => { for (const name of ["overturned", "rocked"]) put(name, m, told[name].subarray(i * each, (i + 1) * each)); };
-      if ((!run.solid || run.body.pedestal) && !run.worst) {
+      const planar = !run.solid || run.body.pedestal;
+      if (planar && !run.worst) {
         const told = ensemble.count(ensemble.bodyOf(run.body), kept.map(shaken), scales);
         kept.forEach((m, i) => note(m, told, i));
       }
-      for (const record of new Set(kept.map((m) => recordOf[m]))) {
-        const own = run.solid || run.worst ? scalesOf([record.first]) : null;
-        const told = run.solid ? solidOutcomes(run.solid, record, shaken, own.scales) : run.worst ? worstOutcomes(run.body, record, shaken, own) : null;
-        for (const m of [record.first, record.second]) if (told && kept.includes(m)) note(m, told, 0);
+      if (run.solid || run.worst) for (const record of new Set(kept.map((m) => recordOf[m]))) {
+        const own = scalesOf([record.first]), found = [];
+        if (run.solid) found.push(solidOutcomes(run.solid, record, shaken, own.scales));
+        if (planar && run.worst) found.push(worstOutcomes(run.body, record, shaken, own));
+        for (const m of [record.first, record.second]) if (kept.includes(m)) found.forEach((told) => note(m, told, 0));
       }
       return found;
     };
