@@ -1,8 +1,8 @@
 """How long a user of the assessment's page waits in Chromium, and of the command; and the memory of the page.
 
 ``python benchmarks/app.py`` writes the page with the default motions, opens it from its file and types a width,
-then a pedestal, a depth and a round base; ``make bench`` runs it too.  Seconds go from opening the file, and then from the key stroke; those
-of the command from its start to its end.
+then a pedestal, a depth and a round base; ``make bench`` runs it too.  Seconds go from opening the file, and then
+from the key stroke; those of the command from its start to its end.
 """
 
 import json
@@ -57,7 +57,7 @@ def app_seconds() -> dict[str, float]:
             time.sleep(0.5)
             _wait(browser)
             told = browser.run("({...document.body.dataset})")
-            found |= {f"{name}: {stage}": float(told[stage]) / 1000 for stage in STAGES if stage in told}
+            found |= {f"{name}: {stage}": float(told[stage]) / 1000 for stage in STAGES}
         family = psutil.Process(browser._process.pid).children(recursive=True)
         pages = [each for each in family if "--type=renderer" in each.cmdline()]
         found["memory of the page [MB]"] = max(each.memory_info().rss for each in pages) / 1e6

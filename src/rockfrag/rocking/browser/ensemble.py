@@ -72,12 +72,13 @@ def describe_shaken(call):
     if call.stacked == 0:
         geometry.fill_block(body, upper)
         call.centre[0], call.centre[1], call.centre[2] = upper.x, upper.y, upper.inertia
-        after_left = _ratio(call, upper, -1, call.above) if told else geometry.momentum_restitution(upper, -1)
-        after_right = _ratio(call, upper, 1, call.above) if told else geometry.momentum_restitution(upper, 1)
-        _fill_pivot(call.pivots[0], geometry.pivot_constants(upper, 1, after_left, g))
-        _fill_pivot(call.pivots[1], geometry.pivot_constants(upper, -1, after_right, g))
         note_frequencies(call, upper, g)
         for pivot in (1, -1):
+            after = geometry.momentum_restitution(upper, -pivot)
+            if told:
+                after = _ratio(call, upper, -pivot, call.above)
+            constants = geometry.pivot_constants(upper, pivot, after, g)
+            _fill_pivot(call.pivots[(1 - pivot) // 2], constants)
             _note_uplift(call, geometry.arm(upper, pivot))
             call.largest = min(call.largest, geometry.largest_restitution(upper, pivot))
         return
@@ -89,10 +90,7 @@ def describe_shaken(call):
     geometry.fill_pile(body, pile)
     whole = geometry.joined(pile)
     call.centre[0], call.centre[1], call.centre[2] = whole.x, whole.y, whole.inertia
-    _fill_law(call, body.after1r, lower, 1, call.below)
-    _fill_law(call, body.after1l, lower, -1, call.below)
-    _fill_law(call, body.after2r, pile.upper, 1, call.above)
-    _fill_law(call, body.after2l, pile.upper, -1, call.above)
+    _fill_laws(call, lower, pile.upper)
     note_frequencies_of_pile(call, pile, g)
     for pivot in (1, -1):
         _note_uplift(call, geometry.common_arm(pile, pivot))
@@ -107,10 +105,21 @@ def _ratio(call, shape, pivot, measured):
 
 
 @kernel
+def _fill_laws(call, lower, upper):
+    body = call.body[0]
+    if call.told == 0:
+        for after in (body.after1r, body.after1l, body.after2r, body.after2l):
+            after.law, after.value = momentum.NUMBER, 1.0
+        return
+    _fill_law(call, body.after1r, lower, 1, call.below)
+    _fill_law(call, body.after1l, lower, -1, call.below)
+    _fill_law(call, body.after2r, upper, 1, call.above)
+    _fill_law(call, body.after2l, upper, -1, call.above)
+
+
+@kernel
 def _fill_law(call, after, shape, pivot, measured):
-    after.law, after.value = momentum.NUMBER, 1.0
-    if call.told != 0:
-        after.law, after.value = position.tell(shape, _ratio(call, shape, pivot, measured), pivot)
+    after.law, after.value = position.tell(shape, _ratio(call, shape, pivot, measured), pivot)
 
 
 @kernel
