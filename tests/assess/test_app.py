@@ -47,10 +47,13 @@ begin({ data, modules: unpacked, samples: bytes(packed) }).then(() => {
       const parts = runs.map((_, run) => [[0, 10], [10, count]].map(([first, last]) => (
         { first, ...TASKS.count({ id, request, run, first, last }) })));
       const answer = TASKS.answer({ id, request, parts });
+      const at = runs.findIndex(({ role }) => role === "first");
+      const only = parts.map((part, i) => (i === at ? part : null));
+      const early = at < 0 ? null : plain(TASKS.answer({ id, request, parts: only }));
       const { place } = request, computed = Boolean(place.computed);
       const shaken = (motion) => [...building.floorMotion(place.floors[""], motion).samples];
       const floor = computed ? tools.motions.map(shaken) : [];
-      return { answer: plain(answer), lines: lines(request, answer), computed, floor };
+      return { answer: plain(answer), early, lines: lines(request, answer), computed, floor };
     } catch (error) {
       if (!error.field) return { failed: error.stack };
       const { en } = data.texts;
@@ -101,6 +104,10 @@ def check(found: Assessment, said) -> None:
                     name,
                     key,
                 )
+    assert (said["early"] is not None) == found.motions.both
+    if early := said["early"]:  # the first figures are final, and no more than is known
+        assert early["counts"] == answer["counts"]
+        assert (early["value"], early["probabilityValue"]) == (answer["value"], None)
     his = [(item.value, item.factor) for item in found.mitigations]
     mine = [
         (item["value"], np.nan if item["factor"] is None else item["factor"])

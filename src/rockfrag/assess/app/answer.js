@@ -6,6 +6,7 @@ const answer = (data) => {
 
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
+    if (run.role === "first") return [siteLevel(request)];
     const { levels, few, fewer } = tableOf(request), all = [...(run.fewer ? fewer : run.few ? few : levels)];
     const asked = siteLevel(request);
     if (!all.includes(asked)) all.push(asked);
@@ -84,7 +85,8 @@ const answer = (data) => {
   // what is known so far of runs whose outcomes are complete; `outcomes` by the place of the run in the plan, `earlier`
   // what was found when there were fewer
   function found(request, runs, outcomes, ensemble, earlier) {
-    const now = outcomes[0], level = siteLevel(request), hazard = hazardOf(request), { place } = request;
+    const early = !outcomes[0], now = outcomes[early ? runs.findIndex(({ role }) => role === "first") : 0];
+    const level = siteLevel(request), hazard = early ? null : hazardOf(request), { place } = request;
     const exact = request.measure === "PGA" && place.ground && !request.solid;
     const known = (role) => runs.map((run, i) => ({ ...run, outcomes: outcomes[i] })).filter((run) => run.role === role && run.outcomes);
     const target = hazard ? judge.riskTarget(hazard, 50) : judge.fractionTarget(level);

@@ -183,7 +183,8 @@ async function compute(run, told, only = Infinity) {
   const roles = plan.told.roles.slice(0, only), parts = roles.map(() => []);
   const starts = Array.from({ length: Math.ceil(count / PART) }, (_, i) => i * PART);
   const needed = (role) => roles.map(({ role: own }, i) => (own === role ? i : -1)).filter((i) => i >= 0);
-  const moments = [[0], [...needed("now"), ...needed("moved")], roles.map((_, i) => i)].slice(0, only === 1 ? 1 : 3);
+  const early = needed("first"), all = [[0], [...needed("now"), ...needed("moved")], roles.map((_, i) => i)];
+  const moments = [...(early.length ? [early] : []), ...all].slice(0, only === 1 ? 1 : 4);
   let done = 0, latest = 0, earlier = null;
   const ready = (i) => parts[i].length === starts.length;
   const answerNow = async () => {
@@ -195,9 +196,9 @@ async function compute(run, told, only = Infinity) {
     if (found.failure) return refused(found.failure);
     earlier = found.told;
     if (stage + 1 < latest) return; // a later one was asked for since, and may have come first
-    told({ run, found: found.told, last: stage === moments.length - 1 });
+    told({ run, found: found.told, early: moments[stage] === early, last: stage === moments.length - 1 });
   };
-  roles.forEach((_, i) => starts.forEach((first) => {
+  for (const i of new Set([...early, ...roles.keys()])) starts.forEach((first) => {
     const message = { kind: "count", id, request, run: i, first, last: Math.min(first + PART, count) };
     ask(run, message).then((part) => {
       if (part.failure) return refused(part.failure);
@@ -206,7 +207,7 @@ async function compute(run, told, only = Infinity) {
       if (run === current) progress(done, roles.length * starts.length);
       if (ready(i)) answerNow();
     });
-  }));
+  });
 }
 function refused(why) {
   find("blocked").textContent = say("failed", { why });
@@ -228,17 +229,18 @@ function show(told) {
   const { run: { request, since }, found } = told, said = linesOf(request, found);
   find("answer").classList.remove("stale");
   find("headline").textContent = find("bar").textContent = said.headline;
-  find("lines").replaceChildren(...linesAs(said, told.last));
+  find("lines").replaceChildren(...linesAs(said, told.last, !told.early));
   find("note").hidden = !request.place.computed;
   find("note").textContent = say("computed_floor");
-  document.body.dataset.stage = told.last ? "complete" : found.complete ? "interval" : "first";
-  document.body.dataset[document.body.dataset.stage] = String(performance.now() - since);
+  const stage = told.last ? "complete" : found.complete ? "interval" : "first", { dataset } = document.body;
+  if (stage !== dataset.stage) dataset[stage] = String(performance.now() - since);
+  dataset.stage = stage;
   find("keep").disabled = !told.last;
   document.dispatchEvent(new CustomEvent("answer", { detail: { found, last: told.last } }));
-  if (scene.of !== told.run) scene.drawn = draw(told);
+  if (!told.early && scene.of !== told.run) scene.drawn = draw(told);
 }
-function linesAs(said, helps = true) {
-  const lines = [["Result", said.result], ["Risk", said.risk], ["Position", said.position], ["What helps", helps ? said.helps : ""], ["How sure", said.sure]];
+function linesAs(said, helps = true, risk = true) {
+  const lines = [["Result", said.result], ["Risk", risk ? said.risk : ""], ["Position", said.position], ["What helps", helps ? said.helps : ""], ["How sure", said.sure]];
   return lines.filter(([, text]) => text).flatMap(([id, text]) => [make("dt", { textContent: say(id) }), make("dd", { textContent: text })]);
 }
 // what was typed, in a line

@@ -36,8 +36,9 @@ const inSpace = (data) => {
       const facing = (by) => ({ ...now, role: "moved", name: "facing", fewer: true, solid: solidOf(statue, statue, { ...solid, facing: solid.facing + by }) });
       found.push(facing(-both.aside), facing(both.aside));
     }
-    // of fewer motions the object as it stands, and in one plane along one component
-    if (runs.length > 1) found.push({ ...now, role: "before", fewer: true }, { ...now, role: "planar", solid: null, worst: false, body: runs[0].body });
+    // of fewer motions the object as it stands, in one plane along one component, and at the site's level alone, which comes first
+    if (runs.length > 1) found.push({ ...now, role: "before", fewer: true }, { ...now, role: "planar", solid: null, worst: false, body: runs[0].body },
+      { ...now, role: "first" });
     return found;
   }
 
