@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import cache
 from pathlib import Path
 
 import psutil
@@ -43,6 +44,7 @@ TYPE = """for (const [name, text] of Object.entries({fields})) {{
 }}"""
 
 
+@cache
 def app_seconds() -> dict[str, float]:
     """Return the seconds until each stage, of the first answer and of a further one, and the memory [MB]."""
     if BROWSERS["chromium"][1] is None:
