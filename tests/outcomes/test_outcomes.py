@@ -48,6 +48,7 @@ def test_tables_are_tidy():
 def test_what_no_engine_told_is_nan():
     bodies = shaken().table("bodies")
     assert bodies["turn_rad"].isna().all()
+    assert (bodies["fell_over"] == "").all()
 
 
 def test_answers_of_several_engines_are_put_together():

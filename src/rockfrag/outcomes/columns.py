@@ -43,8 +43,8 @@ class Column:
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """Type of its numbers."""
-        return np.asarray(self.empty).dtype
+        """Type of its values; words are objects, as numpy cuts longer ones off otherwise."""
+        return np.dtype(object) if isinstance(self.empty, str) else np.asarray(self.empty).dtype
 
 
 def column(table: Table, unit: str, meaning: str, empty: Any) -> Any:

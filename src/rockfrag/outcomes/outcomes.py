@@ -17,6 +17,7 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Whole = NDArray[np.int64]
 Small = NDArray[np.int8]
+Words = NDArray[np.object_]
 
 NOT_TOLD = math.nan
 """Where an engine does not tell a number."""
@@ -44,7 +45,7 @@ class Outcomes:
         Of cases, see :func:`columns`.
     parted_contact, several_modes, unstable_distance, minimum_gravity_ratio, lost_contact
         Likewise.
-    peak_rotation, peak_velocity, turn, walk, fall_direction
+    peak_rotation, peak_velocity, turn, walk, fall_direction, fell_over
         Of bodies.
     slip, peak_slip, friction_demand, least_normal_force
         Of contacts.
@@ -127,6 +128,12 @@ class Outcomes:
         "rad",
         "Direction of the fall from x towards y; NaN without a fall or not told.",
         NOT_TOLD,
+    )
+    fell_over: Words = column(
+        "bodies",
+        "",
+        "Edge or vertex (from 1) over which it fell, rim, or flight; empty without a fall or not told.",
+        "",
     )
     slip: Floats = column(
         "contacts",

@@ -23,7 +23,7 @@ from rockfrag.engines.steps import STEP, step_count
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.keywords import named_keywords
-from rockfrag.outcomes.columns import Table
+from rockfrag.outcomes.columns import Column, Table
 from rockfrag.outcomes.outcomes import columns as columns_of
 from rockfrag.rocking.ensemble import Options, prepared, shaken
 from rockfrag.rocking.inputs import MotionLike
@@ -109,9 +109,7 @@ def stream_overturns(
     cases = prepared(bodies, motions, dt, scales, options)
     chosen = [known[name] for name in known if name in columns]
     schema = pa.schema(
-        PLACE
-        | WITHIN[table]
-        | {quantity.title: pa.from_numpy_dtype(quantity.dtype) for quantity in chosen}
+        PLACE | WITHIN[table] | {quantity.title: _type_of(quantity) for quantity in chosen}
     )
     total = len(cases.systems) * cases.scales.size
     done = 0
@@ -133,6 +131,11 @@ def stream_overturns(
             if progress is not None:
                 progress(done, total)
     return total
+
+
+def _type_of(quantity: Column) -> pa.DataType:
+    """Type of a column in the file."""
+    return pa.string() if quantity.dtype == object else pa.from_numpy_dtype(quantity.dtype)
 
 
 @contextmanager

@@ -1,6 +1,7 @@
 """What a user asks of the engine in space."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from rockfrag import find_thresholds, overturns, simulate
@@ -17,6 +18,7 @@ from rockfrag.engines.spatial.outcome import run_case
 from rockfrag.errors import InputError
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
+from rockfrag.rocking import stream_overturns
 from rockfrag.system import Block, Contact, System, as_system
 from rockfrag.system.system import box, cylinder
 from rockfrag.units import GRAVITY
@@ -42,11 +44,28 @@ def test_outcomes_do_not_depend_on_threads_or_on_what_else_is_asked():
     scales = [0.1, 0.35, 0.6]
     first = run_in_space([BOX, ROUND], motions, scales)
     second = run_in_space([ROUND, BOX], motions[::-1], scales[::-1], threads=2)
-    for name in ("overturned", "peak_rotation", "turn", "walk", "impacts"):
+    for name in ("overturned", "peak_rotation", "turn", "walk", "impacts", "fell_over"):
         other = np.flip(getattr(second, name), axis=(0, 1, 2))
         np.testing.assert_array_equal(getattr(first, name), other)
     assert 0 < first.overturned.sum() < first.overturned.size
     assert set(first.table("bodies").columns) >= {"turn_rad", "walk_m", "fall_direction_rad"}
+
+
+def test_outcomes_say_over_which_edge_or_vertex_each_body_fell_and_a_file_keeps_it(tmp_path):
+    motions, scales = [ground_motion(seed, 1.0) for seed in range(3)], [0.1, 0.6]
+    table = run_in_space([BOX, ROUND], motions, scales).table("bodies")
+    fell = table["fell_over"]
+    alone = [
+        simulate_in_space((BOX, ROUND)[i], motions[j], scale).outcome.fell_over
+        for i, j, scale in zip(table["system"], table["motion"], table["scale"], strict=True)
+    ]
+    assert fell.tolist() == alone
+    assert (fell[table["system"] == 0].str.match(r"edge \d-\d$|vertex \d$|$")).all()
+    assert set(fell[table["system"] == 1]) == {"", "rim"}
+    assert ((fell == "") == table["fall_direction_rad"].isna()).all()
+    file = tmp_path / "bodies.parquet"
+    stream_overturns([BOX, ROUND], motions, None, scales, file, table="bodies")
+    assert pd.read_parquet(file)["fell_over"].tolist() == alone
 
 
 def test_a_round_body_falls_before_a_box_of_its_slenderness():

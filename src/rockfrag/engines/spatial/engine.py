@@ -160,6 +160,7 @@ def _write(
     result.turn[body] = found.turn
     result.walk[body] = math.hypot(*found.walk)
     result.fall_direction[body] = found.fall_direction
+    result.fell_over[body] = found.fell_over
 
 
 def _check(found: Support) -> None:
