@@ -80,12 +80,6 @@ def make_parser() -> argparse.ArgumentParser:
     command.add_argument(
         "--vertical", metavar="RECORD", help="file with the vertical component of the record"
     )
-    command.add_argument(
-        "--second", metavar="RECORD",
-        help="file with the second horizontal component: the body then moves in space, with --depth or --round",
-    )  # fmt: skip
-    command.add_argument("--depth", metavar="SIZE", help="side of the base across its width")
-    command.add_argument("--round", action="store_true", help="the base is round")
     command.add_argument("--plot", metavar="IMAGE", help="draw the response, as .png or .svg")
     command.add_argument(
         "--all-contact-events", action="store_true", help="print the whole history of rocking modes"
@@ -120,6 +114,12 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
         "--pedestal", nargs="+", action="append", metavar="SIZE",
         help="the block it stands on, in the same way; again for what that stands on",
     )  # fmt: skip
+    parser.add_argument(
+        "--second", metavar="RECORD",
+        help="file with the second horizontal component: the body then moves in space, with --depth or --round",
+    )  # fmt: skip
+    parser.add_argument("--depth", metavar="SIZE", help="side of the base across its width")
+    parser.add_argument("--round", action="store_true", help="the base is round")
     parser.add_argument("--unit", help="unit of a record that does not state its own")
     parser.add_argument("--dt", type=float, help="sampling interval [s] of a record without one")
     parser.add_argument("--channel", help="channel, where the record has several")
@@ -142,8 +142,6 @@ def _simulate(options: argparse.Namespace) -> int:
     factor = acceleration.max() / motion.acceleration.max()
     if options.second is not None:
         return _simulate_in_space(options, body, motion, factor)
-    if options.depth is not None or options.round:
-        raise InputError("--depth and --round are of a body in space; give --second as well.")
     up = _vertical(options, factor)
     restitution = options.restitution
     if restitution is not None and options.pedestal:
@@ -182,20 +180,14 @@ def _simulate_in_space(
 ) -> int:
     """Shake one body by both horizontal components of a record, and the vertical one if it is told."""
     from rockfrag.engines.spatial import SpatialResponse
-    from rockfrag.motions.time_base import common_time
     from rockfrag.records.ground_motion import GroundMotion
     from rockfrag.rocking import simulate
 
-    if options.pedestal:
-        raise InputError("--second: a body in space stands on the ground; leave out --pedestal.")
-    others = [name for name in (options.second, options.vertical) if name is not None]
-    told = [motion, *(read_told(name, options, None) for name in others)]
+    block, components = _case_in_space(options, body, motion, options.vertical)
     scaled = [
         component.after("scale", factor * component.acceleration, factor=factor)
-        for component in common_time(told, verticals=(2,))
+        for component in components
     ]
-    depth = None if options.depth is None else quantity(options.depth, "m", "m")
-    block = replace(body.blocks[0], depth=depth, round=options.round)
     settings = {"restitution": options.restitution, "friction": _friction(options)}
     response = simulate(block, GroundMotion(*scaled), **settings)
     assert isinstance(response, SpatialResponse)
@@ -265,12 +257,41 @@ def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
     """Return the body and the motion that the options tell."""
     from rockfrag.system.blocks import stacked
 
+    _check_space(options)
     below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
     body = stacked([*below, _block("--body", options.body)])
     return body, read_told(options.record, options, options.channel)
 
 
+def _check_space(options: argparse.Namespace) -> None:
+    """Refuse options of a body in space that do not fit together."""
+    based = options.depth is not None or options.round
+    if based and options.second is None:
+        raise InputError("--depth and --round are of a body in space; give --second as well.")
+    if options.second is not None and not based:
+        raise InputError("--second: a body in space has --depth or is --round; give either.")
+    if options.second is not None and options.pedestal:
+        raise InputError("--second: a body in space stands on the ground; leave out --pedestal.")
+
+
+def _case_in_space(
+    options: argparse.Namespace, body: "Body", first: "Motion", vertical: str | None = None
+) -> "tuple[Block, list[Motion]]":
+    """Return the body in space and the components of its motion, at the same times, that the options tell."""
+    from rockfrag.motions.time_base import common_time
+
+    others = [name for name in (options.second, vertical) if name is not None]
+    told = [first, *(read_told(name, options, None) for name in others)]
+    try:
+        depth = None if options.depth is None else quantity(options.depth, "m", "m")
+    except InputError as error:
+        raise InputError(f"--depth: {error}") from None
+    block = replace(body.blocks[0], depth=depth, round=options.round)
+    return block, common_time(told, verticals=(2,))
+
+
 def _play(options: argparse.Namespace) -> int:
+    from rockfrag.records.ground_motion import GroundMotion
     from rockfrag.report.play_page import write_play_page
 
     if not options.output.endswith(".html"):
@@ -278,7 +299,11 @@ def _play(options: argparse.Namespace) -> int:
     body, motion = _case(options)
     if quality_flag := _acceleration_flag(motion.pga, body):
         print(f"warning: {options.record}: {quality_flag}", file=sys.stderr)
-    write_play_page(body, motion, options.output)
+    if options.second is None:
+        write_play_page(body, motion, options.output)
+    else:
+        block, components = _case_in_space(options, body, motion)
+        write_play_page(block, GroundMotion(*components), options.output)
     print(f"open {options.output} in a browser; it needs no network")
     return 0
 

@@ -1,5 +1,7 @@
 """A study of bodies in space: medians under both components over those of planar rocking."""
 
+import base64
+import json
 import math
 from pathlib import Path
 
@@ -7,6 +9,7 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
+from rockfrag.report.space_page import _live
 from rockfrag.rocking.space_medians import PLANAR, median
 from rockfrag.stages import space as stage
 from rockfrag.study.loading import any_study
@@ -68,6 +71,22 @@ def test_a_study_of_bodies_in_space_gives_medians_and_a_report(tmp_path, monkeyp
     np.testing.assert_array_equal(fractions[lossless]["space"], rolls["space"])
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "Base round: in space" in page
+    live = json.loads(page.split('id="live-data">')[1].split("</script>")[0])
+    assert [body["name"] for body in live["bodies"]] == [
+        "square, height over width 4, 1 m",
+        "round, height over width 4, 1 m",
+    ]
+    assert live["motions"]
+    for shown, pair in zip(live["motions"], pairs, strict=False):
+        for text, component in zip(shown["samples"], pair, strict=True):
+            np.testing.assert_array_equal(
+                np.frombuffer(base64.b64decode(text)), component.acceleration
+            )
+
+
+def test_bodies_whose_base_differs_from_record_to_record_are_not_shown_live(made_motions):
+    study = any_study(SMALL | {"space": SMALL["space"] | {"base_spread": 0.01}}, "space.yaml")
+    assert _live(study, made_motions(2)) == ""
 
 
 @pytest.fixture

@@ -7,6 +7,7 @@ rule space:
         STUDY.files,
     output:
         table("medians", "fractions"),
+        motions=read("motions/ground"),
     log:
         f"{RESULTS}/logs/space.log",
     conda:
@@ -26,7 +27,7 @@ rule space:
 rule space_report:
     """Draw the figures and write the page."""
     input:
-        read("medians", "fractions"),
+        read("medians", "fractions", "motions/ground"),
     output:
         figures=report(directory(f"{RESULTS}/figures"), patterns=["{figure}.svg"]),
         page=report(f"{RESULTS}/report.html", category="Report"),

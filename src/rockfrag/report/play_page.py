@@ -4,50 +4,59 @@ import os
 from collections.abc import Sequence
 from importlib.metadata import version
 
+import numpy as np
+from markupsafe import Markup
+
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
+from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
-from rockfrag.report.live import AMPLITUDES_G, live_kernel, swept
+from rockfrag.report.live import AMPLITUDES_G, live_kernel, space
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding
 from rockfrag.report.wording import counted, number, sentence
-from rockfrag.rocking import simulate
+from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import in_page
 from rockfrag.system.blocks import SystemLike, as_system
+from rockfrag.system.body import Circle, RigidBody
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
-_STEP = 100 * (AMPLITUDES_G[1] / AMPLITUDES_G[0] - 1)
-
 MOST_SAMPLES = 20_000
-"""Samples of a record for which the page stays below 400 kB."""
+"""Times of a record for which the page stays below 400 kB, and below 700 kB with two components."""
 
 
-def write_play_page(body: SystemLike, motion: Motion, path: str | os.PathLike[str]) -> None:
-    """Write the page of at most two blocks that rock under a motion of at most ``MOST_SAMPLES``."""
+def write_play_page(
+    body: SystemLike, motion: Motion | GroundMotion, path: str | os.PathLike[str]
+) -> None:
+    """Write the page of a body that rocks under a motion of at most ``MOST_SAMPLES``.
+
+    It is at most two blocks under one component, or a body in space under both.
+    """
     system = as_system(body)
-    if not in_page(system):
-        raise InputError(
-            "--pedestal: a page simulates two bodies on each other at most; rockfrag simulate takes more."
-        )
-    samples = motion.acceleration.size
-    if samples > MOST_SAMPLES:
-        raise InputError(
-            f"{motion.name}: {samples} samples are more than the {MOST_SAMPLES} that a page carries; cut the "
-            "record or give it a longer sampling interval."
-        )
-    if motion.pga <= 0:
-        raise InputError(f"{motion.name}: the record is zero throughout, so nothing would rock.")
-    sizes = [f"{100 * body.width:.3g} × {100 * body.height:.3g} cm" for body in system.bodies]
-    name = " on ".join(reversed(sizes))
-    outcomes = swept({name: system}, [motion])
+    samples = _samples(motion)
+    name = " on ".join(reversed([_sizes(each) for each in system.bodies]))
+    if isinstance(motion, GroundMotion):
+        amplitudes, peak = np.array(space.AMPLITUDES_G), space.peak_of(motion)
+        live = space.live_in_space({name: space.Standing(system)}, [motion])
+        rests_on = ["A peak is the geometric mean of those of both components; nothing slides."]
+    else:
+        amplitudes, peak, rests_on = np.array(AMPLITUDES_G), motion.pga, []
+        live = _in_plane(name, system, motion)
+    # at every amplitude, and last as recorded
+    found = overturns([system], [motion], scales=np.append(amplitudes * GRAVITY / peak, 1.0))
+    *fell, recorded = found.overturned.ravel().tolist()
     page = render(
         title=f"{name} under {motion.name}",
         lead=f"{counted(samples, 'sample')} of {motion.dt:.4g} s, as recorded with a peak of "
-        f"{number(motion.pga / GRAVITY, 3)} g.",
+        f"{number(peak / GRAVITY, 3)} g.",
         answer=Answer(
             asked="How strong must this motion be to overturn it?",
-            sentences=[_strength(outcomes["overturned"].tolist()), _recorded(system, motion)],
+            sentences=[
+                _strength(amplitudes.tolist(), fell),
+                _recorded(recorded, int(found.impacts.flat[-1])),
+            ],
+            rests_on=rests_on,
         ),
         sections=[],
         pictures={},
@@ -56,37 +65,70 @@ def write_play_page(body: SystemLike, motion: Motion, path: str | os.PathLike[st
             "Body": repr(body),
             "Source": f"rockfrag {version('rockfrag')}",
         },
-        live=live_kernel({name: system}, [motion]),
+        live=live,
     )
     write_text(page, path)
 
 
-def _strength(fell: Sequence[bool]) -> Finding:
-    """Say which of the amplitudes tried overturn."""
-    outcomes = list(fell)
-    tried = f"amplitudes from {AMPLITUDES_G[0]:g} to {AMPLITUDES_G[-1]:g} g, {_STEP:.1f} % apart"
-    if not any(outcomes):
+def _samples(motion: Motion | GroundMotion) -> int:
+    """Count the times of a motion that a page can show."""
+    both = (motion.x, motion.y) if isinstance(motion, GroundMotion) else (motion,)
+    for component in both:
+        if component is not None and component.pga <= 0:
+            raise InputError(
+                f"{component.name}: the record is zero throughout, so there is nothing to scale."
+            )
+    samples = both[0].acceleration.size
+    if samples > MOST_SAMPLES:
+        raise InputError(
+            f"{motion.name}: {samples} samples are more than the {MOST_SAMPLES} that a page carries; cut the "
+            "record or give it a longer sampling interval."
+        )
+    return samples
+
+
+def _sizes(body: RigidBody) -> str:
+    """Width, depth of a body in space, and height."""
+    sides = [body.width, body.height]
+    if not body.planar and not isinstance(body.base, Circle):
+        sides.insert(1, body.seen_along(90.0).width)
+    before = "round, " if isinstance(body.base, Circle) else ""
+    return f"{before}{' × '.join(f'{100 * side:.3g}' for side in sides)} cm"
+
+
+def _in_plane(name: str, system: System, motion: Motion) -> Markup:
+    if not in_page(system):
+        raise InputError(
+            "--pedestal: a page simulates two bodies on each other at most; rockfrag simulate takes more."
+        )
+    return live_kernel({name: system}, [motion])
+
+
+def _strength(amplitudes: Sequence[float], fell: Sequence[bool]) -> Finding:
+    """Say which of the amplitudes tried [g] overturn."""
+    apart = 100 * (amplitudes[1] / amplitudes[0] - 1)
+    tried = f"amplitudes from {amplitudes[0]:g} to {amplitudes[-1]:g} g, {apart:.1f} % apart"
+    if not any(fell):
         return Finding("It does not overturn", f"It survives all {tried}.")
-    first = outcomes.index(True)
-    later = len(outcomes) - first - sum(outcomes[first:])
+    first = fell.index(True)
+    later = len(fell) - first - sum(fell[first:])
     resurrections = (
         f" {later} stronger {'one is' if later == 1 else 'ones are'} survived again: the response is not monotone."
         if later
         else " All stronger ones overturn it too."
     )
     return Finding(
-        f"It first overturns at a peak of {number(AMPLITUDES_G[first], 3)} g",
+        f"It first overturns at a peak of {number(amplitudes[first], 3)} g",
         f"{sentence(tried)} were tried.{resurrections}",
     )
 
 
-def _recorded(system: System, motion: Motion) -> Finding:
+def _recorded(overturned: bool, impacts: int) -> Finding:
     """Say what the motion does as it was recorded."""
-    response = simulate(system, motion)
-    words = "overturns it" if response.overturned else "does not overturn it"
+    words = "overturns it" if overturned else "does not overturn it"
     return Finding(
         f"The motion as recorded {words}",
-        f"It has {counted(response.impacts, 'impact')} before."
-        if response.overturned
-        else f"It rocks with {counted(response.impacts, 'impact')}.",
+        f"It has {counted(impacts, 'impact')} before its fall is certain."
+        if overturned
+        else f"It rocks with {counted(impacts, 'impact')}.",
     )

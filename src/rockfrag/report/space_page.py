@@ -1,17 +1,21 @@
 """The report of a study of bodies in space: medians over planar ones, and what they come from."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
 from markupsafe import Markup
 
+from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import Motion
 from rockfrag.report.figures.space import WORDS, fractions_figure, ratios_figure, words_of
+from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.provenance import provenance
 from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import counted, estimates
-from rockfrag.rocking.space_medians import LOSS, PLANAR
+from rockfrag.rocking.space_medians import LOSS, PLANAR, body_of
 from rockfrag.study.space import SpaceStudy
 
 _RATIOS = (
@@ -24,9 +28,16 @@ _FRACTIONS = (
 
 
 def write_space_report(
-    study: SpaceStudy, medians: pd.DataFrame, fractions: pd.DataFrame, folder: Path
+    study: SpaceStudy,
+    medians: pd.DataFrame,
+    fractions: pd.DataFrame,
+    ground: Sequence[Motion],
+    folder: Path,
 ) -> None:
-    """Draw the figures of a study of bodies in space and write its page, ``report.html``."""
+    """Draw the figures of a study of bodies in space and write its page, ``report.html``.
+
+    ``ground`` are the components of its records, both of each in turn.
+    """
     ratios = FigureSpec("ratios", _RATIOS, _RATIOS, lambda: ratios_figure(medians))
     levels = FigureSpec("fractions", _FRACTIONS, _FRACTIONS, lambda: fractions_figure(fractions))
     findings = [_finding(base, medians) for base in study.bases]
@@ -55,10 +66,24 @@ def write_space_report(
         answer,
         sections,
         title=study.title,
-        lead=f"{counted(len(fractions.groupby(['base', 'slenderness', 'height_m'])), 'body', 'bodies')} under "
+        lead=f"{counted(len(study.bodies), 'body', 'bodies')} under "
         f"both components of {records} at {study.sweep.levels} levels.",
         provenance=provenance(study, {}),
+        live=_live(study, ground),
     )
+
+
+def _live(study: SpaceStudy, ground: Sequence[Motion]) -> Markup:
+    """Bodies of the study under its first records, live; nothing where a body has another base for each record."""
+    if study.sweep.spread > 0:
+        return Markup()
+    bodies = {
+        f"{base}, height over width {slenderness:g}, {height:g} m": Standing(
+            body_of(base, slenderness, height).system()
+        )
+        for base, slenderness, height in study.bodies
+    }
+    return live_in_space(bodies, list(map(GroundMotion, ground[::2], ground[1::2])))
 
 
 def _finding(base: str, medians: pd.DataFrame) -> Finding:

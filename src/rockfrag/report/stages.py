@@ -62,6 +62,7 @@ def space_report(job: Job[SpaceStudy]) -> Results:
     """Draw the figures of a study of bodies in space and write its page."""
     from rockfrag.report.space_page import write_space_report
 
-    write_space_report(job.study, job.table("medians"), job.table("fractions"), job.folder)
+    tables = job.table("medians"), job.table("fractions")
+    write_space_report(job.study, *tables, job.motions("motions/ground"), job.folder)
     job.log.info("%s", job.folder / "report.html")
     yield from ()

@@ -18,20 +18,16 @@ TABLES = ("medians", "fractions")
 
 
 def run(job: Job[SpaceStudy]) -> Results:
-    """Yield the medians of every body, and the fractions toppled at every level."""
+    """Yield the components of every pair, the medians of every body, and the fractions toppled at every level."""
     study = job.study
     pairs, earthquakes = own_pairs(study) if study.every is None else wide_set(study.every)
     job.log.info("%d records of %d earthquakes", len(pairs), len(set(earthquakes)))
+    yield "motions/ground", [component for pair in pairs for component in pair]
     found: list[tuple[pd.DataFrame, pd.DataFrame]] = []
-    for base in study.bases:
-        for slenderness in study.slenderness:
-            for height in study.heights_m:
-                about = (base, slenderness, height)
-                options = {"seed": study.seed, "threads": job.threads}
-                found.append(
-                    medians(base, slenderness, height, pairs, earthquakes, study.sweep, **options)
-                )
-                job.log.info("%s, H/B %g, %g m", *about)
+    for about in study.bodies:
+        arguments = (*about, pairs, earthquakes, study.sweep)
+        found.append(medians(*arguments, seed=study.seed, threads=job.threads))
+        job.log.info("%s, H/B %g, %g m", *about)
     for k, name in enumerate(TABLES):
         yield name, pd.concat([tables[k] for tables in found], ignore_index=True)
 

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -34,10 +35,14 @@ class SpaceStudy(Heading):
     sweep: Sweep  # Levels and directions
 
     @property
+    def bodies(self) -> list[tuple[str, float, float]]:
+        """Base, height over the narrow side, and height [m] of every body."""
+        return list(product(self.bases, self.slenderness, self.heights_m))
+
+    @property
     def summary(self) -> str:
         """What it computes, in a line."""
-        count = len(self.bases) * len(self.slenderness) * len(self.heights_m)
-        return f"{count} bodies in space and in the plane"
+        return f"{len(self.bodies)} bodies in space and in the plane"
 
     @property
     def files(self) -> list[str]:

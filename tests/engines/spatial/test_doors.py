@@ -18,6 +18,8 @@ from rockfrag.engines.spatial.outcome import run_case
 from rockfrag.errors import InputError
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
+from rockfrag.report.live.space import AMPLITUDES_G
+from rockfrag.report.wording import number
 from rockfrag.rocking import stream_overturns
 from rockfrag.system import Block, Contact, System, as_system
 from rockfrag.system.system import box, cylinder
@@ -178,3 +180,42 @@ def test_the_command_line_shakes_a_body_by_both_components(two_files, tmp_path, 
     ):
         assert main(wrong) == 2
         assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_the_played_page_shows_a_body_in_space_and_says_when_it_falls(two_files, tmp_path, capsys):
+    first, second = two_files
+    page = tmp_path / "page.html"
+    case = ["play", first, "--unit", "g", "--second", second, "--body", "0.35", "1.2", "300"]
+    output = ["--output", str(page)]
+    motion = ground_motion(2, 0.6)
+    ground = GroundMotion(motion.x, motion.y)
+    levels = AMPLITUDES_G * np.array(GRAVITY / np.sqrt(motion.x.pga * motion.y.pga))
+    for base, block, name in (
+        (["--depth", "45cm"], Block(0.35, 1.2, 300.0, depth=0.45), "35 × 45 × 120 cm"),
+        (["--round"], Block(0.35, 1.2, 300.0, round=True), "round, 35 × 120 cm"),
+    ):
+        assert main([*case, *base, *output]) == 0
+        text = page.read_text(encoding="utf-8")
+        fell = run_in_space([block], [ground], levels).overturned.ravel()
+        assert f"<h1>{name} under x</h1>" in text
+        assert f"first overturns at a peak of {number(AMPLITUDES_G[fell.argmax()], 3)} g" in text
+        words = "overturns it" if simulate(block, ground).overturned else "does not overturn it"
+        assert f"as recorded {words}" in text
+        assert page.stat().st_size < 700_000
+        assert 'src="http' not in text
+    page.unlink()
+    capsys.readouterr()
+    np.savetxt(tmp_path / "still.txt", np.column_stack([motion.x.time, 0 * motion.x.time]))
+    for wrong, word in (
+        ([*case], "--depth or is --round"),
+        ([*case, "--depth", "wide"], "--depth: expected a length"),
+        ([*case, "--round", "--pedestal", "1", "1"], "leave out --pedestal"),
+        ([*case[:4], *case[6:], "--round"], "give --second"),
+        ([*case, "--round", "--second", str(tmp_path / "still.txt")], "zero throughout"),
+        ([*case, "--round", "--second", "absent.txt"], "absent.txt"),
+    ):
+        assert main([*wrong, *output]) == 2
+        said = capsys.readouterr().err
+        assert word in said
+        assert said.count("\n") == 1
+    assert not page.exists()

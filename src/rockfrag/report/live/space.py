@@ -68,6 +68,12 @@ def live_in_space(
     )
 
 
+def peak_of(motion: GroundMotion) -> float:
+    """Peak of a motion [m/s²]: of its horizontal components, in the geometric mean."""
+    level = [component.pga for component in (motion.x, motion.y) if component is not None]
+    return float(np.prod(level) ** (1 / len(level)))
+
+
 def _body(name: str, standing: Standing) -> dict[str, Any]:
     """A body as the driver takes it, and its sizes where it is a box or a cylinder."""
     body, below = standing.system.bodies[0], standing.pedestal
@@ -109,13 +115,11 @@ def _sizes(body: RigidBody) -> dict[str, Any] | None:
 
 
 def _motion(motion: GroundMotion) -> dict[str, Any]:
-    level = [component for component in (motion.x, motion.y) if component is not None]
-    each = [*level, *([] if motion.z is None else [motion.z])]
+    each = [component for component in (motion.x, motion.y, motion.z) if component is not None]
     return {
         "name": motion.name,
         "dt": motion.dt,
-        "peak_g": float(np.prod([component.pga for component in level]) ** (1 / len(level)))
-        / GRAVITY,
+        "peak_g": peak_of(motion) / GRAVITY,
         "samples": [
             _text(np.asarray(component.acceleration, "<f8").tobytes()) for component in each
         ],
