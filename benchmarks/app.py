@@ -1,8 +1,8 @@
 """How long a user of the assessment's page waits in Chromium, and of the command; and the memory of the page.
 
 ``python benchmarks/app.py`` writes the page with the default motions, opens it from its file and types a width,
-then a pedestal; ``make bench`` runs it too.  Seconds go from opening the file, and then from the key stroke; those
-of the command from its start to its end.
+then a pedestal, a depth and a round base; ``make bench`` runs it too.  Seconds go from opening the file, and then
+from the key stroke; those of the command from its start to its end.
 """
 
 import json
@@ -20,20 +20,25 @@ sys.path.insert(0, str(ROOT / "tests"))
 from end_to_end.browsers import BROWSERS, Chromium  # noqa: E402
 from rockfrag.cli import main  # noqa: E402
 
-STAGES = ("first", "complete")
-"""The first figures, and all of the answer."""
+STAGES = ("first", "interval", "complete")
+"""The first figures, with their interval, and all of the answer."""
 
 OBJECT = ("--width=30cm", "--height=1.2m", "--pga=0.4g", "--return-period=475")
+PEDESTAL = {"pedestal_width": "50 cm", "pedestal_height": "90 cm"}
 WAITS = {
     "first answer": {},
     "further answer": {"width": "30 cm"},
-    "on a pedestal": {"pedestal_width": "50 cm", "pedestal_height": "90 cm"},
+    "on a pedestal": PEDESTAL,
+    "in space": dict.fromkeys(PEDESTAL, "") | {"depth": "40 cm"},
+    "round": {"depth": "", "round": True},
+    "round on a pedestal": PEDESTAL,
 }
 """What is typed before each answer."""
 
 TYPE = """for (const [name, text] of Object.entries({fields})) {{
   const field = document.getElementById(`field-${{name}}`);
-  field.value = text;
+  if (text === true) field.checked = true;
+  else field.value = text;
   field.dispatchEvent(new Event("input"));
 }}"""
 
@@ -61,6 +66,9 @@ def app_seconds() -> dict[str, float]:
         for name, more in (
             ("command", []),
             ("command, on a pedestal", ["--pedestal", "50cm", "90cm"]),
+            ("command, in space", ["--depth", "40cm"]),
+            ("command, round", ["--round"]),
+            ("command, round on a pedestal", ["--round", "--pedestal", "50cm", "90cm"]),
         ):
             start = time.perf_counter()
             subprocess.run([*command, *more], cwd=ROOT, capture_output=True, check=True)

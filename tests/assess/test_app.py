@@ -122,12 +122,11 @@ def check_words(found: Assessment, said) -> None:
 
 
 def some_form_in_space(rng: random.Random) -> dict[str, str]:
-    """A random box or round object, without a measured restitution; boxes on pedestals too."""
+    """A random box or round object, without a measured restitution, on pedestals too."""
     form = some_form(rng)
     form.pop("restitution", None)
     if rng.random() < 0.3:
-        pedestal = [key for key in form if key.startswith("pedestal")]
-        return {key: value for key, value in form.items() if key not in pedestal} | {"round": True}
+        return form | {"round": True}
     form["depth"] = f"{float(form['width'].split()[0]) * rng.uniform(0.6, 2):.3g} cm"
     if rng.random() < 0.5:
         form["facing"] = f"{rng.uniform(0, 360):.1f}"
@@ -168,12 +167,37 @@ def test_the_page_says_what_assess_does_of_200_objects(tmp_path, motions):
 @needs_node
 def test_the_page_says_of_bodies_in_space_what_assess_does(tmp_path, motions):
     rng = random.Random(8)
-    ground = motions.ground[:13]
-    few = MotionSet(ground, ground, motions.pairs[:6], "made motions")
     forms = [some_form_in_space(rng) for _ in range(3)] + [
         {"width": "30 cm", "height": "1 m", "round": True, "measure": "PGA", "level": "0.3 g"}
     ]
-    assert compare(tmp_path, few, forms) == 4
+    assert compare(tmp_path, few_records(motions), forms) == 4
+
+
+def few_records(motions) -> MotionSet:
+    """Six records with both components, and one with one."""
+    ground = motions.ground[:13]
+    return MotionSet(ground, ground, motions.pairs[:6], "made motions")
+
+
+@needs_node
+def test_the_page_says_of_round_bodies_on_a_pedestal_what_assess_does(tmp_path, motions):
+    rng = random.Random(11)
+    assert compare(tmp_path, few_records(motions), [some_round_form_on_a_pedestal(rng)]) == 1
+
+
+@pytest.mark.slow
+@needs_node
+def test_the_page_says_of_20_round_bodies_on_a_pedestal_what_assess_does(tmp_path, motions):
+    rng = random.Random(12)
+    forms = [some_round_form_on_a_pedestal(rng) for _ in range(20)]
+    assert compare(tmp_path, few_records(motions), forms) >= 16
+
+
+def some_round_form_on_a_pedestal(rng: random.Random) -> dict[str, str]:
+    """A random round object without a measured restitution, on a pedestal at least as wide."""
+    form = {key: value for key, value in some_form(rng).items() if key != "restitution"}
+    width = float(form["width"].split()[0]) * rng.uniform(1, 2)
+    return form | {"round": True, "pedestal_width": f"{width} cm", "pedestal_height": "60 cm"}
 
 
 @pytest.mark.slow

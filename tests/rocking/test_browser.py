@@ -297,7 +297,7 @@ def test_outcomes_are_those_of_overturns(tmp_path, made_motions):
 
 @pytest.mark.parametrize(
     ("name", "largest"),
-    [("integrate", 60_000), ("space", 100_000), ("ensemble", 270_000), ("ensemble-fused", 130_000)],
+    [("integrate", 60_000), ("space", 100_000), ("ensemble", 270_000), ("ensemble-fused", 132_000)],
 )
 def test_a_module_is_small_and_needs_nothing(name, largest):
     module = module_bytes(name)

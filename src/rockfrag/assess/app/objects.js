@@ -83,7 +83,6 @@ const objects = (data) => {
     const depth = positive("depth", form.depth, "length"), facing = number("facing", form.facing, "facing", -1e-300, 360);
     if (round && depth !== null && depth !== width) refuse("depth", "round_depth");
     if (facing !== null && (round || depth === null)) refuse("facing", "no_facing");
-    if (round && form.pedestal_width?.trim()) refuse("round", "round_pedestal");
     if (depth === null || !(depth < width)) return { width, depth: depth ?? width, facing: facing ?? 0 };
     return { width: depth, depth: width, facing: (facing ?? 0) + 90 };
   }

@@ -23,9 +23,12 @@ const inSpace = (data) => {
 
   // what is shaken in a plane, with what moves in space beside it
   function planOf({ statue, solid }, runs) {
+    // a round base rolls on its rim; what it is fixed to stands on another one
+    const rolling = ({ height }) => (height === statue.height ? both.rolling : NaN);
     const found = runs.filter(({ name }) => !(solid.round && name === "restitution")).map((run) => {
       const own = run.role === "moved" ? run.body.statue : statue;
       return { ...run, few: false, fewer: Boolean(run.role === "moved" || run.role === "mitigation"),
+        body: solid.round ? { ...run.body, rolling: rolling(run.body.statue) } : run.body, worst: solid.round,
         solid: run.name === "restitution" ? null : solidOf(run.body.statue, own, solid) };
     });
     const now = found[0];
@@ -34,8 +37,7 @@ const inSpace = (data) => {
       found.push(facing(-both.aside), facing(both.aside));
     }
     // of fewer motions the object as it stands, and in one plane along one component
-    if (runs.length > 1) found.push({ ...now, role: "before", fewer: true }, { ...now, role: "planar", solid: null });
-    for (const run of found) run.worst = solid.round && run.role !== "planar" && !run.solid;
+    if (runs.length > 1) found.push({ ...now, role: "before", fewer: true }, { ...now, role: "planar", solid: null, worst: false, body: runs[0].body });
     return found;
   }
 
@@ -73,27 +75,38 @@ const inSpace = (data) => {
       kept.forEach((m, i) => put("allowed", m, allowed.subarray(i * each, (i + 1) * each)));
       if (!kept.length) return found;
       const note = (m, told, i) => { for (const name of ["overturned", "rocked"]) put(name, m, told[name].subarray(i * each, (i + 1) * each)); };
-      if ((!run.solid || run.body.pedestal) && !run.worst) {
+      const planar = !run.solid || run.body.pedestal;
+      if (planar && !run.worst) {
         const told = ensemble.count(ensemble.bodyOf(run.body), kept.map(shaken), scales);
         kept.forEach((m, i) => note(m, told, i));
       }
-      for (const record of new Set(kept.map((m) => recordOf[m]))) {
-        const own = run.solid || run.worst ? scalesOf([record.first]) : null;
-        const told = run.solid ? solidOutcomes(run.solid, record, shaken, own.scales) : run.worst ? worstOutcomes(run.body, record, shaken, own) : null;
-        for (const m of [record.first, record.second]) if (told && kept.includes(m)) note(m, told, 0);
+      if (run.solid || run.worst) for (const record of new Set(kept.map((m) => recordOf[m]))) {
+        const own = scalesOf([record.first]), places = [record.first, record.second].filter((m) => kept.includes(m));
+        // what has fallen in one answer needs no other
+        const stands = () => levels.map((_, k) => places.some((m) => !found.overturned[(m - first) * each + k]));
+        const add = (told) => { for (const m of places) note(m, told, 0); };
+        const sides = planar && run.worst ? sidesOf(record, shaken) : [], across = sides.length / 2;
+        const some = sides.filter((_, i) => i % across === 0);
+        if (some.length) add(planarOutcomes(run.body, some, own, stands()));
+        if (run.solid) add(solidOutcomes(run.solid, record, shaken, own.scales, stands()));
+        if (sides.length > some.length) add(planarOutcomes(run.body, sides.filter((_, i) => i % across), own, stands()));
       }
       return found;
     };
-    function solidOutcomes(solid, record, shaken, scales) {
+    function solidOutcomes(solid, record, shaken, scales, stands) {
       const body = space.bodyOf(solid), [one, other] = pairOf(record, shaken);
-      const told = Array.from(scales, (scale) => space.integrate({ body, x: one.samples, y: other?.samples ?? null, dt: one.dt, scale }));
+      const told = Array.from(scales, (scale, k) => (stands[k] ? space.integrate({ body, x: one.samples, y: other?.samples ?? null, dt: one.dt, scale }) : { overturned: 0, peak: 0 }));
       return { overturned: Uint8Array.from(told, (each) => each.overturned), rocked: Uint8Array.from(told, (each) => each.peak > 0) };
     }
-    // in the worst direction of a record: what happens from one side happens
-    function worstOutcomes(body, record, shaken, { levels, allowed, factors }) {
-      const pair = pairOf(record, shaken), sides = pair[1] ? both.turns.map((turn) => turned(pair, turn)) : [pair[0]];
+    // a record in all directions
+    function sidesOf(record, shaken) {
+      const pair = pairOf(record, shaken);
+      return pair[1] ? both.turns.map((turn) => turned(pair, turn)) : [pair[0]];
+    }
+    // in the worst of some directions: what happens from one side happens
+    function planarOutcomes(body, sides, { levels, allowed, factors }, stands) {
       const scales = new Float64Array(sides.length * levels.length);
-      sides.forEach(({ samples }, i) => levels.forEach((_, k) => { scales[i * levels.length + k] = factors(k, allowed[k], samples); }));
+      sides.forEach(({ samples }, i) => levels.forEach((_, k) => { scales[i * levels.length + k] = factors(k, allowed[k] && stands[k], samples); }));
       const told = ensemble.count(ensemble.bodyOf(body), sides, scales), joined = {};
       for (const name of ["overturned", "rocked"])
         joined[name] = Uint8Array.from(levels, (_, k) => Math.max(...sides.map((_, i) => told[name][i * levels.length + k])));

@@ -32,6 +32,7 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
         "turns": [[math.cos(angle), math.sin(angle)] for angle in turns],
         "aside": objects.ASIDE,
         "higher": objects.HIGHER,
+        "rolling": objects.ROLLING,
     }
 
 

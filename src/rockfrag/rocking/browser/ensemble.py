@@ -3,8 +3,6 @@
 They are compiled to WebAssembly alone (``build``), around the lanes that everything else is counted with.
 """
 
-import math
-
 import numpy as np
 
 from rockfrag.engines.kernels.by_reference import referred
@@ -30,8 +28,10 @@ _SLOTS = stack_case.SLOTS
 
 SHAKEN = np.dtype(
     [
-        # what describe reads: the measured restitution, NaN where momentum is conserved, and the factor on each
-        ("statue", BLOCK), ("pedestal", BLOCK), ("stacked", _I), ("measured", _F), ("livelier", _F),
+        # what describe reads: whether the ratios of impacts are told, those of the pedestal and of the statue, NaN
+        # where momentum's count, and the factor on each
+        ("statue", BLOCK), ("pedestal", BLOCK), ("stacked", _I),
+        ("told", _I), ("below", _F), ("above", _F), ("livelier", _F),
         # what it leaves; the least acceleration at which a contact opens [g], and constants of the right and left
         # pivot of a lone block
         ("fault", _I), ("fastest", _F), ("slowest", _F), ("uplift", _F), ("largest", _F), ("centre", _F, 3),
@@ -57,7 +57,7 @@ _integrate_stacks = kernel(integrate_stacks.py_func)
 @kernel
 def multiply_add(call):
     """Put a multiply-add of numbers of a call into it, which tells whether it rounds once."""
-    call.uplift = fma(call.measured, call.livelier, call.uplift)
+    call.uplift = fma(call.above, call.livelier, call.uplift)
 
 
 @kernel
@@ -65,19 +65,20 @@ def describe_shaken(call):
     """Describe a block, or one on a pedestal, to the lanes; gravity stands in its record already."""
     body, g = call.body[0], call.body[0].gravity
     upper, lower = shape_of(call.statue), shape_of(call.pedestal)
-    scaled = not (math.isnan(call.measured) and call.livelier == 1.0)
-    body.measured = scaled
+    told = call.told != 0
+    body.measured = told
     call.fault = geometry.STANDS if geometry.can_stand(upper) else geometry.FALLS_ALONE
     call.uplift, call.largest = np.inf, np.inf
     if call.stacked == 0:
         geometry.fill_block(body, upper)
         call.centre[0], call.centre[1], call.centre[2] = upper.x, upper.y, upper.inertia
-        after_left = _ratio(call, upper, -1) if scaled else geometry.momentum_restitution(upper, -1)
-        after_right = _ratio(call, upper, 1) if scaled else geometry.momentum_restitution(upper, 1)
-        _fill_pivot(call.pivots[0], geometry.pivot_constants(upper, 1, after_left, g))
-        _fill_pivot(call.pivots[1], geometry.pivot_constants(upper, -1, after_right, g))
         note_frequencies(call, upper, g)
         for pivot in (1, -1):
+            after = geometry.momentum_restitution(upper, -pivot)
+            if told:
+                after = _ratio(call, upper, -pivot, call.above)
+            constants = geometry.pivot_constants(upper, pivot, after, g)
+            _fill_pivot(call.pivots[(1 - pivot) // 2], constants)
             _note_uplift(call, geometry.arm(upper, pivot))
             call.largest = min(call.largest, geometry.largest_restitution(upper, pivot))
         return
@@ -89,10 +90,7 @@ def describe_shaken(call):
     geometry.fill_pile(body, pile)
     whole = geometry.joined(pile)
     call.centre[0], call.centre[1], call.centre[2] = whole.x, whole.y, whole.inertia
-    _fill_law(call, body.after1r, lower, 1, scaled)
-    _fill_law(call, body.after1l, lower, -1, scaled)
-    _fill_law(call, body.after2r, pile.upper, 1, scaled)
-    _fill_law(call, body.after2l, pile.upper, -1, scaled)
+    _fill_laws(call, lower, pile.upper)
     note_frequencies_of_pile(call, pile, g)
     for pivot in (1, -1):
         _note_uplift(call, geometry.common_arm(pile, pivot))
@@ -102,15 +100,26 @@ def describe_shaken(call):
 
 
 @kernel
-def _ratio(call, shape, pivot):
-    return geometry.scaled_restitution(shape, pivot, call.measured, call.livelier)
+def _ratio(call, shape, pivot, measured):
+    return geometry.scaled_restitution(shape, pivot, measured, call.livelier)
 
 
 @kernel
-def _fill_law(call, after, shape, pivot, scaled):
-    after.law, after.value = momentum.NUMBER, 1.0
-    if scaled:
-        after.law, after.value = position.tell(shape, _ratio(call, shape, pivot), pivot)
+def _fill_laws(call, lower, upper):
+    body = call.body[0]
+    if call.told == 0:
+        for after in (body.after1r, body.after1l, body.after2r, body.after2l):
+            after.law, after.value = momentum.NUMBER, 1.0
+        return
+    _fill_law(call, body.after1r, lower, 1, call.below)
+    _fill_law(call, body.after1l, lower, -1, call.below)
+    _fill_law(call, body.after2r, upper, 1, call.above)
+    _fill_law(call, body.after2l, upper, -1, call.above)
+
+
+@kernel
+def _fill_law(call, after, shape, pivot, measured):
+    after.law, after.value = position.tell(shape, _ratio(call, shape, pivot, measured), pivot)
 
 
 @kernel
