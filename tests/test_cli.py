@@ -219,3 +219,14 @@ def test_a_motion_in_cm_s2_is_refused_as_m_s2(
     told = capsys.readouterr().err
     assert "above 3 g" in told
     assert "force" not in told
+
+
+def test_a_record_below_zero_throughout_takes_its_vertical_component_along(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    path = tmp_path / "below.txt"
+    values = -0.3 * np.sin(np.pi * np.arange(101) / 100) ** 2
+    path.write_text("\n".join(f"{0.01 * i:.2f} {a:.8f}" for i, a in enumerate(values)) + "\n")
+    case = ["simulate", str(path), "--unit", "g", "--body", "30cm", "90cm", "--pga", "0.5"]
+    assert main([*case, "--vertical", str(path)]) == 0
+    assert "peak 0.5000 g" in capsys.readouterr().out

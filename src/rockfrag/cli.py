@@ -132,14 +132,14 @@ def _simulate(options: argparse.Namespace) -> int:
 
     _check_image(options.plot)
     body, motion = _case(options)
-    acceleration = motion.acceleration
+    acceleration, factor = motion.acceleration, 1.0
     if options.pga is not None:
         if options.pga <= 0:
             raise InputError(f"--pga: expected a number of g above 0, got {options.pga}.")
         acceleration = scale_to_pga(motion, options.pga).acceleration
+        factor = options.pga * GRAVITY / motion.pga
     if quality_flag := _acceleration_flag(float(abs(acceleration).max()), body):
         print(f"warning: {options.record}: {quality_flag}", file=sys.stderr)
-    factor = acceleration.max() / motion.acceleration.max()
     if options.second is not None:
         return _simulate_in_space(options, body, motion, factor)
     up = _vertical(options, factor)

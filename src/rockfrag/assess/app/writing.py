@@ -11,7 +11,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from rockfrag.assess.app import computing, data_of, script
+from rockfrag.assess.app.contents import computing, data_of, script
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Request
 from rockfrag.assess.scale import SCALE_WORDS, STEPS
