@@ -238,10 +238,11 @@ def test_a_column_tilted_as_one_falls_as_one_until_a_joint_opens() -> None:
         np.testing.assert_allclose(many.theta[:n, k], single.theta[:n, 0], atol=1e-9)
 
 
-def test_histories_of_three_bodies_are_those_of_the_plain_reference() -> None:
+@pytest.mark.parametrize("columns", [1, pytest.param(3, marks=pytest.mark.slow)])
+def test_histories_of_three_bodies_are_those_of_the_plain_reference(columns: int) -> None:
     rng = np.random.default_rng(6)
     compared = 0
-    for _ in range(3):
+    for _ in range(columns):
         column, mus = random_column(rng, 3), list(rng.uniform(0.3, 0.8, 3))
         motion, up = random_motion(rng), 0.3 * random_motion(rng)
         found = run(with_contacts(column, mus), motion, vertical=up)

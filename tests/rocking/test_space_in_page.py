@@ -84,7 +84,8 @@ def some_polygon(rng) -> tuple[System, dict]:
 
 
 @needs_node
-def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path):
+@pytest.mark.parametrize("bodies", [9, pytest.param(60, marks=pytest.mark.slow)])
+def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path, bodies):
     rng = np.random.default_rng(4)
     time = np.arange(900) * 0.01
     strong = np.exp(-(((time - 3) / 1.5) ** 2))
@@ -92,7 +93,7 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path):
     motion *= strong
     motion[2] *= 0.4
     cases, systems = [], []
-    for i in range(30):
+    for i in range(bodies):
         kind = ("block", "block", "solid")[i % 3]
         system, told = some_polygon(rng) if kind == "solid" else some_block(rng, i % 3 == 1)
         friction = 0.5 if rng.random() < 0.3 else None
@@ -126,7 +127,7 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path):
         assert item["fell"] == outcome.overturned
         assert item["alike"], "an outcome alone is that of the history"
         fell += outcome.overturned
-    assert 5 < fell < 25
+    assert 0.15 * bodies < fell < 0.85 * bodies
 
 
 def in_node(folder, cases, motion):
