@@ -180,14 +180,12 @@ def _simulate_in_space(
 ) -> int:
     """Shake one body by both horizontal components of a record, and the vertical one if it is told."""
     from rockfrag.engines.spatial import SpatialResponse
+    from rockfrag.motions.scaling import scale
     from rockfrag.records.ground_motion import GroundMotion
     from rockfrag.rocking import simulate
 
     block, components = _case_in_space(options, body, motion, options.vertical)
-    scaled = [
-        component.after("scale", factor * component.acceleration, factor=factor)
-        for component in components
-    ]
+    scaled = [scale(component, factor) for component in components]
     settings = {"restitution": options.restitution, "friction": _friction(options)}
     response = simulate(block, GroundMotion(*scaled), **settings)
     assert isinstance(response, SpatialResponse)
@@ -230,10 +228,11 @@ def _friction(options: argparse.Namespace) -> "FrictionInput | None":
 
 def _vertical(options: argparse.Namespace, factor: float) -> "Motion | None":
     """Return the vertical component that the options tell, scaled as the record is."""
+    from rockfrag.motions.scaling import scale
+
     if options.vertical is None:
         return None
-    up = read_told(options.vertical, options, None)
-    return up.after("scale", factor * up.acceleration, factor=factor)
+    return scale(read_told(options.vertical, options, None), factor)
 
 
 def _contacts(response: "Response", loose: bool) -> list[str]:

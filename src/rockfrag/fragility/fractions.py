@@ -36,7 +36,7 @@ UNKNOWN: Limits = (float("nan"), float("nan"))
 
 @dataclass(frozen=True)
 class Fractions:
-    """Never-falling fraction of overturned tests, without a form."""
+    """Non-decreasing fraction of overturned tests, the non-parametric fragility function."""
 
     im: Floats  # values of the measure, rising, shape (n,)
     fraction: Floats  # fraction at each of them, never falling, shape (n,)

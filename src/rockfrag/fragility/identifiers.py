@@ -1,4 +1,4 @@
-"""Curves and names of configurations as other programs take them, names still told apart."""
+"""Curves and names of configurations as other programs take them, names kept distinct."""
 
 import hashlib
 import math

@@ -18,7 +18,7 @@ from rockfrag.fragility.observations import Floats, Observations, numbers, obser
 from rockfrag.fragility.surface import FragilitySurface, fit_surface
 from rockfrag.short_repr import short_repr
 
-TOLD_APART_P = 0.05  # two measures are told apart below this p value of their held-out scores
+DIFFERENCE_P = 0.05  # two measures differ below this p value of their held-out scores
 FEWEST_GROUPS_TO_CHOOSE = 10
 """Below so many motions or earthquakes the words say that the choice is weak."""
 SUFFICIENT_P = 0.05  # a residual's dependence on a column is named below this p value
@@ -216,7 +216,7 @@ def ranked(
     fraction = np.zeros(len(scores))
     if known.any():
         fraction[known] = fraction_best(scores[known], replicates, seed)
-    near = known & ~(p_worse < TOLD_APART_P)
+    near = known & ~(p_worse < DIFFERENCE_P)
     order = compared.assign(
         score=np.where(known, total / tests, np.nan),
         p_worse=p_worse,
@@ -276,7 +276,7 @@ def p_text(p: float) -> str:
 
 
 def _pair_words(name: str, p: float, gain: float) -> str:
-    if gain > 0 and p < TOLD_APART_P:
+    if gain > 0 and p < DIFFERENCE_P:
         return f"Adding {name} improves the prediction of held-out tests ({p_text(p)}): use the surface in both."
     if not np.isfinite(p):
         return f"One group of motions cannot show whether {name} adds to it."
@@ -297,8 +297,8 @@ def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> st
     best = table.iloc[0]
     others = table.iloc[1:]
     scored = others[others["score"].notna()]
-    equal = scored[~(scored["p_worse"] < TOLD_APART_P)]
-    worse = scored[scored["p_worse"] < TOLD_APART_P].sort_values("score", ascending=False)
+    equal = scored[~(scored["p_worse"] < DIFFERENCE_P)]
+    worse = scored[scored["p_worse"] < DIFFERENCE_P].sort_values("score", ascending=False)
     parts = [
         f"Use {best['im']}: β = {best['beta']:.2f}, AUC {best['auc']:.3f}, mean log score of held-out "
         f"tests {best['score']:.3f}."

@@ -44,7 +44,7 @@ def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
 
 
 def mean_amplitudes_of(tests: pd.DataFrame, by: list[str]) -> pd.DataFrame:
-    """Means of each part of a table of tests, such as each variant of a building, told apart by columns."""
+    """Means of each part of a table of tests, such as each variant of a building, by the values of ``by``."""
     parts = []
     for key, rows in tests.groupby(by, sort=False, dropna=False):
         about = pd.DataFrame(dict(zip(by, key, strict=True)), index=[0])

@@ -77,7 +77,7 @@ def _swept(part: pa.Table, reached: str, path: Path) -> Swept:
 
 
 def swept_of(ida: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:
-    """Yield each IDA curve of a table, told apart by ``keys``, in the order in which they first appear."""
+    """Yield each IDA curve of a table by the values of ``keys``, in the order in which they first appear."""
     number, bodies = pd.factorize(ida["overturned_body"])
     overturned = ida["overturned"].to_numpy(dtype=bool)
     amplitude = ida["amplitude_g"].to_numpy(dtype=np.float64)

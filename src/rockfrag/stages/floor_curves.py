@@ -97,7 +97,7 @@ def export_curves(
 
     One file per measure and floor, as both formats take one curve per object. OpenQuake knows motions of
     the ground only. Configurations without a curve are left out, and a measure without any has no file. Of
-    rejected curves the points without a form are written, as far as ``fractions`` has them.
+    rejected curves the points of the non-parametric function are written, as far as ``fractions`` has them.
     """
     from rockfrag.fragility import write_nrml, write_simcenter
 

@@ -1,6 +1,5 @@
 """The page of ``rockfrag app``: one file that holds motions, modules, scripts and texts."""
 
-import base64
 import json
 import os
 import zlib
@@ -19,6 +18,7 @@ from rockfrag.assess.sources import SOURCES
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import Motion
+from rockfrag.report.live.embedded import base64_text, json_text
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.units import GRAVITY
 
@@ -89,10 +89,10 @@ def page_of(
         "made": made,
         "texts": {language: texts(language) for language in LANGUAGES},
         "modules": {
-            name: _text(zlib.compress(module_bytes(of), 9)) for name, of in modules.items()
+            name: base64_text(zlib.compress(module_bytes(of), 9)) for name, of in modules.items()
         },
         "samples": about,
-        "packed": _text(packed),
+        "packed": base64_text(packed),
     }
     environment = Environment(
         loader=PackageLoader("rockfrag.report"),
@@ -108,7 +108,7 @@ def page_of(
     return environment.from_string(script("app.html.j2")).render(
         title=data["texts"]["en"]["title"],
         style=Markup(style),
-        data=Markup(json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")),
+        data=json_text(data),
         computing=Markup(f"{computing()}\n{script('worker.js')}"),
         scripts=Markup(scripts),
     )
@@ -169,7 +169,3 @@ def _decimals(samples: np.ndarray, factor: float) -> tuple[np.ndarray, np.ndarra
         hit = (power < 0) & (number / 10.0**tried * factor == samples) & (np.abs(number) < 2**31)
         whole[hit], power[hit] = number[hit], tried[hit]
     return whole, power
-
-
-def _text(content: bytes) -> str:
-    return base64.b64encode(content).decode("ascii")

@@ -3,8 +3,6 @@
 One source: the module is made of the kernel that `rockfrag.simulate` runs, see :mod:`rockfrag.rocking.browser`.
 """
 
-import base64
-import json
 import math
 import warnings
 from collections.abc import Mapping, Sequence
@@ -18,6 +16,7 @@ from markupsafe import Markup
 
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
+from rockfrag.report.live.embedded import base64_text, json_text
 from rockfrag.report.live.frames import frames_svg
 from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import driver_text, in_page, module_bytes
@@ -86,7 +85,7 @@ def _element(
     data = {
         "source": "the study" if of_study else "the package",
         "gravity": GRAVITY,
-        "module": _text(module_bytes()),
+        "module": base64_text(module_bytes()),
         "bodies": [_body(name, body) for name, body in bodies.items()],
         "motions": [_motion(motion) for motion in motions],
         "amplitudes": amplitudes.tolist(),
@@ -104,17 +103,17 @@ def _element(
     environment = Environment(
         loader=PackageLoader("rockfrag.report"), autoescape=select_autoescape(default=True)
     )
+    scripts = "\n".join(
+        environment.get_template(f"{name}.js").render() for name in ("canvas", "live")
+    )
     return Markup(
         environment.get_template("live.html.j2").render(
             left_out=[name for name in asked if name not in bodies],
             frames=frames,
             words=f"{list(bodies)[body]} under {motions[motion].name}: {words}",
-            # a name may hold anything, but never the end of the script
-            data=Markup(
-                json.dumps(data, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
-            ),
+            data=json_text(data),
             driver=Markup(driver_text()),
-            script=Markup(environment.get_template("live.js").render()),
+            script=Markup(scripts),
         )
     )
 
@@ -167,10 +166,6 @@ def _start(
     return order[0], 0
 
 
-def _text(content: bytes) -> str:
-    return base64.b64encode(content).decode("ascii")
-
-
 def _motion(motion: Motion) -> dict[str, Any]:
     samples = np.ascontiguousarray(motion.acceleration, dtype="<f8")
     return {
@@ -178,7 +173,7 @@ def _motion(motion: Motion) -> dict[str, Any]:
         "dt": motion.dt,
         "pga": motion.pga,
         "pga_g": motion.pga / GRAVITY,
-        "samples": _text(samples.tobytes()),
+        "samples": base64_text(samples.tobytes()),
     }
 
 

@@ -1,7 +1,5 @@
 """The simulation of bodies in space in a page: the kernel itself, and what it needs."""
 
-import base64
-import json
 import math
 import zlib
 from collections.abc import Mapping, Sequence
@@ -13,6 +11,7 @@ from jinja2 import Environment, PackageLoader, select_autoescape
 from markupsafe import Markup
 
 from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.report.live.embedded import base64_text, json_text
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Circle, RigidBody
@@ -45,7 +44,7 @@ def live_in_space(
     total = np.cumsum([motion.x.acceleration.size for motion in motions])
     kept = motions[: max(1, int((total <= MOST_SAMPLES).sum()))]
     data = {
-        "module": _text(zlib.compress(module_bytes("space"), 9)),
+        "module": base64_text(zlib.compress(module_bytes("space"), 9)),
         "bodies": [_body(name, body) for name, body in bodies.items()],
         "motions": [_motion(motion) for motion in kept],
         "amplitudes": AMPLITUDES_G,
@@ -54,14 +53,13 @@ def live_in_space(
         loader=PackageLoader("rockfrag.report"), autoescape=select_autoescape(default=True)
     )
     scripts = "\n".join(
-        environment.get_template(f"{name}.js").render() for name in ("view", "live_space")
+        environment.get_template(f"{name}.js").render() for name in ("canvas", "view", "live_space")
     )
     return Markup(
         environment.get_template("live_space.html.j2").render(
             left_out=left_out,
             pedestal=any(body.pedestal for body in bodies.values()),
-            # a name may hold anything, but never the end of the script
-            data=Markup(json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")),
+            data=json_text(data),
             driver=Markup(driver_text("space")),
             script=Markup(scripts),
         )
@@ -121,10 +119,6 @@ def _motion(motion: GroundMotion) -> dict[str, Any]:
         "dt": motion.dt,
         "peak_g": peak_of(motion) / GRAVITY,
         "samples": [
-            _text(np.asarray(component.acceleration, "<f8").tobytes()) for component in each
+            base64_text(np.asarray(component.acceleration, "<f8").tobytes()) for component in each
         ],
     }
-
-
-def _text(content: bytes) -> str:
-    return base64.b64encode(content).decode("ascii")

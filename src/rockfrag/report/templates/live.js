@@ -134,24 +134,6 @@ function tell() {
 
 // ---- drawing
 let colours = {};
-function readColours() {
-  const style = getComputedStyle(document.documentElement);
-  for (const name of ["ink", "soft", "line", "paper", "wash", "accent", "blue", "red", "band", "rule"])
-    colours[name] = style.getPropertyValue("--" + name).trim();
-}
-function sized(canvas) {
-  const ratio = devicePixelRatio || 1;
-  const width = canvas.clientWidth, height = canvas.clientHeight;
-  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-  }
-  const context = canvas.getContext("2d");
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, width, height);
-  context.font = "12px system-ui, sans-serif";
-  return [context, width, height];
-}
 // a canvas that is not laid out, as while a page is measured, cannot be copied
 const hasPixels = (canvas) => canvas.width > 0 && canvas.height > 0;
 function polygon(context, points, fill) {
@@ -171,7 +153,7 @@ function at(values, k) {
 }
 function drawScene() {
   if (!response) return;
-  const [context, width, height] = sized(find("scene"));
+  const [context, width, height] = rockfragSized(find("scene"));
   const k = time / motion().dt;
   const index = Math.min(Math.round(k), response.done - 1);
   const drawn = pose(outline.pedestal ? at(response.theta1, k) : 0, at(response.theta2, k));
@@ -241,7 +223,7 @@ const drawnHistory = document.createElement("canvas");
 function drawHistory() {
   if (!response) return;
   const canvas = find("history");
-  const [context, width, height] = sized(canvas);
+  const [context, width, height] = rockfragSized(canvas);
   const left = 44, bottom = height - 18, top = 16, middle = top + (bottom - top) * 0.66;
   const end = Math.max(duration(), motion().dt);
   const x = (t) => left + (t / end) * (width - left - 8);
@@ -295,7 +277,7 @@ function drawHistory() {
 }
 function drawTime() {
   if (!response) return;
-  const [context, width, height] = sized(find("history"));
+  const [context, width, height] = rockfragSized(find("history"));
   if (hasPixels(drawnHistory)) context.drawImage(drawnHistory, 0, 0, width, height);
   const x = 44 + (time / Math.max(duration(), motion().dt)) * (width - 52);
   context.strokeStyle = colours.accent;
@@ -305,7 +287,7 @@ function drawTime() {
 }
 const logarithm = (g) => Math.log(g / data.amplitudes[0]) / Math.log(data.amplitudes.at(-1) / data.amplitudes[0]);
 function drawBar() {
-  const [context, width, height] = sized(find("bar"));
+  const [context, width, height] = rockfragSized(find("bar"));
   const x = (g) => 4 + logarithm(g) * (width - 8);
   const row = data.outcomes[chosen.body][chosen.motion];
   const lines = [[data.amplitudes, row, changed() ? "table" : ""]];
@@ -464,7 +446,7 @@ function edge(first) {
 async function begin() {
   kernel = await rockfragKernel(bytesOf(data.module));
   root.kernel = kernel;
-  readColours();
+  colours = rockfragColours();
   for (const [name, list] of [["body", data.bodies], ["motion", motions]])
     list.forEach((one, k) => find(name).add(new Option(one.name, k)));
   find("amplitude").max = String(data.amplitudes.length - 1);
@@ -517,7 +499,7 @@ async function begin() {
     move(((event.clientX - box.left - 44) / (box.width - 52)) * duration());
   });
   find("controls").addEventListener("submit", (event) => event.preventDefault());
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); redraw(); });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { colours = rockfragColours(); redraw(); });
   if (still.matches) find("play").hidden = true;
   addEventListener("resize", redraw);
   tellHeight();

@@ -57,24 +57,9 @@ function said() {
 }
 
 // ---- drawing
-function readColours() {
-  const style = getComputedStyle(document.documentElement);
-  for (const name of ["ink", "soft", "line", "paper", "wash", "accent", "blue", "red", "band", "rule"])
-    colours[name] = style.getPropertyValue("--" + name).trim();
-}
-function sized(canvas) {
-  const ratio = devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
-  const [wide, high] = [width, height].map((value) => Math.round(value * ratio));
-  if (canvas.width !== wide || canvas.height !== high) Object.assign(canvas, { width: wide, height: high });
-  const context = canvas.getContext("2d");
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, width, height);
-  context.font = "12px system-ui, sans-serif";
-  return [context, width, height];
-}
 function drawScene() {
   if (!response) return;
-  const [context, width, height] = sized(find("scene"));
+  const [context, width, height] = rockfragSized(find("scene"));
   const index = Math.min(Math.round(time / motion().dt), response.done - 1), [x, y, z, ...rest] = row(index);
   motion().moved ??= motion().samples.slice(0, 2).map((own) => rockfragDisplacement(own, motion().dt));
   const most = 0.3 * solid.tall, scale = scaleOf(chosen.peak);
@@ -98,7 +83,7 @@ const footOf = (state) => axisOf(state).slice(0, 2).map((part, k) => state[k] - 
 // tilt over time, and beside it the path of the axis seen from above
 function drawHistory() {
   if (!response) return;
-  const [context, width, height] = sized(find("history")), plan = Math.min(height, 0.3 * width), left = 44, right = width - plan - 14;
+  const [context, width, height] = rockfragSized(find("history")), plan = Math.min(height, 0.3 * width), left = 44, right = width - plan - 14;
   const axes = Array.from({ length: response.done }, (_, k) => axisOf(row(k))), tilts = axes.map(([x, y, z]) => Math.atan2(Math.hypot(x, y), z));
   const most = Math.max(...tilts, 1e-6), end = Math.max(duration(), motion().dt), bottom = height - 20;
   const at = (k) => [left + ((k * motion().dt) / end) * (right - left), bottom - (tilts[k] / most) * (bottom - 16)];
@@ -135,7 +120,7 @@ function drawHistory() {
 }
 const place = (peak) => Math.log(peak / data.amplitudes[0]) / Math.log(data.amplitudes.at(-1) / data.amplitudes[0]);
 function drawBar() {
-  const [context, width, height] = sized(find("bar")), x = (peak) => 4 + place(peak) * (width - 8), { amplitudes } = data;
+  const [context, width, height] = rockfragSized(find("bar")), x = (peak) => 4 + place(peak) * (width - 8), { amplitudes } = data;
   [...bar].forEach((fell, k) => {
     const [from, to] = [k - 0.5, k + 0.5].map((at) => amplitudes[0] * (amplitudes[1] / amplitudes[0]) ** Math.max(0, Math.min(amplitudes.length - 1, at)));
     context.fillStyle = fell === "1" ? colours.red : colours.band;
@@ -241,7 +226,7 @@ function play() {
 async function begin() {
   space = await rockfragSpace(await unpacked(data.module));
   root.space = space;
-  readColours();
+  colours = rockfragColours();
   view = rockfragView(find("scene"), drawScene);
   for (const [name, list] of [["body", data.bodies], ["motion", motions]]) list.forEach((one, k) => find(name).add(new Option(one.name, k)));
   find("amplitude").max = String(data.amplitudes.length - 1);
@@ -272,7 +257,7 @@ async function begin() {
     event.preventDefault();
   });
   find("controls").addEventListener("submit", (event) => event.preventDefault());
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); redraw(); });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { colours = rockfragColours(); redraw(); });
   if (still.matches) find("play").hidden = true;
   addEventListener("resize", redraw);
   find("app").hidden = false;
