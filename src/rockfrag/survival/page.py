@@ -33,13 +33,11 @@ def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Pat
 def weights_table(found: Constrained) -> pd.DataFrame:
     """A row a branch, its columns those of OpenQuake's realizations and what it had before."""
     table = found.result.table()
+    numbers = table["branch"].str.extract(r"^rlz-(\d+)")[0]
     paths = table["branch"].str.replace(r"^rlz-\d+ ?", "", regex=True)
     return pd.DataFrame(
         {
-            "rlz_id": table["branch"]
-            .str.extract(r"^rlz-(\d+)")[0]
-            .fillna(table.index.to_series())
-            .astype(int),
+            "rlz_id": numbers.where(numbers.notna(), table.index).astype(int),
             "branch_path": paths,
             "weight": table["weight_after"],
             "weight_before": table["weight_before"],
