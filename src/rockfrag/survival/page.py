@@ -5,6 +5,7 @@ import os
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from rockfrag.files import file_name, write_table, write_text
@@ -37,7 +38,7 @@ def weights_table(found: Constrained) -> pd.DataFrame:
     paths = table["branch"].str.replace(r"^rlz-\d+ ?", "", regex=True)
     return pd.DataFrame(
         {
-            "rlz_id": numbers.where(numbers.notna(), table.index).astype(int),
+            "rlz_id": np.where(numbers.isna(), table.index, numbers).astype(int),
             "branch_path": paths,
             "weight": table["weight_after"],
             "weight_before": table["weight_before"],
