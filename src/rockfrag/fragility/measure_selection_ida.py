@@ -66,7 +66,7 @@ def recommend_ida_measure(
     -------
     MeasureSelection
         Its table has also ``beta_amplitude``: β over the power with which the measure grows with
-        the amplitude, which compares Arias intensity fairly with peaks. ``pair`` is None.
+        the amplitude, which compares Arias intensity fairly with peaks.
 
     Raises
     ------
@@ -135,9 +135,9 @@ def recommend_ida_measure(
     table = ranked(pd.DataFrame(rows), scores, tests, replicates, seed, "beta_amplitude")
     words = recommendation(table, scores.shape[1], given)
     if table["score"].isna().all():
-        return MeasureSelection("", "", table, None, words)
+        return MeasureSelection("", "", table, words)
     best = table.iloc[0]
-    return MeasureSelection(str(best["measure"]), str(best["im"]), table, None, words)
+    return MeasureSelection(str(best["measure"]), str(best["im"]), table, words)
 
 
 def _of_motions(known: pd.DataFrame, resurrections: pd.DataFrame, column: str) -> Floats:
