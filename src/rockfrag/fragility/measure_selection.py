@@ -161,7 +161,7 @@ def recommend_measure(
         fit = fit_lognormal(outcomes)
         interval = interval_over_motions(outcomes, level=level)
         rows.append(
-            _row(column, outcomes, fit, interval)
+            measure_row(column, fit, interval, outcomes)
             | {f"p_{name}": sufficiency(outcomes, fit, values) for name, values in extra.items()}
         )
     first = data[measures[0]]
@@ -218,17 +218,19 @@ def ranked(
     return order.drop(columns=["late", "rank", "total"]).reset_index(drop=True)
 
 
-def _row(
-    column: str, outcomes: Observations, fit: FragilityFit, interval: Interval
+def measure_row(
+    column: str, fit: FragilityFit, interval: Interval, outcomes: Observations, **more: float
 ) -> dict[str, float | str]:
+    """What the table says of one measure before its scores; ``more`` stands behind the limits of β."""
     return {
         "measure": column,
-        "im": outcomes.name,
-        "unit": outcomes.unit,
+        "im": fit.im,
+        "unit": fit.unit,
         "theta": fit.theta,
         "beta": fit.beta,
         "beta_lower": interval.beta[0],
         "beta_upper": interval.beta[1],
+        **more,
         "aic": fit.aic,
         "auc": area_under_curve(outcomes),
     }
