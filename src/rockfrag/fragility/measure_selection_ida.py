@@ -96,7 +96,7 @@ def recommend_ida_measure(
         measure="amplitude_g",
     )
     known = measures.set_index("name")
-    place = known.index.get_indexer(resurrections["motion"])
+    place = known.index.get_indexer(pd.Index(resurrections["motion"]))
     extra = {column: numbers(measures, column, "measures")[place] for column in given}
     pga = positive(known.loc[resurrections["motion"]], "pga_g", "measures")
     rows, brackets = [], []
