@@ -44,17 +44,7 @@ class Modes:
 
 
 def find_modes(building: ShearBuilding) -> Modes:
-    """Solve the undamped eigenproblem of the elastic building (Chopra, ch. 10).
-
-    Parameters
-    ----------
-    building
-        Building, taken as elastic.
-
-    Returns
-    -------
-    The :class:`Modes`.
-    """
+    """Solve the undamped eigenproblem of the elastic building (Chopra, ch. 10)."""
     mass = np.asarray(building.masses)
     root = 1 / np.sqrt(mass)
     # the symmetric form M^-1/2 K M^-1/2 keeps the shapes orthogonal to machine precision

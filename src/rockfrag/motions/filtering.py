@@ -3,7 +3,7 @@
 The filters are ObsPy's, run forwards and backwards: no phase shift, and a response that is the
 square of the Butterworth response of the given order (at a corner -6 dB, not -3 dB).  They start
 from rest at either end; put zero pads first where the displacement matters
-(:func:`rockfrag.motions.pad`).  A causal filter (``causal: true``) runs forwards alone: the Butterworth
+(``pad``).  A causal filter (``causal: true``) runs forwards alone: the Butterworth
 response itself (-3 dB at a corner), with its delay, and nothing before the motion begins (Boore and Akkar,
 2003, Earthq. Eng. Struct. Dyn. 32: 1729-1740, compare the two).  The provenance has the peak before and after
 and the first and last sample, which are not zero where pads were missing.  ObsPy and SciPy are loaded where they
@@ -22,28 +22,7 @@ from rockfrag.records.motion import Motion
 
 
 def highpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = False) -> Motion:
-    """Butterworth high-pass filter, acausal unless a causal one is asked for.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    corner_hz
-        Corner frequency [Hz], below Nyquist.
-    order
-        Order of the filter, 1 to 10; an acausal one acts twice.
-    causal
-        Whether it runs forwards alone.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the corner is not between zero and Nyquist or the order is not such a number.
-    """
+    """Butterworth high-pass filter, acausal unless a causal one is asked for."""
     corner_hz = _corner("highpass", "corner_hz", corner_hz, motion)
     order, causal = whole("step highpass", "order", order, 1, 10), _flag("highpass", causal)
     from obspy.signal import filter as obspy_filter
@@ -62,28 +41,7 @@ def highpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = Fa
 
 
 def lowpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = False) -> Motion:
-    """Butterworth low-pass filter, acausal unless a causal one is asked for.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    corner_hz
-        Corner frequency [Hz], below Nyquist.
-    order
-        Order of the filter, 1 to 10; an acausal one acts twice.
-    causal
-        Whether it runs forwards alone.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the corner is not between zero and Nyquist or the order is not such a number.
-    """
+    """Butterworth low-pass filter, acausal unless a causal one is asked for."""
     corner_hz = _corner("lowpass", "corner_hz", corner_hz, motion)
     order, causal = whole("step lowpass", "order", order, 1, 10), _flag("lowpass", causal)
     from obspy.signal import filter as obspy_filter
@@ -104,31 +62,7 @@ def lowpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = Fal
 def bandpass(
     motion: Motion, low_hz: float, high_hz: float, order: int = 4, causal: bool = False
 ) -> Motion:
-    """Butterworth band-pass filter between two corners below Nyquist [Hz], acausal unless asked for.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    low_hz
-        Lower corner [Hz].
-    high_hz
-        Upper corner [Hz], below Nyquist.
-    order
-        Order of the filter, 1 to 10; an acausal one acts twice.
-    causal
-        Whether it runs forwards alone.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If a corner is not between zero and Nyquist, the band is empty, or the order is not from 1
-        to 10.
-    """
+    """Butterworth band-pass filter between two corners below Nyquist [Hz], acausal unless asked for."""
     low_hz = _corner("bandpass", "low_hz", low_hz, motion)
     high_hz = _corner("bandpass", "high_hz", high_hz, motion)
     order, causal = whole("step bandpass", "order", order, 1, 10), _flag("bandpass", causal)
@@ -161,22 +95,6 @@ def resample(motion: Motion, dt_s: float) -> Motion:
     peaks change, as the provenance says; :func:`interpolate` keeps the lines. A motion that does not begin and
     end at zero is taken off the straight line between its ends first, so that it does not ring there, and
     nothing is added beyond its last sample.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    dt_s
-        New sampling interval [s]; old and new must have a ratio of whole numbers up to 1000.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the interval is not positive, has no such ratio, or is not shorter than the motion.
     """
     dt_s = positive("step resample", "dt_s", dt_s, "seconds")
     if dt_s >= motion.dt * motion.acceleration.size:
@@ -197,24 +115,7 @@ def resample(motion: Motion, dt_s: float) -> Motion:
 
 
 def interpolate(motion: Motion, dt_s: float) -> Motion:
-    """Sample the straight lines between samples more finely; the motion itself stays the same.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    dt_s
-        New sampling interval [s], a whole fraction of the old one.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If it is not a whole fraction of the old interval.
-    """
+    """Sample the straight lines between samples more finely; the motion itself stays the same."""
     dt_s = positive("step interpolate", "dt_s", dt_s, "seconds")
     parts = round(motion.dt / dt_s)
     if not 1 <= parts <= 1000 or abs(parts * dt_s / motion.dt - 1) > 1e-9:

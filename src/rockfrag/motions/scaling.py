@@ -93,28 +93,7 @@ def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
 
 
 def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0.05) -> Motion:
-    """Scale to a pseudo-spectral acceleration [g] at a period [s] and a damping [-].
-
-    Parameters
-    ----------
-    motion
-        Motion as it is, not zero throughout.
-    sa_g
-        Wanted pseudo-spectral acceleration [g], positive.
-    period_s
-        Natural period [s], positive.
-    damping
-        Fraction of critical damping [-].
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the motion is zero throughout or the wanted value is not a positive number.
-    """
+    """Scale to a pseudo-spectral acceleration [g] at a period [s] and a damping [-]."""
     target = positive("step scale_to_sa", "sa_g", sa_g, "g")
     period_s = positive("step scale_to_sa", "period_s", period_s, "seconds")
     damping = not_negative("step scale_to_sa", "damping", damping)
@@ -131,24 +110,7 @@ def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0
 
 
 def scale_to_arias(motion: Motion, arias_m_s: float) -> Motion:
-    """Scale to an Arias intensity [m/s].
-
-    Parameters
-    ----------
-    motion
-        Motion as it is, not zero throughout.
-    arias_m_s
-        Wanted Arias intensity [m/s], positive.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the motion is zero throughout or the wanted value is not a positive number.
-    """
+    """Scale to an Arias intensity [m/s]."""
     target = positive("step scale_to_arias", "arias_m_s", arias_m_s, "m/s")
     factor = _factor("scale_to_arias", motion, target, arias(motion)) ** 0.5
     return motion.after(
@@ -162,22 +124,6 @@ def compress_time(motion: Motion, factor: float) -> Motion:
     A model at length scale 1 : λ under the same gravity needs the factor √λ; velocities are divided
     by √λ and displacements by λ (similitude of Froude; Harris & Sabnis 1999, Structural Modeling
     and Experimental Techniques, 2nd ed.).  A factor below one stretches time.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    factor
-        Time of the prototype over time of the model [-], positive.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the factor is not a positive number.
     """
     factor = positive("step compress_time", "factor", factor)
     return motion.after("compress_time", motion.acceleration, dt=motion.dt / factor, factor=factor)

