@@ -128,7 +128,7 @@ class CatalogueDraft:
         kinds: dict[str, list[Note]] = {}
         for note in self.notes:
             kinds.setdefault(note.kind, []).append(note)
-        lines = []
+        lines: list[str] = []
         for kind, notes in kinds.items():
             if len(notes) <= shown:
                 lines += map(str, notes)
