@@ -49,12 +49,12 @@ def test_units_are_those_of_the_names(named):
     assert row["pgv_cm_s"] / 100 == pytest.approx(m.pgv(motion))
     assert row["pgd_cm"] / 100 == pytest.approx(intensity.pgd(motion))
     assert row["housner_cm"] / 100 == pytest.approx(housner_and_average(motion)[0])
-    assert row["sa_0_3s_g"] * G == pytest.approx(m.spectral_acceleration(motion, 0.3))
+    assert row["sa_0_3s_g"] * G == pytest.approx(intensity.spectral_acceleration(motion, 0.3))
     assert row["sd_0_3s_cm"] / 100 == pytest.approx(
         m.response_spectrum(motion, [0.3]).displacement[0]
     )
     periods = [round(0.2 * k, 1) for k in range(1, 11)]
-    logs = [math.log(m.spectral_acceleration(motion, period)) for period in periods]
+    logs = [math.log(intensity.spectral_acceleration(motion, period)) for period in periods]
     assert row["avgsa_g"] * G == pytest.approx(math.exp(sum(logs) / 10), rel=1e-6)
     omega = 2 * math.pi / 0.3
     assert row["sa_0_3s_g"] * G == pytest.approx(row["sd_0_3s_cm"] / 100 * omega**2)
@@ -113,7 +113,7 @@ def test_pair_has_the_measures_of_its_rotation(named):
     ]
     assert row["rotd50_pga_g"] * G == pytest.approx(m.rotd(first, second, m.pga, 50))
     assert row["rotd100_pgv_cm_s"] / 100 == pytest.approx(m.rotd(first, second, m.pgv, 100))
-    sa = m.rotd(first, second, lambda motion: m.spectral_acceleration(motion, 0.5), 100)
+    sa = m.rotd(first, second, lambda motion: intensity.spectral_acceleration(motion, 0.5), 100)
     assert row["rotd100_sa_0_5s_g"] * G == pytest.approx(sa)
 
 

@@ -77,7 +77,7 @@ def test_spectra_are_pyrotds_once_both_see_the_same_function_of_time(motion, per
     # enough silence behind it
     fine = filtering.interpolate(conditioning.pad(motion, 0.0, 60.0), 0.0005)
     theirs = pyrotd.calc_spec_accels(fine.dt, fine.acceleration, np.array([1 / period]), 0.05)
-    ours = m.spectral_acceleration(motion, period)
+    ours = intensity.spectral_acceleration(motion, period)
     assert ours == pytest.approx(float(theirs["spec_accel"][0]), rel=1e-4)
 
 
@@ -93,7 +93,7 @@ def test_rotated_spectra_are_pyrotds(motion):
         0.002, *fine, np.array([2.0]), 0.05, percentiles=[50, 100], angles=np.arange(180)
     )
     for percentile, value in zip((50, 100), theirs["spec_accel"], strict=True):
-        ours = m.rotd(motion, other, lambda x: m.spectral_acceleration(x, 0.5), percentile)
+        ours = m.rotd(motion, other, lambda x: intensity.spectral_acceleration(x, 0.5), percentile)
         assert ours == pytest.approx(float(value), rel=2e-4)
 
 

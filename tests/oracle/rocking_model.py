@@ -23,6 +23,7 @@ from scipy.optimize import brentq
 
 from rockfrag.rocking.measured_restitution import MeasuredRestitution
 from rockfrag.system.blocks import Block, Stack, Vector
+from rockfrag.system.geometry import reach, upper_arm
 
 State = tuple[int, int]
 Pair = tuple[float, float]
@@ -100,8 +101,8 @@ class Model:
             self.m1, self.i1, self.b1 = lower.mass, lower.centroidal_inertia, lower.b
             pairs = [(s, t) for s in (1, -1) for t in (1, -1)]
             self._r1 = _affine({(s, t): lower.arm(s) for s, t in pairs})
-            self._d = _affine({(s, t): body.reach(s, t) for s, t in pairs})
-            arms = {(s, t): body.upper_arm(t) for s, t in pairs}
+            self._d = _affine({(s, t): Vector(*reach(body.pile, s, t)) for s, t in pairs})
+            arms = {(s, t): Vector(*upper_arm(body.pile, t)) for s, t in pairs}
         upper = body if isinstance(body, Block) else body.contact_upper
         self.m2, self.i2, self.b2 = upper.mass, upper.centroidal_inertia, upper.b
         self._r2 = _affine(arms)

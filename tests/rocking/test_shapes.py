@@ -45,9 +45,7 @@ def test_a_box_rocks_as_the_block_of_its_dimensions(box: Path):
 
 
 def test_a_block_comes_from_a_mesh_or_from_measured_edges(box: Path):
-    mesh = Block.from_mesh(
-        box, mass=MASS, direction_deg=0, contact_tolerance=0.001, edge_retreat=0.01
-    )
+    mesh = read_shape(box, mass=MASS).block(0, 0.001, retreat=0.01)
     inertia = MASS * (WIDTH**2 + HEIGHT**2) / 12
     hand = Block.from_edges(0.19, 0.19, cg_height=0.5, height=HEIGHT, mass=MASS, inertia=inertia)
     assert mesh.width == pytest.approx(hand.width, rel=1e-6)

@@ -1,7 +1,6 @@
 from .intensity import (
     pga as pga,
     pgv as pgv,
-    spectral_acceleration as spectral_acceleration,
 )
 from .measures import (
     measure_motion as measure_motion,
@@ -28,12 +27,8 @@ from .pulses import (
     sine_sweep as sine_sweep,
 )
 from .rotation import (
-    fault_normal as fault_normal,
-    radial as radial,
     rotate as rotate,
-    rotate_to_azimuth as rotate_to_azimuth,
     rotd as rotd,
-    stronger_direction as stronger_direction,
 )
 from .scaling import (
     scale as scale,
@@ -48,4 +43,3 @@ from .synthetic import (
     evolutionary as evolutionary,
     spectrum_compatible as spectrum_compatible,
 )
-from .time_base import common_time as common_time

@@ -183,26 +183,7 @@ def predominant_period(motion: Motion) -> float:
 
 
 def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) -> float:
-    """Pseudo-spectral acceleration Sa(T) = ω² Sd [m/s²], the one that hazard maps are made for.
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-    period
-        Natural period [s], positive.
-    damping
-        Fraction of critical damping [-].
-
-    Returns
-    -------
-    Spectral acceleration [m/s²].
-
-    Raises
-    ------
-    InputError
-        If the period is not positive or the damping negative.
-    """
+    """Pseudo-spectral acceleration Sa(T) = ω² Sd [m/s²], the one that hazard maps are made for."""
     from rockfrag.motions.spectra import response_spectrum
 
     return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])

@@ -148,26 +148,6 @@ def make_catalogue(
     Components of one record are found by PEER's ``_SearchResults.csv`` where there is one, by being in one
     file, by station and time, and by names that differ in the component alone. Each horizontal
     component becomes a row that names the other one as ``second`` and the vertical one.
-
-    Parameters
-    ----------
-    paths
-        What to look through.
-    unit, dt
-        Unit and sampling interval [s] of the files that do not state theirs.
-    folder
-        Folder that the catalogue will lie in: files are named from there.
-
-    Returns
-    -------
-    CatalogueDraft
-        The table has the columns of a catalogue; ``warnings`` says what looks wrong, ``errors`` which
-        files could not be read.
-
-    Raises
-    ------
-    InputError
-        If nothing is found.
     """
     draft = CatalogueDraft(pd.DataFrame(columns=list(COLUMNS)))
     paths = list(paths)

@@ -63,28 +63,7 @@ class Record:
 def read_record(
     path: str | os.PathLike[str], dt: float | None = None, cut_short: bool = False
 ) -> Record:
-    """Return what is in a file, before units are settled.
-
-    Parameters
-    ----------
-    path
-        File of any known format; ``.gz`` is unpacked. Of an archive (zip, tar) all members are read;
-        ``archive.zip#member`` names one.
-    dt
-        Sampling interval [s] for plain text that does not state it or states it wrongly.
-    cut_short
-        Whether to read what there is of a file with fewer samples than its header promises, with a
-        note in the provenance, instead of refusing it.
-
-    Returns
-    -------
-    The :class:`Record`, with its channels.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is of no known format, or holds no acceleration.
-    """
+    """Return what is in a file, before units are settled."""
     file, member = _file_and_member(path)
     check_file(file)
     if is_archive(file):
