@@ -240,8 +240,9 @@ def started() -> Iterator[str]:
             yield from (f"{home}.{name.strip()}" for name in names.split(","))
         # what the rules ask of the study
         yield from (f"attribute.{name}" for name in re.findall(r"\bSTUDY\.(\w+)", text))
-    main = "if __name__ == "
-    yield from (name for name, tree in modules().items() if main in ast.unparse(tree))
+    for name, tree in modules().items():
+        asked = [node.test for node in tree.body if isinstance(node, ast.If)]
+        yield from (name for test in asked if "__name__" in ast.unparse(test))
     for path in (ROOT / "src").rglob("*.j2"):
         yield from (
             f"attribute.{name}" for name in re.findall(r"\.(\w+)", path.read_text(encoding="utf-8"))

@@ -4,7 +4,7 @@ import difflib
 import functools
 import inspect
 from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar, cast, get_args, get_type_hints
 
 from rockfrag.errors import InputError
 
@@ -18,7 +18,7 @@ class UnknownKeyword(InputError, TypeError):
 
 def named_keywords(function: Called) -> Called:
     """Let a function answer a wrong keyword with the right one, or with all there are (a decorator)."""
-    known = tuple(name for name in inspect.signature(function).parameters if name != "self")
+    known = _names_of(function)
     names = frozenset(known)
 
     @functools.wraps(function)
@@ -37,6 +37,17 @@ def named_fields(of: type[Made]) -> type[Made]:
     """Let a class answer a wrong keyword likewise (a decorator)."""
     of.__init__ = named_keywords(of.__init__)  # type: ignore[method-assign]
     return of
+
+
+def _names_of(function: Callable[..., Any]) -> tuple[str, ...]:
+    """Names of the arguments of a function, those of a typed ``**`` among them."""
+    names: list[str] = []
+    for name, parameter in inspect.signature(function).parameters.items():
+        if parameter.kind is parameter.VAR_KEYWORD:
+            names += get_args(get_type_hints(function)[name])[0].__annotations__
+        elif name != "self":
+            names.append(name)
+    return tuple(names)
 
 
 def _answer(function: str, name: str, known: tuple[str, ...]) -> str:

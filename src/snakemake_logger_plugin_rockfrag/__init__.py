@@ -63,8 +63,9 @@ class LogHandler(LogHandlerBase):
     def _fail(self, job: int) -> None:
         """Say that a job died, unless it has said itself what is wrong and where its log is."""
         self.failed = True
-        rule, log, begun = self.running.pop(job, ("a job", Path(), 0.0))
-        if not says_why(log, begun):
+        # Snakemake 9.0 tells of a failed job twice
+        rule, log, begun = self.running.pop(job, ("", Path(), 0.0))
+        if rule and not says_why(log, begun):
             _say(f"{rule} failed: it {KILLED} (log: {log})")
 
     def _finish(self, job: int) -> None:

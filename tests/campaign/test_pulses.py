@@ -7,7 +7,7 @@ import pytest
 from rockfrag.campaign.repeats import REPEATS, majority_of_repeats
 from rockfrag.campaign.tests import read_campaign
 from rockfrag.errors import InputError
-from rockfrag.motions import commanded_cosine
+from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.report.campaign_page import _against_rivals
 from rockfrag.study.loading import load_any
 

@@ -75,10 +75,12 @@ def test_whether_it_rocked_is_compared_where_the_laboratory_noted_it(
     assert "Whether the object rocked at all" in (tmp_path / "report.html").read_text()
 
 
-def of_a_column(folder: Path, laboratory: Laboratory, **changes: Any) -> tuple[Path, pd.DataFrame]:
-    """Write a study of the block on a base on a plinth, of every third synthetic test; and its tests."""
+def of_a_column(
+    folder: Path, laboratory: Laboratory, every: int = 3, **changes: Any
+) -> tuple[Path, pd.DataFrame]:
+    """Write a study of the block on a base on a plinth, of every so many-th synthetic test; and its tests."""
     column = Column((Block(0.2, 0.6, 100.0), Block(0.12, 0.3, 40.0), BLOCK))
-    table = laboratory.table.iloc[::3]
+    table = laboratory.table.iloc[::every]
     motions = [laboratory.motions[name] for name in table["motion"]]
     found = overturns([column], motions, DT, [1.0], friction=0.15)
     table = table.assign(
@@ -97,15 +99,19 @@ def of_a_column(folder: Path, laboratory: Laboratory, **changes: Any) -> tuple[P
     return configured(folder, laboratory, **(changed | changes)), table
 
 
+@pytest.mark.parametrize("every", [8, pytest.param(3, marks=pytest.mark.slow)])
 def test_a_column_of_three_bodies_is_reproduced_from_configuration_to_page(
-    tmp_path: Path, laboratory: Laboratory
+    tmp_path: Path, laboratory: Laboratory, every: int
 ):
-    path, table = of_a_column(tmp_path, laboratory)
+    path, table = of_a_column(tmp_path, laboratory, every)
     assert 0.2 < table["overturned"].mean() < 0.8
-    alone = laboratory.table["overturned"].loc[table.index]
     tables = run(path, tmp_path)
     agreement = tables["agreement"].set_index("who")
-    assert agreement.loc["rockfrag", "right"] > (alone == table["overturned"]).mean() + 0.05
+    assert agreement.loc["rockfrag", "right"] > 0.8
+    if every == 3:
+        # a few tests do not tell the column from the block alone
+        alone = laboratory.table["overturned"].loc[table.index]
+        assert agreement.loc["rockfrag", "right"] > (alone == table["overturned"]).mean() + 0.05
     assert tables["rocking"]["right"].iloc[0] > 0.9
     page = (tmp_path / "report.html").read_text()
     assert "Coefficient of friction" in page

@@ -1,4 +1,4 @@
-"""Goodness of fit, intensity-measure selection, surface."""
+"""Goodness of fit and intensity-measure selection."""
 
 import numpy as np
 import pandas as pd
@@ -11,7 +11,6 @@ from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.measure_selection import area_under_curve, recommend_measure
 from rockfrag.fragility.measure_selection_ida import recommend_ida_measure
 from rockfrag.fragility.observations import observations_from_table
-from rockfrag.fragility.surface import fit_surface, linearly_separable
 
 
 def cloud(n, seed, probability):
@@ -96,7 +95,7 @@ def test_a_measure_that_leaves_out_duration_is_found_insufficient():
     assert found["pga_g"] < 1e-3
     assert found["effective_g"] > 0.01
     worse = recommend_measure(table, ["pga_g"], given=["duration_s"], replicates=20)
-    assert "not sufficient" in worse.words and worse.pair is None
+    assert "not sufficient" in worse.words
 
 
 def test_proportional_measures_are_equals_and_make_no_surface():
@@ -104,9 +103,7 @@ def test_proportional_measures_are_equals_and_make_no_surface():
     table = pd.DataFrame({"a_g": data.im, "b_g": 2.0 * data.im, "overturned": data.overturned})
     choice = recommend_measure(table, ["a_g", "b_g"], motion=None, replicates=20)
     assert "is not distinguishable from" in choice.words
-    assert choice.pair is None
-    with pytest.raises(InputError, match="proportional"):
-        fit_surface(table, ["a_g", "b_g"])
+    assert "Adding" not in choice.words
 
 
 @pytest.mark.parametrize("decides", ["pga_g", "pgv_cm_s", "arias_m_s"])
@@ -142,30 +139,3 @@ def test_ida_curves_recommend_the_measure_that_decides(decides):
     assert best["chosen_fraction"] > 0.9 and best["p_magnitude"] > 0.01
     with pytest.raises(InputError, match="does not grow with the amplitude"):
         recommend_ida_measure(ida, measures.assign(d5_95_s=1.0), ["d5_95_s"])
-
-
-def test_a_surface_recovers_the_parameters_that_made_it():
-    rng = np.random.default_rng(6)
-    pga, pgv = np.exp(rng.normal(np.log(0.4), 0.6, 4000)), np.exp(rng.normal(3.0, 0.6, 4000))
-    truth = np.array([-3.0, 1.5, 1.5])
-    eta = truth[0] + truth[1] * np.log(pga) + truth[2] * np.log(pgv)
-    table = pd.DataFrame({"pga_g": pga, "pgv_cm_s": pgv, "overturned": rng.normal(size=4000) < eta})
-    fit = fit_surface(table, ["pga_g", "pgv_cm_s"])
-    errors = np.sqrt(np.diag(fit.covariance))
-    assert (np.abs(np.array(fit.coefficients) - truth) < 3.5 * errors).all()
-    expected = stats.norm.cdf(truth @ [1.0, np.log(0.5), np.log(30.0)])
-    assert fit.probability(0.5, 30.0) == pytest.approx(expected, abs=0.05)
-
-
-def test_separation_by_a_plane_is_found_although_no_single_measure_separates():
-    rng = np.random.default_rng(7)
-    x, y = rng.normal(size=(2, 60))
-    table = pd.DataFrame(
-        {"pga_g": np.exp(x), "pgv_cm_s": np.exp(y), "overturned": (x + y > 0).astype(float)}
-    )
-    design = np.column_stack([np.ones(60), x, y])
-    assert linearly_separable(design, table.overturned.to_numpy())
-    assert not linearly_separable(design, (rng.random(60) < 0.5).astype(float))
-    fit = fit_surface(table, ["pga_g", "pgv_cm_s"])
-    assert "penalised" in fit.method
-    assert np.isfinite(fit.coefficients).all() and np.abs(fit.coefficients[1]) < 50

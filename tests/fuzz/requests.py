@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rockfrag.motions import bandpass, scale_to_pga
+from rockfrag.motions import scale_to_pga
+from rockfrag.motions.filtering import bandpass
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 

@@ -8,6 +8,8 @@ import pytest
 from obspy import Trace
 
 from rockfrag import motions as m
+from rockfrag.motions import conditioning, filtering, intensity, spectra
+from rockfrag.records import integration
 from rockfrag.records.motion import Motion
 
 
@@ -24,7 +26,7 @@ def motion(noise) -> Motion:
 
 def test_velocity_is_obspys(motion):
     trace = Trace(motion.acceleration.copy(), {"delta": motion.dt}).integrate()
-    velocity, _ = m.integrate(motion.acceleration, motion.dt)
+    velocity, _ = integration.integrate(motion.acceleration, motion.dt)
     np.testing.assert_allclose(velocity, trace.data, atol=1e-12)
 
 
@@ -34,12 +36,12 @@ def test_integrals_are_eqsigs(motion):
     from eqsig import AccSignal, im
 
     signal = AccSignal(motion.acceleration, motion.dt)
-    assert m.arias(motion) == pytest.approx(im.calc_arias_intensity(signal)[-1], rel=1e-9)
-    assert m.cav(motion) == pytest.approx(im.calc_cav(signal)[-1], rel=1e-9)
-    velocity, displacement = m.integrate(motion.acceleration, motion.dt)
+    assert intensity.arias(motion) == pytest.approx(im.calc_arias_intensity(signal)[-1], rel=1e-9)
+    assert intensity.cav(motion) == pytest.approx(im.calc_cav(signal)[-1], rel=1e-9)
+    velocity, displacement = integration.integrate(motion.acceleration, motion.dt)
     np.testing.assert_allclose(velocity, signal.velocity, atol=1e-12)
     # eqsig applies the trapezoidal rule to the velocity again, an error of order dt²
-    np.testing.assert_allclose(displacement, signal.displacement, atol=2e-4 * m.pgd(motion))
+    np.testing.assert_allclose(displacement, signal.displacement, atol=2e-4 * intensity.pgd(motion))
 
 
 @pytest.mark.peers
@@ -50,7 +52,7 @@ def test_durations_are_eqsigs_but_for_reading_between_samples(motion):
     signal = AccSignal(motion.acceleration, motion.dt)
     for upper in (0.75, 0.95):
         theirs = im.calc_sig_dur(signal, start=0.05, end=upper)
-        assert m.significant_duration(motion, 0.05, upper) == pytest.approx(
+        assert intensity.significant_duration(motion, 0.05, upper) == pytest.approx(
             theirs, abs=2 * motion.dt
         )
 
@@ -63,7 +65,7 @@ def test_oscillator_histories_are_eqsigs(motion, period):
 
     theirs = sdof.response_series(motion.acceleration, motion.dt, np.array([period]), 0.05)
     # eqsig takes the load, not the ground acceleration, as positive
-    for ours, other in zip(m.oscillator_response(motion, period), theirs, strict=True):
+    for ours, other in zip(spectra.oscillator_response(motion, period), theirs, strict=True):
         np.testing.assert_allclose(ours, -other[0], atol=1e-6 * np.abs(ours).max())
 
 
@@ -73,9 +75,9 @@ def test_spectra_are_pyrotds_once_both_see_the_same_function_of_time(motion, per
     pyrotd = peer("pyrotd")
     # pyrotd repeats the record for ever and joins samples by sines: give it a finely sampled one with
     # enough silence behind it
-    fine = m.interpolate(m.pad(motion, 0.0, 60.0), 0.0005)
+    fine = filtering.interpolate(conditioning.pad(motion, 0.0, 60.0), 0.0005)
     theirs = pyrotd.calc_spec_accels(fine.dt, fine.acceleration, np.array([1 / period]), 0.05)
-    ours = m.spectral_acceleration(motion, period)
+    ours = intensity.spectral_acceleration(motion, period)
     assert ours == pytest.approx(float(theirs["spec_accel"][0]), rel=1e-4)
 
 
@@ -83,21 +85,24 @@ def test_spectra_are_pyrotds_once_both_see_the_same_function_of_time(motion, per
 def test_rotated_spectra_are_pyrotds(motion):
     pyrotd = peer("pyrotd")
     other = Motion(np.roll(motion.acceleration, 37) * 0.8, motion.dt)
-    fine = [m.interpolate(m.pad(x, 0.0, 60.0), 0.002).acceleration for x in (motion, other)]
+    fine = [
+        filtering.interpolate(conditioning.pad(x, 0.0, 60.0), 0.002).acceleration
+        for x in (motion, other)
+    ]
     theirs = pyrotd.calc_rotated_spec_accels(
         0.002, *fine, np.array([2.0]), 0.05, percentiles=[50, 100], angles=np.arange(180)
     )
     for percentile, value in zip((50, 100), theirs["spec_accel"], strict=True):
-        ours = m.rotd(motion, other, lambda x: m.spectral_acceleration(x, 0.5), percentile)
+        ours = m.rotd(motion, other, lambda x: intensity.spectral_acceleration(x, 0.5), percentile)
         assert ours == pytest.approx(float(value), rel=2e-4)
 
 
 def test_peaks_of_the_samples_fall_short_by_what_sampling_hides(motion):
     """Why PGV and spectra exceed those of programs that read them off the samples."""
-    velocity, _ = m.integrate(motion.acceleration, motion.dt)
+    velocity, _ = integration.integrate(motion.acceleration, motion.dt)
     assert np.abs(velocity).max() <= m.pgv(motion)
     period = 0.06
-    sampled = np.abs(m.oscillator_response(motion, period)[0]).max()
+    sampled = np.abs(spectra.oscillator_response(motion, period)[0]).max()
     peak = m.response_spectrum(motion, [period]).displacement[0]
     assert sampled <= peak
     # at six samples a period up to 1 - cos(π/6) of the peak hides between them

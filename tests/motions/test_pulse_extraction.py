@@ -10,7 +10,9 @@ from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
 from rockfrag import motions as m
+from rockfrag.motions import conditioning, filtering
 from rockfrag.motions import pulse_extraction as searched
+from rockfrag.records import integration
 from rockfrag.records.motion import Motion
 
 
@@ -21,7 +23,7 @@ from rockfrag.records.motion import Motion
     cycles=st.sampled_from([1.0, 1.5, 2.0, 3.0]),
 )
 def test_pulse_alone_is_recovered(period, phase, cycles):
-    motion = m.pad(m.mavroeidis_papageorgiou(0.5, period, cycles, phase, 0.01), 2.0, 3.0)
+    motion = conditioning.pad(m.mavroeidis_papageorgiou(0.5, period, cycles, phase, 0.01), 2.0, 3.0)
     pulse = m.strongest_pulse(motion)
     assert pulse.explained > 0.999
     # near one cycle, period, cycles and phase can make up for one another
@@ -53,7 +55,7 @@ def thinned_gain(velocity, dt, period, cycles):
 
 def plain_search(motion):
     """The strongest pulse with every period, number of cycles and place tried."""
-    velocity, _ = m.integrate(motion.acceleration, motion.dt)
+    velocity, _ = integration.integrate(motion.acceleration, motion.dt)
     shortest = max(searched.SHORTEST_PERIOD, 10 * motion.dt)
     longest = min(searched.LONGEST_PERIOD, motion.time[-1])
     step = math.log(searched.PERIOD_RATIO)
@@ -81,11 +83,11 @@ def test_search_finds_what_trying_everything_finds(noise, kind, seed):
     shaking = noise(seed, 900, 0.01 if seed else 0.005, tapered=True)
     motion = {
         "random walk": lambda: shaking,
-        "high-passed": lambda: m.highpass(shaking, 2.0, 4),
+        "high-passed": lambda: filtering.highpass(shaking, 2.0, 4),
         "short": lambda: noise(seed, 40),
         "with a pulse": lambda: Motion(
             0.2 * shaking.acceleration
-            + m.pad(
+            + conditioning.pad(
                 m.mavroeidis_papageorgiou(0.3, 1.0, 2.5, 30.0, shaking.dt), 0.0, 9.0
             ).acceleration[:900],
             shaking.dt,
@@ -101,8 +103,8 @@ def test_search_finds_what_trying_everything_finds(noise, kind, seed):
 
 
 def test_pulse_in_noise_is_recovered(noise):
-    pulse = m.pad(m.mavroeidis_papageorgiou(0.5, 2.0, 1.5, 60.0, 0.01), 8.0, 9.0)
-    shaking = m.highpass(noise(5, pulse.acceleration.size), 1.0, 4)
+    pulse = conditioning.pad(m.mavroeidis_papageorgiou(0.5, 2.0, 1.5, 60.0, 0.01), 8.0, 9.0)
+    shaking = filtering.highpass(noise(5, pulse.acceleration.size), 1.0, 4)
     found = m.strongest_pulse(Motion(pulse.acceleration + shaking.acceleration, 0.01))
     assert found.period == pytest.approx(2.0, rel=0.1)
     assert found.velocity == pytest.approx(0.5, rel=0.15)
@@ -112,7 +114,7 @@ def test_pulse_in_noise_is_recovered(noise):
 
 def test_taking_the_pulse_away_takes_its_share_of_the_velocity(noise):
     motion = noise(3, 1500, tapered=True)
-    velocity, _ = m.integrate(motion.acceleration, motion.dt)
+    velocity, _ = integration.integrate(motion.acceleration, motion.dt)
     pulse = m.strongest_pulse(motion)
     half = pulse.cycles * pulse.period / 2
     t = motion.time - pulse.time

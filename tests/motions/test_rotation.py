@@ -8,18 +8,10 @@ import pytest
 from obspy.signal.rotate import rotate_ne_rt
 
 from rockfrag.errors import InputError
-from rockfrag.motions import (
-    common_time,
-    fault_normal,
-    pga,
-    pgv,
-    radial,
-    rotate,
-    rotate_to_azimuth,
-    rotd,
-    spectral_acceleration,
-    stronger_direction,
-)
+from rockfrag.motions import pga, pgv, rotate, rotd
+from rockfrag.motions.intensity import spectral_acceleration
+from rockfrag.motions.rotation import fault_normal, radial, rotate_to_azimuth, stronger_direction
+from rockfrag.motions.time_base import common_time
 from rockfrag.records.motion import Motion
 
 

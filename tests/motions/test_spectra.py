@@ -10,18 +10,10 @@ from scipy.linalg import expm
 from scipy.signal import StateSpace, lsim
 
 from rockfrag.errors import InputError
-from rockfrag.motions import (
-    fourier_amplitude,
-    half_sine,
-    interpolate,
-    oscillator_response,
-    pga,
-    pgd,
-    rectangular,
-    response_spectrum,
-    sine,
-)
-from rockfrag.motions.spectra import oscillator_matrix
+from rockfrag.motions import half_sine, pga, rectangular, response_spectrum, sine
+from rockfrag.motions.filtering import interpolate
+from rockfrag.motions.intensity import pgd
+from rockfrag.motions.spectra import fourier_amplitude, oscillator_matrix, oscillator_response
 from rockfrag.records.motion import Motion
 
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
 from rockfrag.rocking import Block, Stack, simulate
+from rockfrag.system.geometry import upper_arm
 
 G = 9.81
 T2 = Block(0.124, 0.496, 2.790)
@@ -116,13 +117,12 @@ WIDE = Block(0.30, 0.50, 5.0, cg_offset=0.01)
 
 def test_a_statue_wider_than_its_pedestal_stands_on_the_pedestal_s_upper_edge() -> None:
     stack = Stack(P, WIDE, offset=0.02)
-    left, right = stack.interface_pivot(-1), stack.interface_pivot(+1)
-    assert (left.x, left.y) == pytest.approx((-P.b, P.height))
-    assert (right.x, right.y) == pytest.approx((P.b, P.height))
+    assert stack.pile.left == pytest.approx((-P.b, P.height))
+    assert stack.pile.right == pytest.approx((P.b, P.height))
     # its centre of gravity stays where it is
-    for pivot in (+1, -1):
-        assert stack.interface_pivot(pivot).x + stack.upper_arm(pivot).x == pytest.approx(0.03)
-        assert stack.upper_arm(pivot).y == pytest.approx(0.25)
+    for pivot, at in ((+1, stack.pile.right), (-1, stack.pile.left)):
+        x, y = upper_arm(stack.pile, pivot)
+        assert (at[0] + x, y) == pytest.approx((0.03, 0.25))
 
 
 def test_a_wide_statue_rocks_as_one_whose_base_is_the_overlap() -> None:
@@ -137,8 +137,8 @@ def test_a_wide_statue_rocks_as_one_whose_base_is_the_overlap() -> None:
 
 def test_a_statue_may_stand_over_one_edge() -> None:
     stack = Stack(P, T2, offset=0.05)
-    assert stack.interface_pivot(+1).x == pytest.approx(P.b)
-    assert stack.interface_pivot(-1).x == pytest.approx(0.05 - T2.b)
+    assert stack.pile.right[0] == pytest.approx(P.b)
+    assert stack.pile.left[0] == pytest.approx(0.05 - T2.b)
     right, left = (stack.contact_upper.critical_angle(pivot) for pivot in (+1, -1))
     assert right < T2.alpha == pytest.approx(left)
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.case_list import overturned_cases
-from rockfrag.rocking.ensemble import Options, overturns, prepared
+from rockfrag.rocking.ensemble import overturned_cases, overturns, prepared
 from rockfrag.rocking.step_sensitivity import find_step_size_sensitive
 from rockfrag.rocking.thresholds import find_thresholds
 from rockfrag.system.blocks import Block
@@ -152,7 +151,7 @@ def test_scattered_cases_have_the_outcomes_of_the_grid(ensemble):
     grid = overturns(bodies, motions, 0.01, scales).overturned
     rng = np.random.default_rng(1)
     i, j, k = (rng.integers(0, n, 50) for n in grid.shape)
-    cases = prepared(bodies, motions, 0.01, scales, Options())
+    cases = prepared(bodies, motions, 0.01, scales)
     some = overturned_cases(cases, i, j, scales[k])
     np.testing.assert_array_equal(some, grid[i, j, k])
 

@@ -90,15 +90,14 @@ def _two_measures(found: Assessment) -> dict[str, Any] | None:
     about = found.conversion
     if about is None or found.level is None:
         return None
-    surface = about.fragility.surface
     known = about.known and {
         "log_ratio": float(about.known.log_ratio(np.array([found.level.value]))[0]),
         "sd_between_earthquakes": about.known.spread,
     }
     return {
         "measures": [f"{about.measure.imt} [{about.measure.unit}]", "PGV over it [s]"],
-        "coefficients": surface.coefficients,
-        "covariance": surface.covariance,
+        "coefficients": about.fragility.coefficients,
+        "covariance": about.fragility.covariance,
         "weight": about.weight,
         "at_the_site": known,
         "sd_of_mean": about.spread,

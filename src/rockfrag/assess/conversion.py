@@ -221,7 +221,7 @@ def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
 
     middle, *_ = fit.contour(0.5, math.exp(log_ratio))
     log_level = float(np.log(middle[0]))
-    own = float(weight(np.array([fit.surface.coefficients]), log_level)[0])
+    own = float(weight(np.array([fit.coefficients]), log_level)[0])
     error = 0.0
     if len(fit.replicates) > 1:
         error = float(jackknife_error(weight(fit.replicates, log_level)))

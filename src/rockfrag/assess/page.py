@@ -18,6 +18,7 @@ from rockfrag.assess.mitigations import without_simulation
 from rockfrag.assess.scale import SCALE_WORDS
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.words import (
+    MOST_ASSUMPTIONS,
     NAMES,
     assumptions,
     at_the_site,
@@ -25,11 +26,11 @@ from rockfrag.assess.words import (
     fraction_words,
     headline,
     helps,
-    main_assumptions,
     mitigation_words,
     positions,
     quality_flags,
     risk,
+    short_assumptions,
     uncertainty,
     value_words,
     worst_direction,
@@ -90,7 +91,10 @@ def _answer(found: Assessment) -> Answer:
             "choice of as many earthquakes could show (90 %).",
             lambda: fractions_figure(found),
         ),
-        rests_on=[f"{found.motions.words}.", *main_assumptions(found)],
+        rests_on=[
+            f"{found.motions.words}.",
+            *(line.words for line in short_assumptions(found)[:MOST_ASSUMPTIONS]),
+        ],
         could_change=doubtful,
         questions=[
             ("What helps?", "mitigations"),

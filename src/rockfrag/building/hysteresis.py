@@ -11,7 +11,6 @@ an envelope that is the same on both sides, so that the two can be compared:
    unloading.
 """
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -43,23 +42,7 @@ def shear_strengths(building: ShearBuilding) -> Floats:
 
 
 def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
-    """Corners of the envelope of each storey: cracking, yield, shear limit, rocking limit.
-
-    Parameters
-    ----------
-    building
-        Building whose masonry law and stiffnesses are looked up.
-
-    Returns
-    -------
-    displacement, force
-        [m], [N], each of shape (storeys, 4).
-
-    Raises
-    ------
-    InputError
-        If the building is so soft that a storey reaches its strength only beyond the yield drift.
-    """
+    """Corners of the envelope of each storey: cracking, yield, shear limit, rocking limit."""
     law = building.masonry
     heights, stiffnesses = np.asarray(building.heights), np.asarray(building.stiffnesses)
     strength = shear_strengths(building)
@@ -89,39 +72,6 @@ def law_parameters(law: MasonryLaw) -> Floats:
     """Parameters of the law as the kernels take them, shape (5,)."""
     return np.array(
         [law.pinch_force, law.pinch_drift, law.damage_ductility, law.damage_energy, law.unloading]
-    )
-
-
-def push_storey(building: ShearBuilding, storey: int, displacements: Sequence[float]) -> Floats:
-    """Push one storey through displacements in turn and return its forces.
-
-    Parameters
-    ----------
-    building
-        Building; its model need not be hysteretic.
-    storey
-        Number of the storey, from 1.
-    displacements
-        Displacements of the upper floor against the lower [m], shape (n,); the path between them is
-        straight, and the storey is undamaged and at zero before the first.
-
-    Returns
-    -------
-    Storey shear [N], shape (n,).
-
-    Raises
-    ------
-    InputError
-        If there is no such storey, or as :func:`storey_envelopes`.
-    """
-    if not 1 <= storey <= building.storeys:
-        raise InputError(
-            f"{building.name}: storey {storey} does not exist; storeys run from 1 to {building.storeys}."
-        )
-    displacement, force = storey_envelopes(building)
-    path = np.asarray(displacements, dtype=np.float64)
-    return np.asarray(
-        _push(path, displacement[storey - 1], force[storey - 1], law_parameters(building.masonry))
     )
 
 
@@ -204,14 +154,3 @@ def _reload(x: float, zero: float, aim: float, force: float, stiffness: float, l
     if aim <= pinch:
         return float(force)
     return float(force * (law[0] + (1.0 - law[0]) * (x - pinch) / (aim - pinch)))
-
-
-@cached_njit()
-def _push(path: Any, corner: Any, strength: Any, law: Any) -> Any:
-    memory, moved = np.zeros(MEMORY), np.zeros(MEMORY)
-    forces = np.zeros(path.size)
-    for i in range(path.size):
-        move(memory, path[i], corner, strength, law, moved)
-        memory[:] = moved
-        forces[i] = memory[FORCE]
-    return forces

@@ -35,26 +35,7 @@ LONGEST_STEP = 2e-4
 def respond_hysteretically(
     building: ShearBuilding, motion: Motion, longest_step: float = LONGEST_STEP
 ) -> BuildingResponse:
-    """Integrate the building with its masonry law; damping is that of the elastic modes.
-
-    Parameters
-    ----------
-    building
-        Building, whichever its model.
-    motion
-        Ground acceleration of n samples, linear between them.
-    longest_step
-        Longest time step [s]; steps divide the sampling interval.
-
-    Returns
-    -------
-    Histories at the samples, with the energy balance.
-
-    Raises
-    ------
-    InputError
-        If its stiffness does not allow its masonry law.
-    """
+    """Integrate the building with its masonry law; damping is that of the elastic modes."""
     corner, strength = storey_envelopes(building)
     parts = max(1, int(np.ceil(motion.dt / longest_step - 1e-9)))
     step = motion.dt / parts

@@ -77,19 +77,7 @@ class BuildingResponse:
 
 
 def respond_elastically(building: ShearBuilding, motion: Motion) -> BuildingResponse:
-    """Superpose the modes, each exact for a ground acceleration linear between samples.
-
-    Parameters
-    ----------
-    building
-        Building; its masonry law is not used.
-    motion
-        Ground acceleration of n samples.
-
-    Returns
-    -------
-    The :class:`BuildingResponse`, of n samples.
-    """
+    """Superpose the modes, each exact for a ground acceleration linear between samples."""
     modes = find_modes(building)
     displacement = np.zeros((building.storeys, motion.acceleration.size))
     acceleration = np.zeros_like(displacement)

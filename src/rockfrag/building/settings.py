@@ -41,27 +41,7 @@ def read_building(path: str | os.PathLike[str]) -> ShearBuilding:
 
 
 def make_building(settings: Any, source: str = "building") -> ShearBuilding:
-    """Make a building from a mapping such as ``config/building.yaml`` holds.
-
-    Parameters
-    ----------
-    settings
-        ``storey_heights_m``, ``masses_kg`` (or these in other units), one of ``first_period_s`` and
-        ``storey_stiffnesses_N_m``, and optionally ``name``, ``damping``, ``floors``, ``model``
-        (``elastic`` or ``hysteretic``), ``masonry`` and ``vertical_factors``; the schema ``building`` says
-        what each holds.
-    source
-        Where the mapping comes from, for messages.
-
-    Returns
-    -------
-    The :class:`ShearBuilding`.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown or missing, or a value makes no sense.
-    """
+    """Make a building from a mapping such as ``config/building.yaml`` holds."""
     known = checked(settings, "building", source)
     try:
         return _building(known)

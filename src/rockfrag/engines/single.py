@@ -8,19 +8,18 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
+from rockfrag.engines.contract import Case, Cases, Wish
+from rockfrag.engines.pure_rocking import PureRocking
 from rockfrag.engines.response import Response
 from rockfrag.engines.response_tables import contact_event_table, energy_table
-from rockfrag.engines.two_blocks import pair_support
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
-from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.system.system import System
 
 Array = NDArray[np.float64]
 
 
-class Single:
+class Single(PureRocking):
     """One or two planar bodies that rock and never slide, case by case (``kernels.single``)."""
 
     name = "single histories"
@@ -30,11 +29,6 @@ class Single:
             *(Wish.FORCES, Wish.HISTORY),
         }
     )
-
-    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
-        """Say whether it computes this system under this motion as requested, and if not, why."""
-        found = by_wishes(self, system, motion, request)
-        return found if not found else pair_support(system)
 
     def run(self, cases: Cases) -> Outcomes:
         """Return the outcomes of cases, whose histories are not kept."""

@@ -43,10 +43,6 @@ from .observations import (
     observations_from_table as observations_from_table,
 )
 from .simcenter import write_simcenter as write_simcenter
-from .surface import (
-    FragilitySurface as FragilitySurface,
-    fit_surface as fit_surface,
-)
 from .ida_curves import (
     fragility_row as fragility_row,
     fragility_table as fragility_table,

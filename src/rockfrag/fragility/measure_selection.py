@@ -15,7 +15,6 @@ from rockfrag.fragility.held_out import fraction_best, outcome_scores, paired_p
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Floats, Observations, numbers, observations_from_table
-from rockfrag.fragility.surface import FragilitySurface, fit_surface
 from rockfrag.short_repr import short_repr
 
 DIFFERENCE_P = 0.05  # two measures differ below this p value of their held-out scores
@@ -41,9 +40,6 @@ class MeasureSelection:
         ``p_worse`` (p value of scoring as the best does, t over motions or earthquakes), ``chosen_fraction``
         (fraction of bootstrap samples of motions or earthquakes in which it scores best), and ``p_<column>``
         for the sufficiency against each given column.
-    pair
-        Probit surface in the best measure and the one that adds most to it; None for a single
-        measure.
     words
         The recommendation with its reasons, for a report.
     """
@@ -51,7 +47,6 @@ class MeasureSelection:
     recommended: str
     name: str
     table: pd.DataFrame
-    pair: FragilitySurface | None
     words: str
 
     __repr__ = short_repr
@@ -166,7 +161,7 @@ def recommend_measure(
         fit = fit_lognormal(outcomes)
         interval = interval_over_motions(outcomes, level=level)
         rows.append(
-            _row(column, outcomes, fit, interval)
+            measure_row(column, fit, interval, outcomes)
             | {f"p_{name}": sufficiency(outcomes, fit, values) for name, values in extra.items()}
         )
     first = data[measures[0]]
@@ -178,19 +173,14 @@ def recommend_measure(
         ]
     )
     compared = ranked(pd.DataFrame(rows), scores, first.n, replicates, seed)
+    words = recommendation(compared, len(scores.T), given)
     if compared["theta"].isna().all():
-        return MeasureSelection(
-            "", "", compared, None, recommendation(compared, len(scores.T), given)
-        )
+        return MeasureSelection("", "", compared, words)
     best = str(compared["measure"].iloc[0])
     pair, p_pair, gain = _best_pair(data, best, group)
-    surface = None
     if pair:
-        surface = fit_surface(table, (best, pair), overturned=overturned, source=source)
-    words = recommendation(compared, len(scores.T), given)
-    if surface is not None:
         words = f"{words} {_pair_words(data[pair].name, p_pair, gain)}"
-    return MeasureSelection(best, str(compared["im"].iloc[0]), compared, surface, words)
+    return MeasureSelection(best, str(compared["im"].iloc[0]), compared, words)
 
 
 def ranked(
@@ -228,17 +218,19 @@ def ranked(
     return order.drop(columns=["late", "rank", "total"]).reset_index(drop=True)
 
 
-def _row(
-    column: str, outcomes: Observations, fit: FragilityFit, interval: Interval
+def measure_row(
+    column: str, fit: FragilityFit, interval: Interval, outcomes: Observations, **more: float
 ) -> dict[str, float | str]:
+    """What the table says of one measure before its scores; ``more`` stands behind the limits of β."""
     return {
         "measure": column,
-        "im": outcomes.name,
-        "unit": outcomes.unit,
+        "im": fit.im,
+        "unit": fit.unit,
         "theta": fit.theta,
         "beta": fit.beta,
         "beta_lower": interval.beta[0],
         "beta_upper": interval.beta[1],
+        **more,
         "aic": fit.aic,
         "auc": area_under_curve(outcomes),
     }

@@ -24,12 +24,12 @@ from rockfrag.fragility.ida_data import IdaData, TableIda
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.measure_selection import (
     MeasureSelection,
-    area_under_curve,
     dependence_p_value,
+    measure_row,
     ranked,
     recommendation,
 )
-from rockfrag.fragility.observations import Floats, positive
+from rockfrag.fragility.observations import Floats, numbers, positive
 
 
 def recommend_ida_measure(
@@ -66,7 +66,7 @@ def recommend_ida_measure(
     -------
     MeasureSelection
         Its table has also ``beta_amplitude``: β over the power with which the measure grows with
-        the amplitude, which compares Arias intensity fairly with peaks. ``pair`` is None.
+        the amplitude, which compares Arias intensity fairly with peaks.
 
     Raises
     ------
@@ -96,7 +96,8 @@ def recommend_ida_measure(
         measure="amplitude_g",
     )
     known = measures.set_index("name")
-    extra = {column: _of_motions(known, resurrections, column) for column in given}
+    place = known.index.get_indexer(pd.Index(resurrections["motion"]))
+    extra = {column: numbers(measures, column, "measures")[place] for column in given}
     pga = positive(known.loc[resurrections["motion"]], "pga_g", "measures")
     rows, brackets = [], []
     for column, power in powers.items():
@@ -113,18 +114,7 @@ def recommend_ida_measure(
         fit = fit_brackets(scaled)
         interval = bracket_interval(scaled, level=level)
         residual, seen = _residuals(scaled, fit)
-        row = {
-            "measure": column,
-            "im": fit.im,
-            "unit": fit.unit,
-            "theta": fit.theta,
-            "beta": fit.beta,
-            "beta_lower": interval.beta[0],
-            "beta_upper": interval.beta[1],
-            "beta_amplitude": fit.beta / power,
-            "aic": fit.aic,
-            "auc": area_under_curve(outcomes),
-        }
+        row = measure_row(column, fit, interval, outcomes, beta_amplitude=fit.beta / power)
         for name, values in extra.items():
             row[f"p_{name}"] = dependence_p_value(residual, values[seen], scaled.earthquake[seen])
         rows.append(row)
@@ -135,21 +125,9 @@ def recommend_ida_measure(
     table = ranked(pd.DataFrame(rows), scores, tests, replicates, seed, "beta_amplitude")
     words = recommendation(table, scores.shape[1], given)
     if table["score"].isna().all():
-        return MeasureSelection("", "", table, None, words)
+        return MeasureSelection("", "", table, words)
     best = table.iloc[0]
-    return MeasureSelection(str(best["measure"]), str(best["im"]), table, None, words)
-
-
-def _of_motions(known: pd.DataFrame, resurrections: pd.DataFrame, column: str) -> Floats:
-    if column not in known:
-        raise InputError(f"measures: there is no column {column!r}; correct the name.")
-    values = known.loc[resurrections["motion"], column].to_numpy(dtype=np.float64)
-    if not np.isfinite(values).all():
-        motion = resurrections["motion"].iloc[int(np.flatnonzero(~np.isfinite(values))[0])]
-        raise InputError(
-            f"measures, column {column!r}: motion {motion!r} has no value; leave the column out."
-        )
-    return np.asarray(values)
+    return MeasureSelection(str(best["measure"]), str(best["im"]), table, words)
 
 
 def _residuals(brackets: Brackets, fit: FragilityFit) -> tuple[Floats, NDArray[np.bool_]]:

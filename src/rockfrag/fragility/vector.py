@@ -7,21 +7,28 @@ test that counts tests as independent finds an interaction that is not there in 
 (``docs/fragility.md``).
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
-from scipy import special, stats
+from scipy import optimize, special, stats
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.held_out import outcome_scores
 from rockfrag.fragility.intervals import FEWEST_GROUPS, all_but_one, jackknife_error, student
-from rockfrag.fragility.observations import Floats, labels, name_and_unit, positive
-from rockfrag.fragility.observations import read_observations as read_observations
-from rockfrag.fragility.surface import FragilitySurface, design_of, fit_surface
+from rockfrag.fragility.observations import (
+    Floats,
+    labels,
+    name_and_unit,
+    positive,
+    read_observations,
+)
+
+MOST_FOR_THE_PLANE = 20_000
+"""Tests up to which separation is found exactly; a linear programme of more takes too long."""
 
 INTERACTION_LEVEL = 0.05
 """Level of the test by which an interaction of the two measures earns its place."""
@@ -63,8 +70,13 @@ class VectorFragility:
 
     Attributes
     ----------
-    surface
-        The fit: coefficients of 1, ln IM1, ln IM2 and, where it earned its place, ln IM1 ln IM2.
+    measures
+        Columns of the two measures.
+    coefficients, covariance
+        Of 1, ln IM1, ln IM2 and, where it earned its place, ln IM1 ln IM2; the covariance is from the expected
+        information, which takes tests for independent.
+    log_likelihood, method
+        Of the fit, and how it was found: maximum likelihood, or penalised under separation.
     replicates
         Coefficients without one earthquake each, shape (earthquakes, coefficients).
     interaction
@@ -77,7 +89,11 @@ class VectorFragility:
         What a reader must know before using it.
     """
 
-    surface: FragilitySurface
+    measures: tuple[str, str]
+    coefficients: tuple[float, ...]
+    covariance: tuple[tuple[float, ...], ...]
+    log_likelihood: float
+    method: str
     replicates: Floats
     interaction: Interaction
     n: int
@@ -87,22 +103,17 @@ class VectorFragility:
     warnings: tuple[str, ...]
 
     @property
-    def measures(self) -> tuple[str, str]:
-        """Columns of the two measures."""
-        first, second = self.surface.measures
-        return first, second
+    def aic(self) -> float:
+        """Akaike's criterion of the fit."""
+        return 2.0 * len(self.coefficients) - 2.0 * self.log_likelihood
 
     def probability(self, first: ArrayLike, second: ArrayLike) -> Floats:
         """Probability of overturning at values of the two measures, which broadcast [-]."""
-        return self.surface.probability(first, second)
-
-    def band(self, first: ArrayLike, second: ArrayLike) -> tuple[Floats, Floats]:
-        """Limits of the probability at values of the two measures, which broadcast to one shape [-]."""
-        x, y = np.broadcast_arrays(np.log(np.asarray(first)), np.log(np.asarray(second)))
-        design = design_of([x.ravel(), y.ravel()], self.interaction.kept)
-        centre = (design @ np.array(self.surface.coefficients)).reshape(x.shape)
-        half = self._half_width(self.replicates @ design.T).reshape(x.shape)
-        return np.asarray(special.ndtr(centre - half)), np.asarray(special.ndtr(centre + half))
+        x, y = np.log(np.asarray(first, np.float64)), np.log(np.asarray(second, np.float64))
+        eta = np.asarray(self.coefficients[0], dtype=np.float64)
+        for slope, values in zip(self.coefficients[1:], (x, y, x * y), strict=False):
+            eta = eta + slope * values
+        return np.asarray(special.ndtr(eta))
 
     def contour(
         self, probability: float, second: ArrayLike, of: int = 0
@@ -126,7 +137,7 @@ class VectorFragility:
         """
         other = np.log(np.atleast_1d(np.asarray(second, dtype=np.float64)))
         centre = _log_contour(
-            np.array([self.surface.coefficients]), probability, other, of, self.interaction.kept
+            np.array([self.coefficients]), probability, other, of, self.interaction.kept
         )[0]
         left_out = _log_contour(self.replicates, probability, other, of, self.interaction.kept)
         half = self._half_width(left_out)
@@ -214,31 +225,87 @@ def fit_vector(
     """
     if not 0.0 < level < 1.0:
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
-    plain = fit_surface(table, measures, overturned=overturned, source=source)
     logs = [np.log(positive(table, column, source)) for column in measures]
     outcome = read_observations(table, overturned, source)
-    group = pd.factorize(pd.Series(labels(table, earthquake, source)))[0]
-    interaction = NOT_TRIED
-    if try_interaction:
-        interaction = _interaction(table, plain, logs, outcome, group, overturned, source)
-    surface = plain
-    if interaction.kept:
-        surface = fit_surface(
-            table, measures, interaction=True, overturned=overturned, source=source
+    if outcome.min() == outcome.max():
+        raise InputError(
+            f"{source}, column {overturned!r}: all {outcome.size} tests have the outcome "
+            f"{outcome[0]:g}; a surface needs both."
         )
-    design = design_of(logs, interaction.kept)
+    design = design_of(logs, interaction=False)
+    if np.linalg.matrix_rank(design) < 3:
+        raise InputError(
+            f"{source}: the measures {', '.join(measures)} are proportional to each other (or "
+            "constant) in these tests; choose fewer."
+        )
+    group = pd.factorize(pd.Series(labels(table, earthquake, source)))[0]
+    fit, interaction = _fitted(design, outcome), NOT_TRIED
+    product = design_of(logs, interaction=True)
+    if try_interaction and np.linalg.matrix_rank(product) == 4 and "penalised" not in fit.method:
+        full = _fitted(product, outcome)
+        interaction = _interaction(fit, full, product, outcome, group)
+        if interaction.kept:
+            fit, design = full, product
     groups = int(group.max()) + 1
-    replicates = _replicates(design, outcome, group, np.array(surface.coefficients))
+    replicates = _replicates(design, outcome, group, fit.coefficients)
     return VectorFragility(
-        surface,
+        measures,
+        tuple(fit.coefficients.tolist()),
+        tuple(tuple(row) for row in np.linalg.inv(fit.information).tolist()),
+        fit.log_likelihood,
+        fit.method,
         replicates,
         interaction,
         int(outcome.size),
         int(outcome.sum()),
         groups,
         level,
-        _notes(surface, replicates, groups),
+        _notes(measures, fit, replicates, groups),
     )
+
+
+class _Fit(NamedTuple):
+    """Probit of a design: coefficients, (k,), their expected information, (k, k), and how they were found."""
+
+    coefficients: Floats
+    information: Floats
+    log_likelihood: float
+    method: str
+
+
+def _fitted(design: Floats, outcome: Floats) -> _Fit:
+    """Fit a probit; under separation (found exactly, by linear programming) the likelihood is penalised."""
+    counts = (outcome[None, :], np.ones((1, outcome.size)))
+    # among so many tests no plane parts what a fit does not find parted
+    apart = outcome.size <= MOST_FOR_THE_PLANE and linearly_separable(design, outcome)
+    fit = fit_batch(design, *counts, penalised=apart, tolerance=1e-11)
+    method = "probit, maximum likelihood"
+    if not apart and not fit.converged[0]:
+        apart, fit = True, fit_batch(design, *counts, penalised=True, tolerance=1e-11)
+    if apart:
+        method = "probit, penalised likelihood (Firth)"
+    eta = design @ fit.coefficients[0]
+    log_likelihood = float(special.log_ndtr(np.where(outcome > 0, eta, -eta)).sum())
+    return _Fit(fit.coefficients[0], fit.information[0], log_likelihood, method)
+
+
+def design_of(logs: list[Floats], interaction: bool) -> Floats:
+    """Return the predictors: ones, the logarithms of the measures and, if asked for, their product."""
+    product = [logs[0] * logs[1]] if interaction else []
+    return np.column_stack([np.ones(logs[0].size), *logs, *product])
+
+
+def linearly_separable(design: Floats, outcome: Floats) -> bool:
+    """Tell whether a plane parts overturned from survived tests (ties on the plane allowed).
+
+    Solves for the direction c, |c| ≤ 1, that maximises Σ s x·c subject to s x·c ≥ 0, with s = ±1
+    the outcome; a maximum above zero means separation (Konis, 2007, ch. 4).
+    """
+    signed = np.where(outcome > 0, 1.0, -1.0)[:, None] * design
+    found = optimize.linprog(
+        -signed.sum(axis=0), A_ub=-signed, b_ub=np.zeros(len(signed)), bounds=(-1.0, 1.0)
+    )
+    return bool(-found.fun > 1e-9)
 
 
 def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp], start: Floats) -> Floats:
@@ -257,29 +324,13 @@ def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp], start:
 
 
 def _interaction(
-    table: pd.DataFrame,
-    plain: FragilitySurface,
-    logs: Sequence[Floats],
-    outcome: Floats,
-    group: NDArray[np.intp],
-    overturned: str,
-    source: str,
+    plain: _Fit, full: _Fit, design: Floats, outcome: Floats, group: NDArray[np.intp]
 ) -> Interaction:
     """Test whether the product of the logarithms adds to the fit without it."""
-    design = design_of(logs, interaction=True)
-    if np.linalg.matrix_rank(design) < 4 or "penalised" in plain.method:
-        return NOT_TRIED
-    p = interaction_p(np.array(plain.coefficients), design, outcome, group)
-    full = fit_surface(
-        table, plain.measures, interaction=True, overturned=overturned, source=source
-    )
+    p = interaction_p(plain.coefficients, design, outcome, group)
     ratio = 2.0 * (full.log_likelihood - plain.log_likelihood)
-    ones = np.ones(outcome.size)
-    predictors = design[:, 1:]
-    gain = (
-        outcome_scores(predictors, outcome, ones, group)
-        - outcome_scores(predictors, outcome, ones, group, fitted=2)
-    ).sum() / outcome.size
+    tests = (design[:, 1:], outcome, np.ones(outcome.size), group)
+    gain = (outcome_scores(*tests) - outcome_scores(*tests, fitted=2)).sum() / outcome.size
     kept = bool(p < INTERACTION_LEVEL and gain > 0 and "penalised" not in full.method)
     return Interaction(p, ratio, float(gain), kept)
 
@@ -309,9 +360,11 @@ def interaction_p(
     return float(2.0 * stats.t.sf(abs(score.sum()) / spread, groups - 1))
 
 
-def _notes(surface: FragilitySurface, replicates: Floats, groups: int) -> tuple[str, ...]:
+def _notes(
+    measures: tuple[str, str], fit: _Fit, replicates: Floats, groups: int
+) -> tuple[str, ...]:
     notes = []
-    if "penalised" in surface.method:
+    if "penalised" in fit.method:
         notes.append(
             "A line in the two measures separates all tests that overturned from those that survived: the fit is "
             "penalised, and how steep it is remains open."
@@ -322,9 +375,9 @@ def _notes(surface: FragilitySurface, replicates: Floats, groups: int) -> tuple[
         notes.append(
             f"Limits from {groups} earthquakes were not validated ({FEWEST_GROUPS} are the fewest that were)."
         )
-    for at, column in enumerate(surface.measures):
+    for at, column in enumerate(measures):
         slopes = replicates[:, 1 + at]
-        if surface.coefficients[1 + at] <= 0:
+        if fit.coefficients[1 + at] <= 0:
             notes.append(
                 f"The probability does not rise with {name_and_unit(column)[0]} at given other measure; there "
                 "is no contour in it."

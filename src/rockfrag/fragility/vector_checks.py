@@ -9,13 +9,10 @@ from scipy import optimize, special
 
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.curve_facts import REJECTED
-from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.goodness import binned_deviance
-from rockfrag.fragility.observations import Floats, labels, positive
-from rockfrag.fragility.observations import read_observations as read_observations
+from rockfrag.fragility.observations import Floats, labels, positive, read_observations
 from rockfrag.fragility.pooling import cells
-from rockfrag.fragility.surface import design_of
-from rockfrag.fragility.vector import VectorFragility
+from rockfrag.fragility.vector import VectorFragility, design_of
 
 BINS = 10  # bins of the fitted probability in which observed and fitted numbers are compared
 MOST_CELLS = 12  # cells of each measure in the non-parametric surface
@@ -33,16 +30,12 @@ class VectorChecks:
     ----------
     p_fit
         p value of the hypothesis that the fit describes the outcomes, by parametric bootstrap [-].
-    calibration
-        A row per bin of the fitted probability: ``tests``, ``predicted``, ``observed``, ``observed_lower``,
-        ``observed_upper`` (90 % binomial limits).
     surface
         A row per cell of the two measures that has tests: the measures' columns (geometric means of the cell's
         row and column), ``tests``, ``overturned``, ``probability`` (rising in both measures) and ``fitted``.
     """
 
     p_fit: float
-    calibration: pd.DataFrame
     surface: pd.DataFrame
 
     @property
@@ -75,16 +68,16 @@ def check_vector(
     Returns
     -------
     VectorChecks
-        p value, calibration and non-parametric surface.
+        p value and non-parametric surface.
     """
     logs = [np.log(positive(table, column)) for column in fit.measures]
     outcome = read_observations(table, overturned)
     design = design_of(logs, fit.interaction.kept)
-    eta = design @ np.array(fit.surface.coefficients)
+    eta = design @ np.array(fit.coefficients)
     bins = _bins(eta)
     code = pd.factorize(pd.Series(labels(table, motion, "table")))[0]
     p_fit = _p_fit(design, outcome, eta, bins, code, replicates, seed)
-    return VectorChecks(p_fit, _calibration(eta, outcome, bins), _surface_table(fit, logs, outcome))
+    return VectorChecks(p_fit, _surface_table(fit, logs, outcome))
 
 
 def _bins(eta: Floats) -> NDArray[np.intp]:
@@ -113,21 +106,6 @@ def _p_fit(
     fitted = special.ndtr(again.coefficients[usable] @ design.T)
     simulated = binned_deviance(drawn[usable] @ member, fitted @ member, trials)
     return float((1 + np.sum(simulated >= own - 1e-9)) / (1 + simulated.size))
-
-
-def _calibration(eta: Floats, outcome: Floats, bins: NDArray[np.intp]) -> pd.DataFrame:
-    tests = np.bincount(bins)
-    fell = np.bincount(bins, outcome)
-    lower, upper = wilson_interval(fell, tests)
-    return pd.DataFrame(
-        {
-            "tests": tests,
-            "predicted": np.bincount(bins, special.ndtr(eta)) / tests,
-            "observed": fell / tests,
-            "observed_lower": lower,
-            "observed_upper": upper,
-        }
-    )
 
 
 def _surface_table(fit: VectorFragility, logs: list[Floats], outcome: Floats) -> pd.DataFrame:

@@ -84,24 +84,24 @@ def _joined(parts: list[pd.DataFrame], columns: list[str]) -> pd.DataFrame:
 
 
 def _fit_row(fit: VectorFragility, checks: VectorChecks) -> dict[str, object]:
-    coefficients = (*fit.surface.coefficients, 0.0)[:4]
+    coefficients = (*fit.coefficients, 0.0)[:4]
     return {
         **dict(zip(("c0", "c1", "c2", "c12"), coefficients, strict=True)),
-        "aic": fit.surface.aic,
+        "aic": fit.aic,
         "tests": fit.n,
         "overturned": fit.n_overturned,
         "earthquakes": fit.n_earthquakes,
         "p_interaction": fit.interaction.p,
         "likelihood_ratio": fit.interaction.likelihood_ratio,
         "p_fit": checks.p_fit,
-        "method": fit.surface.method,
+        "method": fit.method,
         "warnings": " ".join(fit.warnings),
     }
 
 
 def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:
     logs = np.log(tests[list(fit.measures)].to_numpy(dtype=np.float64))
-    of = int(np.argmax(np.array(fit.surface.coefficients[1:3]) * logs.std(axis=0)))
+    of = int(np.argmax(np.array(fit.coefficients[1:3]) * logs.std(axis=0)))
     other = np.exp(np.linspace(logs[:, 1 - of].min(), logs[:, 1 - of].max(), POINTS))
     parts = []
     for probability in PROBABILITIES:

@@ -17,17 +17,7 @@ from rockfrag.records.motion import Motion
 
 
 def demean(motion: Motion) -> Motion:
-    """Subtract the mean of the acceleration.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-    """
+    """Subtract the mean of the acceleration."""
     mean = float(motion.acceleration.mean())
     return motion.after("demean", motion.acceleration - mean, removed_m_s2=mean)
 
@@ -60,26 +50,7 @@ def despike(motion: Motion, times: float = 50.0) -> Motion:
 
 
 def baseline(motion: Motion, order: int = 1) -> Motion:
-    """Subtract the polynomial in time that fits the acceleration best (least squares).
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    order
-        Order of the polynomial, 0 (the mean) to 10; 1 is the straight line of "simple baseline
-        correction".
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the order is not such a number or the motion has no more samples than the polynomial has
-        coefficients.
-    """
+    """Subtract the polynomial in time that fits the acceleration best (least squares)."""
     order = whole("step baseline", "order", order, 0, 10)
     _enough_samples("baseline", motion, order + 2)
     fit = Polynomial.fit(motion.time, motion.acceleration, order)
@@ -92,22 +63,6 @@ def displacement_baseline(motion: Motion, order: int = 6) -> Motion:
     The polynomial has no constant and no linear term, so that displacement and velocity still start
     from zero; order 6 is the rule of the PEER ground motion database (Ancheta et al. 2013, PEER
     Report 2013/03).
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    order
-        Order of the polynomial, 2 to 10.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the order is not such a number or the motion has too few samples.
     """
     order = whole("step displacement_baseline", "order", order, 2, 10)
     _enough_samples("displacement_baseline", motion, order + 2)
@@ -122,24 +77,7 @@ def displacement_baseline(motion: Motion, order: int = 6) -> Motion:
 
 
 def taper(motion: Motion, duration_s: float) -> Motion:
-    """Bring both ends to zero with half a cosine bell (Tukey window; SciPy).
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    duration_s
-        Length of the bell at each end [s], at most half of the motion.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the length is not positive or more than half of the motion.
-    """
+    """Bring both ends to zero with half a cosine bell (Tukey window; SciPy)."""
     duration_s = positive("step taper", "duration_s", duration_s, "seconds")
     length = motion.time[-1]
     if 2 * duration_s > length:
@@ -159,22 +97,6 @@ def pad(motion: Motion, before_s: float = 0.0, after_s: float = 0.0) -> Motion:
     An acausal filter needs room for its transients: 1.5 × order / corner seconds in all (Converse &
     Brady 1992, USGS Open-File Report 92-296A), and displacements stay right only while that room is
     kept (Boore 2005, Bull. Seism. Soc. Am. 95(2), 745-750).
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    before_s, after_s
-        Length of the zeros at either end [s], rounded to whole samples, at most 10 million of them.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If a length is negative or makes too many samples.
     """
     before_s = not_negative("step pad", "before_s", before_s, "seconds")
     after_s = not_negative("step pad", "after_s", after_s, "seconds")

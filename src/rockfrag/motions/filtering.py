@@ -3,7 +3,7 @@
 The filters are ObsPy's, run forwards and backwards: no phase shift, and a response that is the
 square of the Butterworth response of the given order (at a corner -6 dB, not -3 dB).  They start
 from rest at either end; put zero pads first where the displacement matters
-(:func:`rockfrag.motions.pad`).  A causal filter (``causal: true``) runs forwards alone: the Butterworth
+(``pad``).  A causal filter (``causal: true``) runs forwards alone: the Butterworth
 response itself (-3 dB at a corner), with its delay, and nothing before the motion begins (Boore and Akkar,
 2003, Earthq. Eng. Struct. Dyn. 32: 1729-1740, compare the two).  The provenance has the peak before and after
 and the first and last sample, which are not zero where pads were missing.  ObsPy and SciPy are loaded where they
@@ -11,10 +11,8 @@ filter: naming a step needs neither.
 """
 
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.motions.checks import peaks, positive, whole
@@ -22,135 +20,40 @@ from rockfrag.records.motion import Motion
 
 
 def highpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = False) -> Motion:
-    """Butterworth high-pass filter, acausal unless a causal one is asked for.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    corner_hz
-        Corner frequency [Hz], below Nyquist.
-    order
-        Order of the filter, 1 to 10; an acausal one acts twice.
-    causal
-        Whether it runs forwards alone.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the corner is not between zero and Nyquist or the order is not such a number.
-    """
-    corner_hz = _corner("highpass", "corner_hz", corner_hz, motion)
-    order, causal = whole("step highpass", "order", order, 1, 10), _flag("highpass", causal)
-    from obspy.signal import filter as obspy_filter
-
-    filtered = obspy_filter.highpass(
-        motion.acceleration, corner_hz, 1 / motion.dt, corners=order, zerophase=not causal
-    )
-    return motion.after(
-        "highpass",
-        filtered,
-        corner_hz=corner_hz,
-        order=order,
-        causal=causal,
-        **_found(motion, filtered),
-    )
+    """Butterworth high-pass filter of an order from 1 to 10, acausal unless a causal one is asked for."""
+    return _filtered("highpass", motion, order, causal, corner_hz=corner_hz)
 
 
 def lowpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = False) -> Motion:
-    """Butterworth low-pass filter, acausal unless a causal one is asked for.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    corner_hz
-        Corner frequency [Hz], below Nyquist.
-    order
-        Order of the filter, 1 to 10; an acausal one acts twice.
-    causal
-        Whether it runs forwards alone.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the corner is not between zero and Nyquist or the order is not such a number.
-    """
-    corner_hz = _corner("lowpass", "corner_hz", corner_hz, motion)
-    order, causal = whole("step lowpass", "order", order, 1, 10), _flag("lowpass", causal)
-    from obspy.signal import filter as obspy_filter
-
-    filtered = obspy_filter.lowpass(
-        motion.acceleration, corner_hz, 1 / motion.dt, corners=order, zerophase=not causal
-    )
-    return motion.after(
-        "lowpass",
-        filtered,
-        corner_hz=corner_hz,
-        order=order,
-        causal=causal,
-        **_found(motion, filtered),
-    )
+    """Butterworth low-pass filter of an order from 1 to 10, acausal unless a causal one is asked for."""
+    return _filtered("lowpass", motion, order, causal, corner_hz=corner_hz)
 
 
 def bandpass(
     motion: Motion, low_hz: float, high_hz: float, order: int = 4, causal: bool = False
 ) -> Motion:
-    """Butterworth band-pass filter between two corners below Nyquist [Hz], acausal unless asked for.
+    """Butterworth band-pass filter between two corners below Nyquist [Hz], acausal unless asked for."""
+    return _filtered("bandpass", motion, order, causal, low_hz=low_hz, high_hz=high_hz)
 
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    low_hz
-        Lower corner [Hz].
-    high_hz
-        Upper corner [Hz], below Nyquist.
-    order
-        Order of the filter, 1 to 10; an acausal one acts twice.
-    causal
-        Whether it runs forwards alone.
 
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If a corner is not between zero and Nyquist, the band is empty, or the order is not from 1
-        to 10.
-    """
-    low_hz = _corner("bandpass", "low_hz", low_hz, motion)
-    high_hz = _corner("bandpass", "high_hz", high_hz, motion)
-    order, causal = whole("step bandpass", "order", order, 1, 10), _flag("bandpass", causal)
-    if low_hz >= high_hz:
+def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz: float) -> Motion:
+    corners = {name: _corner(kind, name, value, motion) for name, value in corners_hz.items()}
+    order = whole(f"step {kind}", "order", order, 1, 10)
+    if not isinstance(causal, bool):
+        raise InputError(f"step {kind}: causal must be true or false, got {causal!r}.")
+    if kind == "bandpass" and corners["low_hz"] >= corners["high_hz"]:
         raise InputError(
-            f"step bandpass: the band from low_hz {low_hz} to high_hz {high_hz} is empty; "
+            f"step bandpass: the band from low_hz {corners['low_hz']} to high_hz {corners['high_hz']} is empty; "
             "low_hz must be the smaller."
         )
     from obspy.signal import filter as obspy_filter
 
-    filtered = obspy_filter.bandpass(
-        motion.acceleration, low_hz, high_hz, 1 / motion.dt, corners=order, zerophase=not causal
+    samples = getattr(obspy_filter, kind)(
+        motion.acceleration, *corners.values(), 1 / motion.dt, corners=order, zerophase=not causal
     )
-    return motion.after(
-        "bandpass",
-        filtered,
-        low_hz=low_hz,
-        high_hz=high_hz,
-        order=order,
-        causal=causal,
-        **_found(motion, filtered),
-    )
+    ends = [float(samples[0]), float(samples[-1])]
+    settings = {**corners, "order": order, "causal": causal}
+    return motion.after(kind, samples, **settings, **peaks(motion, samples), ends_m_s2=ends)
 
 
 def resample(motion: Motion, dt_s: float) -> Motion:
@@ -161,22 +64,6 @@ def resample(motion: Motion, dt_s: float) -> Motion:
     peaks change, as the provenance says; :func:`interpolate` keeps the lines. A motion that does not begin and
     end at zero is taken off the straight line between its ends first, so that it does not ring there, and
     nothing is added beyond its last sample.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    dt_s
-        New sampling interval [s]; old and new must have a ratio of whole numbers up to 1000.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the interval is not positive, has no such ratio, or is not shorter than the motion.
     """
     dt_s = positive("step resample", "dt_s", dt_s, "seconds")
     if dt_s >= motion.dt * motion.acceleration.size:
@@ -197,24 +84,7 @@ def resample(motion: Motion, dt_s: float) -> Motion:
 
 
 def interpolate(motion: Motion, dt_s: float) -> Motion:
-    """Sample the straight lines between samples more finely; the motion itself stays the same.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    dt_s
-        New sampling interval [s], a whole fraction of the old one.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If it is not a whole fraction of the old interval.
-    """
+    """Sample the straight lines between samples more finely; the motion itself stays the same."""
     dt_s = positive("step interpolate", "dt_s", dt_s, "seconds")
     parts = round(motion.dt / dt_s)
     if not 1 <= parts <= 1000 or abs(parts * dt_s / motion.dt - 1) > 1e-9:
@@ -225,17 +95,6 @@ def interpolate(motion: Motion, dt_s: float) -> Motion:
     old = np.arange(motion.acceleration.size) * parts
     samples = np.interp(np.arange(old[-1] + 1), old, motion.acceleration)
     return motion.after("interpolate", samples, dt=dt_s, dt_s=dt_s)
-
-
-def _flag(step: str, causal: bool) -> bool:
-    if not isinstance(causal, bool):
-        raise InputError(f"step {step}: causal must be true or false, got {causal!r}.")
-    return causal
-
-
-def _found(motion: Motion, samples: NDArray[np.float64]) -> dict[str, Any]:
-    """Return what a filter made of a motion, for its provenance."""
-    return {**peaks(motion, samples), "ends_m_s2": [float(samples[0]), float(samples[-1])]}
 
 
 def _corner(step: str, name: str, value: float, motion: Motion) -> float:

@@ -11,6 +11,7 @@ and steps that scale to a measure are named long before they are taken.
 from __future__ import annotations
 
 import math
+from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +25,6 @@ from rockfrag.units import GRAVITY
 
 if TYPE_CHECKING:
     from rockfrag.motions.pulse_extraction import StrongestPulse
-    from rockfrag.motions.spectra import ResponseSpectrum
 
 Floats = NDArray[np.float64]
 
@@ -67,48 +67,18 @@ def pgv(motion: Motion) -> float:
 
 @intensity_measure("cm", power=1, label="PGD", compared=True, decimals=2)
 def pgd(motion: Motion) -> float:
-    """Peak absolute displacement from rest [m], between samples too.
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-
-    Returns
-    -------
-    Peak displacement [m].
-    """
+    """Peak absolute displacement from rest [m], between samples too."""
     return peak_displacement(motion.acceleration, motion.dt)
 
 
 @intensity_measure("s", power=0, label="PGV/PGA", decimals=3)
 def pgv_over_pga(motion: Motion) -> float:
-    """PGV/PGA [s]; NaN for a motion of zeros.
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-
-    Returns
-    -------
-    The ratio [s].
-    """
+    """PGV/PGA [s]; NaN for a motion of zeros."""
     return pgv(motion) / pga(motion) if pga(motion) > 0 else math.nan
 
 
 def cumulative_arias(motion: Motion) -> Floats:
-    """Arias intensity up to each sample, π/(2g) ∫₀ᵗ a² dt [m/s], shape (n,).
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-
-    Returns
-    -------
-    Arias intensity up to each sample [m/s], shape (n,).
-    """
+    """Arias intensity up to each sample, π/(2g) ∫₀ᵗ a² dt [m/s], shape (n,)."""
     from scipy.integrate import cumulative_trapezoid
 
     energy = cumulative_trapezoid(motion.acceleration**2, dx=motion.dt, initial=0.0)
@@ -121,32 +91,13 @@ def arias(motion: Motion) -> float:
 
     Arias (1970), A measure of earthquake intensity, in: Seismic Design for Nuclear Power Plants,
     MIT Press, 438-483.
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-
-    Returns
-    -------
-    Arias intensity [m/s].
     """
     return float(cumulative_arias(motion)[-1])
 
 
 @intensity_measure("m/s", power=1, label="CAV")
 def cav(motion: Motion) -> float:
-    """Cumulative absolute velocity ∫ |a| dt [m/s] by the trapezoidal rule (EPRI 1988, NP-5930).
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-
-    Returns
-    -------
-    Cumulative absolute velocity [m/s].
-    """
+    """Cumulative absolute velocity ∫ |a| dt [m/s] by the trapezoidal rule (EPRI 1988, NP-5930)."""
     return float(np.trapezoid(np.abs(motion.acceleration), dx=motion.dt))
 
 
@@ -154,17 +105,6 @@ def arias_times(motion: Motion, lower: float, upper: float) -> tuple[float, floa
     """Find the times at which two fractions of the Arias intensity are reached [s].
 
     The cumulative intensity is read linearly between samples.  Both are NaN for a motion of zeros.
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-    lower, upper
-        Fractions, 0 ≤ lower < upper ≤ 1.
-
-    Returns
-    -------
-    The two times [s].
     """
     history = cumulative_arias(motion)
     if history[-1] <= 0:
@@ -178,19 +118,6 @@ def significant_duration(motion: Motion, lower: float = 0.05, upper: float = 0.9
 
     D5-95 by Trifunac & Brady (1975, Bull. Seism. Soc. Am. 65(3), 581-626), D5-75 by Somerville et
     al. (1997, Seism. Res. Lett. 68(1), 199-222).
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-    lower
-        Fraction of the Arias intensity at which the duration begins [-].
-    upper
-        Fraction at which it ends [-].
-
-    Returns
-    -------
-    The duration [s].
     """
     start, end = arias_times(motion, lower, upper)
     return end - start
@@ -212,17 +139,6 @@ def bracketed_times(motion: Motion, threshold: float) -> tuple[float, float]:
     """First and last time at which |a| reaches ``threshold`` [m/s²] [s]; NaN where it never does.
 
     Bolt (1973, 5th World Conference on Earthquake Engineering); at samples.
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-    threshold
-        Threshold [m/s²].
-
-    Returns
-    -------
-    The two times [s]; NaN where it never is.
     """
     above = np.flatnonzero(np.abs(motion.acceleration) >= threshold)
     if above.size == 0:
@@ -237,15 +153,6 @@ def mean_period(motion: Motion) -> float:
     C are Fourier amplitudes (Rathje, Abrahamson & Bray 1998, J. Geotech. Geoenviron. Eng. 124(2),
     150-159).  Zeros are added so that frequencies are at most 0.05 Hz apart, as Rathje et al.
     (2004, Earthquake Spectra 20(1), 119-144) require.
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-
-    Returns
-    -------
-    The period [s].
     """
     from rockfrag.motions.spectra import fourier_amplitude
 
@@ -265,15 +172,6 @@ def predominant_period(motion: Motion) -> float:
     """Period Tp of the largest 5 % damped PSA [s]; NaN for a motion of zeros.
 
     Rathje, Abrahamson & Bray (1998); searched from 0.02 to 10 s, periods 1.2 % apart.
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-
-    Returns
-    -------
-    The period [s].
     """
     from rockfrag.motions.side_by_side import largest_pseudo_acceleration
 
@@ -285,26 +183,7 @@ def predominant_period(motion: Motion) -> float:
 
 
 def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) -> float:
-    """Pseudo-spectral acceleration Sa(T) = ω² Sd [m/s²], the one that hazard maps are made for.
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-    period
-        Natural period [s], positive.
-    damping
-        Fraction of critical damping [-].
-
-    Returns
-    -------
-    Spectral acceleration [m/s²].
-
-    Raises
-    ------
-    InputError
-        If the period is not positive or the damping negative.
-    """
+    """Pseudo-spectral acceleration Sa(T) = ω² Sd [m/s²], the one that hazard maps are made for."""
     from rockfrag.motions.spectra import response_spectrum
 
     return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
@@ -313,49 +192,16 @@ def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) 
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)  # periods of the Housner intensity [s]
 
 
-def housner_intensity(motion: Motion, damping: float = 0.05) -> float:
-    """Housner (spectrum) intensity ∫ PSV(T, ζ) dT from 0.1 to 2.5 s [m].
-
-    Housner (1952, Symposium on Earthquake and Blast Effects on Structures, UCLA); by the
-    trapezoidal rule on steps of 0.01 s.  Housner gave curves for undamped and 20 % damped
-    oscillators; 5 % is today's custom.
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-    damping
-        Fraction of critical damping [-].
-
-    Returns
-    -------
-    Housner's intensity [m].
-
-    Raises
-    ------
-    InputError
-        If the damping is negative.
-    """
-    from rockfrag.motions.side_by_side import peak_displacements
-
-    return _housner(peak_displacements(motion, HOUSNER_PERIODS, damping))
-
-
-def _housner(displacement: Floats) -> float:
-    return float(np.trapezoid(displacement * (2 * math.pi / HOUSNER_PERIODS), HOUSNER_PERIODS))
-
-
 AVERAGE_PERIODS = np.linspace(0.2, 2.0, 10)
 """Periods over which the average spectral acceleration is taken [s]."""
 
 
-def _average(displacement: Floats) -> float:
-    spectrum = displacement * (2 * math.pi / AVERAGE_PERIODS) ** 2
-    return float(np.prod(spectrum ** (1 / spectrum.size)))
-
-
 def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, float]:
-    """`housner_intensity` [m] and AvgSA [m/s²], by one integration of all oscillators.
+    """Housner intensity [m] and AvgSA [m/s²], by one integration of all oscillators.
+
+    The Housner (spectrum) intensity is ∫ PSV(T, ζ) dT from 0.1 to 2.5 s (Housner, 1952, Symposium on Earthquake
+    and Blast Effects on Structures, UCLA), by the trapezoidal rule on steps of 0.01 s.  Housner gave curves for
+    undamped and 20 % damped oscillators; 5 % is today's custom.
 
     AvgSA is the geometric mean of the pseudo-spectral acceleration at `AVERAGE_PERIODS` (Eads, Miranda and
     Lignos, 2015, Earthquake Eng. Struct. Dyn. 44: 2057-2073); a rocking body has no period of its own, so the
@@ -364,43 +210,10 @@ def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, f
     from rockfrag.motions.side_by_side import peak_displacements
 
     periods = np.concatenate([HOUSNER_PERIODS, AVERAGE_PERIODS])
-    displacement = peak_displacements(motion, periods, damping)
-    return _housner(displacement[: HOUSNER_PERIODS.size]), _average(
-        displacement[HOUSNER_PERIODS.size :]
-    )
-
-
-@intensity_measure(
-    "g", power=1, label="SA", name="sa", spectral=True, compared=True, openquake="SA"
-)
-def _sa(spectrum: ResponseSpectrum) -> Floats:
-    return spectrum.pseudo_acceleration
-
-
-@intensity_measure("cm/s", power=1, label="SV", name="sv", spectral=True)
-def _sv(spectrum: ResponseSpectrum) -> Floats:
-    return spectrum.velocity
-
-
-@intensity_measure("cm", power=1, label="SD", name="sd", spectral=True)
-def _sd(spectrum: ResponseSpectrum) -> Floats:
-    return spectrum.displacement
-
-
-@intensity_measure(
-    "g", power=1, label="AvgSA", shared=housner_and_average, compared=True, openquake="AvgSA"
-)
-def avgsa(found: tuple[float, float]) -> float:
-    """`average_spectral_acceleration` [m/s²] of what :func:`housner_and_average` found."""
-    return found[1]
-
-
-@intensity_measure(
-    "cm", power=1, label="Housner intensity", shared=housner_and_average, compared=True
-)
-def housner(found: tuple[float, float]) -> float:
-    """`housner_intensity` [m] of what :func:`housner_and_average` found."""
-    return found[0]
+    peaks = np.split(peak_displacements(motion, periods, damping), [HOUSNER_PERIODS.size])
+    housner = np.trapezoid(peaks[0] * (2 * math.pi / HOUSNER_PERIODS), HOUSNER_PERIODS)
+    spectrum = peaks[1] * (2 * math.pi / AVERAGE_PERIODS) ** 2
+    return float(housner), float(np.prod(spectrum ** (1 / spectrum.size)))
 
 
 def _pulse(motion: Motion, damping: float) -> StrongestPulse:
@@ -409,42 +222,32 @@ def _pulse(motion: Motion, damping: float) -> StrongestPulse:
     return strongest_pulse(motion)
 
 
-@intensity_measure("s", power=0, label="pulse period", name="pulse_period", shared=_pulse)
-def _pulse_period(pulse: StrongestPulse) -> float:
-    return pulse.period
-
-
-@intensity_measure("cm/s", power=1, label="pulse velocity", name="pulse_velocity", shared=_pulse)
-def _pulse_velocity(pulse: StrongestPulse) -> float:
-    return pulse.velocity
-
-
-@intensity_measure("", power=0, label="pulse explained", name="pulse_explained", shared=_pulse)
-def _pulse_explained(pulse: StrongestPulse) -> float:
-    # fraction of the record's ∫ v² dt that goes with the pulse
-    return pulse.explained
+# measures that are part of something that several of them read
+intensity_measure(
+    "g", power=1, label="SA", name="sa", spectral=True, compared=True, openquake="SA"
+)(attrgetter("pseudo_acceleration"))
+intensity_measure("cm/s", power=1, label="SV", name="sv", spectral=True)(attrgetter("velocity"))
+intensity_measure("cm", power=1, label="SD", name="sd", spectral=True)(attrgetter("displacement"))
+intensity_measure(
+    "g", power=1, label="AvgSA", name="avgsa", shared=housner_and_average, compared=True, openquake="AvgSA"
+)(itemgetter(1))  # fmt: skip
+intensity_measure(
+    "cm", power=1, label="Housner intensity", name="housner", shared=housner_and_average, compared=True
+)(itemgetter(0))  # fmt: skip
+intensity_measure("s", power=0, label="pulse period", name="pulse_period", shared=_pulse)(
+    attrgetter("period")
+)
+intensity_measure("cm/s", power=1, label="pulse velocity", name="pulse_velocity", shared=_pulse)(
+    attrgetter("velocity")
+)
+intensity_measure("", power=0, label="pulse explained", name="pulse_explained", shared=_pulse)(
+    attrgetter("explained")
+)
 
 
 @intensity_measure("", power=1, label="a/(g tan α)", of_block=True)
 def uplift_ratio(motion: Motion, alpha: float) -> float:
-    """Peak acceleration over that which starts rocking, a/(g tan α) [-] (Kirkpatrick, 1927).
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-    alpha
-        Critical angle of the block, atan(b/h) [rad].
-
-    Returns
-    -------
-    The ratio [-].
-
-    Raises
-    ------
-    InputError
-        If the angle is not positive.
-    """
+    """Peak acceleration over that which starts rocking, a/(g tan α) [-] (Kirkpatrick, 1927)."""
     alpha = positive("uplift_ratio", "alpha", alpha, "radians")
     return pga(motion) / (GRAVITY * math.tan(alpha))
 
@@ -455,24 +258,6 @@ def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
 
     It decides over large or quickly shaken blocks (Ishiyama 1982, Earthquake Eng. Struct. Dyn. 10,
     635-650; Dimitrakopoulos & Paraskeva 2015, Earthquake Eng. Struct. Dyn. 44, 2013-2033).
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-    alpha
-        Critical angle of the block [rad].
-    p
-        Frequency parameter of the block [1/s] (Housner, 1963).
-
-    Returns
-    -------
-    The ratio [-].
-
-    Raises
-    ------
-    InputError
-        If the angle is not positive or p is negative.
     """
     alpha = positive("velocity_ratio", "alpha", alpha, "radians")
     p = not_negative("velocity_ratio", "p", p, "1/s")
@@ -484,22 +269,6 @@ def frequency_ratio(pulse_period: float, p: float) -> float:
     """Pulse frequency over frequency parameter, ωp/p = 2π/(Tp p) [-].
 
     Zhang & Makris (2001, J. Eng. Mech. 127(5), 473-483).
-
-    Parameters
-    ----------
-    pulse_period
-        Period of the strongest pulse [s]; NaN gives NaN.
-    p
-        Frequency parameter of the block [1/s].
-
-    Returns
-    -------
-    The ratio [-].
-
-    Raises
-    ------
-    InputError
-        If p is not positive.
     """
     p = positive("frequency_ratio", "p", p, "1/s")
     return 2 * math.pi / (pulse_period * p)

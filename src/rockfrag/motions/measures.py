@@ -9,7 +9,6 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.keywords import named_keywords
 from rockfrag.motions import intensity
-from rockfrag.motions.checks import positive
 from rockfrag.motions.declared import SPECTRAL_PERIODS, declared, intensity_measures
 from rockfrag.motions.pulse_extraction import strongest_pulse
 from rockfrag.motions.rotation import DIRECTIONS_DEG, rotate
@@ -99,44 +98,10 @@ def measure_motions(
     return table
 
 
-def rocking_measures(motion: Motion, alpha: float, p: float) -> dict[str, float]:
-    """Give the measures that compare a motion with one block.
-
-    Parameters
-    ----------
-    motion
-        What to measure.
-    alpha
-        Critical angle of the block [rad].
-    p
-        Frequency parameter of the block [1/s].
-
-    Returns
-    -------
-    ``uplift_ratio`` a/(g tan α), ``velocity_ratio`` p PGV/(g tan α) and ``frequency_ratio`` ωp/p
-    with ωp that of the strongest pulse, all [-].
-
-    Raises
-    ------
-    InputError
-        If the angle or the frequency parameter is not positive.
-    """
-    p = positive("rocking_measures", "p", p, "1/s")
-    return _rocking(motion, strongest_pulse(motion).period, alpha, p)
-
-
-def _rocking(motion: Motion, pulse_period: float, alpha: float, p: float) -> dict[str, float]:
-    return {
-        "uplift_ratio": intensity.uplift_ratio(motion, alpha),
-        "velocity_ratio": intensity.velocity_ratio(motion, alpha, p),
-        "frequency_ratio": intensity.frequency_ratio(pulse_period, p),
-    }
-
-
 def measure_rocking(
     motions: Iterable[Motion], blocks: Mapping[str, tuple[float, float]]
 ) -> pd.DataFrame:
-    """Table of :func:`rocking_measures`, a row per motion and block.
+    """Table of the measures that compare a motion with a block, a row per motion and block.
 
     Parameters
     ----------
@@ -147,18 +112,26 @@ def measure_rocking(
 
     Returns
     -------
-    Table with the columns ``name``, ``block``, ``uplift_ratio``, ``velocity_ratio`` and
-    ``frequency_ratio``.
+    Table with the columns ``name``, ``block`` and, all [-], ``uplift_ratio`` a/(g tan α), ``velocity_ratio``
+    p PGV/(g tan α) and ``frequency_ratio`` ωp/p with ωp that of the strongest pulse.
+
+    Raises
+    ------
+    InputError
+        If the angle or the frequency parameter is not positive.
     """
-    return pd.DataFrame(
-        [
-            {"name": motion.name, "block": block, **_rocking(motion, pulse_period, alpha, p)}
-            for motion in motions
-            for pulse_period in [strongest_pulse(motion).period]
-            for block, (alpha, p) in blocks.items()
-        ],
-        columns=["name", "block", "uplift_ratio", "velocity_ratio", "frequency_ratio"],
-    )
+    rows = []
+    for motion in motions:
+        period = strongest_pulse(motion).period
+        for block, (alpha, p) in blocks.items():
+            ratios = {
+                "uplift_ratio": intensity.uplift_ratio(motion, alpha),
+                "velocity_ratio": intensity.velocity_ratio(motion, alpha, p),
+                "frequency_ratio": intensity.frequency_ratio(period, p),
+            }
+            rows.append({"name": motion.name, "block": block, **ratios})
+    columns = ["name", "block", "uplift_ratio", "velocity_ratio", "frequency_ratio"]
+    return pd.DataFrame(rows, columns=columns)
 
 
 def measure_pair(

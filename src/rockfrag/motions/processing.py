@@ -70,13 +70,7 @@ def process(motion: Motion, steps: Sequence[Mapping[str, Any]] = ()) -> Motion:
 
 
 def check_steps(steps: Sequence[Mapping[str, Any]]) -> None:
-    """Raise InputError if :func:`process` would not know a step or one of its parameters.
-
-    Parameters
-    ----------
-    steps
-        Steps as of :func:`process`.
-    """
+    """Raise InputError if :func:`process` would not know a step or one of its parameters."""
     _checked_steps(steps)
 
 

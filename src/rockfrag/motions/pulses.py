@@ -133,25 +133,6 @@ def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion
 
     The displacement A - A cos 2πFt has the acceleration PGA cos 2πFt with F = PGA / (2π PGV) and A = PGA / (2πF)²:
     the table starts and ends at rest, and its acceleration jumps to PGA at the start and from it at the end.
-
-    Parameters
-    ----------
-    pga
-        Peak acceleration [m/s²].
-    pgv_over_pga
-        Peak velocity over peak acceleration, 1 / (2πF) [s].
-    cycles
-        Number of whole cycles, 1 to 1000.
-
-    Returns
-    -------
-    Motion
-        Sampled 400 times a cycle or every 5 ms, whichever is more often, so that its peak is PGA to 1e-4.
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
     name = "commanded_cosine"
     positive(name, "pga", pga, "m/s²")

@@ -76,25 +76,7 @@ def rotd(
 
 
 def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Motion:
-    """Component of a horizontal motion in the direction of an azimuth.
-
-    Parameters
-    ----------
-    first, second
-        Components whose azimuths are known, at about a right angle, in either order and sense; they are
-        brought to common times.
-    azimuth_deg
-        Direction [degrees from north, clockwise].
-
-    Returns
-    -------
-    Motion named after the first, its component the azimuth, its provenance followed by this step.
-
-    Raises
-    ------
-    InputError
-        If an azimuth is not known, the components are not perpendicular, or have no time in common.
-    """
+    """Component of a horizontal motion in the direction of an azimuth."""
     wanted = math.radians(number("rotate_to_azimuth", "azimuth_deg", azimuth_deg, "degrees"))
     angles = [math.radians(azimuth(motion)) for motion in (first, second)]
     sine = math.sin(angles[1] - angles[0])
@@ -116,66 +98,17 @@ def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Moti
 
 
 def fault_normal(first: Motion, second: Motion, strike_deg: float) -> Motion:
-    """Component at a right angle to a fault.
-
-    Parameters
-    ----------
-    first, second
-        Perpendicular components of known azimuths; they are brought to common times.
-    strike_deg
-        Strike of the fault [degrees from north].
-
-    Returns
-    -------
-    The :class:`Motion` in that direction.
-
-    Raises
-    ------
-    InputError
-        As :func:`rotate_to_azimuth`.
-    """
+    """Component at a right angle to a fault."""
     return rotate_to_azimuth(first, second, strike_deg + 90)
 
 
 def radial(first: Motion, second: Motion, back_azimuth_deg: float) -> Motion:
-    """Component away from the source.
-
-    Parameters
-    ----------
-    first, second
-        Perpendicular components of known azimuths; they are brought to common times.
-    back_azimuth_deg
-        Azimuth from the station towards the source [degrees from north].
-
-    Returns
-    -------
-    The :class:`Motion` in that direction.
-
-    Raises
-    ------
-    InputError
-        As :func:`rotate_to_azimuth`.
-    """
+    """Component away from the source."""
     return rotate_to_azimuth(first, second, back_azimuth_deg + 180)
 
 
 def stronger_direction(first: Motion, second: Motion) -> Motion:
-    """Component in the direction of the largest acceleration of any direction.
-
-    Parameters
-    ----------
-    first, second
-        Perpendicular components; they are brought to common times.
-
-    Returns
-    -------
-    The :class:`Motion` in that direction.
-
-    Raises
-    ------
-    InputError
-        If the components do not fit together.
-    """
+    """Component in the direction of the largest acceleration of any direction."""
     first, other = common_time([first, second])
     _check_pair(first, other)
     at = int(np.argmax(np.hypot(first.acceleration, other.acceleration)))

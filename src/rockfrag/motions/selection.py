@@ -15,24 +15,7 @@ from rockfrag.units import GRAVITY
 
 
 def strong_part(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> Motion:
-    """Keep the samples between two fractions of the Arias intensity.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    lower, upper
-        Fractions [-], 0 ≤ lower < upper ≤ 1.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the fractions are not so ordered or the motion is zero throughout.
-    """
+    """Keep the samples between two fractions of the Arias intensity."""
     lower = number("step strong_part", "lower", lower)
     upper = number("step strong_part", "upper", upper)
     if not 0 <= lower < upper <= 1:
@@ -49,24 +32,7 @@ def strong_part(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> Mot
 
 
 def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
-    """Keep everything between the first and the last sample that reaches a threshold [g].
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    threshold_g
-        Threshold [g], positive.
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the threshold is not positive or never reached.
-    """
+    """Keep everything between the first and the last sample that reaches a threshold [g]."""
     threshold_g = positive("step bracketed_part", "threshold_g", threshold_g, "g")
     start, end = bracketed_times(motion, threshold_g * GRAVITY)
     if math.isnan(start):
@@ -78,26 +44,7 @@ def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
 
 
 def trim(motion: Motion, start_s: float, end_s: float) -> Motion:
-    """Keep the samples from ``start_s`` to ``end_s`` [s], counted from the first sample.
-
-    Parameters
-    ----------
-    motion
-        Motion as it is.
-    start_s
-        First time that is kept [s].
-    end_s
-        Last time that is kept [s].
-
-    Returns
-    -------
-    The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the window is empty or not inside the motion.
-    """
+    """Keep the samples from ``start_s`` to ``end_s`` [s], counted from the first sample."""
     start_s = not_negative("step trim", "start_s", start_s, "seconds")
     end_s = positive("step trim", "end_s", end_s, "seconds")
     length = float(motion.time[-1])

@@ -173,28 +173,7 @@ def _peaks(
 def oscillator_response(
     motion: Motion, period: float, damping: float = 0.05
 ) -> tuple[Floats, Floats, Floats]:
-    """Response history of a linear oscillator at rest at first; exact at the samples.
-
-    Parameters
-    ----------
-    motion
-        Ground acceleration, linear between samples, n of them.
-    period
-        Natural period [s].
-    damping
-        Fraction of critical damping [-], zero or more.
-
-    Returns
-    -------
-    displacement, velocity, acceleration
-        Relative displacement [m], relative velocity [m/s] and absolute acceleration [m/s²], each of
-        shape (n,).
-
-    Raises
-    ------
-    InputError
-        If the period is not positive or the damping negative.
-    """
+    """Response history of a linear oscillator at rest at first; exact at the samples."""
     (period,) = _checked_periods([period])
     damping = checked_damping(damping)
     omega = 2 * math.pi / period
@@ -260,22 +239,7 @@ def steps_within(dt: float, period: float, damping: float) -> int:
 
 
 def fourier_amplitude(motion: Motion, least_length: int = 0) -> tuple[Floats, Floats]:
-    """Fourier amplitude spectrum |∫ a e^(-iωt) dt| as dt times the discrete transform.
-
-    Parameters
-    ----------
-    motion
-        Motion of n samples.
-    least_length
-        Zeros are added behind the motion until it has this many samples, for a finer frequency
-        step.
-
-    Returns
-    -------
-    frequency, amplitude
-        Frequency [Hz] from zero to Nyquist and amplitude [m/s], each of shape (m // 2 + 1,) for
-        m = max(n, least_length).
-    """
+    """Fourier amplitude spectrum |∫ a e^(-iωt) dt| as dt times the discrete transform."""
     length = max(motion.acceleration.size, least_length)
     amplitude = motion.dt * np.abs(np.fft.rfft(motion.acceleration, length))
     return np.asarray(np.fft.rfftfreq(length, motion.dt), dtype=np.float64), amplitude

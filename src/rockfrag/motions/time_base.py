@@ -23,24 +23,6 @@ def common_time(
     Where all state the time of their first sample they are shifted by it, else they are taken to begin
     together. The times are those of the horizontal component of the shortest interval, which is not moved
     for a vertical. Samples between those of a motion are on the straight line between its neighbours.
-
-    Parameters
-    ----------
-    motions
-        Components of one record.
-    verticals
-        Places of the vertical ones; those whose component says so if None.
-
-    Returns
-    -------
-    list of Motion
-        Of one length and interval; the provenance of each says what was left out at its beginning and end, and
-        its peak before and after.
-
-    Raises
-    ------
-    InputError
-        If they have no two samples of time in common.
     """
     starts = _starts(motions)
     lead = _leading(motions, verticals)

@@ -53,20 +53,6 @@ def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
     Columns are separated by commas, semicolons or tabs; numbers may have a decimal comma. Columns
     that are missing count as empty, ``source`` as ``folder``. Text columns are empty strings where
     nothing is known, numbers NaN.
-
-    Parameters
-    ----------
-    path
-        The catalogue (CSV).
-
-    Returns
-    -------
-    The table, a row per motion.
-
-    Raises
-    ------
-    InputError
-        Naming line and column of everything that is wrong.
     """
     return _checked(path)[0]
 

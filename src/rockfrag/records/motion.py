@@ -115,13 +115,6 @@ def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) ->
 
     Columns: ``name``, ``dt_s``, ``npts``, ``acceleration_m_s2`` (list), ``metadata`` and
     ``provenance`` (JSON).
-
-    Parameters
-    ----------
-    motions
-        What is written.
-    path
-        The file.
     """
     table = pd.DataFrame(
         {
@@ -142,21 +135,7 @@ def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) ->
 def read_motion_set(
     path: str | os.PathLike[str], part: tuple[int, int] = (0, 1), most: int | None = None
 ) -> list[Motion]:
-    """Read what :func:`write_motion_set` wrote, or part k of n of it, in order.
-
-    Parameters
-    ----------
-    path
-        The file.
-    part
-        Number of the part, from 0, and of parts in all.
-    most
-        No more motions than the first so many of it.
-
-    Returns
-    -------
-    The motions, in the order in which they were written.
-    """
+    """Read what :func:`write_motion_set` wrote, or part k of n of it, in order."""
     with pq.ParquetFile(path) as file:
         total, (number, parts) = file.metadata.num_rows, part
         first, last = number * total // parts, (number + 1) * total // parts

@@ -50,22 +50,7 @@ class PeerRecord:
 
 
 def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
-    """Read the records that a ``_SearchResults.csv`` lists.
-
-    Parameters
-    ----------
-    path
-        The file that PEER's ground-motion database puts beside the records that it delivers.
-
-    Returns
-    -------
-    The records, in the order of the rows.
-
-    Raises
-    ------
-    InputError
-        If it is not readable, has no such section, or a row lacks its number or its file.
-    """
+    """Read the records that a ``_SearchResults.csv`` lists."""
     try:
         lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as error:

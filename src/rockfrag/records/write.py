@@ -77,26 +77,7 @@ def write_motion(
 def write_motions(
     motions: Iterable[Motion], folder: str | os.PathLike[str], format: str, unit: str | None = None
 ) -> list[Path]:
-    """Write each motion into a folder, named as the motion, and return the paths.
-
-    Parameters
-    ----------
-    motions
-        What is written, one file each.
-    folder
-        Where to; it is made if absent.
-    format, unit
-        As of :func:`write_motion`.
-
-    Returns
-    -------
-    The paths of the files, in the order of the motions.
-
-    Raises
-    ------
-    InputError
-        As :func:`write_motion`, or if two motions would have one file.
-    """
+    """Write each motion into a folder, named as the motion, and return the paths."""
     name = _format("", format)
     ending = ".mseed" if name == "MSEED" else WRITERS[name][0]
     paths: dict[Path, str] = {}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from typing import NamedTuple
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from typing import TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +34,7 @@ from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 LIGHT = 0.5
 """Minimum effective gravity ratio below which a body that the ground drops may leave it, so that pure rocking is
@@ -51,19 +54,18 @@ class LightBodies(UserWarning):
     """Bodies are nearly weightless at times, and pure rocking holds them on the ground."""
 
 
-class Options(NamedTuple):
+class Options(TypedDict, total=False):
     """What every door takes beside bodies and motions, as :func:`overturns` does."""
 
-    restitution: Sequence[Restitution] | None = None
-    friction: FrictionInput | None = None
-    vertical: MotionLike | Sequence[MotionLike] | None = None
-    theta0: Sequence[StartInput] | None = None
-    omega0: Sequence[StartInput] | None = None
-    linear: bool = False
-    forces: bool = False
-    g: float = GRAVITY
-    step: float = STEP
-    threads: int | None = None
+    restitution: Sequence[Restitution] | None
+    friction: FrictionInput | None
+    vertical: MotionLike | Sequence[MotionLike] | None
+    theta0: Sequence[StartInput] | None
+    omega0: Sequence[StartInput] | None
+    linear: bool
+    g: float
+    step: float
+    threads: int | None
 
 
 @named_keywords
@@ -151,9 +153,17 @@ def overturns(
     (2, 1, 3)
     """
     options = Options(
-        restitution, friction, vertical, theta0, omega0, linear, forces, g, step, threads
+        restitution=restitution,
+        friction=friction,
+        vertical=vertical,
+        theta0=theta0,
+        omega0=omega0,
+        linear=linear,
+        g=g,
+        step=step,
+        threads=threads,
     )
-    cases = prepared(bodies, motions, dt, scales, options)
+    cases = prepared(bodies, motions, dt, scales, forces=forces, **options)
     check_case_count(len(cases.systems) * cases.scales.size)
     return shaken(cases)
 
@@ -163,23 +173,30 @@ def prepared(
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
-    options: Options,
+    *,
+    forces: bool = False,
+    **options: Unpack[Options],
 ) -> Cases:
     """Return the checked cases of a door."""
     body_list = listed_bodies(bodies)
-    shaking = listed_motions(motions, dt, options.vertical)
+    shaking = listed_motions(motions, dt, options.get("vertical"))
     factors = checked_scales(scales, shaking)
-    positive_number("g", options.g, "m/s²")
+    g = options.get("g", GRAVITY)
+    positive_number("g", g, "m/s²")
     systems = systems_of(
-        body_list, options.friction, options.restitution, options.theta0, options.omega0
+        body_list,
+        options.get("friction"),
+        options.get("restitution"),
+        options.get("theta0"),
+        options.get("omega0"),
     )
     request = Request(
-        forces=checked_switch("forces", options.forces),
-        linear=checked_switch("linear", options.linear),
-        g=options.g,
-        step=positive_number("step", options.step),
+        forces=checked_switch("forces", forces),
+        linear=checked_switch("linear", options.get("linear", False)),
+        g=g,
+        step=positive_number("step", options.get("step", STEP)),
     )
-    threads = checked_threads(options.threads)
+    threads = checked_threads(options.get("threads"))
     cases = Cases(systems, tuple(shaking), factors, request, threads)
     if shaking:
         # refused before anything is computed
@@ -207,6 +224,39 @@ def shaken(cases: Cases) -> Outcomes:
         _warn_of_weight(outcomes.minimum_gravity_ratio[stuck])
         _warn_of_lifting(cases, outcomes, stuck)
     return outcomes
+
+
+def overturned_cases(
+    cases: Cases, system: Index, motion: Index, scale: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Say for case i, system ``system[i]`` under ``scale[i]`` × motion ``motion[i]``, whether it overturns.
+
+    Each system with all its cases is one grid, and systems share the threads.
+    """
+    overturned = np.zeros(len(system), dtype=bool)
+
+    def run(number: int) -> None:
+        mine = np.flatnonzero(system == number)
+        used, row = np.unique(motion[mine], return_inverse=True)
+        # the cases of a motion side by side; what is left over is a scale of zero, which costs nothing
+        order = np.argsort(row, kind="stable")
+        counts = np.bincount(row, minlength=used.size)
+        column = np.empty(mine.size, dtype=np.int64)
+        column[order] = np.arange(mine.size) - np.repeat(np.cumsum(counts) - counts, counts)
+        scales = np.zeros((used.size, int(counts.max())))
+        scales[row, column] = scale[mine]
+        some = replace(
+            cases,
+            systems=(cases.systems[number],),
+            motions=tuple(cases.motions[m] for m in used),
+            scales=scales,
+            threads=1,
+        )
+        overturned[mine] = run_cases(some).overturned[0, row, column]
+
+    with ThreadPoolExecutor(cases.threads) as pool:
+        list(pool.map(run, np.unique(system).tolist()))
+    return overturned
 
 
 def _minimum_gravity_ratio(cases: Cases) -> Array:

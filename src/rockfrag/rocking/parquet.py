@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import Unpack
 
 import numpy as np
 import pyarrow as pa
@@ -19,7 +20,7 @@ from numpy.typing import ArrayLike
 from rockfrag.engines.contract import Case, engine_for
 from rockfrag.engines.single import ENGINE as SINGLE
 from rockfrag.engines.single import samples_of
-from rockfrag.engines.steps import STEP, step_count
+from rockfrag.engines.steps import step_count
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.keywords import named_keywords
@@ -27,10 +28,7 @@ from rockfrag.outcomes.columns import Column, Table
 from rockfrag.outcomes.outcomes import columns as columns_of
 from rockfrag.rocking.ensemble import Options, prepared, shaken
 from rockfrag.rocking.inputs import MotionLike
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.options import FrictionInput, StartInput
 from rockfrag.system.blocks import SystemLike
-from rockfrag.units import GRAVITY
 
 ROWS = 262_144  # most cases that are in memory at a time, and most rows of a row group
 PLACE = {"system": pa.int32(), "motion": pa.int32(), "scale": pa.float64()}
@@ -52,17 +50,9 @@ def stream_overturns(
     *,
     table: Table = "cases",
     columns: Sequence[str] | None = None,
-    restitution: Sequence[Restitution] | None = None,
-    friction: FrictionInput | None = None,
-    vertical: MotionLike | Sequence[MotionLike] | None = None,
-    theta0: Sequence[StartInput] | None = None,
-    omega0: Sequence[StartInput] | None = None,
-    linear: bool = False,
     forces: bool = False,
-    g: float = GRAVITY,
-    step: float = STEP,
-    threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[Options],
 ) -> int:
     """Write the outcome of every body × motion × scale to a Parquet file, in memory that stays flat.
 
@@ -81,10 +71,12 @@ def stream_overturns(
     columns
         Columns beside those that say which case it is, named as the attributes of the outcomes; None takes
         ``overturned`` and ``overturned_body`` of cases, and all of bodies and contacts.
-    restitution, friction, vertical, theta0, omega0, linear, forces, g, step, threads
+    forces
         As in :func:`overturns`.
     progress
         Called with the number of cases done and of all cases after every row group.
+    **options
+        As in :func:`overturns`.
 
     Returns
     -------
@@ -103,10 +95,7 @@ def stream_overturns(
             raise InputError(
                 f"columns: {name!r} is no column of {table!r}; choose among {', '.join(known)}."
             )
-    options = Options(
-        restitution, friction, vertical, theta0, omega0, linear, forces, g, step, threads
-    )
-    cases = prepared(bodies, motions, dt, scales, options)
+    cases = prepared(bodies, motions, dt, scales, forces=forces, **options)
     chosen = [known[name] for name in known if name in columns]
     schema = pa.schema(
         PLACE | WITHIN[table] | {quantity.title: _type_of(quantity) for quantity in chosen}
@@ -183,16 +172,8 @@ def stream_histories(
     scales: ArrayLike,
     path: str | os.PathLike[str],
     *,
-    restitution: Sequence[Restitution] | None = None,
-    friction: FrictionInput | None = None,
-    vertical: MotionLike | Sequence[MotionLike] | None = None,
-    theta0: Sequence[StartInput] | None = None,
-    omega0: Sequence[StartInput] | None = None,
-    linear: bool = False,
-    g: float = GRAVITY,
-    step: float = STEP,
-    threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[Options],
 ) -> int:
     """Write the history of every body × motion × scale to a Parquet file, in memory that stays flat.
 
@@ -208,10 +189,10 @@ def stream_histories(
         As in :func:`overturns`.
     path
         The file to write.
-    restitution, friction, vertical, theta0, omega0, linear, g, step, threads
-        As in :func:`overturns`.
     progress
         Called with the number of cases done and of all cases after every row group.
+    **options
+        As in :func:`overturns`, but for ``forces``.
 
     Returns
     -------
@@ -222,16 +203,13 @@ def stream_histories(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    options = Options(
-        restitution, friction, vertical, theta0, omega0, linear, False, g, step, threads
-    )
-    cases = prepared(bodies, motions, dt, scales, options)
+    cases = prepared(bodies, motions, dt, scales, **options)
     request = replace(cases.request, history=True)
     if cases.motions:
         # refused here and not in the middle of the file: the longest interval needs most steps
         _ = replace(cases, request=request).answering
         for system in cases.systems:
-            step_count(system, [motion.dt for motion in cases.motions], g, step)
+            step_count(system, [motion.dt for motion in cases.motions], request.g, request.step)
     total = len(cases.systems) * cases.scales.size
 
     def history(place: Place) -> pa.Table:

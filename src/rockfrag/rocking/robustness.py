@@ -8,21 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number, whole_number
 from rockfrag.keywords import named_keywords
 from rockfrag.rocking.ensemble import Options, prepared, shaken
 from rockfrag.rocking.inputs import MotionLike
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.options import FrictionInput, StartInput
 from rockfrag.system.blocks import SystemLike
 from rockfrag.system.perturbation import perturbed
-from rockfrag.units import GRAVITY
 
 LARGEST_PERTURBATION = 0.1  # beyond this a copy is another experiment
 
@@ -37,15 +34,7 @@ def outcome_robustness(
     perturbation: float,
     copies: int = 16,
     seed: int = 0,
-    restitution: Sequence[Restitution] | None = None,
-    friction: FrictionInput | None = None,
-    vertical: MotionLike | Sequence[MotionLike] | None = None,
-    theta0: Sequence[StartInput] | None = None,
-    omega0: Sequence[StartInput] | None = None,
-    linear: bool = False,
-    g: float = GRAVITY,
-    step: float = STEP,
-    threads: int | None = None,
+    **options: Unpack[Options],
 ) -> NDArray[np.float64]:
     """Fraction of perturbed copies of every case whose outcome is the case's own.
 
@@ -62,8 +51,9 @@ def outcome_robustness(
         Number of copies.
     seed
         Seed of the draws.
-    restitution, friction, vertical, theta0, omega0, linear, g, step, threads
-        As in :func:`rockfrag.rocking.overturns`; measured restitution, friction and start stay as they are.
+    **options
+        As in :func:`rockfrag.rocking.overturns`, but for ``forces``; measured restitution, friction and start stay
+        as they are.
 
     Returns
     -------
@@ -90,10 +80,7 @@ def outcome_robustness(
         )
     if whole_number("copies", copies) < 1:
         raise InputError(f"copies: expected at least one, got {copies}.")
-    options = Options(
-        restitution, friction, vertical, theta0, omega0, linear, False, g, step, threads
-    )
-    cases = prepared(bodies, motions, dt, scales, options)
+    cases = prepared(bodies, motions, dt, scales, **options)
     rng = np.random.default_rng(seed)
     given = shaken(cases).overturned
     same = np.zeros(given.shape)

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.input_checks import whole_number
 from rockfrag.keywords import named_keywords
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.case_list import overturned_cases
-from rockfrag.rocking.ensemble import Options, prepared
+from rockfrag.rocking.ensemble import Options, overturned_cases, prepared
 from rockfrag.rocking.inputs import MotionLike
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.options import FrictionInput, StartInput
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import SystemLike
-from rockfrag.units import GRAVITY
 
 
 @dataclass(frozen=True)
@@ -59,15 +55,7 @@ def find_step_size_sensitive(
     *,
     sample: int = 1000,
     seed: int = 0,
-    restitution: Sequence[Restitution] | None = None,
-    friction: FrictionInput | None = None,
-    vertical: MotionLike | Sequence[MotionLike] | None = None,
-    theta0: Sequence[StartInput] | None = None,
-    omega0: Sequence[StartInput] | None = None,
-    linear: bool = False,
-    g: float = GRAVITY,
-    step: float = STEP,
-    threads: int | None = None,
+    **options: Unpack[Options],
 ) -> StepSizeSensitive:
     """Count the outcomes of an ensemble that change when the step is halved, on a sample of its cases.
 
@@ -81,8 +69,8 @@ def find_step_size_sensitive(
         Number of cases, drawn without repetition; all of them if there are fewer.
     seed
         Seed of the draw.
-    restitution, friction, vertical, theta0, omega0, linear, g, step, threads
-        As in :func:`rockfrag.rocking.overturns`.
+    **options
+        As in :func:`rockfrag.rocking.overturns`, but for ``forces``.
 
     Returns
     -------
@@ -103,10 +91,7 @@ def find_step_size_sensitive(
     >>> found.sampled, found.changed
     (55, 0)
     """
-    options = Options(
-        restitution, friction, vertical, theta0, omega0, linear, False, g, step, threads
-    )
-    grid = prepared(bodies, motions, dt, scales, options)
+    grid = prepared(bodies, motions, dt, scales, **options)
     factors, shape = grid.scales, grid.shape
     total = int(np.prod(shape))
     if whole_number("sample", sample) < 1 or total < 1:
@@ -120,7 +105,7 @@ def find_step_size_sensitive(
     finer = replace(
         grid,
         motions=tuple(map(_doubled, grid.motions)),
-        request=replace(grid.request, step=step / 2),
+        request=replace(grid.request, step=grid.request.step / 2),
     )
     halved = overturned_cases(finer, *drawn)
     changed = cases[given != halved]

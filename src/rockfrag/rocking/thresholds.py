@@ -10,23 +10,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Unpack
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
-from rockfrag.rocking.case_list import overturned_cases
-from rockfrag.rocking.ensemble import Options, prepared, shaken
+from rockfrag.rocking.ensemble import Options, overturned_cases, prepared, shaken
 from rockfrag.rocking.inputs import MotionLike
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.options import FrictionInput, StartInput
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import SystemLike
-from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 MOST_GRID_CASES = 5_000_000
@@ -73,15 +69,7 @@ def find_thresholds(
     *,
     tolerance: float,
     narrowest_resurrection: float,
-    restitution: Sequence[Restitution] | None = None,
-    friction: FrictionInput | None = None,
-    vertical: MotionLike | Sequence[MotionLike] | None = None,
-    theta0: Sequence[StartInput] | None = None,
-    omega0: Sequence[StartInput] | None = None,
-    linear: bool = False,
-    g: float = GRAVITY,
-    step: float = STEP,
-    threads: int | None = None,
+    **options: Unpack[Options],
 ) -> Thresholds:
     """Find first overturning, structural resurrections and always-overturning amplitude of body × motion.
 
@@ -96,8 +84,8 @@ def find_thresholds(
     narrowest_resurrection
         Width of the narrowest window that must not be missed, in scale: the spacing of the grid that is
         looked at first.
-    restitution, friction, vertical, theta0, omega0, linear, g, step, threads
-        As in :func:`rockfrag.rocking.overturns`.
+    **options
+        As in :func:`rockfrag.rocking.overturns`, but for ``forces``.
 
     Returns
     -------
@@ -128,11 +116,8 @@ def find_thresholds(
         raise InputError(
             f"narrowest_resurrection: {narrowest_resurrection} is more than the highest scale, {highest}."
         )
-    options = Options(
-        restitution, friction, vertical, theta0, omega0, linear, False, g, step, threads
-    )
     intervals = math.ceil(highest / narrowest_resurrection - 1e-9)
-    cases = prepared(bodies, motions, dt, (highest,), options)
+    cases = prepared(bodies, motions, dt, (highest,), **options)
     if len(cases.systems) * len(cases.motions) * intervals > MOST_GRID_CASES:
         raise InputError(
             f"narrowest_resurrection: {narrowest_resurrection} needs a grid of more than {MOST_GRID_CASES} cases; "
@@ -153,7 +138,7 @@ def find_thresholds(
         for j, shaking in enumerate(cases.motions):
             mine = (body == i) & (motion == j)
             row, survived = _read(low[mine], high[mine], falls[mine], highest)
-            peak = shaking.x.pga / g
+            peak = shaking.x.pga / cases.request.g
             table.append((i, j, *row, *(peak * scale for scale in row), len(survived)))
             resurrections += [(i, j, lower, upper) for lower, upper in survived]
     return Thresholds(

@@ -12,21 +12,16 @@ where it is not ``lower``, and ``motion`` the input motion where it is not ``<ea
 
 import math
 import os
-from collections.abc import Callable, Mapping
 
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.renamed_keys import check_names
 from rockfrag.shaketable.tests_table import BODIES, CENSORED, PEDESTALS, as_tests_table
-from rockfrag.tabular import read_cells
+from rockfrag.tabular import Row, read_cells, read_rows
 from rockfrag.units import GRAVITY
 
-_TEXT = (
-    *("test", "object", "pedestal", "earthquake", "floor"),
-    *("censored", "overturned_body", "repetition"),
-)
-_BOUNDS = {"g": ("lower_g", "upper_g"), "m_s2": ("lower_m_s2", "upper_m_s2")}
+_TEXT = ("test", "object", "pedestal", "earthquake", "floor", "censored", "overturned_body")
+_IN_G = {"g": 1.0, "m_s2": 1 / GRAVITY}
 _OPTIONAL = ("remark", "motion", "amplitude_g", "amplitude_m_s2")
 
 DEFINITION = "measured"
@@ -51,152 +46,88 @@ def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:
         If the file cannot be read or a field makes no sense; the message names line and column.
     """
     lines = read_cells(path)
-    if not lines:
+    header = set(lines[0][1]) if lines else set()
+    units = [unit for unit in _IN_G if {f"lower_{unit}", f"upper_{unit}"} & header]
+    if len(units) != 1:
         raise InputError(
-            f"{path}: holds no table; the first line that is no comment is its header."
+            f"{path}: holds no table of tests; its header needs either lower_g and upper_g or lower_m_s2 and "
+            "upper_m_s2."
         )
-    (_, header), rows = lines[0], lines[1:]
-    unit = _unit(str(path), header)
+    bounds = f"lower_{units[0]}", f"upper_{units[0]}"
     tests = []
-    seen: dict[tuple[str, str], int] = {}
-    for line, fields in rows:
-        if len(fields) != len(header):
-            raise InputError(
-                f"{path}, line {line}: has {len(fields)} fields, but the header has {len(header)}; "
-                "put a remark that holds commas in double quotes."
-            )
-        row = dict(zip(header, fields, strict=True))
-        test = _test(_Row(f"{path}, line {line}", row), unit)
-        key = (row["test"], row["repetition"])
+    seen: dict[tuple[object, object], int] = {}
+    for row in read_rows(path, (*_TEXT, "repetition", *bounds), _OPTIONAL, least=0):
+        test = _test(row, bounds, _IN_G[units[0]])
+        key = (test["test"], test["repetition"])
         if key in seen:
-            raise InputError(
-                f"{path}, line {line}, column test: {key[0]!r}, repetition {key[1]}, is on line "
-                f"{seen[key]} already; give each repetition its own number."
+            raise row.error(
+                "test",
+                f"{key[0]!r}, repetition {key[1]}, is on line {seen[key]} already; give each repetition its own "
+                "number",
             )
-        seen[key] = line
+        seen[key] = row.line
         tests.append(test)
     return as_tests_table(tests)
 
 
-def _unit(path: str, header: list[str]) -> str:
-    units = [unit for unit, bounds in _BOUNDS.items() if set(bounds) & set(header)]
-    if len(units) != 1:
-        raise InputError(
-            f"{path}: the header needs either lower_g and upper_g or lower_m_s2 and upper_m_s2."
-        )
-    needed = (*_TEXT, *_BOUNDS[units[0]])
-    check_names(path, header, needed)
-    for name in needed:
-        if name not in header:
-            raise InputError(f"{path}: column {name!r} is missing; it needs {', '.join(needed)}.")
-    for name in header:
-        if name not in needed and name not in _OPTIONAL:
-            raise InputError(
-                f"{path}: column {name!r} is unknown; known are {', '.join((*needed, *_OPTIONAL))}."
-            )
-        if header.count(name) > 1:
-            raise InputError(f"{path}: column {name!r} occurs twice.")
-    return units[0]
-
-
-class _Row:
-    """One row, whose complaints name the line and the column."""
-
-    def __init__(self, where: str, fields: Mapping[str, str]) -> None:
-        self.where = where
-        self.fields = fields
-
-    def complaint(self, column: str, what: str) -> InputError:
-        return InputError(f"{self.where}, column {column}: {what}.")
-
-    def text(self, column: str) -> str:
-        if not self.fields[column]:
-            raise self.complaint(column, "is empty")
-        return self.fields[column]
-
-    def one_of(self, column: str, known: tuple[str, ...]) -> str:
-        value = self.fields[column]
-        if value not in known:
+def _test(row: Row, bounds: tuple[str, str], in_g: float) -> dict[str, object]:
+    for column, known in (
+        ("censored", CENSORED),
+        ("overturned_body", BODIES),
+        ("pedestal", PEDESTALS),
+    ):
+        if row.cells[column] not in known:
             choice = ", ".join(name or "nothing" for name in known)
-            raise self.complaint(column, f"must be one of {choice}, got {value!r}")
-        return value
-
-    def number(self, column: str, allowed: Callable[[float], bool], what: str) -> float:
-        """Return the number in a column, NaN if it is empty."""
-        value = self.fields.get(column, "")
-        if not value:
-            return math.nan
-        try:
-            number = float(value)
-        except ValueError:
-            raise self.complaint(column, f"must be a number, got {value!r}") from None
-        if not (math.isfinite(number) and allowed(number)):
-            raise self.complaint(column, f"must be {what}, got {value}")
-        return number
-
-
-def _test(row: _Row, unit: str) -> dict[str, object]:
-    censored = row.one_of("censored", CENSORED)
-    lower, upper = _bounds(row, unit, censored)
-    body = row.one_of("overturned_body", BODIES)
-    if (body == "") != (censored == "right"):
-        raise row.complaint(
+            raise row.error(column, f"must be one of {choice}, got {row.cells[column]!r}")
+    censored, body = row.cells["censored"] == "right", row.cells["overturned_body"]
+    lower, upper = _bounds(row, *bounds, censored)
+    if (body == "") != censored:
+        raise row.error(
             "overturned_body", "names what overturned, and is empty only where nothing did"
         )
-    earthquake, floor = row.text("earthquake"), row.text("floor")
-    repetition = row.number("repetition", lambda n: n >= 1 and n == int(n), "a whole number from 1")
-    if math.isnan(repetition):
-        raise row.complaint("repetition", "is empty; number the repetitions from 1")
-    pedestal = row.one_of("pedestal", PEDESTALS)
-    if body == "pedestal" and pedestal == "NP":
-        raise row.complaint("overturned_body", "is pedestal in a test without one")
+    if body == "pedestal" and row.cells["pedestal"] == "NP":
+        raise row.error("overturned_body", "is pedestal in a test without one")
+    repetition = row.positive("repetition")
+    if repetition != int(repetition):
+        raise row.error("repetition", f"must be a whole number from 1, got {repetition:g}")
+    texts = {name: row.text(name) for name in ("test", "object", "earthquake", "floor")}
+    motion = row.cells.get("motion") or f"{texts['earthquake']}_{texts['floor']}"
     return {
-        "test": row.text("test"),
-        "object": row.text("object"),
-        "pedestal": pedestal,
-        "earthquake": earthquake,
-        "floor": floor,
-        "motion": row.fields.get("motion") or f"{earthquake}_{floor}",
-        "lower_g": lower,
-        "upper_g": upper,
-        "amplitude_g": _reported(row, lower, censored),
-        "censored": censored,
-        "overturned_body": body,
+        **{name: row.cells[name] for name in _TEXT},
+        "motion": motion,
+        "lower_g": lower * in_g,
+        "upper_g": upper * in_g,
+        "amplitude_g": _reported(row, lower * in_g, censored),
         "repetition": int(repetition),
-        "remark": row.fields.get("remark", ""),
+        "remark": row.cells.get("remark", ""),
         "definition": DEFINITION,
     }
 
 
-def _bounds(row: _Row, unit: str, censored: str) -> tuple[float, float]:
-    in_g = 1.0 if unit == "g" else 1 / GRAVITY
-    low, high = _BOUNDS[unit]
-    lower = row.number(low, lambda x: x >= 0, "zero or more")
-    upper = row.number(high, lambda x: x > 0, "greater than zero")
-    if math.isnan(lower):
-        raise row.complaint(low, "is empty; give the largest amplitude survived, 0 if none was")
-    if censored == "right" and not math.isnan(upper):
-        raise row.complaint(high, "must be empty where the test is censored")
-    if censored == "none" and math.isnan(upper):
-        raise row.complaint(
-            high, "is empty; give the amplitude that overturned, or censor the test"
-        )
+def _bounds(row: Row, low: str, high: str, censored: bool) -> tuple[float, float]:
+    """Bounds of the overturning amplitude, the upper one NaN where the test is censored."""
+    lower = row.number(low)
+    if lower < 0:
+        raise row.error(low, f"must be zero or more, got {row.cells[low]}")
+    if censored and row.has(high):
+        raise row.error(high, "must be empty where the test is censored")
+    upper = math.nan if censored else row.positive(high)
     if upper < lower:
-        raise row.complaint(high, f"must not be below {low} ({lower:g}), got {upper:g}")
-    return lower * in_g, upper * in_g
+        raise row.error(high, f"must not be below {low} ({lower:g}), got {upper:g}")
+    return lower, upper
 
 
-def _reported(row: _Row, lower_g: float, censored: str) -> float:
+def _reported(row: Row, lower_g: float, censored: bool) -> float:
     """Figure of the laboratory [g]: its own column, else the largest amplitude survived."""
     figures = [
-        row.number(column, lambda x: x > 0, "greater than zero") / one_g
-        for column, one_g in (("amplitude_g", 1.0), ("amplitude_m_s2", GRAVITY))
-        if row.fields.get(column)
+        row.positive(f"amplitude_{unit}") * in_g
+        for unit, in_g in _IN_G.items()
+        if row.has(f"amplitude_{unit}")
     ]
     if len(figures) > 1:
-        raise row.complaint("amplitude_m_s2", "must be empty where amplitude_g is given")
-    if censored == "right":
+        raise row.error("amplitude_m_s2", "must be empty where amplitude_g is given")
+    if censored:
         if figures:
-            raise row.complaint("amplitude_g", "must be empty where the test is censored")
+            raise row.error("amplitude_g", "must be empty where the test is censored")
         return math.nan
     return figures[0] if figures else (lower_g if lower_g > 0 else math.nan)

@@ -59,7 +59,7 @@ def simulate_object(
     found = assess_with(request, motions, brief=True)
     coefficients = None if with_velocity else _in_one(found)
     if with_velocity and found.conversion:
-        coefficients = found.conversion.fragility.surface.coefficients
+        coefficients = found.conversion.fragility.coefficients
     sources = dict(found.amplitudes[0.5].sources)
     if with_velocity:
         sources.pop("conversion", None)

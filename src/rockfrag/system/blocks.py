@@ -7,7 +7,6 @@ R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwi
 """
 
 import math
-import os
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -192,45 +191,6 @@ class Block:
             cg_height=cg_height,
             cg_offset=(left - right) / 2,
         )
-
-    @classmethod
-    def from_mesh(
-        cls,
-        path: str | os.PathLike[str],
-        *,
-        direction_deg: float,
-        contact_tolerance: float,
-        edge_retreat: float = 0.0,
-        mass: float | None = None,
-        density: float | None = None,
-        metres_per_unit: float = 1.0,
-    ) -> "Block":
-        """Make the planar block that a body of any shape is in one direction of shaking.
-
-        Parameters
-        ----------
-        path
-            Closed mesh as OBJ, PLY or STL with z up, see :func:`rockfrag.system.mesh.read_shape`.
-        direction_deg
-            Direction of shaking, from the mesh's x axis towards its y axis [degrees].
-        contact_tolerance
-            Height above the lowest point up to which points carry [m].
-        edge_retreat
-            Distance by which the edges carry further in than those points [m].
-        mass, density
-            Mass [kg] or density [kg/m³]; one of them.
-        metres_per_unit
-            Length of the mesh's unit [m].
-
-        Raises
-        ------
-        InputError
-            If the mesh cannot be used, or the body could not stand so.
-        """
-        from rockfrag.system.mesh import read_shape
-
-        shape = read_shape(path, mass=mass, density=density, metres_per_unit=metres_per_unit)
-        return shape.block(direction_deg, contact_tolerance, edge_retreat)
 
     @property
     def in_space(self) -> bool:
@@ -432,19 +392,13 @@ class Stack:
         lower, upper = self.lower, self.upper
         return geometry.pile_of(lower.shape, upper.shape, lower.height, lower.lean, self.offset)
 
-    @property
-    def contact_offset(self) -> float:
-        """Distance of the middle of the contact to the right of the pedestal's middle [m]."""
-        pile = self.pile
-        return self.offset if pile.upper is pile.above else (pile.low + pile.high) / 2
-
     @cached_property
     def contact_upper(self) -> Block:
         """The statue as it stands on the contact: itself, or one whose base is no wider than the overlap."""
         pile = self.pile
         if pile.upper is pile.above:
             return self.upper
-        aside = Vector(self.contact_offset - self.offset, 0.0)
+        aside = Vector((pile.low + pile.high) / 2 - self.offset, 0.0)
         centre = self.upper.centre.minus(aside).turned(-self.upper.lean)
         made = Block(
             width=pile.high - pile.low,
@@ -458,21 +412,6 @@ class Stack:
         # to the last bit what the kernels know, without the turn there and back
         vars(made)["shape"] = pile.upper
         return made
-
-    def interface_pivot(self, pivot: int) -> Vector:
-        """Statue's pivot as it stands, from the middle of the pedestal's base [m]."""
-        return Vector(*(self.pile.right if pivot > 0 else self.pile.left))
-
-    def reach(self, ground_pivot: int, upper_pivot: int) -> Vector:
-        """Vector d from the pedestal's pivot to the statue's pivot as they stand [m].
-
-        Its length is l (pivots on the same side) or l' (opposite sides) (``docs/derivation.md``).
-        """
-        return Vector(*geometry.reach(self.pile, ground_pivot, upper_pivot))
-
-    def upper_arm(self, upper_pivot: int) -> Vector:
-        """Vector r2 from the statue's pivot to its centre of gravity as it stands [m]."""
-        return Vector(*geometry.upper_arm(self.pile, upper_pivot))
 
     def common_arm(self, ground_pivot: int) -> Vector:
         """Vector from the pedestal's pivot to the common centre of gravity [m]."""

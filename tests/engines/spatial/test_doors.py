@@ -6,14 +6,10 @@ import pytest
 
 from rockfrag import find_thresholds, overturns, simulate
 from rockfrag.cli import main
-from rockfrag.engines.spatial import (
-    flip_rate,
-    robustness,
-    run_in_space,
-    simulate_in_space,
-    spread_vertices,
-)
+from rockfrag.engines.contract import Case
+from rockfrag.engines.spatial import robustness, run_in_space
 from rockfrag.engines.spatial.body import kernel_body
+from rockfrag.engines.spatial.engine import ENGINE
 from rockfrag.engines.spatial.outcome import run_case
 from rockfrag.errors import InputError
 from rockfrag.records.ground_motion import GroundMotion
@@ -58,7 +54,7 @@ def test_outcomes_say_over_which_edge_or_vertex_each_body_fell_and_a_file_keeps_
     table = run_in_space([BOX, ROUND], motions, scales).table("bodies")
     fell = table["fell_over"]
     alone = [
-        simulate_in_space((BOX, ROUND)[i], motions[j], scale).outcome.fell_over
+        ENGINE.history(Case((BOX, ROUND)[i], motions[j], scale)).outcome.fell_over
         for i, j, scale in zip(table["system"], table["motion"], table["scale"], strict=True)
     ]
     assert fell.tolist() == alone
@@ -79,7 +75,7 @@ def test_a_round_body_falls_before_a_box_of_its_slenderness():
 
 
 def test_history_ends_as_the_outcome_says():
-    response = simulate_in_space(BOX, ground_motion(2, 0.5))
+    response = simulate(BOX, ground_motion(2, 0.5))
     table = response.history
     assert table.tilt_rad.max() <= response.outcome.peak_tilt + 1e-9
     assert abs(response.outcome.residual) < 1e-6
@@ -96,10 +92,8 @@ def test_a_response_draws_the_path_of_its_axis_and_its_plan(peak_g, said):
     assert np.ptp(stood, axis=0) == pytest.approx([0.35, 0.35])
 
 
-def test_flip_rate_counts_cases_that_end_otherwise():
-    falls, rate = flip_rate(BOX, ground_motion(1, 0.05), repeats=3)
-    assert (falls, rate) == (False, 0.0)
-    other = spread_vertices(BOX, 0.01, np.random.default_rng(0))
+def test_a_spread_moves_vertices_by_no_more_than_it_says():
+    other = robustness.spread_vertices(BOX, 0.01, np.random.default_rng(0))
     moved = np.array(other.bodies[0].base.vertices) - np.array(BOX.bodies[0].base.vertices)
     assert 0 < np.abs(moved).max() <= 0.0035
 
@@ -147,8 +141,6 @@ def test_under_one_component_a_block_with_a_depth_is_a_planar_one():
 def test_planar_bodies_and_stacks_are_refused_in_one_sentence():
     with pytest.raises(InputError, match="give its depth"):
         run_in_space([as_system(Block(0.3, 1.0, 100.0))], [ground_motion(0, 0.3)])
-    with pytest.raises(InputError, match="expected one body"):
-        flip_rate(as_system(Block(0.3, 1.0, 100.0)), ground_motion(0, 0.3))
 
 
 @pytest.fixture

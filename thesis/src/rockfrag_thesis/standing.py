@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.case_list import overturned_cases
-from rockfrag.rocking.ensemble import Options, prepared
+from rockfrag.rocking.ensemble import overturned_cases, prepared
 from rockfrag.shaketable.definitions import always_overturning, first_overturning, step_protocol
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.system.perturbation import perturbed
@@ -154,7 +153,7 @@ def _outcomes(
     factors = np.array([factor for _, factor in copies])
     ends = np.zeros(wanted.shape, dtype=bool)
     systems = [system for system, _ in copies]
-    cases = prepared(systems, motions, None, (1.0,), Options(threads=threads))
+    cases = prepared(systems, motions, None, (1.0,), threads=threads)
     ends[wanted] = overturned_cases(cases, copy, motion, scales[motion, amplitude] * factors[copy])
     return ends
 

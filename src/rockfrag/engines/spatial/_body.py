@@ -8,7 +8,7 @@ the energy lost by friction (14).  Everything is for a unit of mass: energies in
 import numpy as np
 
 from rockfrag.engines.kernels.jit import kernel
-from rockfrag.engines.spatial._algebra import cross, dot, minus, norm, plus, times, to_world
+from rockfrag.engines.spatial._algebra import cross, dot, norm, plus, times, to_world
 
 SIZE = 15
 WORK, FRICTION = 13, 14
@@ -22,21 +22,15 @@ BODY = np.dtype(
         ("rim", np.float64),  # radius of a round base [m]; 0 for a polygon
         ("centre", np.float64, (2,)),  # centre of a round base [m]
         ("height", np.float64),  # of the centre of mass over the base [m]
-        (
-            "furthest",
-            np.float64,
-        ),  # distance in the base of its furthest point from below the centre of mass [m]
+        # distance in the base of its furthest point from below the centre of mass [m]
+        ("furthest", np.float64),
         ("nearest", np.float64),  # distance of the nearest edge of its base from there [m]
         ("static", np.float64),  # coefficients of friction [-]
         ("kinetic", np.float64),
-        (
-            "barrier",
-            np.float64,
-        ),  # energy over rest below which nothing falls on ground at rest [J/kg]
-        (
-            "pass_turn",
-            np.float64,
-        ),  # turn of the contact of a round base that passes through flat, rolling [rad]
+        # energy over rest below which nothing falls on ground at rest [J/kg]
+        ("barrier", np.float64),
+        # turn of the contact of a round base that passes through flat, rolling [rad]
+        ("pass_turn", np.float64),
         ("slide_turn", np.float64),  # the same where it slides without friction [rad]
         ("inertia", np.float64, (3, 3)),  # tensor over the mass, about the centre of mass [m²]
         ("inverse", np.float64, (3, 3)),
@@ -56,7 +50,7 @@ def rim_contact(body):
 
 
 @kernel
-def rim_direction(body, up):
+def rim_direction(up):
     """Direction in the base from its centre to the lowest point of the rim, and the sine of the tilt."""
     sine = norm(up[0], up[1])
     if sine < 1e-300:
@@ -68,7 +62,7 @@ def rim_direction(body, up):
 def arm(body, up, i):
     """Point i from the centre of mass, in the body, where ``up`` is the vertical as the body sees it."""
     if i == rim_contact(body):
-        u, _ = rim_direction(body, up)
+        u, _ = rim_direction(up)
         return (
             body.centre[0] + body.rim * u[0],
             body.centre[1] + body.rim * u[1],
@@ -80,7 +74,7 @@ def arm(body, up, i):
 @kernel
 def rim_drift(body, up, omega):
     """Velocity of the lowest point along the rim, in the body."""
-    u, sine = rim_direction(body, up)
+    u, sine = rim_direction(up)
     turn = cross(up, omega)  # rate of change of ``up`` in the body
     along = turn[0] * u[0] + turn[1] * u[1]
     return (
@@ -151,25 +145,3 @@ def position_of_base(y, rows, p):
     """Where in the plan the body's point p is."""
     moved = to_world(rows, p)
     return (y[0] + moved[0], y[1] + moved[1])
-
-
-__all__ = [
-    "BODY",
-    "FRICTION",
-    "SIZE",
-    "WORK",
-    "arm",
-    "bias",
-    "energy",
-    "first_candidate",
-    "free_spin",
-    "gap",
-    "last_candidate",
-    "minus",
-    "omega_of",
-    "point_velocity",
-    "position_of_base",
-    "rim_contact",
-    "rim_direction",
-    "rim_drift",
-]  # fmt: skip

@@ -14,7 +14,7 @@ import numpy as np
 from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import factor, norm, solve_symmetric, substitute
-from rockfrag.engines.spatial._forces import MOST
+from rockfrag.engines.spatial._forces import MOST, largest_compliance
 
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
 """Sets of four contacts as bits, the smallest first."""
@@ -41,15 +41,6 @@ RAYS = np.array(
 )
 RAYS /= np.sqrt((RAYS * RAYS).sum(axis=1, keepdims=True))
 """Directions between which that of a slip is looked for, the same bits everywhere."""
-
-
-@kernel
-def compliance(s, n):
-    """Return the largest diagonal entry."""
-    largest = 0.0
-    for i in range(3 * n):
-        largest = max(largest, s.delassus[i, i])
-    return largest
 
 
 @kernel
@@ -472,14 +463,6 @@ def direction_between(s, i, p, q, u, v, before, after):
 
 
 @kernel
-def solve_set(s, n, mask, scale, largest, slide):
-    """Solve for one set that sticks, or of which some slide; return whether that is a solution."""
-    if slide:
-        return slide_set(s, n, mask, scale, largest)
-    return stick_set(s, n, mask, scale, largest)
-
-
-@kernel
 def fraction_in_set(s, n, mask):
     """Share along the edge between the two contacts of a set, if both may stick."""
     first, second = -1, -1
@@ -516,18 +499,8 @@ def energy_left(s, n):
 def solve_cones(s, n, least):
     """Find the impulses: all that push stick if that is possible; the fewest that push; the least energy left.
 
-    Parameters
-    ----------
-    s
-        With Delassus matrix, free velocities, friction, given ways of slip, and directions between contacts.
-    n
-        Number of contacts.
-    least
-        Least number of contacts that push.
-
-    Returns
-    -------
-    The set that pushes as bits (-1 if none was found), and how many sets of that size would do.
+    At ``least`` so many of the n contacts push. Returned are the set that pushes as bits (-1 if none was found),
+    and how many sets of that size would do.
     """
     chosen, ways = -1, 0
     for slide in range(2):
@@ -543,14 +516,19 @@ def solve_cones(s, n, least):
 @kernel
 def fewest(s, n, least, slide):
     """Find the smallest set that sticks (or slides), with the least energy left, and how many are as small."""
-    scale, largest = scale_of(s, n), compliance(s, n)
+    scale, largest = scale_of(s, n), largest_compliance(s, n)
     chosen, ways, size_found, lowest = -1, 0, 99, 0.0
     for k in range(1 << MOST):
         mask = ORDER[k]
         size = bits(mask)
         if mask >= (1 << n) or size < least or size > size_found:
             continue
-        if solve_set(s, n, mask, scale, largest, slide):
+        solved = (
+            slide_set(s, n, mask, scale, largest)
+            if slide
+            else stick_set(s, n, mask, scale, largest)
+        )
+        if solved:
             ways += 1
             product(s, n, s.impulse, s.after)
             change = energy_left(s, n)

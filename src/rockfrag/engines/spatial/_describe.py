@@ -13,15 +13,7 @@ FEET = 32
 
 
 def fill_body(body: Any, g: float) -> bool:
-    """Complete the record of a body; return whether it can stand.
-
-    Parameters
-    ----------
-    body
-        A BODY with its inertia, height and friction, and the plan of its vertices, or its rim.
-    g
-        Acceleration of gravity [m/s²].
-    """
+    """Complete the record of a body, which has its inertia, height, friction and plan; whether it can stand."""
     _invert(body.inertia, body.inverse)
     if body.rim > 0:
         _fill_rim(body)

@@ -83,10 +83,8 @@ CASE = np.dtype(
         ("slip", np.float64, (MOST, 2)),
         ("armed", np.int64, (MOST,)),
         ("counters", np.int64, (8,)),
-        (
-            "close",
-            np.float64,
-        ),  # velocity after an impact below which a point that touches stays closed [m/s]
+        # velocity after an impact below which a point that touches stays closed [m/s]
+        ("close", np.float64),
     ],
     align=True,
 )
@@ -106,6 +104,12 @@ def kind_of(s):
     if n == 2 and s.slides[0] == STICKS and s.slides[1] == STICKS:
         return HINGE
     return GENERAL
+
+
+@kernel
+def pull_at(field, tau):
+    """Effective gravity in the world."""
+    return (field[0] + field[3] * tau, field[1] + field[4] * tau, field[2] + field[5] * tau)
 
 
 @kernel
@@ -302,7 +306,7 @@ def solve_general(body, y, rows, n, friction, s):
 
 @kernel
 def largest_compliance(s, n):
-    """Largest diagonal entry of the Delassus matrix of n contacts, as fill_general softens with."""
+    """Largest diagonal entry of the Delassus matrix of n contacts."""
     largest = 0.0
     for i in range(3 * n):
         largest = max(largest, s.delassus[i, i])
@@ -318,11 +322,7 @@ def rates(body, tau, y, dy, s, share=True):
     """
     rows = rotation(y)
     omega = omega_of(y)
-    pull = (
-        s.field[0] + s.field[3] * tau,
-        s.field[1] + s.field[4] * tau,
-        s.field[2] + s.field[5] * tau,
-    )
+    pull = pull_at(s.field, tau)
     weight = to_body(rows, pull)
     kind = kind_of(s)
     lost = 0.0

@@ -36,6 +36,7 @@ from rockfrag.engines.spatial._forces import (
     STAGES,
     STICKS,
     kind_of,
+    pull_at,
     rates,
 )
 from rockfrag.engines.spatial._modes import (
@@ -129,12 +130,6 @@ def set_field(field, acceleration, k, scale, dt, g):
         field[i], field[3 + i] = -now, -(then - now) / dt
     field[2] -= g
     field[6] = g
-
-
-@kernel
-def pull_at(field, tau):
-    """Effective gravity in the world."""
-    return (field[0] + field[3] * tau, field[1] + field[4] * tau, field[2] + field[5] * tau)
 
 
 @kernel
@@ -275,7 +270,7 @@ def tilt_about(body, y, u, tilt):
 def pass_flat(body, y, s):
     """Let a rim pass through flat: its contact turns by a fixed angle and the body tilts up again."""
     up = rotation(y)[2]
-    u, sine = rim_direction(body, up)
+    u, sine = rim_direction(up)
     sinking = cross(up, omega_of(y))
     if sinking[0] * up[0] + sinking[1] * up[1] >= 0.0:
         return
@@ -476,7 +471,7 @@ def happen(body, what, tau, y, cut, stuck, s):
         x, z = pressure_centre(body, s)
         tip_over_rim(body, y, x, z, SLIDES, pull, s)
     elif stuck > 3 and what in (OPENS, LEAVES_CONE):
-        insist(body, what, y, s)
+        insist(body, what, s)
     elif kind_of(s) != REST and not choose_mode(body, tau, y, s):
         s.counters[JAMS] += 1
         free = slides_any(s)
@@ -493,7 +488,7 @@ def happen(body, what, tau, y, cut, stuck, s):
 @kernel
 def critical_tangent(body, up):
     """Tangent of the tilt at which the centre of mass is over the base's outline in the direction of the tilt."""
-    u, _ = rim_direction(body, up)
+    u, _ = rim_direction(up)
     if body.rim > 0:
         reach = body.rim + body.centre[0] * u[0] + body.centre[1] * u[1]
     else:
@@ -543,7 +538,7 @@ def note_turn(y, before, out):
 
 
 @kernel
-def fall_is_certain(body, y, s, peaks, scale, g):
+def fall_is_certain(body, y, peaks, scale, g):
     """Whether the body leans so far and turns on so that no later acceleration of the ground brings it back.
 
     It does if its centre of mass, over the base's furthest point, leans further than the steepest effective
@@ -697,35 +692,13 @@ def look_after_rim(body, y, tau, cut, ahead, s, out):
 
 @entry_kernel
 def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y, history, out, s):
-    """Integrate one analysis.
+    """Integrate one analysis of a BODY from the state ``y`` into ``out``, shape (OUTCOME,).
 
-    Parameters
-    ----------
-    body
-        A BODY.
-    acceleration
-        Acceleration of the ground (x, y, up), shape (n, 3) [m/s²], linear between samples; times ``scale``.
-    peaks
-        Largest horizontal and vertical acceleration from each sample on, shape (n, 2) [m/s²].
-    dt
-        Sampling interval [s].
-    g
-        Acceleration of gravity [m/s²].
-    extra
-        Intervals after the motion's end at which, at the latest, the analysis ends.
-    tolerance
-        Largest error of a step in position [m], attitude and velocities [m/s, rad/s].
-    cut
-        Energy over rest, as a part of the barrier, below which a body comes to rest on ground that carries it [-].
-    y
-        State at the start; at the end where the analysis ends.
-    history
-        Room for a sample of the history at the beginning of each interval, shape (m, COLUMNS), m ≥ 0.
-    out
-        Outcome, shape (OUTCOME,).
-    s
-        A CASE for the analysis to work in; afterwards its counters are the numbers of contact events by
-        kind.
+    ``acceleration`` of the ground (x, y, up), shape (n, 3) [m/s²], is linear between samples and counts times
+    ``scale``; ``peaks``, shape (n, 2), are its largest horizontal and vertical ones from each sample on. The
+    analysis ends ``extra`` intervals after the motion at the latest. ``tolerance`` and ``cut`` are as
+    ``outcome.TOLERANCE`` and ``CUT_OFF``; ``history``, shape (m, COLUMNS), m ≥ 0, takes a sample of each interval;
+    ``s`` is a CASE to work in, whose counters tell the contact events afterwards.
     """
     for i in range(OUTCOME):
         out[i] = 0.0
@@ -790,7 +763,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
                 stuck = 0
             up = note_peaks(body, y, start, out)
             before = note_turn(y, before, out)
-            if up <= 0.0 or fall_is_certain(body, y, s, peaks[min(k, last)], scale, g):
+            if up <= 0.0 or fall_is_certain(body, y, peaks[min(k, last)], scale, g):
                 note_fall(y, s, (k + 1) * dt, up <= 0.0, out)
                 break
         if out[FELL] > 0 or lost_track > PATIENCE or out[STEPS] > MOST_STEPS:
@@ -829,6 +802,3 @@ def force_step(body, tau, dt, y, s):
     normalise(y)
     s.counters[UNSOLVED] += 1
     return tau + h
-
-
-__all__ = ["COLUMNS", "OUTCOME", "integrate"]

@@ -5,9 +5,10 @@ import math
 from rockfrag.elementary import atan2
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import (
+    cross,
     dot,
+    minus,
     norm,
-    plus,
     rotation,
     scaled,
     times,
@@ -39,6 +40,7 @@ from rockfrag.engines.spatial._forces import (
     fill_delassus,
     fill_velocities,
     kind_of,
+    pull_at,
     push_at,
     solve_general,
 )
@@ -321,11 +323,7 @@ def lay_flat(body, y):
 def choose_mode(body, tau, y, s):
     """Choose the mode that follows for the points that touch and do not leave; return whether one was found."""
     rows = rotation(y)
-    pull = (
-        s.field[0] + s.field[3] * tau,
-        s.field[1] + s.field[4] * tau,
-        s.field[2] + s.field[5] * tau,
-    )
+    pull = pull_at(s.field, tau)
     lies = still(body, y) and count_touching(body, y, rows) >= 3
     if lies and rest_margin(body, y, rows, pull) >= 0:
         come_to_rest(body, y, s)
@@ -414,7 +412,7 @@ def write_mode(body, y, rows, n, found, s):
 
 
 @kernel
-def insist(body, what, y, s):
+def insist(body, what, s):
     """Change one contact where the problem of contacts gives the same mode again and again at one instant.
 
     The one that pulls most opens, or the one that is furthest out of its cone slides.
@@ -471,19 +469,14 @@ def settle(body, y, s):
         omega = omega_of(y)
         if kind == HINGE:
             q = arm(body, rows[2], s.closed[1])
-            e = (q[0] - p[0], q[1] - p[1], q[2] - p[2])
+            e = minus(q, p)
             omega = scaled(dot(e, omega) / dot(e, e), e)
             y[10], y[11], y[12] = omega
         moved = to_world(rows, p)
         y[2] = -moved[2]
         if i != rim_contact(body):
             y[0], y[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
-        pulled = to_world(rows, (
-            p[1] * omega[2] - p[2] * omega[1],
-            p[2] * omega[0] - p[0] * omega[2],
-            p[0] * omega[1] - p[1] * omega[0],
-        ))  # fmt: skip
-        y[7], y[8], y[9] = pulled
+        y[7], y[8], y[9] = to_world(rows, cross(p, omega))
     elif kind in (GENERAL, SLIDER):
         close_gaps(body, y, rows, s)
         hold(body, y, rotation(y), s)
@@ -496,7 +489,6 @@ def close_gaps(body, y, rows, s):
     if n >= 3:
         lay_flat(body, y)
         return
-    a, b, c = 0.0, 0.0, 0.0
     fill_delassus(body, rows, s.closed, n, s.delassus)
     first = gap(body, y, rows[2], s.closed[0])
     if n == 1:
@@ -513,43 +505,5 @@ def close_gaps(body, y, rows, s):
 def lift_at(body, y, rows, i, size):
     """Displace the body as a small vertical impulse at point i would."""
     p = arm(body, rows[2], i)
-    up = rows[2]
-    moment = (
-        p[1] * up[2] - p[2] * up[1],
-        p[2] * up[0] - p[0] * up[2],
-        p[0] * up[1] - p[1] * up[0],
-    )
     y[2] += size
-    turn(y, scaled(size, times(body.inverse, moment)))
-
-
-__all__ = [
-    "AMBIGUOUS",
-    "AT_REST",
-    "CHANGES",
-    "CLOSE",
-    "COUNTERS",
-    "FLIGHTS",
-    "IMPACTS",
-    "JAMS",
-    "PASSES",
-    "SLIDINGS",
-    "SLIP_FLOOR",
-    "TOUCH",
-    "UNSOLVED",
-    "anchor_all",
-    "carried_flat",
-    "choose_mode",
-    "come_to_rest",
-    "count_touching",
-    "edge_margin",
-    "edge_normal",
-    "impact",
-    "jam",
-    "plus",
-    "rest_margin",
-    "settle",
-    "still",
-    "topple_margin",
-    "touching",
-]  # fmt: skip
+    turn(y, scaled(size, times(body.inverse, cross(p, rows[2]))))

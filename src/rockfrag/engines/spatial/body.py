@@ -19,20 +19,7 @@ NEVER_SLIDES = 20.0
 
 
 def kernel_body(system: System, g: float = GRAVITY) -> np.void:
-    """Return the one body of a system as the kernels know it.
-
-    Parameters
-    ----------
-    system
-        One body in space and its contact with the ground.
-    g
-        Acceleration of gravity [m/s²].
-
-    Raises
-    ------
-    InputError
-        If the base has too many vertices, or the body cannot stand on it.
-    """
+    """Return the one body in space of a system, and its contact with the ground, as the kernels know it."""
     body, contact = system.bodies[0], system.contacts[0]
     static, kinetic = NEVER_SLIDES, NEVER_SLIDES
     if contact.friction is not None:
@@ -54,26 +41,7 @@ def polygon_body(
     friction: tuple[float, float],
     g: float = GRAVITY,
 ) -> np.void:
-    """Return a body on a convex polygon.
-
-    Parameters
-    ----------
-    vertices
-        Corners of the base from below the centre of mass, anticlockwise, shape (n, 2) [m].
-    inertia
-        Tensor of inertia about the centre of mass over the mass, shape (3, 3) [m²].
-    height
-        Height of the centre of mass over the base [m].
-    friction
-        Static and kinetic coefficient.
-    g
-        Acceleration of gravity [m/s²].
-
-    Raises
-    ------
-    InputError
-        If there are too many vertices, or the centre of mass is not above the base.
-    """
+    """Return a body on a convex polygon, whose corners come anticlockwise from below the centre of mass [m]."""
     count = len(vertices)
     if count > MOST_VERTICES:
         raise InputError(
@@ -93,22 +61,7 @@ def round_body(
     friction: tuple[float, float],
     g: float = GRAVITY,
 ) -> np.void:
-    """Return a body on a round base.
-
-    Parameters
-    ----------
-    radius
-        Radius of the base [m].
-    centre
-        Its centre, from below the centre of mass, shape (2,) [m].
-    inertia, height, friction, g
-        As of :func:`polygon_body`.
-
-    Raises
-    ------
-    InputError
-        If the centre of mass is not above the base.
-    """
+    """Return a body on a round base, whose centre counts from below the centre of mass [m]."""
     body = np.zeros(1, BODY)
     body["rim"], body["centre"] = radius, centre
     return _filled(body, inertia, height, friction, g)

@@ -34,7 +34,10 @@ class SpatialResponse:
     outcome
         What became of the body.
     history
-        Table of :func:`rockfrag.engines.spatial.outcome.history_table`.
+        A row per sample: ``time_s``; ``x_m``, ``y_m``, ``z_m`` of the centre of mass relative to the ground;
+        ``tilt_rad`` of the body's axis and ``axis_x``, ``axis_y``, its horizontal components; ``turn_rad`` about
+        the vertical; ``base_x_m``, ``base_y_m``, the base's point below the centre of mass; ``omega_x_rad_s`` to
+        ``omega_z_rad_s`` in the body; ``contacts``, the number of closed points, NaN at rest.
     outline
         Outline of the base as it stands at first, from below the centre of mass, shape (n, 2) [m].
     """
@@ -49,13 +52,7 @@ class SpatialResponse:
         return self.outcome.overturned
 
     def plot(self, title: str = "") -> "Figure":
-        """Draw the path of the axis, and the base in the plan.
-
-        Parameters
-        ----------
-        title
-            Its heading.
-        """
+        """Draw the path of the axis, and the base in the plan."""
         from rockfrag.engines.spatial.response_figure import spatial_figure
 
         return spatial_figure(self.outcome, self.history, self.outline, title)
@@ -67,15 +64,7 @@ class SpatialResponse:
 
 
 class SpatialEngine:
-    """One rigid body on a polygon or a circle, contact event by contact event (``docs/space.md``).
-
-    Attributes
-    ----------
-    name
-        Name that stands in outcomes.
-    meets
-        Wishes that it can meet, in any combination.
-    """
+    """One rigid body on a polygon or a circle, contact event by contact event (``docs/space.md``)."""
 
     name = "space"
     meets = frozenset({Wish.SPACE, Wish.VERTICAL, Wish.FRICTION, Wish.HISTORY})
@@ -88,15 +77,7 @@ class SpatialEngine:
         return found
 
     def run(self, cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
-        """Return the outcomes of cases whose systems and motions it supports.
-
-        Parameters
-        ----------
-        cases
-            The cases.
-        spread, seed
-            As of :func:`run_in_space`.
-        """
+        """Return the outcomes of cases that it supports; spread and seed are those of :func:`run_in_space`."""
         result = empty_outcomes(cases.names, cases.scales, [self.name])
         g = cases.request.g
         bodies = [kernel_body(system, g) for system in cases.systems]
@@ -115,7 +96,8 @@ class SpatialEngine:
                 found, _ = run_case(
                     body, ground, motion.dt, float(scale), g=g, turned=turned, peaks=later
                 )
-                _write(result, (i, j, k), found, _least_gravity_ratio(ground, float(scale), g))
+                least_gravity_ratio = 1.0 + float(scale) * float(ground[:, 2].min()) / g
+                _write(result, (i, j, k), found, least_gravity_ratio)
 
         with ThreadPoolExecutor(cases.threads) as pool:
             list(pool.map(run_pair, tasks))
@@ -134,11 +116,6 @@ class SpatialEngine:
 
 
 ENGINE = SpatialEngine()
-
-
-def _least_gravity_ratio(ground: NDArray[np.float64], scale: float, g: float) -> float:
-    """Least effective gravity over gravity."""
-    return 1.0 + scale * float(ground[:, 2].min()) / g
 
 
 def _write(
@@ -161,12 +138,6 @@ def _write(
     result.walk[body] = math.hypot(*found.walk)
     result.fall_direction[body] = found.fall_direction
     result.fell_over[body] = found.fell_over
-
-
-def _check(found: Support) -> None:
-    if not found:
-        missing = " and ".join(sorted(wish.value for wish in found.missing))
-        raise InputError(f"in space: {found.reason or missing + ' cannot be had'}.")
 
 
 def run_in_space(
@@ -209,40 +180,15 @@ def run_in_space(
     InputError
         If a system is more than one body, or planar, or asks for what this engine does not know.
     """
-    engine, request = SpatialEngine(), Request(g=g)
+    request = Request(g=g)
     systems = tuple(as_system(body) for body in bodies)
     for system in systems:
         for motion in motions:
-            _check(engine.supports(system, motion, request))
+            found = ENGINE.supports(system, motion, request)
+            if not found:
+                missing = " and ".join(sorted(wish.value for wish in found.missing))
+                raise InputError(f"in space: {found.reason or missing + ' cannot be had'}.")
     factors = np.broadcast_to(
         np.atleast_2d(np.asarray(scales, dtype=np.float64)), (len(motions), np.shape(scales)[-1])
     )
-    return engine.run(Cases(systems, tuple(motions), factors, request, threads), spread, seed)
-
-
-def simulate_in_space(
-    body: System | Block, motion: GroundMotion, scale: float = 1.0, *, g: float = GRAVITY
-) -> SpatialResponse:
-    """Return outcome and history of one body in space under one motion.
-
-    Parameters
-    ----------
-    motion
-        Motion of the ground with one to three components.
-    scale
-        Factor on all components.
-    g
-        Acceleration of gravity [m/s²].
-
-    Returns
-    -------
-    The outcome, and a table with a row per sample.
-
-    Raises
-    ------
-    InputError
-        As :func:`run_in_space`.
-    """
-    system, request = as_system(body), Request(history=True, g=g)
-    _check(SpatialEngine().supports(system, motion, request))
-    return SpatialEngine().history(Case(system, motion, scale, request))
+    return ENGINE.run(Cases(systems, tuple(motions), factors, request, threads), spread, seed)

@@ -100,37 +100,13 @@ def run_case(
     peaks: Array | None = None,
     samples: int = 0,
     tolerance: float = TOLERANCE,
-    cut_off: float = CUT_OFF,
     start: Array | None = None,
 ) -> tuple[SpatialOutcome, Array]:
-    """Integrate one analysis.
+    """Integrate one analysis; the outcome, and the history, shape (m, COLUMNS), of at most so many samples.
 
-    Parameters
-    ----------
-    body
-        Body as the kernels know it.
-    acceleration
-        Acceleration of the ground (x, y, up), shape (n, 3) [m/s²].
-    dt
-        Sampling interval [s].
-    scale
-        Factor on the acceleration.
-    g
-        Acceleration of gravity [m/s²].
-    turned
-        Turn about the vertical in which the body stands [rad].
-    peaks
-        As of :func:`later_peaks`; computed if None.
-    samples
-        Samples of the history to keep.
-    tolerance, cut_off
-        As TOLERANCE and CUT_OFF.
-    start
-        State to begin with instead of standing at rest, shape (SIZE,).
-
-    Returns
-    -------
-    The outcome, and the history, shape (m, COLUMNS), m ≤ samples.
+    ``acceleration`` is the ground's (x, y, up), shape (n, 3) [m/s²], ``turned`` the turn about the vertical in
+    which the body stands [rad], ``peaks`` those of :func:`later_peaks`, and ``start`` a state to begin with
+    instead, shape (SIZE,).
     """
     acceleration = np.ascontiguousarray(acceleration)
     y = standing(body, turned) if start is None else start.copy()
@@ -149,7 +125,7 @@ def run_case(
             g,
             extra,
             tolerance,
-            cut_off,
+            CUT_OFF,
             y,
             history,
             out,
@@ -197,24 +173,7 @@ def _named(body: np.void, out: Array) -> str:
 
 
 def history_table(history: Array, dt: float, height: float) -> pd.DataFrame:
-    """Return a history as a table.
-
-    Parameters
-    ----------
-    history
-        As of :func:`run_case`.
-    dt
-        Sampling interval [s].
-    height
-        Height of the centre of mass over the base [m].
-
-    Returns
-    -------
-    A row per sample: ``time_s``; ``x_m``, ``y_m``, ``z_m`` of the centre of mass relative to the ground;
-    ``tilt_rad`` of the body's axis and ``axis_x``, ``axis_y``, its horizontal components; ``turn_rad`` about the
-    vertical; ``base_x_m``, ``base_y_m``, the base's point below the centre of mass; ``omega_x_rad_s`` to
-    ``omega_z_rad_s`` in the body; ``contacts``, the number of closed points, NaN at rest.
-    """
+    """Return a history of :func:`run_case` as the table of a :class:`rockfrag.engines.spatial.SpatialResponse`."""
     w, x, y, z = history[:, 3:7].T
     axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
     closed = np.where(history[:, 14] == RESTS, math.nan, history[:, 14])

