@@ -127,13 +127,13 @@ def shortened(name: str, longest: int = LONGEST_NAME) -> str:
     return f"{name[: longest - 1 - head]}…{name[-head:]}"
 
 
-def amplitude(test: Mapping[Any, Any], decimals: int = 3) -> str:
+def amplitude(test: Mapping[Any, Any]) -> str:
     """The amplitude [g] of a test, or the bound that is known of it: ``0.523``, ``> 2.000``, ``< 0.100``."""
     if math.isfinite(test["amplitude_g"]):
-        return number(test["amplitude_g"], decimals)
+        return number(test["amplitude_g"], 3)
     if math.isfinite(test["upper_g"]):
-        return f"< {number(test['upper_g'], decimals)}"
-    return f"> {number(test['lower_g'], decimals)}" if test["lower_g"] > 0 else "–"
+        return f"< {number(test['upper_g'], 3)}"
+    return f"> {number(test['lower_g'], 3)}" if test["lower_g"] > 0 else "–"
 
 
 def spelled(words: str) -> str:
