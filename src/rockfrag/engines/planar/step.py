@@ -3,8 +3,7 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
-
+from rockfrag.engines.kernels.dormand_prince import INSTANTS, WEIGHTS
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.planar.solve import AT_EDGE, accelerate, end_of, look_at, rate, solve
 
@@ -22,20 +21,6 @@ WIDTH = 1e-12  # fraction of a step to which the time of a contact event is foun
 GAP, EDGE = 0, 2
 """Channels of an interface: its two ends (gap, or pressure of a closed end), their edges, ..."""
 FRICTION, FALL = 4, 5  # ... stick or slip, and the fall of the body above it
-
-INSTANTS = np.array([0.0, 0.2, 0.3, 0.8, 8 / 9, 1.0, 1.0])
-WEIGHTS = np.array(
-    [
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.2, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.075, 0.225, 0.0, 0.0, 0.0, 0.0),
-        (44 / 45, -56 / 15, 32 / 9, 0.0, 0.0, 0.0),
-        (19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0.0, 0.0),
-        (9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0.0),
-        (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84),
-    ]
-)
-"""Stages of Dormand and Prince's pair of order 5 (1980), and what each takes of the rates of those before it."""
 
 
 class Stretch(NamedTuple):
