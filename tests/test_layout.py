@@ -2,6 +2,7 @@
 
 import ast
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,12 @@ TEXTS = (".py", ".pyi", ".json", ".j2", ".css", ".js")
 STATEMENT = re.compile(r"C[1-9]\d?")
 
 
+@cache
+def nodes(path: Path) -> list[ast.AST]:
+    """Everything that stands in a file."""
+    return list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+
+
 def sources(subpackage: str) -> list[Path]:
     return sorted((SOURCE / subpackage).rglob("*.py"))
 
@@ -29,7 +36,7 @@ def sources(subpackage: str) -> list[Path]:
 def imported_subpackages(path: Path) -> set[str]:
     """Rooms that a file imports from, at its top or in a function."""
     names = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.ImportFrom) and node.module:
             names.add(node.module)
         elif isinstance(node, ast.Import):
@@ -53,7 +60,7 @@ def test_subpackage_imports_from_the_left_only(subpackage):
 def test_subpackage_of_the_library_names_no_specimen_floor_or_statement_of_a_study(subpackage):
     looked_at = 0
     for path in sources(subpackage):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 words = {node.value, *re.findall(r"``([^`]+)``", node.value)}
                 known = words & (SPECIMENS | FLOORS)
@@ -75,7 +82,7 @@ def test_tests_import_neither_tests_nor_benchmarks():
     tests = Path(__file__).parent
     benchmarks = {path.stem for path in (tests.parent / "benchmarks").glob("*.py")} | {"benchmarks"}
     for path in tests.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.ImportFrom):
                 home = (node.module or "").split(".")
                 assert not home[-1].startswith("test_"), path
@@ -86,7 +93,7 @@ def test_tests_import_neither_tests_nor_benchmarks():
 
 def test_nothing_imports_snakemake():
     for path in SOURCE.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
             names += [a.name for a in node.names] if isinstance(node, ast.Import) else []
             assert not [name for name in names if name.split(".")[0] == "snakemake"], path
@@ -116,7 +123,7 @@ def test_nothing_outside_of_systems_asks_whether_a_thing_is_a_block_or_a_stack()
 def test_no_field_or_column_is_named_after_the_role_of_a_body():
     looked_at = 0
     for path in [*SOURCE.rglob("*.py"), *THESIS.rglob("*.py")]:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             names = []
             if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
                 names = [node.target.id]

@@ -35,9 +35,8 @@ def middle(motion: Motion) -> np.ndarray:
 
 
 def test_no_steps_leave_the_motion_alone(record):
-    motion = record
-    assert m.process(motion) is motion
-    assert m.process(motion, []) is motion
+    assert m.process(record) is record
+    assert m.process(record, []) is record
 
 
 def test_steps_are_taken_in_order_and_recorded(record, tmp_path):
@@ -193,18 +192,16 @@ def test_demean_leaves_no_mean_and_says_what_it_took():
 
 @pytest.mark.parametrize("order", [0, 1, 3, 6])
 def test_baseline_takes_out_a_polynomial_and_nothing_else(record, order):
-    motion = record
-    x = np.linspace(-1, 1, motion.acceleration.size)
+    x = np.linspace(-1, 1, record.acceleration.size)
     drift = np.polynomial.polynomial.polyval(x, np.arange(1, order + 2) * 0.1)
-    clean = conditioning.baseline(motion, order)
-    dirty = conditioning.baseline(Motion(motion.acceleration + drift, motion.dt), order)
+    clean = conditioning.baseline(record, order)
+    dirty = conditioning.baseline(Motion(record.acceleration + drift, record.dt), order)
     np.testing.assert_allclose(dirty.acceleration, clean.acceleration, atol=1e-12)
 
 
 def test_straight_baseline_is_obspys(record):
-    motion = record
-    expected = Trace(motion.acceleration.copy()).detrend("linear").data
-    np.testing.assert_allclose(conditioning.baseline(motion, 1).acceleration, expected, atol=1e-12)
+    expected = Trace(record.acceleration.copy()).detrend("linear").data
+    np.testing.assert_allclose(conditioning.baseline(record, 1).acceleration, expected, atol=1e-12)
 
 
 def test_displacement_baseline_takes_out_the_drift_of_a_displacement():
@@ -235,22 +232,20 @@ def test_taper_brings_the_ends_to_zero_and_leaves_the_middle():
 
 
 def test_pads_change_nothing_but_the_time(record):
-    motion = record
-    padded = conditioning.pad(motion, 1.5, 2.5)
-    assert padded.acceleration.size == motion.acceleration.size + 400
-    assert m.pgv(padded) == pytest.approx(m.pgv(motion))
-    assert intensity.arias(padded) == pytest.approx(intensity.arias(motion))
+    padded = conditioning.pad(record, 1.5, 2.5)
+    assert padded.acceleration.size == record.acceleration.size + 400
+    assert m.pgv(padded) == pytest.approx(m.pgv(record))
+    assert intensity.arias(padded) == pytest.approx(intensity.arias(record))
 
 
 # --- filters and sampling
 
 
 def test_filters_are_butterworth_forwards_and_backwards(record):
-    motion = record
     sos = butter(4, [1.0, 10.0], "bandpass", fs=100.0, output="sos")
-    forwards = sosfilt(sos, motion.acceleration)
+    forwards = sosfilt(sos, record.acceleration)
     expected = sosfilt(sos, forwards[::-1])[::-1]
-    np.testing.assert_allclose(filtering.bandpass(motion, 1, 10).acceleration, expected, atol=1e-10)
+    np.testing.assert_allclose(filtering.bandpass(record, 1, 10).acceleration, expected, atol=1e-10)
 
 
 @pytest.mark.parametrize("order", [2, 4])
@@ -346,23 +341,21 @@ def test_resampling_does_not_alias():
 
 
 def test_interpolating_keeps_the_motion(record):
-    motion = record
-    fine = filtering.interpolate(motion, 0.002)
-    assert fine.acceleration.size == 5 * (motion.acceleration.size - 1) + 1
-    np.testing.assert_array_equal(fine.acceleration[::5], motion.acceleration)
+    fine = filtering.interpolate(record, 0.002)
+    assert fine.acceleration.size == 5 * (record.acceleration.size - 1) + 1
+    np.testing.assert_array_equal(fine.acceleration[::5], record.acceleration)
     for measure in (m.pga, m.pgv, intensity.pgd, lambda x: intensity.spectral_acceleration(x, 0.1)):
-        assert measure(fine) == pytest.approx(measure(motion), rel=1e-7)
+        assert measure(fine) == pytest.approx(measure(record), rel=1e-7)
 
 
 # --- selection and scaling
 
 
 def test_strong_part_holds_its_share_of_the_intensity(record):
-    motion = record
-    strong = selection.strong_part(motion, 0.05, 0.95)
-    assert intensity.arias(strong) == pytest.approx(0.9 * intensity.arias(motion), rel=0.02)
+    strong = selection.strong_part(record, 0.05, 0.95)
+    assert intensity.arias(strong) == pytest.approx(0.9 * intensity.arias(record), rel=0.02)
     assert len(strong.time) * 0.01 == pytest.approx(
-        intensity.significant_duration(motion), abs=0.03
+        intensity.significant_duration(record), abs=0.03
     )
 
 
@@ -379,14 +372,13 @@ def test_trim_keeps_both_ends_of_its_window():
 
 
 def test_scaling_reaches_its_target(record):
-    motion = record
-    assert m.pga(m.scale_to_pga(motion, 0.4)) == pytest.approx(0.4 * G)
-    assert m.pgv(m.scale_to_pgv(motion, 30.0)) == pytest.approx(0.30)
-    assert intensity.arias(scaling.scale_to_arias(motion, 1.7)) == pytest.approx(1.7)
-    scaled = scaling.scale_to_sa(motion, 0.5, 0.8, 0.02)
+    assert m.pga(m.scale_to_pga(record, 0.4)) == pytest.approx(0.4 * G)
+    assert m.pgv(m.scale_to_pgv(record, 30.0)) == pytest.approx(0.30)
+    assert intensity.arias(scaling.scale_to_arias(record, 1.7)) == pytest.approx(1.7)
+    scaled = scaling.scale_to_sa(record, 0.5, 0.8, 0.02)
     assert intensity.spectral_acceleration(scaled, 0.8, 0.02) == pytest.approx(0.5 * G)
     factor = scaled.provenance[-1]["factor"]
-    np.testing.assert_allclose(scaled.acceleration, factor * motion.acceleration)
+    np.testing.assert_allclose(scaled.acceleration, factor * record.acceleration)
 
 
 def test_start_time_moves_with_the_first_sample():

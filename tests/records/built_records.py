@@ -816,49 +816,6 @@ def plain_milliseconds(folder: Path) -> Built:
     return Built(path, "PLAINTEXT", values[None, :], 0.0005, "g")
 
 
-def plain_count_lines(folder: Path) -> Built:
-    path, values = folder / "gmr.txt", wave(62, 0.3, 5)
-    path.write_text(f"{N}\n0.005\n" + "".join(f"{v:.6e}\n" for v in values))
-    return Built(path, "PLAINTEXT", values[None, :], 0.005, "")
-
-
-def plain_in_words(folder: Path) -> Built:
-    """SIGMA's header and Fortran's fields that touch."""
-    path, values = folder / "16833_H1.cor.acc", wave(63, 3.0, 5)
-    text = (
-        "Orientation                   : NS\nFilter Cut-off Frequency (Hz) : 0.100 - 50.000\nTime Increment "
-        f"(s)            : 0.005\nNumber of Data                : {N}\nPGA (m/s/s)                   : "
-        "5.0693293E+00\nAccelaration time series in m/s/s\n"
-    )
-    path.write_text(text + rows(values, 5, lambda v: f"{v:14.7E}"))
-    return Built(path, "PLAINTEXT", values[None, :], 0.005, "m/s2", components=("NS",))
-
-
-def plain_shake(folder: Path) -> Built:
-    path, values = folder / "elcentro.ACC", wave(64, 0.3, 5)
-    text = f'"El Centro"\n"Total No. of Points :",{N},"@ DT =",.02\n'
-    path.write_text(text + rows(values, 8, fixed(9, 5)))
-    return Built(path, "PLAINTEXT", values[None, :], 0.02, "")
-
-
-def plain_emod3d(folder: Path) -> Built:
-    path, values = folder / "CACS.000", wave(65, 0.3, 5)
-    text = f"CACS 000 title\n{N} 5.0e-03 0 0 -1.0 0.0 0.0 0.0\n"
-    path.write_text(text + rows(values, 6, lambda v: f"{v:13.5e}"))
-    return Built(path, "PLAINTEXT", values[None, :], 0.005, "")
-
-
-def plain_components(folder: Path) -> Built:
-    path = folder / "PRF0.txt"
-    values = np.array([wave(seed, 30.0, 6) for seed in (66, 67, 68)])
-    head = "station: PRF0\nsampling frequency: 100.0 Hz\nunits: cm/s^2\ncomponents: E N Z\n\n"
-    path.write_text(
-        head + "".join(" ".join(f"{v:.6f}" for v in values[:, i]) + "\n" for i in range(N))
-    )
-    names = ("E", "N", "Z")
-    return Built(path, "PLAINTEXT", values, 0.01, "cm/s2", "PRF0", components=names)
-
-
 def plain_rows_with_commas(folder: Path) -> Built:
     path, values = folder / "A10000.csv", wave(69, 0.3, 5)
     words = [f"{v:.5E}" for v in values]
@@ -867,59 +824,11 @@ def plain_rows_with_commas(folder: Path) -> Built:
 
 
 BUILDERS: dict[str, Callable[[Path], Built]] = {
-    function.__name__: function
-    for function in (
-        at2_peer,
-        at2_trailing_names,
-        at2_dt_first,
-        at2_nga,
-        seismosoft,
-        cosmos_v1,
-        cosmos_touching,
-        cosmos_v2,
-        csmip_v1,
-        csmip_v1_pairs,
-        csmip_v2,
-        csmip_v2_modern,
-        renadic,
-        usc,
-        smc,
-        smc_precise,
-        smc_uneven,
-        esm,
-        esm_turkish,
-        geonet_v1a,
-        geonet_v2a,
-        cwa,
-        plain_two_columns,
-        plain_csv,
-        plain_decimal_comma,
-        plain_count_then_columns,
-        plain_one_column,
-        afad,
-        bhrc,
-        unam,
-        csmnc,
-        usc_volume_2,
-        agram,
-        columns,
-        columns_of_quantities,
-        rows_of_numbers,
-        opensees,
-        esm_tadas,
-        cwa_1999,
-        unam_senses,
-        smc_surplus,
-        eerl_volume_2,
-        plain_milliseconds,
-        plain_count_lines,
-        plain_in_words,
-        plain_shake,
-        plain_emod3d,
-        plain_components,
-        plain_rows_with_commas,
-    )
+    name: made
+    for name, made in list(globals().items())
+    if getattr(made, "__annotations__", None) == {"folder": Path, "return": Built}
 }
+"""Every function above that makes a record in a folder."""
 
 
 def search_results(count: int) -> str:

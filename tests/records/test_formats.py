@@ -124,52 +124,39 @@ def test_a_cosmos_channel_may_be_named_in_a_comment_alone(builders, tmp_path):
     assert (stats.channel, stats.rockfrag.component) == ("BNZ", "BNZ")
 
 
+ONES = np.ones(43)
+COSMOS_ROWS = "".join(f"{value:15.6E}\n" for value in range(43))
+
+
 @pytest.mark.parametrize(
-    ("kind", "unit"), [("VELOCITY", "cm/s"), ("DISPLACEMENT", "cm"), ("ACCELERATION", "cm/s")]
-)
-def test_an_esm_file_of_another_quantity_is_refused(tmp_path, texts, kind, unit):
-    path = tmp_path / "velocity.ASC"
-    path.write_text(texts["esm"](np.ones(43), kind, unit, "20190728_160905.700"))
-    with pytest.raises(InputError, match="not acceleration"):
+    ("name", "kind", "given", "words"),
+    [
+        ("a.ASC", "esm", (ONES, "VELOCITY", "cm/s", "20190728_160905.700"), ""),
+        ("a.ASC", "esm", (ONES, "DISPLACEMENT", "cm", "20190728_160905.700"), ""),
+        ("a.ASC", "esm", (ONES, "ACCELERATION", "cm/s", "20190728_160905.700"), ""),
+        ("a.smc", "smc", (ONES, 0, False, "3 VELOCITY"), ""),
+        ("a.smc", "smc", (ONES, 0, False, "4 DISPLACEMENT"), ""),
+        ("a.smc", "smc", (ONES, 0, False, "5 RESPONSE SPECTRA"), ""),
+        ("a.V2c", "cosmos_header", (90, 10.0, 0), "velocity pts, approx 1 secs, units=cm/sec(05)"),
+        ("a.V2c", "cosmos_header", (90, 10.0, 0), "acceleration pts, approx 1 secs, units=counts (50)"),
+    ],
+)  # fmt: skip
+def test_a_file_of_another_quantity_is_refused(tmp_path, texts, name, kind, given, words):
+    path = tmp_path / name
+    samples = f" 43 {words},Format=(1E15.6)\n{COSMOS_ROWS}" if words else ""
+    path.write_text(texts[kind](*given) + samples)
+    held = "raw counts" if "counts" in words else f"{words.split(' ')[0]}.* not acceleration"
+    with pytest.raises(InputError, match=held):
         obspy.read(path)
 
 
-@pytest.mark.parametrize("kind", ["3 VELOCITY", "4 DISPLACEMENT", "5 RESPONSE SPECTRA"])
-def test_an_smc_file_of_another_quantity_is_refused(tmp_path, texts, kind):
-    path = tmp_path / "other.smc"
-    path.write_text(texts["smc"](np.ones(43), 0, False, kind))
-    with pytest.raises(InputError, match="not acceleration"):
-        read_motion(path)
-
-
-@pytest.mark.parametrize(
-    ("words", "unit"), [("VELOCITY TIME HISTORY", "CM/S"), ("DISPLACEMENT TIME HISTORY", "CM")]
-)
+@pytest.mark.parametrize(("words", "unit"), [("VELOCITY", "CM/S"), ("DISPLACEMENT", "CM")])
 def test_a_peer_file_of_another_quantity_is_refused(builders, tmp_path, words, unit):
     path = builders["at2_peer"](tmp_path).path
-    text = path.read_text().replace(
-        "ACCELERATION TIME HISTORY IN UNITS OF G", f"{words} IN UNITS OF {unit}"
-    )
+    text = path.read_text().replace("ACCELERATION TIME HISTORY IN UNITS OF G",
+                                    f"{words} TIME HISTORY IN UNITS OF {unit}")  # fmt: skip
     path.write_text(text)
     with pytest.raises(InputError, match="not acceleration"):
-        obspy.read(path)
-
-
-def test_a_cosmos_file_of_velocity_or_counts_is_refused(tmp_path, texts):
-    path = tmp_path / "velocity.V2c"
-    numbers = "".join(f"{value:15.6E}\n" for value in range(43))
-    header = texts["cosmos_header"](90, 10.0, 0)
-    path.write_text(
-        header + " 43 velocity pts, approx 1 secs, units=cm/sec(05),Format=(1E15.6)\n" + numbers
-    )
-    with pytest.raises(InputError, match="velocity, not acceleration"):
-        obspy.read(path)
-    path.write_text(
-        header
-        + " 43 acceleration pts, approx 1 secs, units=counts (50),Format=(1E15.6)\n"
-        + numbers
-    )
-    with pytest.raises(InputError, match="raw counts"):
         obspy.read(path)
 
 

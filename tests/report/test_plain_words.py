@@ -2,6 +2,7 @@
 
 import ast
 import re
+from functools import cache
 from pathlib import Path
 
 import pandas as pd
@@ -16,8 +17,10 @@ from rockfrag.report.part import Answer, Finding, Section, opened
 from rockfrag.report.wording import agree, estimate, spelled
 from rockfrag.stages.measure_selection import best_of
 
-SPEAKING = ("report", "thesis", "pedestal", "fragility", "campaign", "stages")
+SPEAKING = ("report", "assess", "survival", "pedestal", "fragility", "campaign", "stages")
 """Subpackages whose sentences stand in reports and on the screen of a run."""
+
+ROOT = Path(__file__).resolve().parents[2]
 
 RIDDLES = {
     r"could overturn it\b": "What could change this result",
@@ -42,12 +45,14 @@ RIDDLES = {
 """Sentences that readers stumbled over, and how an engineer says them."""
 
 
+@cache
 def sentences() -> list[tuple[Path, str]]:
     """Texts of all speaking modules and templates that are not docstrings."""
-    root = Path(rockfrag.__file__).parent
+    folders = [ROOT / "src" / "rockfrag" / name for name in SPEAKING]
     found = []
-    for folder in SPEAKING:
-        for path in sorted((root / folder).rglob("*.py")):
+    for folder in (*folders, ROOT / "thesis" / "src"):
+        assert folder.is_dir()
+        for path in sorted(folder.rglob("*.py")):
             tree = ast.parse(path.read_text(encoding="utf-8"))
             silent = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
             found += [
@@ -57,8 +62,7 @@ def sentences() -> list[tuple[Path, str]]:
                 and isinstance(node.value, str)
                 and id(node) not in silent
             ]
-        for path in sorted((root / folder).rglob("*.j2")):
-            found.append((path, path.read_text(encoding="utf-8")))
+        found += [(path, path.read_text(encoding="utf-8")) for path in sorted(folder.rglob("*.j2"))]
     return found
 
 

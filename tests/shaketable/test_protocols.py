@@ -16,7 +16,7 @@ from rockfrag.shaketable.definitions import (
     tests_from_ida as read_ida,
 )
 from rockfrag.shaketable.instruments import Accelerometer, ForceOverMass
-from rockfrag.shaketable.protocols import Outcome, Protocol, climb, measured
+from rockfrag.shaketable.protocols import Outcome, Protocol, measured
 from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
 from rockfrag.shaketable.tests_table import COLUMNS
 
@@ -46,17 +46,6 @@ def test_level_series_climb_as_their_names_say():
     force = ForceSteps(98.1, 98.1, moved_mass_kg=100.0)
     assert force.amplitudes(0.35) == pytest.approx([0.1, 0.2, 0.3])
     assert LinearSteps(0.1, 0.1).amplitudes(0.05).size == 0
-
-
-def test_the_lab_stops_at_the_first_overturning():
-    asked = []
-
-    def overturns(amplitude):
-        asked.append(amplitude)
-        return amplitude > 0.25
-
-    assert climb([0.1, 0.2, 0.3, 0.4], overturns) == Outcome(0.2, 0.3)
-    assert asked == [0.1, 0.2, 0.3]
 
 
 def test_three_readings_of_one_ida_differ():
@@ -159,7 +148,8 @@ def test_no_protocol_overturns_below_the_first_overturning(outcomes, step):
 @given(growth=st.floats(0.01, 0.5), threshold=st.floats(0.1, 1.5))
 def test_a_monotone_specimen_is_bracketed_within_one_step(growth, threshold):
     protocol = Protocol(GeometricSteps(0.05, growth), limit_g=3.0)
-    outcome = climb(protocol.amplitudes(), lambda amplitude: amplitude > threshold)
+    amplitudes = protocol.amplitudes()
+    outcome = first_overturning(amplitudes, amplitudes > threshold)
     assert outcome.lower_g <= threshold < outcome.upper_g
     assert outcome.upper_g / outcome.lower_g == pytest.approx(1 + growth)
 

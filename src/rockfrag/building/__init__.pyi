@@ -13,9 +13,6 @@ from .model import (
     ShearBuilding as ShearBuilding,
     stiffnesses_for_period as stiffnesses_for_period,
 )
-from .modes import (
-    Modes as Modes,
-)
 from .response import (
     BuildingResponse as BuildingResponse,
     EnergyBalance as EnergyBalance,

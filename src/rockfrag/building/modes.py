@@ -13,27 +13,14 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes from the longest period to the shortest, each shape one at the top.
+    """Modes from the longest period to the shortest, each shape one at the top."""
 
-    Attributes
-    ----------
-    period
-        Natural periods [s], shape (storeys,).
-    shape
-        Shapes [-], shape (floors, modes).
-    participation
-        Participation factors Γ [-], shape (modes,); Γ times the shape sums to one at every floor.
-    mass_fraction
-        Effective modal mass over the total mass [-], shape (modes,).
-    damping
-        Fraction of critical damping [-], shape (modes,).
-    """
-
-    period: Floats
-    shape: Floats
+    period: Floats  # natural periods [s], shape (storeys,)
+    shape: Floats  # shapes [-], shape (floors, modes)
+    # participation factors Γ [-], shape (modes,); Γ times the shape sums to one at every floor
     participation: Floats
-    mass_fraction: Floats
-    damping: Floats
+    mass_fraction: Floats  # effective modal mass over the total mass [-], shape (modes,)
+    damping: Floats  # fraction of critical damping [-], shape (modes,)
 
     __repr__ = short_repr
 

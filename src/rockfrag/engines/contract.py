@@ -25,17 +25,17 @@
 9. **What is not told** is NaN, never zero.  What cannot happen (a slip where nothing slides) is zero.
 """
 
-import math
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cache, cached_property
-from importlib import import_module
 from itertools import combinations
+from pkgutil import resolve_name
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
 from rockfrag.records.ground_motion import GroundMotion
@@ -76,14 +76,14 @@ class Request:
     g
         Acceleration of gravity [m/s²].
     step
-        Largest product of frequency parameter and step [-]; NaN for the engine's own.
+        Largest product of frequency parameter and step [-], of engines that take one.
     """
 
     history: bool = False
     forces: bool = False
     linear: bool = False
     g: float = GRAVITY
-    step: float = math.nan
+    step: float = STEP
 
 
 @dataclass(frozen=True)
@@ -114,13 +114,7 @@ class Cases:
 
     @cached_property
     def answering(self) -> list["Engine"]:
-        """Engine of each system under all motions: the one with most components decides.
-
-        Raises
-        ------
-        InputError
-            If no engine supports a system.
-        """
+        """Engine of each system under all motions: the one with most components decides."""
         richest = max(self.motions, key=lambda motion: len(motion.components))
         return [engine_for(system, richest, self.request) for system in self.systems]
 
@@ -132,18 +126,10 @@ class Cases:
 
 @dataclass(frozen=True)
 class Support:
-    """Whether an engine supports what is wanted; if not, why.
+    """Whether an engine supports what is wanted; if not, why."""
 
-    Attributes
-    ----------
-    missing
-        Wishes that the engine cannot meet.
-    reason
-        Why, in words, where it is none of the wishes.
-    """
-
-    missing: frozenset[Wish] = frozenset()
-    reason: str = ""
+    missing: frozenset[Wish] = frozenset()  # wishes that the engine cannot meet
+    reason: str = ""  # why, in words, where it is none of the wishes
 
     def __bool__(self) -> bool:
         """Whether it does."""
@@ -152,18 +138,10 @@ class Support:
 
 @runtime_checkable
 class Engine(Protocol):
-    """Whoever computes outcomes; the rules stand at the top of this module.
+    """Whoever computes outcomes; the rules stand at the top of this module."""
 
-    Attributes
-    ----------
-    name
-        Name that stands in outcomes.
-    meets
-        Wishes that it can meet, in any combination.
-    """
-
-    name: str
-    meets: frozenset[Wish]
+    name: str  # that stands in outcomes
+    meets: frozenset[Wish]  # wishes that it can meet, in any combination
 
     def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
         """Say whether it computes this system under this motion as requested, and if not, why."""
@@ -200,20 +178,20 @@ def by_wishes(engine: Engine, system: System, motion: GroundMotion, request: Req
 
 
 BUILT_IN = (
-    "rockfrag.engines.lone_block",
-    "rockfrag.engines.two_blocks",
-    "rockfrag.engines.single",
-    "rockfrag.engines.planar.engine",
-    "rockfrag.engines.spatial.engine",
+    "rockfrag.engines.pure_rocking:LONE_BLOCKS",
+    "rockfrag.engines.pure_rocking:TWO_BLOCKS",
+    "rockfrag.engines.single:ENGINE",
+    "rockfrag.engines.planar.engine:ENGINE",
+    "rockfrag.engines.spatial.engine:ENGINE",
 )
-"""Modules with an ``ENGINE`` each, in the order in which they are asked; loaded when an engine is first wanted."""
+"""Engines in the order in which they are asked; loaded when one is first wanted."""
 
 _ENGINES: list[Engine] = []
 
 
 @cache
 def _load_built_in() -> None:
-    _ENGINES[:0] = [import_module(name).ENGINE for name in BUILT_IN]
+    _ENGINES[:0] = [resolve_name(name) for name in BUILT_IN]
 
 
 def register_engine(engine: Engine, before: str | None = None) -> Engine:
@@ -281,9 +259,7 @@ def run_cases(cases: Cases) -> Outcomes:
     InputError
         If there is a system that no engine supports.
     """
-    if not cases.motions or not cases.systems:
-        return empty_outcomes(cases.names, cases.scales)
-    if not cases.scales.size:
+    if not cases.motions or not cases.systems or not cases.scales.size:
         return empty_outcomes(cases.names, cases.scales)
     chosen = cases.answering
     if all(engine is chosen[0] for engine in chosen):

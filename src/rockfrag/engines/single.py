@@ -1,6 +1,5 @@
 """Engine of single histories in pure rocking: one or two bodies, every impact, everything about the response."""
 
-import math
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -8,19 +7,18 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
+from rockfrag.engines.contract import Case, Cases, Wish
+from rockfrag.engines.pure_rocking import PureRocking
 from rockfrag.engines.response import Response
 from rockfrag.engines.response_tables import contact_event_table, energy_table
-from rockfrag.engines.two_blocks import pair_support
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
-from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.system.system import System
 
 Array = NDArray[np.float64]
 
 
-class Single:
+class Single(PureRocking):
     """One or two planar bodies that rock and never slide, case by case (``kernels.single``)."""
 
     name = "single histories"
@@ -30,11 +28,6 @@ class Single:
             *(Wish.FORCES, Wish.HISTORY),
         }
     )
-
-    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
-        """Say whether it computes this system under this motion as requested, and if not, why."""
-        found = by_wishes(self, system, motion, request)
-        return found if not found else pair_support(system)
 
     def run(self, cases: Cases) -> Outcomes:
         """Return the outcomes of cases, whose histories are not kept."""
@@ -156,16 +149,15 @@ def initial_state(system: System) -> np.void:
 def shaking_of(case: Case) -> Any:
     """Return what a system is shaken with (``kernels.single.Shaking``), in steps that follow from the system."""
     from rockfrag.engines.kernels.single import Shaking
-    from rockfrag.engines.steps import STEP, free_samples, step_count
+    from rockfrag.engines.steps import free_samples, step_count
 
     motion, request = case.motion, case.request
-    step = STEP if math.isnan(request.step) else request.step
     return Shaking(
         samples=motion.x.acceleration,
         vertical=np.zeros(0) if motion.z is None else motion.z.acceleration / request.g,
         scale=float(case.scale),
         dt=motion.dt,
-        substeps=int(step_count(case.system, motion.dt, request.g, step)),
+        substeps=int(step_count(case.system, motion.dt, request.g, request.step)),
         free_samples=int(free_samples(case.system, motion.dt, request.g)),
     )
 

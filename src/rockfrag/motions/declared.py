@@ -33,57 +33,25 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 @dataclass(frozen=True)
 class IntensityMeasure:
-    """One intensity measure.
+    """One intensity measure."""
 
-    Attributes
-    ----------
-    name
-        Name in columns, to which the unit is added.
-    unit
-        Unit in columns; empty for a number without one.
-    power
-        Power of the amplitude of a motion with which it grows.
-    label
-        What the field calls it; of a spectral measure without its period.
-    value
-        Function of the motion, or of what ``shared`` made of it, that gives the measure in SI units; of a spectral
-        measure the attribute of :class:`rockfrag.motions.spectra.ResponseSpectrum`.
-    shared
-        Function of the motion and the damping [-] whose result several measures read; None: the motion itself.
-    spectral
-        Whether there is one for each period.
-    of_block
-        Whether it compares a motion with a block; tables of motions have none.
-    compared
-        Whether a study compares how well it predicts overturning.
-    decimals
-        Decimals in the table of motions of a report; None: not shown there.
-    title
-        Name in that table, if it is not the label.
-    openquake
-        Name in OpenQuake; empty where it has none.
-    demand
-        What SimCenter calls it behind "Peak Ground" and "Peak Floor"; empty where it is no demand.
-    floor_label
-        What it is called where the motion is that of a floor above the ground.
-    """
-
-    name: str
-    unit: str
-    power: int
-    label: str
+    name: str  # in columns, to which the unit is added
+    unit: str  # in columns; empty for a number without one
+    power: int  # of the amplitude of a motion with which it grows
+    label: str  # what the field calls it; of a spectral measure without its period
+    # gives it in SI units of the motion, of what ``shared`` made of it, or of a response spectrum
     value: Callable[[Any], Any]
+    # of the motion and the damping [-], whose result several measures read; None: the motion itself
     shared: Shared | None = None
-    spectral: bool = False
-    of_block: bool = False
-    compared: bool = False
-    decimals: int | None = None
-    title: str = ""
-    openquake: str = ""
-    demand: str = ""
-    floor_label: str = ""
-    period: float | None = None
-    """Period of a spectral measure [s]."""
+    spectral: bool = False  # whether there is one for each period
+    of_block: bool = False  # whether it compares a motion with a block; tables of motions have none
+    compared: bool = False  # whether a study compares how well it predicts overturning
+    decimals: int | None = None  # in the table of motions of a report; None: not shown there
+    title: str = ""  # in that table, if it is not the label
+    openquake: str = ""  # name in OpenQuake; empty where it has none
+    demand: str = ""  # what SimCenter calls it behind "Peak Ground" and "Peak Floor"; empty if none
+    floor_label: str = ""  # where the motion is that of a floor above the ground
+    period: float | None = None  # of a spectral measure [s]
 
     @property
     def column(self) -> str:

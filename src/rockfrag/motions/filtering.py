@@ -11,10 +11,8 @@ filter: naming a step needs neither.
 """
 
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.motions.checks import peaks, positive, whole
@@ -22,69 +20,40 @@ from rockfrag.records.motion import Motion
 
 
 def highpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = False) -> Motion:
-    """Butterworth high-pass filter, acausal unless a causal one is asked for."""
-    corner_hz = _corner("highpass", "corner_hz", corner_hz, motion)
-    order, causal = whole("step highpass", "order", order, 1, 10), _flag("highpass", causal)
-    from obspy.signal import filter as obspy_filter
-
-    filtered = obspy_filter.highpass(
-        motion.acceleration, corner_hz, 1 / motion.dt, corners=order, zerophase=not causal
-    )
-    return motion.after(
-        "highpass",
-        filtered,
-        corner_hz=corner_hz,
-        order=order,
-        causal=causal,
-        **_found(motion, filtered),
-    )
+    """Butterworth high-pass filter of an order from 1 to 10, acausal unless a causal one is asked for."""
+    return _filtered("highpass", motion, order, causal, corner_hz=corner_hz)
 
 
 def lowpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = False) -> Motion:
-    """Butterworth low-pass filter, acausal unless a causal one is asked for."""
-    corner_hz = _corner("lowpass", "corner_hz", corner_hz, motion)
-    order, causal = whole("step lowpass", "order", order, 1, 10), _flag("lowpass", causal)
-    from obspy.signal import filter as obspy_filter
-
-    filtered = obspy_filter.lowpass(
-        motion.acceleration, corner_hz, 1 / motion.dt, corners=order, zerophase=not causal
-    )
-    return motion.after(
-        "lowpass",
-        filtered,
-        corner_hz=corner_hz,
-        order=order,
-        causal=causal,
-        **_found(motion, filtered),
-    )
+    """Butterworth low-pass filter of an order from 1 to 10, acausal unless a causal one is asked for."""
+    return _filtered("lowpass", motion, order, causal, corner_hz=corner_hz)
 
 
 def bandpass(
     motion: Motion, low_hz: float, high_hz: float, order: int = 4, causal: bool = False
 ) -> Motion:
     """Butterworth band-pass filter between two corners below Nyquist [Hz], acausal unless asked for."""
-    low_hz = _corner("bandpass", "low_hz", low_hz, motion)
-    high_hz = _corner("bandpass", "high_hz", high_hz, motion)
-    order, causal = whole("step bandpass", "order", order, 1, 10), _flag("bandpass", causal)
-    if low_hz >= high_hz:
+    return _filtered("bandpass", motion, order, causal, low_hz=low_hz, high_hz=high_hz)
+
+
+def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz: float) -> Motion:
+    corners = {name: _corner(kind, name, value, motion) for name, value in corners_hz.items()}
+    order = whole(f"step {kind}", "order", order, 1, 10)
+    if not isinstance(causal, bool):
+        raise InputError(f"step {kind}: causal must be true or false, got {causal!r}.")
+    if kind == "bandpass" and corners["low_hz"] >= corners["high_hz"]:
         raise InputError(
-            f"step bandpass: the band from low_hz {low_hz} to high_hz {high_hz} is empty; "
+            f"step bandpass: the band from low_hz {corners['low_hz']} to high_hz {corners['high_hz']} is empty; "
             "low_hz must be the smaller."
         )
     from obspy.signal import filter as obspy_filter
 
-    filtered = obspy_filter.bandpass(
-        motion.acceleration, low_hz, high_hz, 1 / motion.dt, corners=order, zerophase=not causal
+    samples = getattr(obspy_filter, kind)(
+        motion.acceleration, *corners.values(), 1 / motion.dt, corners=order, zerophase=not causal
     )
-    return motion.after(
-        "bandpass",
-        filtered,
-        low_hz=low_hz,
-        high_hz=high_hz,
-        order=order,
-        causal=causal,
-        **_found(motion, filtered),
-    )
+    ends = [float(samples[0]), float(samples[-1])]
+    settings = {**corners, "order": order, "causal": causal}
+    return motion.after(kind, samples, **settings, **peaks(motion, samples), ends_m_s2=ends)
 
 
 def resample(motion: Motion, dt_s: float) -> Motion:
@@ -126,17 +95,6 @@ def interpolate(motion: Motion, dt_s: float) -> Motion:
     old = np.arange(motion.acceleration.size) * parts
     samples = np.interp(np.arange(old[-1] + 1), old, motion.acceleration)
     return motion.after("interpolate", samples, dt=dt_s, dt_s=dt_s)
-
-
-def _flag(step: str, causal: bool) -> bool:
-    if not isinstance(causal, bool):
-        raise InputError(f"step {step}: causal must be true or false, got {causal!r}.")
-    return causal
-
-
-def _found(motion: Motion, samples: NDArray[np.float64]) -> dict[str, Any]:
-    """Return what a filter made of a motion, for its provenance."""
-    return {**peaks(motion, samples), "ends_m_s2": [float(samples[0]), float(samples[-1])]}
 
 
 def _corner(step: str, name: str, value: float, motion: Motion) -> float:

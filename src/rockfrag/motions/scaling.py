@@ -37,8 +37,7 @@ def scale(motion: Motion, factor: float) -> Motion:
 
 def factors_to_pga(motion: Motion, pga_g: Floats) -> Floats:
     """Factors [-] that scale a motion to peak accelerations [g], in the shape in which these come."""
-    if motion.pga <= 0:
-        _factor("factors_to_pga", motion, 1.0, motion.pga)
+    _check_not_zero("factors_to_pga", motion, motion.pga)
     return pga_g * GRAVITY / motion.pga
 
 
@@ -62,8 +61,7 @@ def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
         If the motion is zero throughout or the wanted value is not a positive number.
     """
     target = positive("step scale_to_pga", "pga_g", pga_g, "g")
-    factor = _factor("scale_to_pga", motion, target * GRAVITY, pga(motion))
-    return motion.after("scale_to_pga", motion.acceleration * factor, pga_g=target, factor=factor)
+    return _scaled("scale_to_pga", motion, target * GRAVITY, pga(motion), pga_g=target)
 
 
 def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
@@ -86,10 +84,8 @@ def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
         If the motion is zero throughout or the wanted value is not a positive number.
     """
     target = positive("step scale_to_pgv", "pgv_cm_s", pgv_cm_s, "cm/s")
-    factor = _factor("scale_to_pgv", motion, target / CENTIMETRES_PER_METRE, pgv(motion))
-    return motion.after(
-        "scale_to_pgv", motion.acceleration * factor, pgv_cm_s=target, factor=factor
-    )
+    wanted = target / CENTIMETRES_PER_METRE
+    return _scaled("scale_to_pgv", motion, wanted, pgv(motion), pgv_cm_s=target)
 
 
 def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0.05) -> Motion:
@@ -98,24 +94,14 @@ def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0
     period_s = positive("step scale_to_sa", "period_s", period_s, "seconds")
     damping = not_negative("step scale_to_sa", "damping", damping)
     actual = spectral_acceleration(motion, period_s, damping)
-    factor = _factor("scale_to_sa", motion, target * GRAVITY, actual)
-    return motion.after(
-        "scale_to_sa",
-        motion.acceleration * factor,
-        sa_g=target,
-        period_s=period_s,
-        damping=damping,
-        factor=factor,
-    )
+    settings = {"sa_g": target, "period_s": period_s, "damping": damping}
+    return _scaled("scale_to_sa", motion, target * GRAVITY, actual, **settings)
 
 
 def scale_to_arias(motion: Motion, arias_m_s: float) -> Motion:
     """Scale to an Arias intensity [m/s]."""
     target = positive("step scale_to_arias", "arias_m_s", arias_m_s, "m/s")
-    factor = _factor("scale_to_arias", motion, target, arias(motion)) ** 0.5
-    return motion.after(
-        "scale_to_arias", motion.acceleration * factor, arias_m_s=target, factor=factor
-    )
+    return _scaled("scale_to_arias", motion, target, arias(motion), 0.5, arias_m_s=target)
 
 
 def compress_time(motion: Motion, factor: float) -> Motion:
@@ -129,9 +115,17 @@ def compress_time(motion: Motion, factor: float) -> Motion:
     return motion.after("compress_time", motion.acceleration, dt=motion.dt / factor, factor=factor)
 
 
-def _factor(step: str, motion: Motion, target: float, actual: float) -> float:
+def _scaled(
+    step: str, motion: Motion, target: float, actual: float, power: float = 1.0, **settings: float
+) -> Motion:
+    """Scale a motion from the actual value of a measure to a target, by a power of their ratio."""
+    _check_not_zero(step, motion, actual)
+    factor = (target / actual) ** power
+    return motion.after(step, motion.acceleration * factor, **settings, factor=factor)
+
+
+def _check_not_zero(step: str, motion: Motion, actual: float) -> None:
     if actual <= 0:
         raise InputError(
             f"step {step}: motion {motion.name!r} is zero throughout and cannot be scaled; leave it out."
         )
-    return target / actual

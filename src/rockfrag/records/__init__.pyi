@@ -5,7 +5,6 @@ from .motion import (
     Motion as Motion,
 )
 from .read import (
-    Record as Record,
     read_motion as read_motion,
 )
 from .write import (

@@ -105,6 +105,10 @@ class Note:
         """The same for all files in which the same looks wrong: without numbers and names."""
         return re.sub(r"\d[\d.]*|'[^']*'|\S+\.\w+(?:#\S*)?", "…", self.what)
 
+    def __str__(self) -> str:
+        """The file and what looks wrong in it."""
+        return f"{self.file}: {self.what}"
+
 
 @dataclass
 class CatalogueDraft:
@@ -117,17 +121,17 @@ class CatalogueDraft:
     @property
     def warnings(self) -> list[str]:
         """What looks wrong, a line each."""
-        return [f"{note.file}: {note.what}" for note in self.notes]
+        return [str(note) for note in self.notes]
 
     def summary(self, shown: int = 3) -> list[str]:
         """Return the warnings, those of one kind as one line with an example where they are many."""
         kinds: dict[str, list[Note]] = {}
         for note in self.notes:
             kinds.setdefault(note.kind, []).append(note)
-        lines = []
+        lines: list[str] = []
         for kind, notes in kinds.items():
             if len(notes) <= shown:
-                lines += [f"{note.file}: {note.what}" for note in notes]
+                lines += map(str, notes)
             else:
                 lines.append(f"{len(notes)} times: {kind}; the first is {notes[0].file}")
         return lines
@@ -353,37 +357,19 @@ def _peer_rows(
 
 
 def _records_of(components: Sequence[Component]) -> list[list[Component]]:
-    """Group components of one record: in one file, of one station and time, of like names."""
-
-    def in_file(component: Component) -> tuple[object, ...] | None:
-        return (
-            (component.container, component.path, component.sha256) if component.several else None
-        )
-
-    def in_time(component: Component) -> tuple[object, ...] | None:
-        station, start = component.facts.get("station"), component.facts.get("start_time")
-        return (component.facts.get("network"), station, start) if station and start else None
-
-    def in_name(component: Component) -> tuple[object, ...] | None:
-        folder = str(Path(component.path).parent)
-        return (
-            (component.container, folder, component.stem)
-            if component.stem != component.name
-            else None
-        )
-
+    """Group components of one record: in one file, of like names, of one station and time."""
     groups: list[list[Component]] = []
     left = list(components)
-    for key in (in_file, in_name, in_time):
+    for way in range(3):
         by_key: dict[object, list[Component]] = {}
         for component in left:
-            named = key(component)
-            if named is not None:
-                by_key.setdefault(named, []).append(component)
+            key = _shared_by_a_record(component)[way]
+            if key is not None:
+                by_key.setdefault(key, []).append(component)
         for several in by_key.values():
-            group = list({component.digest: component for component in reversed(several)}.values())[
-                ::-1
-            ]
+            # of copies the first
+            unlike = {component.digest: component for component in reversed(several)}
+            group = list(unlike.values())[::-1]
             if _is_record(group):
                 groups.append(group)
                 left = [component for component in left if component not in group]
@@ -392,9 +378,20 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
     return sorted(groups, key=lambda group: order[group[0].file])
 
 
+def _shared_by_a_record(component: Component) -> tuple[tuple[object, ...] | None, ...]:
+    """Return what the components of one record share: file, name, or station and time; None where it has none."""
+    facts, folder = component.facts, str(Path(component.path).parent)
+    time = facts.get("network"), facts.get("station"), facts.get("start_time")
+    return (
+        (component.container, component.path, component.sha256) if component.several else None,
+        (component.container, folder, component.stem) if component.suffix else None,
+        time if all(time[1:]) else None,
+    )
+
+
 def _is_record(group: Sequence[Component]) -> bool:
     """Tell whether components are two horizontals at a right angle and at most one vertical."""
-    flat = [component for component in group if not component.is_vertical]
+    flat = _horizontal(group)
     if len(flat) == 3 and sorted(component.suffix for component in flat) == ["1", "2", "3"]:
         return False
     if len(flat) != 2 or len(group) > 3 or abs(flat[0].dt - flat[1].dt) > 1e-9:
@@ -407,7 +404,7 @@ def _is_record(group: Sequence[Component]) -> bool:
 
 
 def _rows_of(group: Sequence[Component], draft: CatalogueDraft) -> list[dict[str, Any]]:
-    flat = [component for component in group if not component.is_vertical]
+    flat = _horizontal(group)
     upright = next((component for component in group if component.is_vertical), None)
     if not flat and upright is not None:
         draft.note(upright.file, "a vertical component of no record here; left out")

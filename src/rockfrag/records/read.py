@@ -35,27 +35,13 @@ _SAME_STEP = 1e-9  # fraction of an interval by which the user's may differ from
 
 @dataclass(frozen=True)
 class Record:
-    """The acceleration channels of one file, or of one member or all of an archive.
+    """The acceleration channels of one file, or of one member or all of an archive."""
 
-    Attributes
-    ----------
-    name
-        Path of the file, with ``#member`` where one member of an archive was asked for.
-    format
-        Name of its format; of those of an archive's members, joined by ``+``.
-    sha256
-        Digest of the file; of the archive for its members.
-    channels
-        What is in it.
-    left_out
-        Members of an archive that give no acceleration, and why.
-    """
-
-    name: str
-    format: str
-    sha256: str
+    name: str  # path of the file, with ``#member`` where one member of an archive was asked for
+    format: str  # of those of an archive's members, joined by ``+``
+    sha256: str  # of the file; of the archive for its members
     channels: tuple[Channel, ...]
-    left_out: tuple[tuple[str, InputError], ...] = ()
+    left_out: tuple[tuple[str, InputError], ...] = ()  # members without acceleration, and why
 
     __repr__ = short_repr
 

@@ -7,7 +7,6 @@ from .laboratory_table import read_measured as read_measured
 from .protocols import (
     Outcome as Outcome,
     Protocol as Protocol,
-    climb as climb,
 )
 from .definitions import (
     always_overturning as always_overturning,

@@ -49,7 +49,7 @@ def first_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
 
 
 def _climbed(amplitudes: Floats, overturned: Flags) -> Outcome:
-    """Bounds of the first overturning, as :func:`rockfrag.shaketable.protocols.climb` finds them."""
+    """Bounds of the first overturning."""
     first = int(overturned.argmax()) if overturned.any() else overturned.size
     survived = float(amplitudes[first - 1]) if first else 0.0
     if first == overturned.size:

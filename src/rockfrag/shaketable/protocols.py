@@ -1,7 +1,6 @@
 """Test protocols: amplitudes raised from rest until the first overturning or the limit."""
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -106,30 +105,6 @@ class Protocol:
         if self.definition == "at":
             return outcome.upper_g
         return outcome.lower_g if outcome.lower_g > 0 else math.nan
-
-
-def climb(amplitudes: Sequence[float] | Floats, overturns: Callable[[float], bool]) -> Outcome:
-    """Raise the amplitude until the first overturning.
-
-    Parameters
-    ----------
-    amplitudes
-        Amplitudes [g], rising.
-    overturns
-        Whether the specimen, at rest first, overturns at an amplitude [g]; not asked again after
-        the first yes.
-
-    Returns
-    -------
-    The :class:`Outcome`.
-    """
-    survived = 0.0
-    for amplitude in amplitudes:
-        if overturns(float(amplitude)):
-            remark = "" if survived > 0 else "overturned at the first step"
-            return Outcome(survived, float(amplitude), remark)
-        survived = float(amplitude)
-    return Outcome(survived, math.nan, "limit reached" if survived > 0 else "no step fits")
 
 
 def measured(outcome: Outcome, measurement: Measurement, configuration: str) -> Outcome:

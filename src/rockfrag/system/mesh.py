@@ -37,19 +37,6 @@ MOST_CORNERS, FLAT = 48, 1e-3
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Edges:
-    """Where a body stands in one direction of shaking."""
-
-    # Horizontal distances of the edges from the centre of gravity, against and along the direction [m]
-    left: float
-    right: float
-
-    def retreated(self, distance: float) -> "Edges":
-        """Return the edges moved inwards by ``distance`` [m]: rounded or crushed edges carry further in."""
-        return Edges(self.left - distance, self.right - distance)
-
-
 @dataclass(frozen=True, eq=False)
 class Shape:
     """A rigid body described by its surface, standing as its mesh stands (z up).
@@ -133,8 +120,8 @@ class Shape:
                 return f"with {up} up it stands on {carry} points: give up='{up}'."
         return "give a larger contact tolerance (contact_tolerance)."
 
-    def edges(self, direction_deg: float, tolerance: float) -> Edges:
-        """Return the edge distances for shaking along a direction.
+    def edges(self, direction_deg: float, tolerance: float) -> tuple[float, float]:
+        """Return the distances of the edges from the centre of gravity, against and along a direction [m].
 
         Parameters
         ----------
@@ -145,7 +132,7 @@ class Shape:
         """
         angle = math.radians(direction_deg)
         along = self.contact_polygon(tolerance) @ np.array([math.cos(angle), math.sin(angle)])
-        return Edges(left=float(-along.min()), right=float(along.max()))
+        return float(-along.min()), float(along.max())
 
     def scanned_again(self, scan_tolerance: float, rng: np.random.Generator) -> "Shape":
         """Return the shape as another scan of the same accuracy might have seen it.
@@ -182,15 +169,16 @@ class Shape:
         InputError
             If the centre of gravity is not above what is left of the base.
         """
-        edges = self.edges(direction_deg, tolerance).retreated(retreat)
-        if min(edges.left, edges.right) <= 0:
+        # rounded or crushed edges carry further in
+        left, right = (edge - retreat for edge in self.edges(direction_deg, tolerance))
+        if min(left, right) <= 0:
             raise InputError(
-                f"{self.name}: along {direction_deg:g}° its edges are {edges.left:.4f} and {edges.right:.4f} m "
+                f"{self.name}: along {direction_deg:g}° its edges are {left:.4f} and {right:.4f} m "
                 "from the centre of gravity, so it cannot stand; give a larger tolerance or less retreat."
             )
         return Block.from_edges(
-            edges.left,
-            edges.right,
+            left,
+            right,
             cg_height=self.cg_height,
             height=self.height,
             mass=self.mass,

@@ -9,13 +9,6 @@ interface.  The laws for that rate have a file each in ``rockfrag.laws`` (``docs
 common to all: the momentum that no couple in the closing contact can change is conserved, the other
 contact opens or stays as that asks for, and a rate with which energy would grow gives way to the largest that
 does not.
-
-Every outcome of every impact is worked out here, so a contact law has its place here:
-
-- ``impact``: any contacts of any body.  One history follows it, and the tables of landings are made with it.
-- ``ground_impact``, ``interface_impact``: one contact of two closes while the other stays open, which makes
-  nearly all impacts of a stack in an ensemble, by the products of velocity fields that the stack's table holds.
-- ``block_impact``: the lone block of an ensemble.
 """
 
 from rockfrag.engines.kernels.equations import kinetic_energy, metric, pivot, turn_between

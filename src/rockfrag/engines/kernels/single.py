@@ -101,21 +101,10 @@ def scratch() -> Scratch:
 
 @entry_kernel
 def integrate(body, shaking, initial, history, contact_events, summary, work):
-    """Integrate one body through its shaking and, after it, free rocking.
+    """Integrate one body through its shaking and, after it, free rocking; the number of samples done.
 
-    Parameters
-    ----------
-    body : BODY
-    shaking : Shaking
-    initial : STATE, of which the angles and their rates count
-    history : SAMPLEs, filled until the integration ends; as many as fit are kept
-    contact events : EVENTs, as many as fit are kept
-    summary : SUMMARY
-    work : Scratch
-
-    Returns
-    -------
-    Number of samples done, the first included.
+    Angles and rates of ``initial``, a STATE, count; ``history`` and ``contact_events`` take as many SAMPLEs and
+    CONTACT_EVENTs as fit; ``summary`` is a SUMMARY, ``work`` a :class:`Scratch`.
     """
     state = work.state
     copy_state(initial, state)

@@ -48,21 +48,21 @@ class PlanarContact:
         from rockfrag.engines.planar.ensemble import contact_outcomes
 
         outcomes = empty_outcomes(cases.names, cases.scales, (self.name,))
-        rocking = [i for i, system in enumerate(cases.systems) if self._rocks(cases, system)]
+        richest = max(cases.motions, key=lambda motion: len(motion.components))
+        stuck = [without_friction(system) for system in cases.systems]
+        rocking = [
+            i
+            for i, system in enumerate(stuck)
+            if self._pure(system, richest, cases.request) is not None
+        ]
         if rocking:
-            stuck = tuple(without_friction(cases.systems[i]) for i in rocking)
-            pure = run_cases(replace(cases, systems=stuck))
+            pure = run_cases(replace(cases, systems=tuple(stuck[i] for i in rocking)))
             outcomes = replace(outcomes, engines=(self.name, *pure.engines))
             merge_outcomes(outcomes, rocking, pure)
         found = contact_outcomes(cases)
         for i, count in enumerate(outcomes.counts):
             self._write(outcomes, i, count, found[i], everything=i not in rocking)
         return outcomes
-
-    def _rocks(self, cases: Cases, system: System) -> bool:
-        """Whether another engine knows the system in pure rocking."""
-        motion = max(cases.motions, key=lambda motion: len(motion.components))
-        return self._pure(without_friction(system), motion, cases.request) is not None
 
     def _pure(self, system: System, motion: GroundMotion, request: Request) -> Engine | None:
         """Engine of pure rocking of a system, if there is one."""

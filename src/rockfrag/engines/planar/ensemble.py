@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.engines.contract import Cases as Grid
-from rockfrag.engines.lanes import intervals_of, step_of
+from rockfrag.engines.lanes import intervals_of
 from rockfrag.engines.planar.integrate import Book, Cases, integrate_cases
 from rockfrag.engines.planar.records import (
     BODY,
@@ -25,14 +25,9 @@ COARSE_CLOSING = 1e-4
 CHUNK = 4  # cases that a thread takes at once
 
 
-def contact_outcomes(
-    grid: Grid, wanted: NDArray[np.bool_] | None = None, closing: float = COARSE_CLOSING
-) -> NDArray[np.void]:
-    """Integrate the ``wanted`` cases of systems × motions × scales, all if None; the others are left zero.
-
-    ``closing`` is the parting speed over √(g b) below which a contact stays closed after an impact [-].
-    """
-    g, step, dts = grid.request.g, step_of(grid), intervals_of(grid)
+def contact_outcomes(grid: Grid, wanted: NDArray[np.bool_] | None = None) -> NDArray[np.void]:
+    """Integrate the ``wanted`` cases of systems × motions × scales, all if None; the others are left zero."""
+    g, step, dts = grid.request.g, grid.request.step, intervals_of(grid)
     wanted = np.ones(grid.shape, dtype=bool) if wanted is None else wanted
     table = np.zeros(len(grid.systems), BODY)
     starts = np.zeros((len(grid.systems), 2, 3 * MOST))
@@ -61,10 +56,10 @@ def contact_outcomes(
     def work(memory: np.void) -> None:
         for first in firsts:
             chunk = numbers[first : first + CHUNK]
-            integrate_cases(chunk, cases, closing, book, memory, outcome)
+            integrate_cases(chunk, cases, COARSE_CLOSING, book, memory, outcome)
 
     memories = [working_memory() for _ in range(grid.threads)]
-    integrate_cases(numbers[:0], cases, closing, book, memories[0], outcome)
+    integrate_cases(numbers[:0], cases, COARSE_CLOSING, book, memories[0], outcome)
     if grid.threads == 1:
         work(memories[0])
     else:

@@ -46,16 +46,12 @@ BURST, LEAST_STEP = 100.0, 1e-9
 
 
 def history_columns(count: int) -> int:
-    """Columns of a history: q (3 n), v (3 n), slip, normal force, shear and angular acceleration (n each), and
-    work, rubbed, struck, mode.
-    """  # noqa: D205
+    """Columns of a history: q, v (3 n each), slip, normal, shear, θ'' (n each), work, rubbed, struck and mode."""
     return 10 * count + 4
 
 
 def contact_event_columns(count: int) -> int:
-    """Columns of contact events: time, kind, mode before and after, kinetic energy before and after [J], and of
-    each body or interface the slip [m], the rotation, the angular velocity before and after.
-    """  # noqa: D205
+    """Columns of contact events: time, kind, modes and energies before and after, slip, θ, both θ' (n each)."""
     return 6 + 4 * count
 
 
@@ -150,20 +146,11 @@ def integrate_cases(numbers, cases, closing, book, w, outcome):
 
 @entry_kernel
 def integrate(p, shaking, start, closing, book, w):
-    """Integrate one column through ``scale`` × the motion and on until it rests or has fallen.
+    """Integrate one column, a BODY, from ``start`` through its shaking and on until it rests or has fallen.
 
-    Parameters
-    ----------
-    p : BODY
-    shaking : Shaking
-    start : (2, 3 MOST) coordinates and velocities
-    closing : speed over √(g b) below which a contact stays closed after an impact
-    book : Book
-    w : WORK
-
-    Returns
-    -------
-    Samples done, contact events met, and the time of the fall [s] (NaN if none; ``w.fallen`` says which).
+    ``closing`` is the speed over √(g b) below which a contact stays closed after an impact; ``w`` is a WORK.
+    Returned are the samples done, the contact events met, and the time of the fall [s] (NaN if none; ``w.fallen``
+    says which).
     """
     _begin(p, w, start)
     dt, substeps = shaking.dt, shaking.substeps
@@ -195,16 +182,8 @@ def integrate(p, shaking, start, closing, book, w):
                 known_rest = False
                 fresh = True
                 ah, av = ground_at(sample, tau)
-                count = _handle(
-                    p,
-                    w,
-                    Instant((i + tau) * dt, ah, av),
-                    closing,
-                    True,
-                    True,
-                    book.contact_events,
-                    count,
-                )
+                instant = Instant((i + tau) * dt, ah, av)
+                count = _handle(p, w, instant, closing, True, True, book.contact_events, count)
                 w.met += 1
                 if w.resting == 1:
                     # it failed by rounding only
@@ -244,9 +223,8 @@ def integrate(p, shaking, start, closing, book, w):
                     when = 2.0
                 if when <= 1.0:
                     jolts += 1
-                    count = _jolt(
-                        p, w, Instant((i + tau) * dt, ah, av), closing, book.contact_events, count
-                    )
+                    instant = Instant((i + tau) * dt, ah, av)
+                    count = _jolt(p, w, instant, closing, book.contact_events, count)
                     fresh = True
                     continue
             if when > 1.0:
@@ -389,7 +367,7 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
         for k in range(p.count):
             if w.fails[k, FALL] == 1:
                 w.fallen = k + 1
-                w.parted = _parted(p, w, k)
+                w.parted = _parted(w, k)
                 return _note(p, w, now.time, FALLEN, contact_events, count)
     look_at(p, w, w.q)
     for k in range(p.count):
@@ -588,7 +566,7 @@ def slip(p, w, k):
 
 
 @kernel
-def _parted(p, w, body):
+def _parted(w, body):
     """Interface, from 1, that is open furthest under a body that falls."""
     widest, parted = -1.0, 0
     for k in range(body + 1):

@@ -40,11 +40,8 @@ BODY = np.dtype(
         ("kinetic", F, (MOST,)),
         ("law", INT, (MOST, 2)),  # [interface, corner that comes down] law of the impact ...
         ("number", F, (MOST, 2)),  # ... and its number
-        (
-            "critical",
-            F,
-            (MOST, 2),
-        ),  # [body, side] its critical angle to the left, to the right [rad]
+        # [body, side] its critical angle to the left, to the right [rad]
+        ("critical", F, (MOST, 2)),
         ("standing", F, (3 * MOST,)),  # x, y, θ of each body as it stands
         ("weight", F),  # of everything [N]: unit of forces
         ("size", F),  # half width of the uppermost body [m]: unit of lengths
@@ -100,10 +97,6 @@ WORK = np.dtype(
         ("old_v", F, (3 * MOST,)),
         ("old_closed", INT, (MOST, 2)),
         ("old_slides", INT, (MOST,)),
-        ("best_closed", INT, (MOST, 2)),
-        ("best_slides", INT, (MOST,)),
-        ("other_closed", INT, (MOST, 2)),
-        ("other_slides", INT, (MOST,)),
         ("flip", INT, (3,)),  # interface, what and how: the change that mends the worst of a mode
         ("tried", INT, (TRIES,)),  # numbers of the modes that a search has tried ...
         ("wrong", F, (TRIES,)),  # ... and how far each is from consistent
@@ -114,7 +107,6 @@ WORK = np.dtype(
         ("depart", F, (MOST,)),
         ("falls", INT, (MOST,)),  # end that comes down while the other is closed, -1: none
         ("goal", F, (MOST, 2)),  # speed at which the other end departs: without the law, with it
-        ("hit_v", F, (3 * MOST,)),  # velocities that an impact finds
         # margins of rest, linear in the two accelerations
         ("rest", F, (4 * MOST, 3)),
         # ledgers [J] and counts
@@ -202,13 +194,8 @@ def fill_record(p: np.void, parts: Sequence[Part], g: float) -> None:
         shape, foot, base = part.shape, middle, middle
         if k > 0:
             below = parts[k - 1]
-            pile = geometry.pile_of(
-                below.shape._replace(b=below.face[1]),
-                part.shape,
-                below.height,
-                below.lean,
-                part.offset,
-            )
+            wide = below.shape._replace(b=below.face[1])
+            pile = geometry.pile_of(wide, part.shape, below.height, below.lean, part.offset)
             shape = pile.upper
             aside = np.array(geometry.turned(below.face[0], 0.0, below.lean))
             top = np.array(geometry.turned(0.0, below.height, below.lean)) + aside

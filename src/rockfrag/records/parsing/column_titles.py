@@ -59,23 +59,12 @@ _BRACKETED = re.compile(r"[\[({](?P<unit>[^\[\](){}]*)[\])}]")
 
 @dataclass(frozen=True)
 class Column:
-    """What a title says of its column.
-
-    Attributes
-    ----------
-    title
-        The title.
-    quantity
-        ``time``, ``index``, ``spectrum``, ``acceleration``, ``velocity``, ``force``, …; empty if it does not say.
-    unit
-        Canonical unit of acceleration, or of a time.
-    component
-        Name of the component.
-    """
+    """What a title says of its column."""
 
     title: str
+    # ``time``, ``index``, ``spectrum``, ``acceleration``, ``force``, …; empty if it does not say
     quantity: str
-    unit: str
+    unit: str  # canonical unit of acceleration, or of a time
     component: str
 
     @property

@@ -6,13 +6,11 @@ needed to compute in Python.
 """
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from rockfrag.engines.contract import Request, Support, Wish, by_wishes
-from rockfrag.engines.two_blocks import pair_support
-from rockfrag.outcomes.outcomes import Outcomes
+from rockfrag.engines.contract import Request, Support, Wish
+from rockfrag.engines.pure_rocking import PureRocking
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.system.system import System
@@ -36,7 +34,7 @@ def driver_text(*names: str) -> str:
     )
 
 
-class InPage:
+class InPage(PureRocking):
     """The module under the contract of engines: what a page may say that it simulates.
 
     It is not in the registry, as it answers in a page alone.
@@ -45,23 +43,7 @@ class InPage:
     name = "page"
     meets = frozenset({Wish.TWO_BODIES, Wish.HISTORY})
 
-    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
-        """Say whether the module computes this system under this motion as requested, and if not, why."""
-        found = by_wishes(self, system, motion, request)
-        return found if not found else pair_support(system)
-
-    def run(self, cases: Any) -> Outcomes:
-        """Refuse: the module runs in a page."""
-        raise NotImplementedError
-
-    def history(self, case: Any) -> Any:
-        """Refuse: the module runs in a page."""
-        raise NotImplementedError
-
-
-ENGINE = InPage()
-
 
 def in_page(system: System) -> Support:
     """Say whether a page simulates a system under horizontal motions."""
-    return ENGINE.supports(system, GroundMotion(Motion(np.zeros(1), 1.0)), Request(history=True))
+    return InPage().supports(system, GroundMotion(Motion(np.zeros(1), 1.0)), Request(history=True))
