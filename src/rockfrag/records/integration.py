@@ -24,18 +24,18 @@ def integrate(acceleration: Floats, dt: float) -> tuple[Floats, Floats]:
     return velocity, np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def velocity_extremes(acceleration: Floats, dt: float) -> Floats:
-    """Return the velocity at samples and where the acceleration crosses zero between them [m/s]."""
+def peak_velocity(acceleration: Floats, dt: float) -> float:
+    """Peak absolute velocity [m/s], at samples or where the acceleration crosses zero between them."""
     velocity, _ = integrate(acceleration, dt)
     a0, a1 = acceleration[:-1], acceleration[1:]
     turns = a0 * a1 < 0
     tau = dt * a0[turns] / (a0[turns] - a1[turns])
     between = velocity[:-1][turns] + a0[turns] * tau / 2
-    return np.concatenate([velocity, between])
+    return float(np.abs(np.concatenate([velocity, between])).max())
 
 
-def displacement_extremes(acceleration: Floats, dt: float) -> Floats:
-    """Return the displacement at samples and where the velocity crosses zero between them [m]."""
+def peak_displacement(acceleration: Floats, dt: float) -> float:
+    """Peak absolute displacement [m], at samples or where the velocity crosses zero between them."""
     velocity, displacement = integrate(acceleration, dt)
     # the velocity has a zero in an interval only if it changes its sign there, or turns
     changes = (velocity[:-1] * velocity[1:] < 0) | (acceleration[:-1] * acceleration[1:] < 0)
@@ -50,14 +50,4 @@ def displacement_extremes(acceleration: Floats, dt: float) -> Floats:
     inside = (discriminant >= 0) & (roots > 0) & (roots < dt)
     tau = np.where(inside, roots, 0.0)
     between = d0 + v0 * tau + a0 * tau**2 / 2 + slope * tau**3 / 6
-    return np.concatenate([displacement, between[inside]])
-
-
-def peak_velocity(acceleration: Floats, dt: float) -> float:
-    """Peak absolute velocity [m/s], between samples too."""
-    return float(np.abs(velocity_extremes(acceleration, dt)).max())
-
-
-def peak_displacement(acceleration: Floats, dt: float) -> float:
-    """Peak absolute displacement [m], between samples too."""
-    return float(np.abs(displacement_extremes(acceleration, dt)).max())
+    return float(np.abs(np.concatenate([displacement, between[inside]])).max())

@@ -18,6 +18,7 @@ from rockfrag.files import write_text
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import positive_step
+from rockfrag.records.parsing.header_keys import first_match
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile, last_row
 from rockfrag.records.parsing.written_trace import one_trace, stated_unit
@@ -117,7 +118,7 @@ def _quantity_and_unit(header: list[str]) -> tuple[str, str]:
             if named:
                 quantity = _QUANTITIES[named["quantity"].upper()]
     if not quantity:
-        history = next((match for line in header if (match := _HISTORY.search(line))), None)
+        history = first_match(_HISTORY, header)
         quantity = _QUANTITIES[history["quantity"].upper()] if history else quantity_of(unit)
     return quantity, unit
 
@@ -177,7 +178,7 @@ def _facts(header: list[str]) -> dict[str, str]:
     """Take earthquake, station and component from PEER's line ``earthquake date, station, component``."""
     title = header[0].strip() if header else ""
     facts = {"title": title, "earthquake": "", "station": "", "component": "", "agency": ""}
-    rotated = next((found for line in header if (found := _AZIMUTH.search(line))), None)
+    rotated = first_match(_AZIMUTH, header)
     for line in header[1:]:
         found = _COMPONENT.search(line.strip())
         before = line.strip()[: found.start()] if found else ""

@@ -123,13 +123,14 @@ def _header(text: TextFile, first: int) -> tuple[int, _Header]:
     numbers = reals(text, *_block(text, at_reals, _REALS, width=15))
     at_samples = _above_samples(text, at_reals)
     words = text.lines(first, at_integers)
+    comments = [line for line in text.lines(at_reals, at_samples) if line.lstrip().startswith("|")]
     unknown = _unknown(words)
     whole += [int(unknown)] * max(0, _AZIMUTH + 1 - len(whole))
     numbers += [unknown] * max(0, _STEP_MS + 1 - len(numbers))
     stated = numbers[_STEP_MS] != unknown
     dt = numbers[_STEP_MS] / 1000 if stated else numbers[_RECORDER_STEP]
     header = _Header(
-        words=[*words, *_comments(text, at_reals, at_samples)],
+        words=[*words, *comments],
         dt=positive_step(text, dt, at_reals),
         start_time=_start(whole, numbers, unknown),
         azimuth=whole[_AZIMUTH],
@@ -148,10 +149,6 @@ def _above_samples(text: TextFile, at_reals: int) -> int:
     if line < 0:
         text.fail("no line with the number of samples below the header; the file is cut short")
     return line
-
-
-def _comments(text: TextFile, start: int, stop: int) -> list[str]:
-    return [line for line in text.lines(start, stop) if line.lstrip().startswith("|")]
 
 
 def _block(

@@ -6,8 +6,6 @@ line without a key above it.
 
 import re
 
-import numpy as np
-from numpy.typing import NDArray
 from obspy import UTCDateTime
 
 from rockfrag.records.parsing.channel import Channel
@@ -71,20 +69,18 @@ def _parse(text: TextFile) -> list[Channel]:
         text.fail("NDATA or SAMPLING_INTERVAL_S is not a number")
     if count < 1:
         text.fail(f"the header promises {count} samples")
-
-    def samples() -> NDArray[np.float64]:
-        return text.counted(start, None, count)
-
+    location = facts.get("LOCATION", "")
     return [
         Channel(
             npts=count,
             dt=positive_step(text, dt, 0),
-            samples=samples,
+            samples=lambda: text.counted(start, None, count),
             unit=unit,
             start_time=time_of(facts.get(_SAMPLE_TIME, "")),
             network=facts.get("NETWORK", ""),
             station=facts.get("STATION_CODE", ""),
-            location=_location(facts.get("LOCATION", "")),
+            # the Turkish variant has the name of a place here
+            location=location if len(location) <= 2 else "",
             code=facts.get("STREAM", ""),
             component=facts.get("STREAM") or facts.get("COMPONENT", ""),
             details=_details(facts),
@@ -99,11 +95,6 @@ def time_of(words: str) -> UTCDateTime | None:
         if match:
             return clock_time(*match.group("y", "m", "d", "h", "min", "s"))
     return None
-
-
-def _location(words: str) -> str:
-    """Return the SEED location; the Turkish variant has a place name here."""
-    return words if len(words) <= 2 else ""
 
 
 def _details(facts: dict[str, str]) -> dict[str, object]:

@@ -12,6 +12,7 @@ from obspy import UTCDateTime
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import Section, integers, positive_step, reals
+from rockfrag.records.parsing.header_keys import first_match
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import clock_time
 
@@ -102,11 +103,8 @@ def _component(text: TextFile, first: int) -> tuple[Channel, int]:
 
 
 def _word_after(pattern: str, words: list[str]) -> str:
-    for line in words:
-        match = re.search(rf"^\s*.*?\b{pattern}", line, re.IGNORECASE)
-        if match:
-            return match[1]
-    return ""
+    match = first_match(re.compile(rf"\b{pattern}", re.IGNORECASE), words)
+    return match[1] if match else ""
 
 
 def _start(whole: list[int]) -> UTCDateTime | None:

@@ -41,7 +41,8 @@ def _channel(text: TextFile, first: int, values: Channel) -> Channel:
     return replace(
         values,
         start_time=american_time(trigger[1]) if trigger else None,
-        station=_station(PurePath(text.name).name.split(".")[0], number),
+        # the station that the file is named by, without the record's number
+        station=PurePath(text.name).name.split(".")[0].replace(number, "").strip(" _-"),
         component=component[1] if component else "",
         details={
             "earthquake": re.split(r"\s*\(ORIGIN", " ".join(lines[2].split()))[0],
@@ -49,12 +50,6 @@ def _channel(text: TextFile, first: int, values: Channel) -> Channel:
             **values.details,
         },
     )
-
-
-def _station(stem: str, number: str) -> str:
-    """Return the station that a file is named by: its name without the record's number."""
-    name = stem.replace(number, "") if number else stem
-    return name.strip(" _-")
 
 
 FORMAT = Format("RENADIC", _recognise, _parse)

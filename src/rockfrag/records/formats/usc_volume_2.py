@@ -15,6 +15,7 @@ from rockfrag.records.formats.usc import place_of
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import Section, positive_step, refuse_others
+from rockfrag.records.parsing.header_keys import first_match
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
@@ -77,9 +78,7 @@ def _in_words(text: TextFile, first: int, stop: int) -> Channel:
     """Return the acceleration of a file whose words alone state count and interval."""
     start = text.find(_WHOLE_NUMBERS, first, stop)
     words = text.lines(first, start if start >= 0 else first + _MAX_HEADER)
-    count = next((m for word in words if (m := _COUNT_IN_WORDS.search(word))), None)
-    step = next((m for word in words if (m := _STEP_IN_WORDS.search(word))), None)
-    peak = next((m for word in words if (m := _PEAK.search(word))), None)
+    count, step, peak = (first_match(p, words) for p in (_COUNT_IN_WORDS, _STEP_IN_WORDS, _PEAK))
     if start < 0 or count is None or step is None or peak is None:
         text.fail(
             "no number of samples, interval or peak is stated below; the file is cut short", first
@@ -98,7 +97,7 @@ def _in_words(text: TextFile, first: int, stop: int) -> Channel:
 
 def _check_peak(text: TextFile, words: list[str], samples: NDArray[np.float64], line: int) -> None:
     """Check the largest value against the peak that the header states, in the same unit."""
-    peak = next((m for word in words if (m := _PEAK.search(word))), None)
+    peak = first_match(_PEAK, words)
     stated, found = abs(float(peak["value"])) if peak else 0.0, float(np.abs(samples).max())
     if stated and not text.cut_short and abs(found - stated) > _AS_STATED * stated:
         text.fail(
@@ -112,7 +111,7 @@ def _section(text: TextFile, line: int, words: list[str]) -> tuple[Section, floa
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("number of samples, interval or quantity cannot be read here", line)
-    peak = next((found for word in words if (found := _PEAK.search(word))), None)
+    peak = first_match(_PEAK, words)
     unit = match["unit"] or (peak["unit"] if peak else "")
     section = Section(
         _QUANTITIES[match["quantity"].upper()],

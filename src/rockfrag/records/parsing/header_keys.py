@@ -32,6 +32,11 @@ def header_keys(lines: Iterable[str]) -> dict[str, str]:
     return facts
 
 
+def first_match(pattern: re.Pattern[str], lines: Iterable[str]) -> re.Match[str] | None:
+    """Return the match in the first line that has a pattern."""
+    return next(filter(None, map(pattern.search, lines)), None)
+
+
 def number_of(text: TextFile, facts: Mapping[str, str], key: str) -> float:
     """Return the number of a header's key, a positive one."""
     words = facts.get(key, "")

@@ -79,7 +79,8 @@ def first_odd_row(lines: list[str]) -> int | None:
     if table is None:
         return None
     filled = [i for i in range(table.start, len(lines)) if not is_blank(lines[i])]
-    odd = [i for i in filled if not is_row(lines[i]) or width_of(lines[i]) != table.columns]
+    wide = {i: len(numbers_of(lines[i])) == table.columns for i in filled}
+    odd = [i for i in filled if not (wide[i] and is_row(lines[i]))]
     return odd[0] if odd and 2 * len(odd) < len(filled) else None
 
 
@@ -110,11 +111,6 @@ def is_row(line: str) -> bool:
 def are_numbers(words: list[str]) -> bool:
     """Tell whether words, one or more, are all numbers."""
     return bool(words) and _NUMBERS.fullmatch(" ".join([*words, ""])) is not None
-
-
-def width_of(line: str) -> int:
-    """Return how many words, numbers as a rule, a line has."""
-    return len(numbers_of(line))
 
 
 def numbers_of(line: str, decimal_comma: bool = False) -> list[str]:

