@@ -25,7 +25,6 @@
 9. **What is not told** is NaN, never zero.  What cannot happen (a slip where nothing slides) is zero.
 """
 
-import math
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cache, cached_property
@@ -36,6 +35,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
 from rockfrag.records.ground_motion import GroundMotion
@@ -76,14 +76,14 @@ class Request:
     g
         Acceleration of gravity [m/s²].
     step
-        Largest product of frequency parameter and step [-]; NaN for the engine's own.
+        Largest product of frequency parameter and step [-], of engines that take one.
     """
 
     history: bool = False
     forces: bool = False
     linear: bool = False
     g: float = GRAVITY
-    step: float = math.nan
+    step: float = STEP
 
 
 @dataclass(frozen=True)

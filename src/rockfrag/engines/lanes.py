@@ -1,6 +1,5 @@
 """What engines that integrate many cases side by side share: motions as the lanes sample them, and the threads."""
 
-import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
@@ -12,15 +11,10 @@ from numpy.typing import NDArray
 from rockfrag.engines.contract import Cases
 from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.engines.kernels.lanes.case import BLOCK, Motions
-from rockfrag.engines.steps import STEP, step_count
+from rockfrag.engines.steps import step_count
 from rockfrag.outcomes.outcomes import Outcomes
 
 Array = NDArray[np.float64]
-
-
-def step_of(cases: Cases) -> float:
-    """Step that is asked for, or the usual one."""
-    return STEP if math.isnan(cases.request.step) else cases.request.step
 
 
 def intervals_of(cases: Cases) -> Array:
@@ -54,7 +48,7 @@ def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64
     """
     values = [motion.x.acceleration for motion in cases.motions]
     dts = intervals_of(cases)
-    g, step = cases.request.g, step_of(cases)
+    g, step = cases.request.g, cases.request.step
     times = np.array([step_count(system, dts, g, step) for system in cases.systems])
     # the next power of two
     mantissa, exponent = np.frexp(times)

@@ -122,11 +122,11 @@ class TwoBlocks(PureRocking):
         from rockfrag.engines.kernels.lanes import stack_case
         from rockfrag.engines.kernels.lanes.case import Ensemble
         from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
-        from rockfrag.engines.lanes import sampled, step_of
+        from rockfrag.engines.lanes import sampled
         from rockfrag.engines.records import body_record
         from rockfrag.engines.steps import STACK_STEP, free_samples, step_count
 
-        g, step = cases.request.g, STACK_STEP * step_of(cases)
+        g, step = cases.request.g, STACK_STEP * cases.request.step
         motions, rows, intervals = sampled(cases, 1.0 / g)
         each = list(zip(cases.systems, intervals, strict=True))
         ensemble = Ensemble(

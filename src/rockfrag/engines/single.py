@@ -1,6 +1,5 @@
 """Engine of single histories in pure rocking: one or two bodies, every impact, everything about the response."""
 
-import math
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -150,16 +149,15 @@ def initial_state(system: System) -> np.void:
 def shaking_of(case: Case) -> Any:
     """Return what a system is shaken with (``kernels.single.Shaking``), in steps that follow from the system."""
     from rockfrag.engines.kernels.single import Shaking
-    from rockfrag.engines.steps import STEP, free_samples, step_count
+    from rockfrag.engines.steps import free_samples, step_count
 
     motion, request = case.motion, case.request
-    step = STEP if math.isnan(request.step) else request.step
     return Shaking(
         samples=motion.x.acceleration,
         vertical=np.zeros(0) if motion.z is None else motion.z.acceleration / request.g,
         scale=float(case.scale),
         dt=motion.dt,
-        substeps=int(step_count(case.system, motion.dt, request.g, step)),
+        substeps=int(step_count(case.system, motion.dt, request.g, request.step)),
         free_samples=int(free_samples(case.system, motion.dt, request.g)),
     )
 

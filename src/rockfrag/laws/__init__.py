@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
+from operator import attrgetter
 
 from rockfrag.errors import InputError
 from rockfrag.system.geometry import Shape
@@ -61,15 +62,11 @@ def declare(
         raise InputError(
             f"law of impacts {name!r} is declared twice; give the second another name."
         )
-    last = max(len(BUILT_IN) - 1, *map(_number, _LAWS.values()), 0)
+    last = max(len(BUILT_IN) - 1, *(law.number for law in _LAWS.values()), 0)
     number = BUILT_IN.index(name) if name in BUILT_IN else last + 1
     law = Law(name, number, tell, rate, moves_impulse, scales_momentum)
     _LAWS[name] = law
     return law
-
-
-def _number(law: Law) -> int:
-    return law.number
 
 
 @cache
@@ -81,7 +78,7 @@ def _load_built_in() -> None:
 def laws() -> tuple[Law, ...]:
     """Return all laws, conservation of momentum first."""
     _load_built_in()
-    return tuple(sorted(_LAWS.values(), key=_number))
+    return tuple(sorted(_LAWS.values(), key=attrgetter("number")))
 
 
 def law_names() -> tuple[str, ...]:

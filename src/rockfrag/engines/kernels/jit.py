@@ -25,7 +25,7 @@ ensemble).
 import gc
 import hashlib
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext
 from functools import cache
 from pathlib import Path
 from types import FunctionType, ModuleType
@@ -72,12 +72,8 @@ def inlined_kernel(function: Callable[..., Any]) -> Any:
 
 
 def _part(function: Callable[..., Any], **more: Any) -> Any:
-    return _compiled(function, **_PART, **more)
-
-
-def _compiled(function: Callable[..., Any], **options: Any) -> Any:
     njit: Any = numba.njit
-    return njit(**_EVERY, **options)(function)
+    return njit(**_EVERY, **_PART, **more)(function)
 
 
 _EVERY: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
@@ -126,7 +122,8 @@ def compiling_alone(entry: Any) -> Iterator[None]:
     if entry.signatures:
         yield
         return
-    with _alone_in(folder, entry.__name__):
+    lock = locked(Path(folder) / f"{entry.__name__}.lock", PATIENCE_S) if folder else nullcontext()
+    with lock:
         # looking for garbage in what a compiler builds takes a tenth of its time
         collects = gc.isenabled()
         gc.disable()
@@ -138,10 +135,6 @@ def compiling_alone(entry: Any) -> Iterator[None]:
                 gc.freeze()
                 gc.unfreeze()
                 gc.enable()
-
-
-def _alone_in(folder: str | None, name: str) -> AbstractContextManager[object]:
-    return nullcontext() if folder is None else locked(Path(folder) / f"{name}.lock", PATIENCE_S)
 
 
 @intrinsic

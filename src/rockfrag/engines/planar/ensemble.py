@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.engines.contract import Cases as Grid
-from rockfrag.engines.lanes import intervals_of, step_of
+from rockfrag.engines.lanes import intervals_of
 from rockfrag.engines.planar.integrate import Book, Cases, integrate_cases
 from rockfrag.engines.planar.records import (
     BODY,
@@ -27,7 +27,7 @@ CHUNK = 4  # cases that a thread takes at once
 
 def contact_outcomes(grid: Grid, wanted: NDArray[np.bool_] | None = None) -> NDArray[np.void]:
     """Integrate the ``wanted`` cases of systems × motions × scales, all if None; the others are left zero."""
-    g, step, dts = grid.request.g, step_of(grid), intervals_of(grid)
+    g, step, dts = grid.request.g, grid.request.step, intervals_of(grid)
     wanted = np.ones(grid.shape, dtype=bool) if wanted is None else wanted
     table = np.zeros(len(grid.systems), BODY)
     starts = np.zeros((len(grid.systems), 2, 3 * MOST))

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from rockfrag.engines.kernels.dormand_prince import INSTANTS, WEIGHTS
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.planar.solve import AT_EDGE, accelerate, end_of, look_at, rate, solve
 
@@ -78,79 +79,32 @@ def take_step(p, w, stretch, energy_balance):
         look_at(p, w, w.q0)
         solve(p, w, w.q0, w.v0, stretch.ah, stretch.av, False)
         first, two = _powers(p, w, w.q0, w.v0, stretch.ah, stretch.av)
-        work += 35.0 / 384.0 * first
-        rubbed += 35.0 / 384.0 * two
+        work += WEIGHTS[6, 0] * first
+        rubbed += WEIGHTS[6, 0] * two
     for stage in range(1, 7):
-        if stage == 1:
-            t = 0.2
-            for d in range(size):
+        for d in range(size):
+            if stage == 1:
                 w.v1[d] = w.v0[d] + h * 0.2 * w.ka[d, 0]
                 w.q1[d] = w.q0[d] + h * 0.2 * w.kv[d, 0]
-        elif stage == 2:
-            t = 0.3
-            for d in range(size):
-                w.v1[d] = w.v0[d] + h * (0.075 * w.ka[d, 0] + 0.225 * w.ka[d, 1])
-                w.q1[d] = w.q0[d] + h * (0.075 * w.kv[d, 0] + 0.225 * w.kv[d, 1])
-        elif stage == 3:
-            t = 0.8
-            b0, b1, b2 = 44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0
-            for d in range(size):
-                w.v1[d] = w.v0[d] + h * (b0 * w.ka[d, 0] + b1 * w.ka[d, 1] + b2 * w.ka[d, 2])
-                w.q1[d] = w.q0[d] + h * (b0 * w.kv[d, 0] + b1 * w.kv[d, 1] + b2 * w.kv[d, 2])
-        elif stage == 4:
-            t = 8.0 / 9.0
-            b0, b1 = 19372.0 / 6561.0, -25360.0 / 2187.0
-            b2, b3 = 64448.0 / 6561.0, -212.0 / 729.0
-            for d in range(size):
-                w.v1[d] = w.v0[d] + h * (
-                    b0 * w.ka[d, 0] + b1 * w.ka[d, 1] + b2 * w.ka[d, 2] + b3 * w.ka[d, 3]
-                )
-                w.q1[d] = w.q0[d] + h * (
-                    b0 * w.kv[d, 0] + b1 * w.kv[d, 1] + b2 * w.kv[d, 2] + b3 * w.kv[d, 3]
-                )
-        elif stage == 5:
-            t = 1.0
-            b0, b1, b2 = 9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0
-            b3, b4 = 49.0 / 176.0, -5103.0 / 18656.0
-            for d in range(size):
-                w.v1[d] = w.v0[d] + h * (
-                    b0 * w.ka[d, 0] + b1 * w.ka[d, 1] + b2 * w.ka[d, 2] + b3 * w.ka[d, 3]
-                    + b4 * w.ka[d, 4]
-                )  # fmt: skip
-                w.q1[d] = w.q0[d] + h * (
-                    b0 * w.kv[d, 0] + b1 * w.kv[d, 1] + b2 * w.kv[d, 2] + b3 * w.kv[d, 3]
-                    + b4 * w.kv[d, 4]
-                )  # fmt: skip
-        else:
-            t = 1.0
-            b0, b2, b3 = 35.0 / 384.0, 500.0 / 1113.0, 125.0 / 192.0
-            b4, b5 = -2187.0 / 6784.0, 11.0 / 84.0
-            for d in range(size):
-                w.v1[d] = w.v0[d] + h * (
-                    b0 * w.ka[d, 0] + b2 * w.ka[d, 2] + b3 * w.ka[d, 3] + b4 * w.ka[d, 4]
-                    + b5 * w.ka[d, 5]
-                )  # fmt: skip
-                w.q1[d] = w.q0[d] + h * (
-                    b0 * w.kv[d, 0] + b2 * w.kv[d, 2] + b3 * w.kv[d, 3] + b4 * w.kv[d, 4]
-                    + b5 * w.kv[d, 5]
-                )  # fmt: skip
+                continue
+            speed, turn = WEIGHTS[stage, 0] * w.kv[d, 0], WEIGHTS[stage, 0] * w.ka[d, 0]
+            for early in range(1, stage):
+                weight = WEIGHTS[stage, early]
+                if weight != 0.0:
+                    speed += weight * w.kv[d, early]
+                    turn += weight * w.ka[d, early]
+            w.v1[d] = w.v0[d] + h * turn
+            w.q1[d] = w.q0[d] + h * speed
         look_at(p, w, w.q1)
-        ah, av = ground_at(stretch, t)
+        ah, av = ground_at(stretch, INSTANTS[stage])
         accelerate(p, w, w.q1, w.v1, ah, av)
         for d in range(size):
             w.kv[d, stage] = w.v1[d]
             w.ka[d, stage] = w.out[d]
         if energy_balance and 2 <= stage <= 5:
             first, two = _powers(p, w, w.q1, w.v1, ah, av)
-            weight = 500.0 / 1113.0
-            if stage == 3:
-                weight = 125.0 / 192.0
-            elif stage == 4:
-                weight = -2187.0 / 6784.0
-            elif stage == 5:
-                weight = 11.0 / 84.0
-            work += weight * first
-            rubbed += weight * two
+            work += WEIGHTS[6, stage] * first
+            rubbed += WEIGHTS[6, stage] * two
     for d in range(size):
         w.a1[d] = w.out[d]
     return work * h, rubbed * h

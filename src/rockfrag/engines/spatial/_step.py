@@ -1,5 +1,6 @@
 """One step of Dormand and Prince's pair of order 5 (1980), and what must not become negative in it."""
 
+from rockfrag.engines.kernels.dormand_prince import INSTANTS, WEIGHTS
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import norm, normalise, rotation
 from rockfrag.engines.spatial._body import (
@@ -10,7 +11,7 @@ from rockfrag.engines.spatial._body import (
     last_candidate,
     point_velocity,
 )
-from rockfrag.engines.spatial._forces import SLIDES, rates
+from rockfrag.engines.spatial._forces import SLIDES, STAGES, rates
 from rockfrag.engines.spatial._modes import (
     AT_REST,
     LANDS,
@@ -38,34 +39,20 @@ def attempt(body, tau, h, y, s):
     Afterwards s.slopes[6] and s.lam are the rates and forces at the end.
     """
     k, new = s.slopes, s.new
-    for i in range(SIZE):
-        new[i] = y[i] + h * (0.2 * k[0, i])
-    rates(body, tau + 0.2 * h, new, k[1], s, False)
-    for i in range(SIZE):
-        new[i] = y[i] + h * (3 / 40 * k[0, i] + 9 / 40 * k[1, i])
-    rates(body, tau + 0.3 * h, new, k[2], s, False)
-    for i in range(SIZE):
-        new[i] = y[i] + h * (44 / 45 * k[0, i] - 56 / 15 * k[1, i] + 32 / 9 * k[2, i])
-    rates(body, tau + 0.8 * h, new, k[3], s, False)
-    for i in range(SIZE):
-        new[i] = y[i] + h * (
-            19372 / 6561 * k[0, i] - 25360 / 2187 * k[1, i] + 64448 / 6561 * k[2, i]
-            - 212 / 729 * k[3, i]
-        )  # fmt: skip
-    rates(body, tau + 8 / 9 * h, new, k[4], s, False)
-    for i in range(SIZE):
-        new[i] = y[i] + h * (
-            9017 / 3168 * k[0, i] - 355 / 33 * k[1, i] + 46732 / 5247 * k[2, i]
-            + 49 / 176 * k[3, i] - 5103 / 18656 * k[4, i]
-        )  # fmt: skip
-    rates(body, tau + h, new, k[5], s, False)
-    for i in range(SIZE):
-        new[i] = y[i] + h * (
-            35 / 384 * k[0, i] + 500 / 1113 * k[2, i] + 125 / 192 * k[3, i]
-            - 2187 / 6784 * k[4, i] + 11 / 84 * k[5, i]
-        )  # fmt: skip
-    normalise(new)
-    rates(body, tau + h, new, k[6], s)
+    for stage in range(1, STAGES):
+        for i in range(SIZE):
+            new[i] = WEIGHTS[stage, 0] * k[0, i]
+        for early in range(1, stage):
+            weight = WEIGHTS[stage, early]
+            if weight != 0.0:
+                for i in range(SIZE):
+                    new[i] += weight * k[early, i]
+        for i in range(SIZE):
+            new[i] = y[i] + h * new[i]
+        last = stage == STAGES - 1
+        if last:
+            normalise(new)
+        rates(body, tau + INSTANTS[stage] * h, new, k[stage], s, last)
     return error_of(body, h, y, s)
 
 
