@@ -39,7 +39,7 @@ def stages_of(study: AnyStudy) -> list[Stage]:
         (pedestal.run, study.has_pairs),
         (sensitivity_analysis.run, settings_of(study).sensitivity_analysis),
         (sensitivity.run, settings_of(study).sensitivity),
-        (measured_tests.run, study.more.measured_tests),
+        (measured_tests.run, study.measured_tests),
         (hypotheses.run, settings_of(study).compares),
         (reports.report, True),
     )

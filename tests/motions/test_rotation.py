@@ -9,8 +9,9 @@ from obspy.signal.rotate import rotate_ne_rt
 
 from rockfrag.errors import InputError
 from rockfrag.motions import pga, pgv, rotate, rotd
+from rockfrag.motions.directions import turned
 from rockfrag.motions.intensity import spectral_acceleration
-from rockfrag.motions.rotation import fault_normal, radial, rotate_to_azimuth, stronger_direction
+from rockfrag.motions.rotation import rotate_to_azimuth, stronger_direction
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.motion import Motion
 
@@ -98,17 +99,11 @@ def test_an_azimuth_is_reached_from_components_of_any_order_and_sense(azimuths):
 
 
 def test_fault_normal_and_radial_are_directions_by_their_definitions():
-    first, second = components()
-    np.testing.assert_allclose(
-        fault_normal(first, second, -15).acceleration,
-        rotate_to_azimuth(first, second, 75).acceleration,
-        atol=1e-14,
-    )
-    np.testing.assert_allclose(
-        radial(first, second, 255).acceleration,
-        rotate_to_azimuth(first, second, 75).acceleration,
-        atol=1e-14,
-    )
+    pair = components()
+    expected = rotate_to_azimuth(*pair, 75).acceleration
+    for direction in ("fault-normal -15", "fault-parallel 75", "radial 255", "transverse 165"):
+        found = turned(*pair, direction).acceleration
+        np.testing.assert_allclose(found, expected, atol=1e-14)
 
 
 def test_the_stronger_direction_has_the_largest_peak_of_all():

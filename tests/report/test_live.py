@@ -13,7 +13,7 @@ from rockfrag.engines.contract import Engine
 from rockfrag.errors import InputError
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
-from rockfrag.report.live import MOST_SAMPLES, Start, carried, live_kernel, swept
+from rockfrag.report.live import MOST_SAMPLES, carried, live_kernel, swept
 from rockfrag.report.live.frames import frames_svg, outlines
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
@@ -95,7 +95,7 @@ def test_the_outcomes_are_those_of_the_table_it_is_given():
     item = motion()
     table = swept(BODIES, [item])
     table["overturned"] = table["amplitude_g"] > 0.7
-    data = data_of(live_kernel(BODIES, [item], table, Start("figure", "wave")))
+    data = data_of(live_kernel({"figure": STATUE.system()}, [item], table))
     assert data["start"]["body"] == 0
     assert data["start"]["amplitude"] == pytest.approx(0.7, rel=0.03)
     expected = "".join("1" if g > 0.7 else "0" for g in data["amplitudes"])

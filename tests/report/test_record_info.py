@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.motions.intensity import predominant_period
 from rockfrag.records.motion import Motion
 from rockfrag.report.record_info import (
     COLUMNS,
     describe_files,
-    dominant_period,
     draw_record,
     record_figure,
 )
@@ -60,13 +58,6 @@ def test_a_wrong_unit_is_an_error_of_each_file_that_needs_one(folder):
     table = describe_files([folder / "good.txt", folder / "bare.txt"], unit="furlong")
     assert table["error"][0] == ""
     assert "furlong" in table["error"][1]
-
-
-def test_the_dominant_period_is_that_of_all_periods(wave):
-    rng = np.random.default_rng(5)
-    for motion in (wave, *(Motion(rng.normal(size=400), 0.01) for _ in range(3))):
-        assert dominant_period(motion) == predominant_period(motion)
-    assert np.isnan(dominant_period(Motion(np.zeros(10), 0.01)))
 
 
 def test_the_picture_shows_the_exact_peaks_and_is_written_the_same_twice(wave, tmp_path):

@@ -10,7 +10,7 @@ rule report:
         rules.tests.output,
         rules.fragility.output,
         rules.pedestal.output if STUDY.has_pairs else [],
-        rules.measured_tests.output if STUDY.more.measured_tests else [],
+        rules.measured_tests.output if STUDY.measured_tests else [],
         ADDED,
         bodies=STUDY.body_files,
     output:

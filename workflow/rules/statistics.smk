@@ -7,11 +7,11 @@ rule tests:
         motions=SHAKING,
         ida_curves=IDA_CURVES,
         bodies=STUDY.body_files,
-        shaker=STUDY.more.shaker_file or [],
+        shaker=STUDY.shaker_file or [],
     output:
         table("tests", "mean_amplitudes", "bodies", "validity"),
         sliding=table("sliding") if STUDY.slides else [],
-        shaker=table("shaker") if STUDY.more.shaker_file else [],
+        shaker=table("shaker") if STUDY.shaker_file else [],
     log:
         f"{RESULTS}/logs/tests.log",
     priority: 6
@@ -86,7 +86,7 @@ rule measured_tests:
     input:
         read("tests"),
         bodies=STUDY.body_files,
-        measured=STUDY.more.measured_tests or [],
+        measured=STUDY.measured_tests or [],
     output:
         table("measured/tests", "measured/beside", "measured/notes"),
         table("measured/fragility", "measured/effects"),

@@ -5,8 +5,6 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.mitigations import Mitigation
@@ -15,7 +13,7 @@ from rockfrag.assess.outcomes import LARGEST_FACTOR
 from rockfrag.assess.risk import LEVEL, Estimate
 from rockfrag.assess.scale import SCALE_WORDS, classes
 from rockfrag.assess.sources import SOURCES, parts_of
-from rockfrag.report.wording import counted, listed, sentence
+from rockfrag.report.wording import macros, said
 
 NAMES: Mapping[str, str] = {name: source.words for name, source in SOURCES.items()}
 """Sources of uncertainty and assumptions as a reader may know them."""
@@ -151,34 +149,24 @@ def _largest_sources(found: Assessment) -> list[str]:
 @cache
 def _sentences() -> Any:
     """The macros of ``words.j2``."""
-    environment = Environment(
-        loader=PackageLoader("rockfrag.assess", ""),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
+    words = (
+        *(all_assumed, classes, does_not_move, fraction_words, narrowed, not_decidable),
+        *(range_words, short_assumptions, value_words),
     )
-    environment.tests |= {"finite": math.isfinite, "nan": math.isnan}
-    environment.filters |= {"fraction": fraction_words, "listed": listed, "sentence": sentence}
-    environment.filters["measurement"] = lambda name: MEASUREMENTS[name].words
-    constants = {"LEVEL": LEVEL, "MANY": MANY, "FEW": FEW, "SCALE_WORDS": SCALE_WORDS}
-    words = (all_assumed, classes, counted, does_not_move, narrowed, not_decidable, range_words)
-    environment.globals |= {
-        **constants,
-        **{function.__name__: function for function in (*words, short_assumptions, value_words)},
-        "LARGEST_FACTOR": LARGEST_FACTOR,
-        "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS,
-        "influential": _influential,
-        "largest_sources": _largest_sources,
-        "limits": _limits,
-        "ranked": _ranked,
-    }
-    return environment.get_template("words.j2").module
+    return macros(
+        "rockfrag.assess",
+        "words.j2",
+        {function.__name__: function for function in words}
+        | {"LEVEL": LEVEL, "MANY": MANY, "FEW": FEW, "SCALE_WORDS": SCALE_WORDS}
+        | {"LARGEST_FACTOR": LARGEST_FACTOR, "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS}
+        | {"MEASUREMENTS": MEASUREMENTS, "influential": _influential, "limits": _limits}
+        | {"largest_sources": _largest_sources, "ranked": _ranked},
+    )
 
 
 def _said(name: str, *about: Any) -> list[str]:
-    """Lines of a macro that are not empty."""
-    lines = getattr(_sentences(), name)(*about).split("\n")
-    return [line.strip() for line in lines if line.strip()]
+    """What a macro says, line by line."""
+    return said(getattr(_sentences(), name)(*about))
 
 
 def headline(found: Assessment) -> str:

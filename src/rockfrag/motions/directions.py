@@ -10,7 +10,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.motions.processing import process
-from rockfrag.motions.rotation import fault_normal, radial, rotate_to_azimuth, stronger_direction
+from rockfrag.motions.rotation import rotate_to_azimuth, stronger_direction
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.catalogue import load_component, load_motion, scaled
 from rockfrag.records.motion import Motion
@@ -18,7 +18,8 @@ from rockfrag.records.motion import Motion
 _DIRECTION = re.compile(
     r"^(?:(?P<kind>fault-normal|fault-parallel|radial|transverse)\s+)?(?P<angle>-?\d+(?:\.\d*)?)$"
 )
-_TURNS = {"fault-normal": fault_normal, "radial": radial}
+_TURNS = {"fault-normal": 90, "fault-parallel": 0, "radial": 180, "transverse": -90}
+"""Azimuths [degrees] from the strike, or from the direction of the source."""
 
 
 def motion_of_row(row: dict[str, Any], folder: Path, records: Path) -> Motion:
@@ -66,10 +67,8 @@ def turned(first: Motion, second: Motion, direction: str) -> Motion:
             f"direction {direction!r} is none of an azimuth, 'fault-normal STRIKE', 'fault-parallel "
             "STRIKE', 'radial BACK-AZIMUTH', 'transverse BACK-AZIMUTH' and 'stronger'."
         )
-    angle, kind = float(match["angle"]), match["kind"]
-    if kind in _TURNS:
-        return _TURNS[kind](first, second, angle)
-    return rotate_to_azimuth(first, second, angle - 90 if kind == "transverse" else angle)
+    turn = _TURNS[match["kind"]] if match["kind"] else 0
+    return rotate_to_azimuth(first, second, float(match["angle"]) + turn)
 
 
 def components_of_row(row: dict[str, Any], folder: Path, records: Path) -> dict[str, Motion]:

@@ -97,16 +97,6 @@ def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Moti
     return replace(moved, metadata=facts)
 
 
-def fault_normal(first: Motion, second: Motion, strike_deg: float) -> Motion:
-    """Component at a right angle to a fault."""
-    return rotate_to_azimuth(first, second, strike_deg + 90)
-
-
-def radial(first: Motion, second: Motion, back_azimuth_deg: float) -> Motion:
-    """Component away from the source."""
-    return rotate_to_azimuth(first, second, back_azimuth_deg + 180)
-
-
 def stronger_direction(first: Motion, second: Motion) -> Motion:
     """Component in the direction of the largest acceleration of any direction."""
     first, other = common_time([first, second])

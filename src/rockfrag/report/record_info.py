@@ -11,7 +11,6 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from rockfrag.errors import InputError
 from rockfrag.figure_style import (
@@ -27,8 +26,8 @@ from rockfrag.figure_style import (
     save_figure,
 )
 from rockfrag.files import file_name
-from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
-from rockfrag.motions.spectra import fourier_amplitude, oscillator_matrix, response_spectrum
+from rockfrag.motions.intensity import pgd, pgv, predominant_period
+from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
 from rockfrag.plain_text import printable
 from rockfrag.records.catalogue import is_catalogue
 from rockfrag.records.integration import integrate
@@ -64,7 +63,6 @@ READ, NOT_ACCELERATION, UNREADABLE = "read", "not acceleration", "unreadable"
 
 _SPECTRUM_PERIODS = np.geomspace(0.02, 10.0, 200)
 _DAMPING = 0.05
-_COARSE = 6
 
 
 def describe_files(
@@ -147,7 +145,7 @@ def _row(record: Record, number: int, unit: str | None, force: bool) -> dict[str
         "pga_g": motion.pga / GRAVITY,
         "pgv_cm_s": pgv(motion) * CENTIMETRES_PER_METRE,
         "pgd_cm": pgd(motion) * CENTIMETRES_PER_METRE,
-        "dominant_period_s": dominant_period(motion),
+        "dominant_period_s": predominant_period(motion),
         "quality_flags": "; ".join(quality_flags(motion)),
     }
 
@@ -183,40 +181,6 @@ def draw_files(
                 drawn.append(picture)
             break
     return drawn
-
-
-def dominant_period(motion: Motion) -> float:
-    """Period of the largest 5 % damped pseudo-acceleration [s]; NaN for a motion of zeros.
-
-    The period of :func:`rockfrag.motions.intensity.predominant_period`, found by the response at the
-    samples first and then, around the three largest values, by the exact one: a folder has hundreds of
-    records.
-    """
-    coarse = [_response_at_samples(motion, period) for period in PREDOMINANT_PERIODS[::_COARSE]]
-    best = _COARSE * np.argsort(coarse)[-3:]
-    near = np.unique((best[:, None] + np.arange(1 - _COARSE, _COARSE)).ravel())
-    periods = PREDOMINANT_PERIODS[near[(near >= 0) & (near < PREDOMINANT_PERIODS.size)]]
-    fine = response_spectrum(motion, periods, _DAMPING).pseudo_acceleration
-    return float(periods[np.argmax(fine)]) if fine.max() > 0 else float("nan")
-
-
-def _response_at_samples(motion: Motion, period: float) -> float:
-    """Return the largest pseudo-acceleration [m/s²] at a sample, by a filter of second order.
-
-    The state (u, v) of an oscillator under an acceleration a that is linear between samples obeys
-    x[k+1] = A x[k] + b₀ a[k] + b₁ a[k+1]; its displacement is a filter of a.
-    """
-    omega = 2 * np.pi / period
-    matrix = oscillator_matrix(omega, _DAMPING, motion.dt)
-    state, by_value, by_slope = matrix[:, :2], matrix[:, 2], matrix[:, 3] / motion.dt
-    before, after = by_value - by_slope, by_slope
-    top = (
-        after[0],
-        before[0] - state[1, 1] * after[0] + state[0, 1] * after[1],
-        state[0, 1] * before[1] - state[1, 1] * before[0],
-    )
-    below = (1.0, -float(np.trace(state)), float(np.linalg.det(state)))
-    return float(omega**2 * np.abs(lfilter(top, below, motion.acceleration)).max())
 
 
 def draw_record(motion: Motion, path: str | os.PathLike[str]) -> None:

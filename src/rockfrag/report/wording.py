@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
+from jinja2 import Environment, PackageLoader, StrictUndefined
 
 MOST_LISTED = 8
 """More names than this are not listed in a sentence, but counted."""
@@ -127,13 +128,13 @@ def shortened(name: str, longest: int = LONGEST_NAME) -> str:
     return f"{name[: longest - 1 - head]}…{name[-head:]}"
 
 
-def amplitude(test: Mapping[Any, Any], decimals: int = 3) -> str:
+def amplitude(test: Mapping[Any, Any]) -> str:
     """The amplitude [g] of a test, or the bound that is known of it: ``0.523``, ``> 2.000``, ``< 0.100``."""
     if math.isfinite(test["amplitude_g"]):
-        return number(test["amplitude_g"], decimals)
+        return number(test["amplitude_g"], 3)
     if math.isfinite(test["upper_g"]):
-        return f"< {number(test['upper_g'], decimals)}"
-    return f"> {number(test['lower_g'], decimals)}" if test["lower_g"] > 0 else "–"
+        return f"< {number(test['upper_g'], 3)}"
+    return f"> {number(test['lower_g'], 3)}" if test["lower_g"] > 0 else "–"
 
 
 def spelled(words: str) -> str:
@@ -144,3 +145,23 @@ def spelled(words: str) -> str:
 def sentence(words: str) -> str:
     """The words with a capital letter first."""
     return words[:1].upper() + words[1:]
+
+
+def macros(package: str, template: str, words: Mapping[str, Any]) -> Any:
+    """Return the macros of a template of sentences, which use the words given and those of this module."""
+    environment = Environment(
+        loader=PackageLoader(package, ""),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.tests |= {"finite": math.isfinite, "nan": math.isnan}
+    environment.filters |= {"listed": listed, "sentence": sentence}
+    environment.globals |= {"agree": agree, "counted": counted, "number": number, "of_all": of_all}
+    environment.globals |= words
+    return environment.get_template(template).module
+
+
+def said(text: str) -> list[str]:
+    """Lines of what a macro says that are not empty, each a part of a sentence or more."""
+    return [line.strip() for line in text.split("\n") if line.strip()]

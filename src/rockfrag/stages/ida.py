@@ -43,18 +43,7 @@ def run(job: Job[Study]) -> Results:
 
 
 def run_part(job: Job[Study]) -> Results:
-    """Write the IDA curves of all configurations under the job's part of the motions."""
-    _ida_part(job)
-    yield from ()
-
-
-def run_as_recorded(job: Job[Study]) -> Results:
-    """Yield the outcomes under the motions as recorded."""
-    yield "as_recorded", _all_as_recorded(job)
-
-
-def _ida_part(job: Job[Study]) -> None:
-    """Write the IDA curve of every configuration under part of the motions, a few motions at a time."""
+    """Write the IDA curve of every configuration under the job's part of the motions, a few motions at a time."""
     study, number = job.study, job.part
     part = (number, study.ida_jobs)
     motions = job.motions("motions/floors", part)
@@ -78,6 +67,18 @@ def _ida_part(job: Job[Study]) -> None:
             _say_how_light(job, configuration, number)
         job.log.info("%s: %d histories so far", configuration.name, histories)
     job.log.info("response histories: %d", histories)
+    yield from ()
+
+
+def run_as_recorded(job: Job[Study]) -> Results:
+    """Yield the outcomes under the motions as recorded."""
+    motions = job.motions("motions/floors")
+    ups = job.motions("motions/vertical") if job.study.vertical else None
+    each = [
+        as_recorded(configuration, motions, job.threads, ups)
+        for configuration in job.study.configurations
+    ]
+    yield "as_recorded", pd.concat(each, ignore_index=True)
 
 
 def _say_how_light(job: Job[Study], configuration: System, number: int) -> None:
@@ -112,16 +113,6 @@ def _write(tables: Iterable[pa.Table], path: Path) -> int:
         if writer is not None:
             writer.close()
     return rows
-
-
-def _all_as_recorded(job: Job[Study]) -> pd.DataFrame:
-    motions = job.motions("motions/floors")
-    ups = job.motions("motions/vertical") if job.study.vertical else None
-    each = [
-        as_recorded(configuration, motions, job.threads, ups)
-        for configuration in job.study.configurations
-    ]
-    return pd.concat(each, ignore_index=True)
 
 
 def ida_table(

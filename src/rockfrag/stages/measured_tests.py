@@ -19,11 +19,11 @@ def run(job: Job[Study]) -> Results:
     from rockfrag.shaketable.laboratory_table import read_measured
 
     study = job.study
-    if study.more.measured_tests is None:
+    if study.measured_tests is None:
         raise ValueError("the study has no measured tests")
     simulated = job.table("tests")
     found = measured_tables(
-        read_measured(study.more.measured_tests),
+        read_measured(study.measured_tests),
         simulated[simulated["definition"] == DEFINITION],
         {name: block.slenderness for name, block in study.specimens.items()},
         study.seed,

@@ -17,10 +17,10 @@ def limits_table(study: Study, motions: Sequence[Motion]) -> pd.DataFrame:
     """What each motion asks of the study's shaker, see :func:`rockfrag.shaketable.shaker_table`."""
     from rockfrag.shaketable.shaker import shaker_table
 
-    if study.more.shaker is None:
+    if study.shaker is None:
         raise ValueError("the study has no shaker")
     payload = max(configuration.mass for configuration in study.configurations)
-    return shaker_table(study.more.shaker, motions, payload)
+    return shaker_table(study.shaker, motions, payload)
 
 
 def limited_tests(

@@ -28,7 +28,7 @@ def run(job: Job[Study]) -> Results:
             yield from ida_curves_of(job, configuration)
 
     tests = tests_from_swept(ida_curves(), protocol)
-    if study.more.shaker is not None:
+    if study.shaker is not None:
         limits = limits_table(study, motions)
         yield "shaker", limits
         tests = pd.concat([tests, limited_tests(ida_curves(), protocol, limits)], ignore_index=True)

@@ -19,6 +19,7 @@ from rockfrag.laws import law_names
 from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.schema import checked
+from rockfrag.shaketable.settings import read_shaker
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.campaign import CAMPAIGN_KEY, CampaignStudy, campaign_from
 from rockfrag.study.configurations import (
@@ -39,7 +40,6 @@ from rockfrag.study.paths import check_file, existing_file
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
-from rockfrag.study.supplementary import supplementary_from
 from rockfrag.system.blocks import Block
 from rockfrag.system.system import System
 from rockfrag.yaml_file import read_yaml
@@ -87,12 +87,12 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         configurations_file = existing_file(source, "bodies.configurations", name)
         known = read_configurations(configurations_file, specimens)
         counterparts = read_counterparts(configurations_file)
-    building = content.get("building")
-    building_file = None if building is None else existing_file(source, "building", building)
+    building_file = _optional_file(source, "building", content)
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
     configurations = _measured(
         source, _chosen(source, known, bodies.get("use")), specimens, bodies.get("restitution")
     )
+    shaker_file = _optional_file(source, "shaker", content)
     study = Study(
         **heading_of(content, path),
         catalogue_file=catalogue_file,
@@ -117,7 +117,9 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         slides="friction" in content,
         vertical=content.get("vertical", False),
         write_motions=content.get("write_motions"),
-        more=supplementary_from(content, source),
+        shaker_file=shaker_file,
+        shaker=None if shaker_file is None else read_shaker(shaker_file),
+        measured_tests=_optional_file(source, "measured_tests", content),
         counterparts={
             configuration.name: counterparts[configuration.name]
             for configuration in configurations
@@ -130,10 +132,14 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     )
     _check_names(study)
     _check_records_exist(study)
-    if study.more.measured_tests is not None:
-        _check_measured_tests(study, study.more.measured_tests)
+    if study.measured_tests is not None:
+        _check_measured_tests(study, study.measured_tests)
     _check_vertical(study)
     return study
+
+
+def _optional_file(source: Path, key: str, content: Mapping[str, Any]) -> Path | None:
+    return None if content.get(key) is None else existing_file(source, key, content[key])
 
 
 def _amplitudes(source: Path, content: Mapping[str, float]) -> Amplitudes:

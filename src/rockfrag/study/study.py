@@ -13,9 +13,9 @@ from rockfrag.files import file_name, is_file
 from rockfrag.plausibility import size_warning
 from rockfrag.records.catalogue import own_records
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
+from rockfrag.shaketable.shaker import Shaker
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.heading import Heading
-from rockfrag.study.supplementary import Supplementary
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
 
@@ -70,7 +70,11 @@ class Study(Heading):
     slides: bool  # Whether friction is limited, so that bodies slide and fly
     vertical: bool  # Whether the vertical components of the records shake too
     write_motions: str | None  # Format in which the motions of all floors are written too, or None
-    more: Supplementary  # Optional parts: shaker, measured tests
+    # A shaking table whose limits are read beside the unlimited protocol, and its YAML file, or None
+    shaker_file: Path | None
+    shaker: Shaker | None
+    # CSV file of a laboratory's tests, which go through the same statistics, or None
+    measured_tests: Path | None
     # Name of the configuration with which one is compared, where that is not its object alone on the floor
     counterparts: Mapping[str, str] = field(default_factory=dict)
     # Settings of the plugins that it asks for, by name; see :mod:`rockfrag.plugins`
@@ -154,7 +158,7 @@ class Study(Heading):
 
     def ida_file(self, configuration: System, job: int) -> str:
         """Path of a configuration's IDA curve under the motions of a job."""
-        folder = "ida" if self.ida_jobs == 1 else f"IDA curve/{job:03d}"
+        folder = "ida" if self.ida_jobs == 1 else f"ida/{job:03d}"
         return f"{folder}/{file_name(configuration.name)}.parquet"
 
     @property

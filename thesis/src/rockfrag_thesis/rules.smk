@@ -3,7 +3,7 @@ from rockfrag_thesis.settings import settings_of
 
 ASKED = settings_of(STUDY)
 ANALYSED = ASKED.sensitivity_analysis
-MEASURED = ["measured"] if STUDY.more.measured_tests else []
+MEASURED = ["measured"] if STUDY.measured_tests else []
 BUILDINGS = ["building_sensitivity"] if ASKED.sensitivity else []
 
 

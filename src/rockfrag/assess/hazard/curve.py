@@ -69,14 +69,10 @@ class HazardCurve:
         level
             Levels in the measure's unit, above 0.
         """
-        x, slopes, at = (
-            np.log(np.asarray(level, dtype=np.float64)),
-            self._slopes,
-            self._places(level),
-        )
-        start = np.clip(at, 0, self.levels.size - 2)
-        line = np.log(self.rates[start]) + slopes[start] * (x - np.log(self.levels[start]))
-        return np.asarray(np.exp(line))
+        given = np.asarray(level, dtype=np.float64)
+        start = np.clip(np.searchsorted(self.levels, given) - 1, 0, self.levels.size - 2)
+        away = np.log(given) - np.log(self.levels[start])
+        return np.asarray(np.exp(np.log(self.rates[start]) + self._slopes[start] * away))
 
     def level(self, rate: float) -> float:
         """Level that is exceeded with an annual rate, in the measure's unit.
@@ -93,9 +89,6 @@ class HazardCurve:
     @property
     def _slopes(self) -> Floats:
         return np.asarray(np.diff(np.log(self.rates)) / np.diff(np.log(self.levels)))
-
-    def _places(self, level: ArrayLike) -> NDArray[np.intp]:
-        return np.asarray(np.searchsorted(self.levels, np.asarray(level)) - 1)
 
 
 def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
@@ -120,12 +113,11 @@ def make_curve(
     levels: Sequence[float],
     rates: Sequence[float],
     where: str,
-    source: str = "",
 ) -> HazardCurve:
     """Make a curve of levels and rates [1/year] of a file, or say in one sentence what is wrong with it.
 
     Points that are never exceeded, and equal rates at either end, which are those of a probability that was
-    rounded, are left out. ``where`` goes into messages, and is the source where none is named.
+    rounded, are left out. ``where`` goes into messages, and is the source.
     """
     x, y = np.asarray(levels, dtype=np.float64), np.asarray(rates, dtype=np.float64)
     if x.size != y.size:
@@ -159,7 +151,7 @@ def make_curve(
             f"{where}: {measure.imt} up to {x[-1]:g} {measure.unit} is not the shaking that a hazard curve "
             f"reaches ({least:g} to {most:g} {measure.unit}); check the unit."
         )
-    return HazardCurve(measure, x, y, source or where)
+    return HazardCurve(measure, x, y, where)
 
 
 def rates_of(poes: Sequence[float], years: float, where: str) -> Floats:
@@ -174,9 +166,7 @@ def rates_of(poes: Sequence[float], years: float, where: str) -> Floats:
         return np.asarray(-np.log1p(-p) / years)
 
 
-def curve_of_one_level(
-    measure: IntensityMeasure, level: float, years: float, slope: float = EC8_SLOPE
-) -> HazardCurve:
+def curve_of_one_level(measure: IntensityMeasure, level: float, years: float) -> HazardCurve:
     """Continue one level with its mean return period [year] as a power law."""
 
     def curve(k: float, source: str) -> HazardCurve:
@@ -186,9 +176,9 @@ def curve_of_one_level(
 
     source = (
         f"{measure.imt} of {level:.3g} {measure.unit} every {years:g} years, continued with the exponent "
-        f"{slope:g} of EN 1998-1"
+        f"{EC8_SLOPE:g} of EN 1998-1"
     )
-    flanks = {FLANKS[0]: slope + EC8_SLOPE_SD, FLANKS[1]: slope - EC8_SLOPE_SD}
-    main = curve(slope, source)
+    flanks = {FLANKS[0]: EC8_SLOPE + EC8_SLOPE_SD, FLANKS[1]: EC8_SLOPE - EC8_SLOPE_SD}
+    main = curve(EC8_SLOPE, source)
     main.quantiles.update({q: curve(k, source) for q, k in flanks.items()})
     return main

@@ -6,7 +6,6 @@ One source: the module is made of the kernel that `rockfrag.simulate` runs, see 
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -34,27 +33,18 @@ AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 150).tolist())
 """Amplitudes [g] of a body that no study has swept."""
 
 
-@dataclass(frozen=True)
-class Start:
-    """What the page shows first: names of a body and of a motion."""
-
-    body: str
-    motion: str
-
-
 def live_kernel(
     bodies: Mapping[str, System],
     motions: Sequence[Motion],
     outcomes: pd.DataFrame | None = None,
-    start: Start | None = None,
 ) -> Markup:
     """Return the element of a page in which bodies rock under motions, live; one to a page.
 
     It is empty if no body is left. Of bodies that the page's kernel does not know only the names are shown; of
     the motions no more than carry ``MOST_SAMPLES`` samples are taken, the first ones. ``outcomes`` is a table of
     a study (``configuration``, ``motion``, ``amplitude_g``, ``overturned``, the same amplitudes for all); without
-    it ``AMPLITUDES_G`` are tried here. What is shown first (``start``) is by default one of two bodies, if there
-    is one, and a motion that overturns it.
+    it ``AMPLITUDES_G`` are tried here. One of two bodies and a
+    motion that overturns it are shown first.
     """
     known = {name: system for name, system in bodies.items() if in_page(system)}
     if not known:
@@ -62,7 +52,7 @@ def live_kernel(
     with warnings.catch_warnings():
         # the page shows pure rocking; where that may be wrong is said in the report's own words
         warnings.simplefilter("ignore", LightBodies)
-        return _element(known, bodies, carried(motions), outcomes, start)
+        return _element(known, bodies, carried(motions), outcomes)
 
 
 def _element(
@@ -70,7 +60,6 @@ def _element(
     asked: Mapping[str, System],
     motions: Sequence[Motion],
     outcomes: pd.DataFrame | None,
-    start: Start | None,
 ) -> Markup:
     of_study = outcomes is not None
     if outcomes is None:
@@ -79,7 +68,7 @@ def _element(
     rows = [
         [_row(outcomes, name, motion.name, amplitudes) for motion in motions] for name in bodies
     ]
-    body, motion = _start(bodies, motions, rows, start)
+    body, motion = _start(bodies, rows)
     first = rows[body][motion].find("1")
     shown = first if first >= 0 else len(amplitudes) - 1
     data = {
@@ -146,17 +135,8 @@ def _row(outcomes: pd.DataFrame, body: str, motion: str, amplitudes: Any) -> str
     return "".join("1" if fallen else "0" for fallen in fell.to_numpy(dtype=bool))
 
 
-def _start(
-    bodies: Mapping[str, System],
-    motions: Sequence[Motion],
-    rows: list[list[str]],
-    start: Start | None,
-) -> tuple[int, int]:
+def _start(bodies: Mapping[str, System], rows: list[list[str]]) -> tuple[int, int]:
     """Place of the body and of the motion that are shown first."""
-    if start is not None:
-        return list(bodies).index(start.body), [motion.name for motion in motions].index(
-            start.motion
-        )
     kinds = list(bodies.values())
     order = sorted(range(len(kinds)), key=lambda number: -kinds[number].count)
     for body in order:

@@ -39,7 +39,7 @@ _CURVES = (
 
 def has_measured_tests(study: Study) -> bool:
     """Whether a study names a table of measured tests."""
-    return study.more.measured_tests is not None
+    return study.measured_tests is not None
 
 
 def _section(results: Results) -> Section:

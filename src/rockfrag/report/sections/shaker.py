@@ -55,4 +55,4 @@ def _section(results: Results) -> Section:
     )
 
 
-SHAKER = Part(("shaker", "tests"), _section, asked=lambda study: study.more.shaker is not None)
+SHAKER = Part(("shaker", "tests"), _section, asked=lambda study: study.shaker is not None)

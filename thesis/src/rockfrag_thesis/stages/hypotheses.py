@@ -14,7 +14,7 @@ def run(job: Job[Study]) -> Results:
     yield from _printed_tables(job)
     yield from _hypotheses(job)
     yield "standing", _standing(job)
-    if job.study.more.measured_tests is not None:
+    if job.study.measured_tests is not None:
         yield "measured/hypotheses", _measured_hypotheses(job)
     if settings_of(job.study).sensitivity is not None:
         from rockfrag_thesis.floor_order import margins_table
