@@ -17,10 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.system import System
-from rockfrag.system.blocks import Vector
-from rockfrag.system.contact import Friction
 
-from .standing import standing
+from .standing import standing, turn
 
 Array = NDArray[np.float64]
 
@@ -64,10 +62,6 @@ class Solution:
     tangential: dict[int, float]
 
 
-def _turn(vector: Vector, angle: float) -> Array:
-    return np.array(vector.turned(angle))
-
-
 def _perp(v: Array) -> Array:
     """Velocity of the tip of v when it turns clockwise at one radian per second."""
     return np.array([v[1], -v[0]])
@@ -86,52 +80,24 @@ class Model:
         Gravity [m/s²].
     """
 
-    def __init__(self, system: System, friction: tuple[Friction, ...], g: float) -> None:
+    def __init__(self, system: System, friction: tuple[float, ...], g: float) -> None:
         self.g, self.friction = g, friction
         bodies = standing(system)
         self.count = len(bodies)
         self.tilt = [body.base for body in bodies]
-        self.face = [(Vector(0.0, 0.0), math.inf)]
+        self.face = [(np.zeros(2), math.inf)]
         for body in bodies[:-1]:
             left, right = body.edges
             middle = (left + right) / 2
-            self.face.append((Vector(*middle), float(np.hypot(*(right - left))) / 2))
+            self.face.append((middle, float(np.hypot(*(right - left))) / 2))
         # corners of each base, from the centre of the standing body
-        self.corner = [
-            {s: Vector(*corner) for s, corner in zip(FULL, body.corners, strict=True)}
-            for body in bodies
-        ]
+        self.corner = [dict(zip(FULL, body.corners, strict=True)) for body in bodies]
         self.mass = np.array([m for b in bodies for m in (b.mass, b.mass, b.inertia)])
         self.weight = g * float(self.mass[::3].sum())
         left, right = bodies[-1].corners
         self.size = float(np.hypot(*(right - left))) / 2
         self.speed = math.sqrt(g * self.size)
         self.standing = np.array([x for b in bodies for x in (*b.centre, 0.0)])
-
-    def posed(self, theta: list[float], omega: list[float]) -> tuple[Array, Array]:
-        """Coordinates and velocities with every body on the corner that its rotation leaves it."""
-        q, v = self.standing.copy(), np.zeros(3 * self.count)
-        for k in range(self.count):
-            relative = theta[k] - (theta[k - 1] if k else 0.0)
-            turning = omega[k] - (omega[k - 1] if k else 0.0)
-            side = 1 if (relative or turning) >= 0 else -1
-            if k:
-                lower = q[3 * k - 3 : 3 * k - 1]
-                arm = self._standing_pivot(k, side) - self.standing[3 * k - 3 : 3 * k - 1]
-                arm = _turn(Vector(*arm), theta[k - 1])
-                pivot = lower + arm
-                pivot_speed = v[3 * k - 3 : 3 * k - 1] + omega[k - 1] * _perp(arm)
-            else:
-                pivot, pivot_speed = self._standing_pivot(k, side), np.zeros(2)
-            arm = -_turn(self.corner[k][side], theta[k])
-            q[3 * k : 3 * k + 2] = pivot + arm
-            v[3 * k : 3 * k + 2] = pivot_speed + omega[k] * _perp(arm)
-            q[3 * k + 2], v[3 * k + 2] = theta[k], omega[k]
-        return q, v
-
-    def _standing_pivot(self, k: int, side: int) -> Array:
-        foot: Array = self.standing[3 * k : 3 * k + 2] + np.array(self.corner[k][side])
-        return foot
 
     # -------------------------------------------------------------- geometry
 
@@ -141,19 +107,14 @@ class Model:
         if k == 0:
             return np.zeros(2), np.array([1.0, 0.0]), np.array([0.0, 1.0])
         angle = q[3 * k - 1]
-        origin = q[3 * k - 3 : 3 * k - 1] + _turn(middle, angle)
-        return origin, *self._axes(angle + self.tilt[k])
-
-    @staticmethod
-    def _axes(angle: float) -> tuple[Array, Array]:
-        c, s = math.cos(angle), math.sin(angle)
-        return np.array([c, -s]), np.array([s, c])
+        origin = q[3 * k - 3 : 3 * k - 1] + turn(angle) @ middle
+        return origin, *turn(angle + self.tilt[k]).T
 
     def contact(self, q: Array, k: int, side: int, on_face: bool | None = None) -> Contact:
         """End ``side`` of interface k; ``on_face`` keeps the kind of a contact that exists."""
         origin, tangent, normal = self.frame(q, k)
         half = self.face[k][1]
-        corner = q[3 * k : 3 * k + 2] + _turn(self.corner[k][side], q[3 * k + 2])
+        corner = q[3 * k : 3 * k + 2] + turn(q[3 * k + 2]) @ self.corner[k][side]
         beyond = side * float(tangent @ (corner - origin)) - half
         if on_face is None:
             on_face = beyond <= AT_EDGE * self.size
@@ -161,15 +122,8 @@ class Model:
             gap = float(normal @ (corner - origin))
             return Contact(corner, tangent, normal, True, gap, beyond)
         edge = origin + side * half * tangent
-        tangent, normal = self._axes(q[3 * k + 2] + self.tilt[k])
+        tangent, normal = turn(q[3 * k + 2] + self.tilt[k]).T
         return Contact(edge, tangent, normal, False, float(normal @ (corner - edge)), beyond)
-
-    def off_the_edge(self, q: Array, k: int) -> bool:
-        """Whether the base above interface k no longer reaches over the face below."""
-        return any(
-            self.contact(q, k, side).beyond < AT_EDGE * self.size - 2 * self.face[k][1]
-            for side in FULL
-        ) and math.isfinite(self.face[k][1])
 
     def slip(self, q: Array, k: int) -> float:
         """Displacement along the face of the corner that carries, from where it stood at first [m]."""
@@ -210,7 +164,7 @@ class Model:
         v: Array,
         mode: Mode,
         contacts: dict[End, Contact],
-        load: tuple[float, float] | None,
+        load: list[float] | None,
         rough: bool = True,
     ) -> Solution:
         """Accelerations and forces of a mode under the ground's acceleration; impulses if there is none.
@@ -228,7 +182,7 @@ class Model:
             for side in closed:
                 c = contacts[k, side]
                 normal, tangent = self.row(q, k, c, c.normal), self.row(q, k, c, c.tangent)
-                friction = slides * self.friction[k].kinetic if rough else 0.0
+                friction = slides * self.friction[k] if rough else 0.0
                 forces.append(normal - friction * tangent)
                 rows.append(normal)
                 right.append(0.0 if load is None else -self.bias(q, v, k, c, c.normal))
@@ -257,7 +211,7 @@ class Model:
         for k, (closed, slides) in enumerate(mode):
             if slides:
                 pressed = sum(normal_force[k, side] for side in closed)
-                tangential[k] = -slides * self.friction[k].kinetic * pressed
+                tangential[k] = -slides * self.friction[k] * pressed
         return Solution(solved[:n], normal_force, tangential)
 
     def modes(self, closed: list[tuple[int, ...]], moves: list[int]) -> Iterator[Mode]:
@@ -275,9 +229,8 @@ class Model:
             choices.append(of_interface)
         yield from sorted(itertools.product(*choices), key=lambda m: sum(len(i[0]) for i in m))
 
-    def stick_margin(
-        self, k: int, solution: Solution, closed: tuple[int, ...], limit: float
-    ) -> float:
+    def stick_margin(self, k: int, solution: Solution, closed: tuple[int, ...]) -> float:
         """µ N - |T| of an interface that sticks [N], or over µ where that is more than 1."""
+        limit = self.friction[k]
         pressed = sum(solution.normal[k, side] for side in closed)
         return (limit * pressed - abs(solution.tangential[k])) / max(limit, 1.0)

@@ -19,11 +19,14 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
 from scipy.optimize import brentq
 
 from rockfrag.rocking.measured_restitution import MeasuredRestitution
+from rockfrag.system import as_system
 from rockfrag.system.blocks import Block, Stack, Vector
-from rockfrag.system.geometry import reach, upper_arm
+
+from .standing import StandingBody, standing
 
 State = tuple[int, int]
 Pair = tuple[float, float]
@@ -45,36 +48,6 @@ def _dot(u: Vector, v: Vector) -> float:
     return u.x * v.x + u.y * v.y
 
 
-@dataclass(frozen=True)
-class _Affine:
-    """A vector that depends linearly on the places of the two pivots."""
-
-    middle: Vector
-    along_ground: Vector
-    along_interface: Vector
-
-    def at(self, ground: float, interface: float) -> Vector:
-        return Vector(
-            self.middle.x + ground * self.along_ground.x + interface * self.along_interface.x,
-            self.middle.y + ground * self.along_ground.y + interface * self.along_interface.y,
-        )
-
-
-_NOWHERE = Vector(0.0, 0.0)
-
-
-def _affine(corner: dict[tuple[int, int], Vector]) -> _Affine:
-    """Read the dependence off three of the four pairs of pivots."""
-
-    def half(u: Vector, v: Vector) -> Vector:
-        return Vector((u.x - v.x) / 2, (u.y - v.y) / 2)
-
-    along_ground = half(corner[1, 1], corner[-1, 1])
-    along_interface = half(corner[1, 1], corner[1, -1])
-    middle = corner[1, 1].minus(along_ground).minus(along_interface)
-    return _Affine(middle, along_ground, along_interface)
-
-
 class Model:
     """Two blocks (or one) with their pivots; angles in [rad], SI units throughout.
 
@@ -92,49 +65,65 @@ class Model:
     def __init__(self, body: Block | Stack, g: float, restitution: object = None) -> None:
         self.g = g
         self.alone = isinstance(body, Block)
-        if isinstance(body, Block):
-            self.m1, self.i1, self.b1 = 0.0, 0.0, 1.0
-            self._r1 = self._d = _Affine(_NOWHERE, _NOWHERE, _NOWHERE)
-            arms = {(s, t): body.arm(t) for s in (1, -1) for t in (1, -1)}
-        else:
-            lower = body.lower
-            self.m1, self.i1, self.b1 = lower.mass, lower.centroidal_inertia, lower.b
-            pairs = [(s, t) for s in (1, -1) for t in (1, -1)]
-            self._r1 = _affine({(s, t): lower.arm(s) for s, t in pairs})
-            self._d = _affine({(s, t): Vector(*reach(body.pile, s, t)) for s, t in pairs})
-            arms = {(s, t): Vector(*upper_arm(body.pile, t)) for s, t in pairs}
+        bodies = standing(as_system(body))
+        if self.alone:
+            # a body below that weighs nothing and cannot move
+            nowhere = np.zeros(2)
+            below = StandingBody(0.0, 0.0, nowhere, np.zeros((2, 2)), np.zeros((2, 2)), 0.0, 0.0)
+            bodies.insert(0, below)
+        (self.m1, self.m2), (self.i1, self.i2) = (
+            [getattr(item, name) for item in bodies] for name in ("mass", "inertia")
+        )
+        self.b1, self.b2 = (
+            float(np.hypot(*(right - left))) / 2 or 1.0
+            for left, right in (b.corners for b in bodies)
+        )
+        self._middles = [Vector(*item.corners.mean(axis=0).tolist()) for item in bodies]
+        self._halves = [Vector(*(np.diff(item.corners, axis=0)[0] / 2).tolist()) for item in bodies]
+        self._rise = Vector(*(bodies[1].centre - bodies[0].centre).tolist())
         upper = body if isinstance(body, Block) else body.contact_upper
-        self.m2, self.i2, self.b2 = upper.mass, upper.centroidal_inertia, upper.b
-        self._r2 = _affine(arms)
         self.frequency = max(upper.frequency(s, g) for s in (1, -1))
         self._laws = _laws_by_contact(body, restitution)
+        pivots = itertools.product((1, -1), repeat=2)
+        self._arms = {pair: sum(self.fields(pair, (0.0, 0.0)), ()) for pair in pivots}
 
     # ---------------------------------------------------------------- motion
 
     def fields(self, places: Pair, theta: Pair) -> tuple[Vector, Vector, Vector]:
         """Vectors r1, d and r2 in the turned position for pivots at these places [m]."""
-        r1 = self._r1.at(*places).turned(theta[0])
-        d = self._d.at(*places).turned(theta[0])
-        r2 = self._r2.at(*places).turned(theta[1])
-        return r1, d, r2
+        r1, r2 = (
+            Vector(-middle.x - place * half.x, -middle.y - place * half.y)
+            for middle, half, place in zip(self._middles, self._halves, places, strict=True)
+        )
+        d = Vector(self._rise.x + r1.x - r2.x, self._rise.y + r1.y - r2.y)
+        return r1.turned(theta[0]), d.turned(theta[0]), r2.turned(theta[1])
 
     def terms(
         self, pivots: State, theta: Pair, omega: Pair, pull: Pair
     ) -> tuple[float, float, float, float, float]:
         """Return M11, M12, M22, f1, f2 of M θ'' + f = τ (Spanos, Roussis and Politis, 2001).
 
-        ``pull`` is the acceleration of the ground, and gravity with its upward one [m/s²].
+        ``pull`` is the acceleration of the ground, and gravity with its upward one [m/s²].  Plain floats: every
+        rate asks for it.
         """
-        r1, d, r2 = self.fields(pivots, theta)
-        # acceleration of the centres where both θ'' are zero, with gravity as if the ground rose
-        x1, y1 = pull[0] - omega[0] ** 2 * r1.x, pull[1] - omega[0] ** 2 * r1.y
-        x2 = pull[0] - omega[0] ** 2 * d.x - omega[1] ** 2 * r2.x
-        y2 = pull[1] - omega[0] ** 2 * d.y - omega[1] ** 2 * r2.y
-        f1 = self.m1 * (r1.y * x1 - r1.x * y1) + self.m2 * (d.y * x2 - d.x * y2)
-        f2 = self.m2 * (r2.y * x2 - r2.x * y2)
-        m11 = self.i1 + self.m1 * _dot(r1, r1) + self.m2 * _dot(d, d)
-        m22 = self.i2 + self.m2 * _dot(r2, r2)
-        return m11, self.m2 * _dot(d, r2), m22, f1, f2
+        x1, y1, xd, yd, x2, y2 = self._arms[pivots]
+        c, s = math.cos(theta[0]), math.sin(theta[0])
+        x1, y1, xd, yd = x1 * c + y1 * s, y1 * c - x1 * s, xd * c + yd * s, yd * c - xd * s
+        c, s = math.cos(theta[1]), math.sin(theta[1])
+        x2, y2 = x2 * c + y2 * s, y2 * c - x2 * s
+        m1, m2 = self.m1, self.m2
+        a, g = pull
+        v1, v2 = omega[0] * omega[0], omega[1] * omega[1]
+        # acceleration of the statue's centre where both θ'' are zero, with gravity as if the ground rose; the
+        # pedestal's own centripetal acceleration has no moment about its pivot
+        ax, ay = a - v1 * xd - v2 * x2, g - v1 * yd - v2 * y2
+        return (
+            self.i1 + m1 * (x1 * x1 + y1 * y1) + m2 * (xd * xd + yd * yd),
+            m2 * (xd * x2 + yd * y2),
+            self.i2 + m2 * (x2 * x2 + y2 * y2),
+            m1 * (y1 * a - x1 * g) + m2 * (yd * ax - xd * ay),
+            m2 * (y2 * ax - x2 * ay),
+        )
 
     def accelerations(self, state: State, theta: Pair, omega: Pair, pull: Pair) -> Pair:
         """Angular accelerations in this contact state [rad/s²]."""

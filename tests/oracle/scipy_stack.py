@@ -1,12 +1,12 @@
 """A statue on a pedestal by scipy's ``solve_ivp``, the counterpart of ``competitors.scipy_lone``.
 
 The mechanics (contact states, impacts, what a closed contact can hold) is that of
-`rocking_model`, with plain floats where every stage of a step calls it.
+`rocking_model`.
 """
 
 import math
 from collections.abc import Callable
-from itertools import pairwise, product
+from itertools import pairwise
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -25,37 +25,6 @@ SLACK = 1e-10
 
 JUST_OPEN = 1e-300
 """A gap at the start of an integration [rad]: where a contact has just opened no closing is found."""
-
-
-class FloatModel(Model):
-    """The mechanics with its arms worked out once, so that a rate takes no vectors."""
-
-    def __init__(self, body: Body, g: float) -> None:
-        super().__init__(body, g)
-        pivots = product((1, -1), repeat=2)
-        self.arms = {pair: sum(self.fields(pair, (0.0, 0.0)), ()) for pair in pivots}
-
-    def terms(
-        self, pivots: State, theta: Pair, omega: Pair, pull: Pair
-    ) -> tuple[float, float, float, float, float]:
-        """Return M11, M12, M22, f1, f2 of M θ'' + f = τ."""
-        x1, y1, xd, yd, x2, y2 = self.arms[pivots]
-        c, s = math.cos(theta[0]), math.sin(theta[0])
-        x1, y1, xd, yd = x1 * c + y1 * s, y1 * c - x1 * s, xd * c + yd * s, yd * c - xd * s
-        c, s = math.cos(theta[1]), math.sin(theta[1])
-        x2, y2 = x2 * c + y2 * s, y2 * c - x2 * s
-        m1, m2 = self.m1, self.m2
-        a, g = pull
-        v1, v2 = omega[0] * omega[0], omega[1] * omega[1]
-        ax, ay = a - v1 * xd - v2 * x2, g - v1 * yd - v2 * y2
-        # the pedestal's own centripetal acceleration has no moment about its pivot
-        return (
-            self.i1 + m1 * (x1 * x1 + y1 * y1) + m2 * (xd * xd + yd * yd),
-            m2 * (xd * x2 + yd * y2),
-            self.i2 + m2 * (x2 * x2 + y2 * y2),
-            m1 * (y1 * a - x1 * g) + m2 * (yd * ax - xd * ay),
-            m2 * (y2 * ax - x2 * ay),
-        )
 
 
 def piecewise_linear(values: list[float], dt: float) -> Ground:
@@ -128,7 +97,7 @@ def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool =
     ``by_sample`` as in ``scipy_lone``.
     """
     assert isinstance(body, Stack)
-    model = FloatModel(body, G)
+    model = Model(body, G)
     values = [*acceleration.tolist(), 0.0]
     ground = piecewise_linear(values, dt)
     low, high = rest_interval(model)

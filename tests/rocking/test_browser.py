@@ -1,10 +1,8 @@
 """The module for pages is made from the kernels, and computes what ``simulate`` does, to the last bit."""
 
 import importlib.util
-import json
 import math
 import os
-import shutil
 import subprocess
 import sys
 
@@ -14,17 +12,18 @@ import pytest
 from rockfrag.engines.records import body_record
 from rockfrag.engines.steps import STEP, free_samples, step_count
 from rockfrag.rocking import Block, Stack, overturns, simulate
-from rockfrag.rocking.browser import driver_text, module_bytes
+from rockfrag.rocking.browser import module_bytes
 from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
-NODE = shutil.which("node")
-needs_node = pytest.mark.skipif(NODE is None, reason="Node is not installed")
+from .node import in_node, needs_node
 
 HISTORY = ["theta1", "omega1", "theta2", "omega2", "c1", "c2", "alpha1", "alpha2", "work"]
 
-RUN = """
+RUN = (
+    f"const HISTORY = {HISTORY};"
+    + """
 const fs = require("fs");
 const [wasm, cases, motions, out] = process.argv.slice(2);
 const bytes = new Float64Array(new Uint8Array(fs.readFileSync(motions)).buffer);
@@ -58,6 +57,7 @@ rockfragKernel(new Uint8Array(fs.readFileSync(wasm))).then((kernel) => {
   console.log(JSON.stringify(told));
 });
 """
+)
 
 
 def given(block: Block) -> dict[str, float | None]:
@@ -72,20 +72,6 @@ def told(body: Body, **more):
         return {"statue": given(body), **more}
     both = {"statue": given(body.upper), "pedestal": given(body.lower)}
     return {**both, "offset": body.offset, **more}
-
-
-def in_node(folder, cases, motion):
-    """Run cases in Node; what it says of each, and all its numbers."""
-    files = {name: folder / name for name in ("integrate.wasm", "cases.json", "motions", "found")}
-    files["integrate.wasm"].write_bytes(module_bytes())
-    files["cases.json"].write_text(json.dumps(cases))
-    files["motions"].write_bytes(motion.tobytes())
-    (folder / "run.cjs").write_text(f"{driver_text()}\nconst HISTORY = {HISTORY};\n{RUN}")
-    done = subprocess.run(
-        [NODE, folder / "run.cjs", *files.values()], capture_output=True, text=True
-    )
-    assert done.stderr == "" and done.returncode == 0
-    return json.loads(done.stdout), np.frombuffer(files["found"].read_bytes())
 
 
 def some_body(rng) -> Body:
@@ -169,7 +155,8 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
         )
         records.append(body_record(system_of(body, restitution=restitution), linear))
         assert math.isfinite(responses[-1].theta[-1, -1])
-    said, numbers = in_node(tmp_path, cases, motion)
+    said, written = in_node(tmp_path, "integrate", RUN, cases, motion)
+    numbers = np.frombuffer(written)
     found = iter(np.split(numbers, np.cumsum([n for item in said for n in lengths(item)])))
     for case, item, response, record in zip(cases, said, responses, records, strict=True):
         body, events = response.system, response.contact_events
@@ -225,7 +212,8 @@ def test_bodies_that_cannot_stand_are_refused(tmp_path):
         "width of null": {"statue": given(statue) | {"width": None}},
     }
     cases = [{"given": body, "start": 0, "count": 2, "dt": 0.01} for body in bodies.values()]
-    said, numbers = in_node(tmp_path, cases, np.zeros(2))
+    said, written = in_node(tmp_path, "integrate", RUN, cases, np.zeros(2))
+    numbers = np.frombuffer(written)
     assert numbers.size == 0
     for words, item in zip(bodies, said, strict=True):
         assert words in item["error"]
@@ -272,23 +260,15 @@ def test_outcomes_are_those_of_overturns(tmp_path, made_motions):
         }
         for body, ratio in zip(bodies, restitutions, strict=True)
     ]
-    (tmp_path / "ensemble.wasm").write_bytes(module_bytes("ensemble"))
-    shaking = {
+    asked = {
+        "bodies": told,
         "counts": [motion.acceleration.size for motion in motions],
         "dts": [motion.dt for motion in motions],
+        "scales": scales.ravel().tolist(),
     }
-    (tmp_path / "cases.json").write_text(
-        json.dumps({"bodies": told, **shaking, "scales": scales.ravel().tolist()})
-    )
-    (tmp_path / "motions").write_bytes(
-        np.concatenate([motion.acceleration for motion in motions]).tobytes()
-    )
-    (tmp_path / "run.cjs").write_text(f"{driver_text('ensemble')}\n{COUNT}")
-    files = [
-        tmp_path / name for name in ("run.cjs", "ensemble.wasm", "cases.json", "motions", "out")
-    ]
-    subprocess.run([NODE, *files], check=True)
-    said = np.fromfile(tmp_path / "out", np.uint8).astype(bool)
+    samples = np.concatenate([motion.acceleration for motion in motions])
+    _, written = in_node(tmp_path, "ensemble", COUNT, asked, samples)
+    said = np.frombuffer(written, np.uint8).astype(bool)
     overturned, rocked = np.moveaxis(said.reshape(len(bodies), 2, *scales.shape), 1, 0)
     np.testing.assert_array_equal(overturned, found.overturned)
     np.testing.assert_array_equal(rocked, (found.peak_rotation > 0).any(axis=-1))

@@ -49,14 +49,8 @@ def response(request: pytest.FixtureRequest) -> Response:
     return found
 
 
-def test_energy_is_never_gained_at_an_impact_and_not_changed_by_an_opening(
-    response: Response,
-) -> None:
-    contact_events = response.contact_events
-    impacts, openings = (
-        contact_events[contact_events["kind"] == kind] for kind in ("impact", "opening")
-    )
-    assert (impacts["energy_after"] <= impacts["energy_before"] * (1 + 1e-12)).all()
+def test_an_opening_does_not_change_the_energy(response: Response) -> None:
+    openings = response.contact_events.query("kind == 'opening'")
     assert (openings["energy_after"] == openings["energy_before"]).all()
 
 
@@ -126,14 +120,6 @@ def test_a_measured_restitution_is_what_comes_out(e: float) -> None:
     response = simulate(T2, np.zeros(50), DT, theta0=0.3 * T2.alpha, restitution=e)
     first = response.contact_events[response.contact_events["kind"] != "opening"].iloc[0]
     assert first["omega_after"][0] == pytest.approx(e * first["omega_before"][0], abs=1e-12)
-
-
-def test_measured_restitution_of_a_stack_never_gains_energy() -> None:
-    for pair in ((0.9, 0.9), (1.0, 1.0), (None, 0.95), (0.5, None)):
-        response = simulate(Stack(P, T2), shaking(4, 0.5), DT, restitution=pair)
-        impacts = response.contact_events.query("kind == 'impact'")
-        assert len(impacts) > 3
-        assert (impacts["energy_after"] <= impacts["energy_before"] * (1 + 1e-9)).all()
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,6 @@
 """The module for pages shakes bodies in space as ``run_in_space`` does, to the last bit."""
 
-import json
 import math
-import shutil
-import subprocess
 
 import numpy as np
 import pytest
@@ -11,13 +8,11 @@ import pytest
 from rockfrag.engines.spatial.body import kernel_body
 from rockfrag.engines.spatial.outcome import AFTER, run_case
 from rockfrag.rocking import Block
-from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.system.body import Polygon, RigidBody
 from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.system import System, turned_about_vertical
 
-NODE = shutil.which("node")
-needs_node = pytest.mark.skipif(NODE is None, reason="Node is not installed")
+from .node import in_node, needs_node
 
 RUN = """
 const fs = require("fs");
@@ -106,7 +101,8 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path, bodies):
                 "dt": float(rng.choice([0.005, 0.01])), "scale": float(rng.uniform(0.3, 2.0)),
             }
         )  # fmt: skip
-    said, numbers = in_node(tmp_path, cases, motion)
+    said, written = in_node(tmp_path, "space", RUN, cases, motion)
+    numbers = np.frombuffer(written)
     fell = 0
     for case, item, system in zip(cases, said, systems, strict=True):
         body = kernel_body(system)
@@ -128,17 +124,3 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path, bodies):
         assert item["alike"], "an outcome alone is that of the history"
         fell += outcome.overturned
     assert 0.15 * bodies < fell < 0.85 * bodies
-
-
-def in_node(folder, cases, motion):
-    """Run cases in Node; what it says of each, and all its numbers."""
-    files = {name: folder / name for name in ("space.wasm", "cases.json", "motion", "found")}
-    files["space.wasm"].write_bytes(module_bytes("space"))
-    files["cases.json"].write_text(json.dumps(cases))
-    files["motion"].write_bytes(motion.tobytes())
-    (folder / "run.cjs").write_text(f"{driver_text('space')}\n{RUN}")
-    done = subprocess.run(
-        [NODE, folder / "run.cjs", *files.values()], capture_output=True, text=True
-    )
-    assert done.stderr == "" and done.returncode == 0
-    return json.loads(done.stdout), np.frombuffer(files["found"].read_bytes())

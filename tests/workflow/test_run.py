@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -42,6 +43,42 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
     done = snakemake(folder, "--cores", "2")
     assert done.returncode == 0, done.stderr[-3000:]
     return folder
+
+
+SMALL_JOBS = """import rockfrag.study.study as study
+study.HISTORIES_A_JOB = 100
+study.MOST_ROWS = 10
+"""
+"""Makes a study large that has a few hundred histories."""
+
+
+@pytest.fixture
+def large_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The small study, where a hundred histories are a job and ten outcomes are counted."""
+    (tmp_path / "sitecustomize.py").write_text(SMALL_JOBS)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    return make_smaller(tmp_path / "a large study")
+
+
+def test_jobs_share_the_motions_of_a_large_study(large_study: Path):
+    done = snakemake(large_study, "--dry-run")
+    assert done.returncode == 0, done.stderr[-3000:]
+    counts = dict(re.findall(r"^(\w+) +(\d+)$", done.stdout, re.MULTILINE))
+    assert (counts["ida"], counts["as_recorded"]) == ("2", "1")
+
+
+@pytest.mark.slow
+def test_jobs_that_share_the_motions_write_what_one_does(ran: Path, large_study: Path):
+    tables = ("tests", "as_recorded", "fragility")
+    wanted = [f"results/tiny/{name}.parquet" for name in tables]
+    done = snakemake(large_study, "--cores", "2", *wanted)
+    assert done.returncode == 0, done.stderr[-3000:]
+    (tests, alone), (recorded, at_once), (counted, of_rows) = (
+        [pd.read_parquet(folder / path) for folder in (large_study, ran)] for path in wanted
+    )
+    pd.testing.assert_frame_equal(tests, alone)
+    pd.testing.assert_frame_equal(recorded, at_once)
+    assert counted["theta"].to_numpy() == pytest.approx(of_rows["theta"].to_numpy(), rel=1e-3)
 
 
 @pytest.mark.slow

@@ -40,8 +40,10 @@ else:
             bodies=STUDY.body_files,
         output:
             ida_curves=[
-                f"{RESULTS}/ida/{{part}}/{one.slug}.parquet"
-                for one in STUDY.configurations
+                f"{RESULTS}/{STUDY.ida_file(configuration, 0)}".replace(
+                    "/000/", "/{part}/"
+                )
+                for configuration in STUDY.configurations
             ],
         log:
             f"{RESULTS}/logs/ida_{{part}}.log",

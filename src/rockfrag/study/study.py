@@ -158,7 +158,7 @@ class Study(Heading):
 
     def ida_file(self, configuration: System, job: int) -> str:
         """Path of a configuration's IDA curve under the motions of a job."""
-        folder = "ida" if self.ida_jobs == 1 else f"IDA curve/{job:03d}"
+        folder = "ida" if self.ida_jobs == 1 else f"ida/{job:03d}"
         return f"{folder}/{file_name(configuration.name)}.parquet"
 
     @property

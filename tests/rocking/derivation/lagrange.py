@@ -5,7 +5,6 @@ derivation serves all patterns; what is derived is turned into numpy functions o
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -35,27 +34,9 @@ def rate(expression: sp.Expr) -> sp.Expr:
     return sum((sp.diff(expression, x) * x_dot for x, x_dot in steps), sp.Integer(0))
 
 
-@dataclass(frozen=True)
-class Derived:
-    """Functions of (body, pivots, state), all with arrays in and out."""
-
-    pivot1: Callable[..., Array]
-    pivot2: Callable[..., Array]
-    centre1: Callable[..., Array]
-    centre2: Callable[..., Array]
-    velocity1: Callable[..., Array]
-    velocity2: Callable[..., Array]
-    acceleration1: Callable[..., Array]
-    acceleration2: Callable[..., Array]
-    kinetic: Callable[..., Array]
-    potential: Callable[..., Array]
-    motion: Callable[..., Array]
-    linear_motion: Callable[..., Array]
-
-
 @cache
-def derived() -> Derived:
-    """Derive once."""
+def derived() -> dict[str, Callable[..., Array]]:
+    """Functions of (body, pivots, state), all with arrays in and out; derived once."""
     pivot1 = sp.Matrix([XG + S1 * B1, 0])
     centre1 = pivot1 + turned(TH1, -S1 * B1, H1)
     pivot2 = pivot1 + turned(TH1, -S1 * B1 + S2 * B2, 2 * H1)
@@ -91,17 +72,10 @@ def derived() -> Derived:
 
         return evaluate
 
-    return Derived(
-        pivot1=function(pivot1),
-        pivot2=function(pivot2),
-        centre1=function(centre1),
-        centre2=function(centre2),
-        velocity1=function(velocity1),
-        velocity2=function(velocity2),
-        acceleration1=function(velocity1.applyfunc(rate)),
-        acceleration2=function(velocity2.applyfunc(rate)),
-        kinetic=function(kinetic),
-        potential=function(potential),
-        motion=function(motion),
-        linear_motion=function(linear),
-    )
+    found = {
+        "pivot1": pivot1, "pivot2": pivot2, "centre1": centre1, "centre2": centre2,
+        "velocity1": velocity1, "velocity2": velocity2,
+        "acceleration1": velocity1.applyfunc(rate), "acceleration2": velocity2.applyfunc(rate),
+        "kinetic": kinetic, "potential": potential, "motion": motion, "linear_motion": linear,
+    }  # fmt: skip
+    return {name: function(expressions) for name, expressions in found.items()}

@@ -1,7 +1,5 @@
 """Random two-block systems in random states, with the thesis's symbols, and the true quantities."""
 
-from dataclasses import dataclass, fields, replace
-
 import numpy as np
 
 from .lagrange import derived
@@ -9,108 +7,34 @@ from .lagrange import derived
 Array = np.ndarray
 
 
-@dataclass(frozen=True)
+BODY = ("b1", "h1", "m1", "ic1", "b2", "h2", "m2", "ic2", "g")
+STATE = ("th1", "th2", "w1", "w2", "q1", "q2", "xg", "vg", "a")
+
+
 class System:
     """Arrays over the random systems; the names are the thesis's."""
 
-    b1: Array
-    h1: Array
-    m1: Array
-    ic1: Array
-    b2: Array
-    h2: Array
-    m2: Array
-    ic2: Array
-    g: Array
-    th1: Array
-    th2: Array
-    w1: Array
-    w2: Array
-    q1: Array
-    q2: Array
-    xg: Array
-    vg: Array
-    a: Array
-
-    @property
-    def r1(self) -> Array:
-        return np.hypot(self.b1, self.h1)
-
-    @property
-    def r2(self) -> Array:
-        return np.hypot(self.b2, self.h2)
-
-    @property
-    def tc1(self) -> Array:
-        return np.arctan2(self.b1, self.h1)
-
-    @property
-    def tc2(self) -> Array:
-        return np.arctan2(self.b2, self.h2)
-
-    @property
-    def io1(self) -> Array:
-        return self.ic1 + self.m1 * self.r1**2
-
-    @property
-    def io2(self) -> Array:
-        return self.ic2 + self.m2 * self.r2**2
-
-    @property
-    def xi(self) -> Array:  # 2.61
-        return self.b1 - self.b2
-
-    @property
-    def xi_(self) -> Array:  # 2.63
-        return 2 * self.b1 - self.xi
-
-    @property
-    def length(self) -> Array:
-        return np.hypot(self.xi, 2 * self.h1)
-
-    @property
-    def length_(self) -> Array:
-        return np.hypot(self.xi_, 2 * self.h1)
-
-    @property
-    def beta(self) -> Array:
-        return np.arctan2(self.xi, 2 * self.h1)
-
-    @property
-    def beta_(self) -> Array:
-        return np.arctan2(self.xi_, 2 * self.h1)
-
-    @property
-    def m(self) -> Array:
-        return self.m1 + self.m2
-
-    @property
-    def h(self) -> Array:  # 2.22
-        return (self.m1 * self.h1 + self.m2 * (2 * self.h1 + self.h2)) / self.m
-
-    @property
-    def rr(self) -> Array:  # 2.67
-        return np.sqrt((2 * self.h1 + self.h2) ** 2 + self.b1**2)
-
-    @property
-    def big(self) -> Array:  # 2.68, Θ
-        return np.arctan((2 * self.h1 + self.h2) / self.b1)
-
-    @property
-    def io(self) -> Array:
-        return self.io1 + self.ic2 + self.m2 * self.rr**2
-
-    @property
-    def body(self) -> tuple[Array, ...]:
-        return tuple(getattr(self, f.name) for f in fields(self)[:9])
-
-    @property
-    def state(self) -> tuple[Array, ...]:
-        return tuple(getattr(self, f.name) for f in fields(self)[9:])
+    def __init__(self, **given: Array) -> None:
+        self.given = given
+        vars(self).update(given)
+        self.r1, self.r2 = np.hypot(self.b1, self.h1), np.hypot(self.b2, self.h2)
+        self.tc1, self.tc2 = np.arctan2(self.b1, self.h1), np.arctan2(self.b2, self.h2)
+        self.io1 = self.ic1 + self.m1 * self.r1**2
+        self.io2 = self.ic2 + self.m2 * self.r2**2
+        self.xi = self.b1 - self.b2  # 2.61
+        self.xi_ = 2 * self.b1 - self.xi  # 2.63
+        self.length, self.length_ = (np.hypot(xi, 2 * self.h1) for xi in (self.xi, self.xi_))
+        self.beta, self.beta_ = (np.arctan2(xi, 2 * self.h1) for xi in (self.xi, self.xi_))
+        self.m = self.m1 + self.m2
+        top = 2 * self.h1 + self.h2
+        self.h = (self.m1 * self.h1 + self.m2 * top) / self.m  # 2.22
+        self.rr = np.sqrt(top**2 + self.b1**2)  # 2.67
+        self.big = np.arctan(top / self.b1)  # 2.68, Θ
+        self.io = self.io1 + self.ic2 + self.m2 * self.rr**2
 
     def with_(self, **values: Array | float) -> "System":
         """Return the same systems in another state."""
-        return replace(self, **{k: v + 0 * self.b1 for k, v in values.items()})
+        return System(**self.given | {k: v + 0 * self.b1 for k, v in values.items()})
 
     def rigidly_joined(self) -> "System":
         """Return the state of pattern 3, block 2 moving as block 1."""
@@ -122,7 +46,8 @@ class System:
 
     def get(self, name: str, s1: float, s2: float) -> Array:
         """Evaluate one of the derived quantities for these pivots."""
-        return getattr(derived(), name)(*self.body, float(s1), float(s2), *self.state)
+        body, state = ([self.given[key] for key in keys] for keys in (BODY, STATE))
+        return derived()[name](*body, float(s1), float(s2), *state)
 
     def moments(self, s1: float, s2: float) -> Array:
         """Left-hand sides of Lagrange's equations, shape (2, n)."""
