@@ -31,7 +31,7 @@ _LOG = logging.getLogger(__name__)
 
 
 def blind_of(
-    study: CampaignStudy, campaign: Campaign, motions: Sequence[Motion], threads: int | None = None
+    study: CampaignStudy, campaign: Campaign, motions: Sequence[Motion]
 ) -> dict[str, BlindAnswer]:
     """Blind answers of a campaign, by measure, that in which outcomes scatter least first."""
     if "pedestal" in study.object:
@@ -41,7 +41,7 @@ def blind_of(
     thing = object_of(study)
     unknowns = unknowns_of(kind_of(thing), study.object.get("scan_tolerance_mm"))
     ways = ways_to_stand(thing, unknowns, WAYS, study.seed)
-    simulated, _ = simulate_tests(ways.systems, motions, threads)
+    simulated, _ = simulate_tests(ways.systems, motions)
     tests = campaign.tests
     measured, groups = tests[MEASURED].to_numpy(), pd.factorize(tests["group"])[0]
     found = {

@@ -1,6 +1,6 @@
 """Fragility curves with their limits, the outcomes behind them, and what no curve can show."""
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -59,7 +59,7 @@ def fragility_figure(
         ):
             colour = CONFIGURATION_COLOURS[k % len(CONFIGURATION_COLOURS)]
             own = str(curve["configuration"])
-            _fractions(panel, bins[bins["configuration"] == own], colour, 1.0)
+            _fractions(panel, bins[bins["configuration"] == own], colour)
             points = bands[bands["configuration"] == own]
             _compared_curve(panel, points, colour, compared.nonparametric)
             _probability_axis(panel, np.array([bands["x"].min(), bands["x"].max()]))
@@ -105,13 +105,13 @@ def _curve_words(curve: Mapping[Hashable, Any]) -> str:
     return words + (f", β = {beta:.2f}" if np.isfinite(beta) else "")
 
 
-def _fractions(axes: Axes, bins: pd.DataFrame, colour: str, shift: float) -> None:
+def _fractions(axes: Axes, bins: pd.DataFrame, colour: str) -> None:
     """Fractions of overturned tests in bins with their binomial limits."""
     fraction = bins["fraction"].to_numpy(dtype=float)
     lower, upper = (bins[f"fraction_{end}"].to_numpy(dtype=float) for end in ("lower", "upper"))
     reach = [np.maximum(fraction - lower, 0.0), np.maximum(upper - fraction, 0.0)]
     axes.errorbar(
-        bins["x"].to_numpy(dtype=float) * shift,
+        bins["x"].to_numpy(dtype=float),
         fraction,
         yerr=reach,
         fmt="o",
@@ -138,9 +138,12 @@ def measures_figure(
             axes.set_visible(False)
         for axes, label in zip(grid_of_axes.flat, labels, strict=False):
             curve, data = curves[label], outcomes[label]
-            grid = _grid([curve], [data])
-            _outcomes(axes, data, grid, BLACK)
-            _curve(axes, curve, grid, BLUE, "")
+            grid = _grid(curve, data)
+            _outcomes(axes, data, grid)
+            lower, upper = curve.interval.band(grid)
+            if np.isfinite(lower).any():
+                axes.fill_between(grid, lower, upper, color=BLUE, alpha=0.18, linewidth=0)
+            axes.plot(grid, curve.fit.probability(grid), color=BLUE)
             _probability_axis(axes, grid)
             axes.set_title(
                 f"{curve.fit.im}: AIC {curve.fit.aic:.1f}, β = {curve.fit.beta:.2f}", loc="left"
@@ -184,30 +187,18 @@ def calibration_figure(judged: Mapping[str, "GoodnessOfFit"]) -> Figure:
         return figure
 
 
-def _curve(axes: Axes, curve: "Fragility", grid: Floats, colour: str, label: str) -> None:
-    lower, upper = curve.interval.band(grid)
-    if np.isfinite(lower).any():
-        axes.fill_between(grid, lower, upper, color=colour, alpha=0.18, linewidth=0)
-    words = f"{label}: " if label else ""
-    theta = f"{words}θ = {curve.fit.theta:.3g} {curve.fit.unit}, β = {curve.fit.beta:.2f}"
-    axes.plot(grid, curve.fit.probability(grid), color=colour, label=theta)
-
-
-def _outcomes(axes: Axes, data: Observations, grid: Floats, colour: str) -> None:
-    _fractions(axes, fraction_in_bins(data).rename(columns={"im": "x"}), colour, 1.0)
+def _outcomes(axes: Axes, data: Observations, grid: Floats) -> None:
+    _fractions(axes, fraction_in_bins(data).rename(columns={"im": "x"}), BLACK)
     inside = grid[(grid >= data.im.min()) & (grid <= data.im.max())]
     if inside.size and np.ptp(data.log_im) > 0:
-        axes.plot(inside, local_fraction(data, inside), "--", color=colour, linewidth=0.8)
+        axes.plot(inside, local_fraction(data, inside), "--", color=BLACK, linewidth=0.8)
 
 
-def _grid(curves: Sequence["Fragility"], data: Sequence[Observations]) -> Floats:
-    """Values from where the lowest curve leaves zero to where the highest reaches one."""
-    low = min(curve.fit.theta * np.exp(-2.6 * curve.fit.beta) for curve in curves)
-    high = max(curve.fit.theta * np.exp(2.6 * curve.fit.beta) for curve in curves)
-    if data:
-        # neither a nearly flat curve nor amplitudes far above all curves may stretch the axis
-        low = max(low, 0.8 * min(float(observed.im.min()) for observed in data))
-        high = min(high, 1.25 * max(float(observed.im.max()) for observed in data))
+def _grid(curve: "Fragility", data: Observations) -> Floats:
+    """Values from where a curve leaves zero to where it reaches one."""
+    low, high = (curve.fit.theta * np.exp(sign * 2.6 * curve.fit.beta) for sign in (-1, 1))
+    # neither a nearly flat curve nor amplitudes far above it may stretch the axis
+    low, high = max(low, 0.8 * float(data.im.min())), min(high, 1.25 * float(data.im.max()))
     return np.asarray(np.geomspace(low, high, 400))
 
 

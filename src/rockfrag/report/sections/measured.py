@@ -18,7 +18,6 @@ from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.sections.pedestal import EFFECT_COLUMNS, shown_effects
 from rockfrag.report.wording import amplitude, counted, estimates
-from rockfrag.study.study import Study
 
 _TESTS = (
     Column("object", "Object"),
@@ -35,11 +34,6 @@ _CURVES = (
     Column("theta_text", "Median θ [g]", numeric=True),
     Column("beta", "β", 3),
 )
-
-
-def has_measured_tests(study: Study) -> bool:
-    """Whether a study names a table of measured tests."""
-    return study.measured_tests is not None
 
 
 def _section(results: Results) -> Section:
@@ -105,5 +99,5 @@ def measured_beside(beside: pd.DataFrame) -> Figure:
 MEASURED = Part(
     ("measured/beside", "measured/fragility", "measured/effects", "measured/notes"),
     _section,
-    asked=has_measured_tests,
+    asked=lambda study: study.measured_tests is not None,
 )

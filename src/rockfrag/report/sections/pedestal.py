@@ -13,7 +13,6 @@ from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
 from rockfrag.report.sides import WITH_PEDESTAL, Sides, sides_of
 from rockfrag.report.wording import estimate, has_interval, listed, number, probability, sentence
 from rockfrag.shaketable.definitions import DEFINITION
-from rockfrag.study.study import Study
 
 MOST_ROWS = 45
 """More rows than this are not legible in one figure; the finest scopes are then left to the table."""
@@ -37,11 +36,6 @@ _METHODS = (
     Column("smallest_text", "Smallest possible p", numeric=True),
     Column("remark", "Remark"),
 )
-
-
-def has_pairs(study: Study) -> bool:
-    """Whether something stands both with and without a pedestal in a study."""
-    return study.has_pairs
 
 
 def shown_effects(effects: pd.DataFrame) -> pd.DataFrame:
@@ -150,4 +144,8 @@ def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
     return FigureSpec("pedestal_effect", alt, caption, lambda: forest_figure(shown, about))
 
 
-PEDESTAL = Part(("pedestal/effects", "pedestal/whole", "pedestal/notes"), _section, asked=has_pairs)
+PEDESTAL = Part(
+    ("pedestal/effects", "pedestal/whole", "pedestal/notes"),
+    _section,
+    asked=lambda study: study.has_pairs,
+)

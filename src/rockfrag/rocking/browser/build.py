@@ -278,7 +278,10 @@ if __name__ == "__main__":
         raise SystemExit(
             f"numba: the module is made with version {TESTED_NUMBA[0]}x; install that."
         )
-    for name, build in MODULES.items():
+    for name in sys.argv[1:]:
         path = Path(__file__).with_name(f"{name}.wasm")
-        path.write_bytes(build())
+        path.write_bytes(MODULES[name]())
         print(f"{path}: {path.stat().st_size} bytes")
+    # what one process has compiled before changes the bytes
+    for name in MODULES if not sys.argv[1:] else ():
+        subprocess.run([sys.executable, "-m", "rockfrag.rocking.browser.build", name], check=True)

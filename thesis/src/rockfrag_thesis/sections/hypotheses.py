@@ -4,7 +4,6 @@ import pandas as pd
 
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
-from rockfrag.report.sections.pedestal import has_pairs
 from rockfrag.report.wording import listed, number
 from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
 from rockfrag_thesis.hypotheses_html import hypotheses_html, outcomes_by_kind
@@ -71,4 +70,4 @@ SHORT = {
 """Outcomes in a sentence that counts them."""
 
 
-HYPOTHESES = Part(("hypotheses", "contradictions"), _section, asked=has_pairs)
+HYPOTHESES = Part(("hypotheses", "contradictions"), _section, asked=lambda study: study.has_pairs)

@@ -1,7 +1,6 @@
 """The thesis's hypotheses tested on a laboratory's own tests."""
 
 from rockfrag.report.part import Part, Results, Section
-from rockfrag.report.sections.measured import has_measured_tests
 from rockfrag_thesis.hypotheses_html import hypotheses_html
 from rockfrag_thesis.sections.hypotheses import outcomes_in_words, words_on_outcomes
 
@@ -19,4 +18,6 @@ def _section(results: Results) -> Section | None:
     )
 
 
-MEASURED_HYPOTHESES = Part(("measured/hypotheses",), _section, asked=has_measured_tests)
+MEASURED_HYPOTHESES = Part(
+    ("measured/hypotheses",), _section, asked=lambda study: study.measured_tests is not None
+)
