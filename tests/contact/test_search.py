@@ -80,19 +80,14 @@ def compare_searches(number: int, seed: int) -> Counter:
     return counts
 
 
-def check(counts: Counter, number: int) -> None:
-    """Require a consistent mode wherever there is one, and the first one nearly always."""
+@pytest.mark.parametrize(
+    ("number", "seed"), [(3000, 1), pytest.param(100_000, 2, marks=pytest.mark.slow)]
+)
+def test_the_search_finds_a_consistent_mode_wherever_there_is_one(number: int, seed: int) -> None:
+    """And the first one nearly always."""
+    counts = compare_searches(number, seed)
     print(dict(counts))
     assert counts["not consistent"] == 0
     assert counts["same"] > 0.85 * number
     assert counts["consistent too, as many closed"] < 0.015 * number
     assert counts["consistent too, more closed"] < 0.004 * number
-
-
-def test_the_search_finds_a_consistent_mode_wherever_there_is_one() -> None:
-    check(compare_searches(3000, seed=1), 3000)
-
-
-@pytest.mark.slow
-def test_the_search_finds_a_consistent_mode_in_a_hundred_thousand_situations() -> None:
-    check(compare_searches(100_000, seed=2), 100_000)

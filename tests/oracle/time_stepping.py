@@ -292,24 +292,15 @@ def time_stepping(
     *,
     step: float = 2e-5,
     vertical: np.ndarray | None = None,
-    theta0: float = 0.0,
     tail: float = 8.0,
     g: float = 9.81,
 ) -> tuple[bool, int, float, np.ndarray]:
-    """Whether, which and when a body fell, and q, v at the samples; ``theta0`` turns the uppermost body."""
+    """Whether, which and when a body fell, and q, v at the samples."""
     table = body_table(as_system(body))
     n = len(table)
     q = np.zeros(3 * n)
     for k in range(n):
         q[3 * k : 3 * k + 2] = table[k, 12:]
-    if theta0:
-        k = n - 1
-        first = 4 if theta0 > 0 else 2
-        corner = table[k, first : first + 2]
-        c, s = math.cos(theta0), math.sin(theta0)
-        turned = np.array([corner[0] * c + corner[1] * s, -corner[0] * s + corner[1] * c])
-        q[3 * k : 3 * k + 2] += corner - turned
-        q[3 * k + 2] = theta0
     steps = round(tail / dt)
     rows = np.zeros((len(acceleration) + steps, 6 * n))
     values = np.ascontiguousarray(acceleration, dtype=float)

@@ -53,8 +53,13 @@ def near_critical(stack: Stack, motion: np.ndarray) -> bool:
     return len({simulate(stack, f * motion, DT).overturned for f in factors}) == 2
 
 
-def disagreements(cases: int, seed: int) -> tuple[int, int]:
-    """Number of cases judged differently, and of cases that fell."""
+@pytest.mark.parametrize(
+    ("cases", "seed", "most", "falls"),
+    [(12, 100, 1, (2, 10)), pytest.param(100, 101, 5, (20, 80), marks=pytest.mark.slow)],
+)
+def test_mujoco_gives_the_same_outcome(
+    cases: int, seed: int, most: int, falls: tuple[int, int]
+) -> None:
     rng = np.random.default_rng(seed)
     differing = fallen = 0
     for _ in range(cases):
@@ -64,17 +69,5 @@ def disagreements(cases: int, seed: int) -> tuple[int, int]:
         if mujoco_overturns(stack, motion) != ours:
             differing += 1
             assert near_critical(stack, motion)
-    return differing, fallen
-
-
-def test_mujoco_gives_the_same_outcome() -> None:
-    differing, fallen = disagreements(12, seed=100)
-    assert differing <= 1
-    assert 2 <= fallen <= 10
-
-
-@pytest.mark.slow
-def test_mujoco_gives_the_same_outcome_in_95_of_100_cases() -> None:
-    differing, fallen = disagreements(100, seed=101)
-    assert differing <= 5
-    assert 20 <= fallen <= 80
+    assert differing <= most
+    assert falls[0] <= fallen <= falls[1]

@@ -136,8 +136,9 @@ def test_without_a_measured_value_momentum_is_conserved_and_nothing_gives_way():
         assert of_momentum[2] == 0
 
 
-def outcome_stays_good(law, stacks):
-    """No dead stop, no jump between neighbouring values, no gain of energy, in an impact of each stack."""
+@pytest.mark.parametrize("law", law_names())
+@pytest.mark.parametrize("stacks", [200, pytest.param(10_000, marks=pytest.mark.slow)])
+def test_no_dead_stop_no_jump_between_neighbouring_values_and_no_gain_of_energy(law, stacks):
     rng = np.random.default_rng(3)
     factors = np.linspace(0.7, 1.0, 13)
     for number in range(stacks):
@@ -161,17 +162,6 @@ def outcome_stays_good(law, stacks):
             if last is not None:
                 assert np.abs(rate - last).max() <= 0.2 * np.abs(rates(omega)).max()
             last = rate
-
-
-@pytest.mark.parametrize("law", law_names())
-def test_no_dead_stop_no_jump_and_no_gain_of_energy(law):
-    outcome_stays_good(law, 200)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("law", law_names())
-def test_no_dead_stop_no_jump_and_no_gain_of_energy_in_ten_thousand_stacks(law):
-    outcome_stays_good(law, 10_000)
 
 
 @pytest.mark.parametrize("law", law_names())
