@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -19,19 +20,19 @@ from rockfrag.report.figures.campaign import (
     footprint_figure,
     tests_figure,
 )
+from rockfrag.report.findings import finding_of
 from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, opened
 from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.two_measures import two_measures_section
 from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import (
-    agree,
-    counted,
     estimate,
     listed,
+    macros,
     number,
-    of_all,
     probability,
+    said,
     sentence,
 )
 from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
@@ -55,15 +56,21 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         _answer(study, tables, sections),
         sections,
         title=study.title,
-        lead=f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, "
-        f"{int(tests['overturned'].sum())} of them overturned; each is simulated with the motion "
-        f"{_said(study)} the table.",
+        lead=" ".join(said(_sentences().lead(tests, _motion(study)))),
         provenance=provenance(study, {"Tests": study.tests.name}),
         basis="measured",
     )
 
 
 Row = Mapping[Any, Any]
+
+
+@cache
+def _sentences() -> Any:
+    """The macros of ``campaign_page.j2``."""
+    words = {"better": _better, "estimate": estimate, "p": _p, "percent": _percent}
+    levels = {"FEWEST_VOTERS": FEWEST_VOTERS, "LEVEL": LEVEL}
+    return macros("rockfrag.report", "campaign_page.j2", words | levels)
 
 
 def _percent(row: Row) -> str:
@@ -100,20 +107,15 @@ def _answer(
         asked="How often does the simulation predict what happened on the shaking table?",
         sentences=found[:3],
         figure=next((spec for spec in specs if spec.name == "tests"), specs[0]),
-        rests_on=[
-            f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, each "
-            f"simulated with the motion {_said(study)} the table; intervals resample input motions.",
-            "Unmeasured properties of the object are fitted on some motions and judged on the others.",
-        ],
+        rests_on=said(_sentences().rests_on(tests, _motion(study))),
         could_change=[
-            f"{sentence(of_all(near, len(tests), 'test'))} {agree(near, len(tests), 'is', 'are')} near-critical: "
-            "plausible ways to set up the object disagree about the outcome in more than one of ten.",
+            *said(_sentences().near_critical(near, len(tests))),
             *(finding.headline + "." for finding in found[3:]),
         ],
     )
 
 
-def _said(study: CampaignStudy) -> str:
+def _motion(study: CampaignStudy) -> str:
     """Say whether the motions were measured on the table, or follow from what it was told."""
     return "commanded of" if study.pulse_cycles else "measured on"
 
@@ -122,49 +124,22 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
     ours, *others = tables["agreement"].to_dict("records")
     rivals = [row for row in others if row["who"] != IN_PLANE]
     found = [
-        Finding(
-            f"The simulation predicts {number(100 * ours['right'], 1)} % of the outcomes",
-            f"{sentence(counted(round(ours['missed']), 'test'))} overturned in the laboratory only, "
-            f"{counted(round(ours['false_alarms']), 'test')} in the simulation only.",
-            f"Tests whose motions were not used to fit unmeasured properties: {_percent(ours)} predicted.",
-        ),
+        finding_of(_sentences().predicted(ours)),
         *(_beside_plane(ours, row) for row in others if row["who"] == IN_PLANE),
         *_against_rivals(rivals),
         *_fragility_found(tables["fragility"]),
     ]
     tests = tables["tests"]
-    near = tests["near_critical"]
-    wrong = ~tests["right"]
+    near, wrong = tests["near_critical"], ~tests["right"]
     if wrong.any():
-        found.append(
-            Finding(
-                f"{sentence(of_all(int((wrong & near).sum()), int(wrong.sum()), 'wrong prediction'))} "
-                f"{agree(int((wrong & near).sum()), int(wrong.sum()), 'is', 'are')} near-critical",
-                f"Plausible ways to set up the object disagree about the outcome in {int(near.sum())} of "
-                f"{len(tests)} tests; the unmeasured properties do not decide the others.",
-            )
-        )
+        counts = (int((wrong & near).sum()), int(wrong.sum()), int(near.sum()), len(tests))
+        found.append(finding_of(_sentences().wrong(*counts)))
     return found
 
 
 def _beside_plane(ours: Row, plane: Row) -> Finding:
     """Whether three dimensions predict better than one plane."""
-    known = plane["p"] < LEVEL
-    said = (
-        "is better than in one plane"
-        if known and plane["better_lower"] > 0
-        else "is worse than in one plane"
-        if known and plane["better_upper"] < 0
-        else "is no gain over one plane"
-    )
-    return Finding(
-        f"Simulation in space {said}: {number(100 * ours['right'], 1)} and {number(100 * plane['right'], 1)} % of "
-        "the outcomes predicted",
-        "All other figures here are of the simulation in space.",
-        f"In one plane {_percent(plane)} with {counted(round(plane['missed']), 'test')} missed and "
-        f"{counted(round(plane['false_alarms']), 'false alarm')}: in space better by {_better(plane)} percentage "
-        f"points (p {_p(plane['p'])}).",
-    )
+    return finding_of(_sentences().beside_plane(ours, plane))
 
 
 def _against_rivals(others: Sequence[Row]) -> list[Finding]:
@@ -173,30 +148,7 @@ def _against_rivals(others: Sequence[Row]) -> list[Finding]:
     if not rivals:
         return []
     best = max(rivals, key=lambda row: float(row["right"]))
-    name = _who(best["who"])
-    more = estimate(100 * best["better"], 100 * best["better_lower"], 100 * best["better_upper"], 1)
-    adjusted = min(1.0, best["p"] * len(rivals))
-    clear = best["better_lower"] > 0 and adjusted < LEVEL
-    losing = best["better_upper"] < 0 and adjusted < LEVEL
-    headline = (
-        f"The simulation is better than {name}, the best of {counted(len(rivals), 'alternative')}"
-        if clear
-        else f"{name.capitalize()} is better"
-        if losing
-        else f"The simulation is not distinguishable from {name}, the best of "
-        f"{counted(len(rivals), 'alternative')}"
-    )
-    if best["better_lower"] <= 0:  # an estimate with a negative limit is not written as a ratio is
-        more = _better(best)
-    return [
-        Finding(
-            headline,
-            "",
-            f"{sentence(name)} predicts {_percent(best)} of the same tests: a difference of {more} percentage "
-            f"points (p {_p(best['p'])}; p {_p(adjusted)} after Bonferroni’s adjustment for "
-            f"{counted(len(rivals), 'alternative')}).",
-        )
-    ]
+    return [finding_of(_sentences().beside_rivals(best, _who(best["who"]), len(rivals)))]
 
 
 LEVEL = 0.05
@@ -222,16 +174,8 @@ def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
     found = {
         row["who"]: _ratios(row) for row in rows[rows["measure"] == measure].to_dict("records")
     }
-    theta, beta = found[OURS]
-    by_votes = (
-        "Fitted to fractions of plausible trials, not to majorities: median {}, dispersion {}."
-    )
     return [
-        Finding(
-            f"Simulated over measured {name_and_unit(measure)[0]} of overturning: median {theta}, "
-            f"dispersion {beta}",
-            by_votes.format(*found[VOTES]),
-        )
+        finding_of(_sentences().fragility(name_and_unit(measure)[0], found[OURS], found[VOTES]))
     ]
 
 
@@ -495,47 +439,23 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
         "object",
         "How the object stood",
         f"{len(likely)} of {len(trials)} trials are plausible.",
-        [
-            "A trial is plausible if its predictions are as right as the best within two standard errors. It "
-            "is chosen on all tests and therefore judges nothing.",
-            *_on_a_pedestal(len(study.object.get("pedestal", ()))),
-            *_few_voters(len(likely)),
-            *_edges(study, trials, likely, titles),
-        ],
+        said(
+            _sentences().how_it_stood(
+                len(study.object.get("pedestal", ())),
+                len(likely),
+                _edges(study, trials, likely, titles),
+            )
+        ),
         parts,  # type: ignore[arg-type]
     )
-
-
-def _on_a_pedestal(blocks: int) -> list[str]:
-    if not blocks:
-        return []
-    return [
-        f"The object stands on {counted(blocks, 'block')}; retreat and friction are the same at every contact, "
-        "and the distances of the edges and the critical angle are those of the object alone."
-    ]
-
-
-def _few_voters(count: int) -> list[str]:
-    if count >= FEWEST_VOTERS:
-        return []
-    return [
-        f"Fewer than {FEWEST_VOTERS} trials vote, so that chance decides near-critical tests: raise the number of "
-        "trials."
-    ]
 
 
 def _edges(
     study: CampaignStudy, trials: pd.DataFrame, likely: pd.DataFrame, titles: Mapping[str, str]
 ) -> list[str]:
-    """Say which ranges end where the tests would have them go on."""
+    """Ranges that end where the tests would have them go on."""
     edges = preferred_edges(trials, likely.index, study.unknowns)
-    words = [f"{titles[name].split(' [')[0].lower()} ({edge})" for name, edge in edges.items()]
-    if not words:
-        return []
-    return [
-        f"Plausible trials crowd at an end of the range of: {listed(words)}. Widen the range there: what lies "
-        "beyond may be as plausible."
-    ]
+    return [f"{titles[name].split(' [')[0].lower()} ({edge})" for name, edge in edges.items()]
 
 
 def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:

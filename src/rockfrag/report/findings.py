@@ -11,6 +11,7 @@ from rockfrag.fragility.compared import Compared, compared_curves
 from rockfrag.report.part import Finding
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import (
+    PART,
     decimals_of,
     estimate,
     estimates,
@@ -31,9 +32,6 @@ _RATIO_DECIMALS = 3
 _MOST_CONFIGURATIONS = 6
 """So many are named with their numbers in a sentence."""
 
-_PART = "\f"
-"""Between headline, text and numbers of a finding."""
-
 
 @cache
 def _sentences() -> Any:
@@ -44,7 +42,6 @@ def _sentences() -> Any:
         "RATIO_DECIMALS": _RATIO_DECIMALS,
         "analyses": lambda n, total: of_all(n, total, "analysis", "analyses"),
         "has_interval": has_interval,
-        "part": _PART,
         "ratio_text": ratio_text,
     }
     return macros("rockfrag.report", "findings.j2", words)
@@ -52,8 +49,12 @@ def _sentences() -> Any:
 
 def _finding(name: str, **about: Any) -> Finding:
     """What a macro says."""
-    parts = getattr(_sentences(), name)(**about).split(_PART)
-    return Finding(*(" ".join(said(part)) for part in parts))
+    return finding_of(getattr(_sentences(), name)(**about))
+
+
+def finding_of(text: str) -> Finding:
+    """What a macro says, parted into headline, text and numbers."""
+    return Finding(*(" ".join(said(part)) for part in text.split(PART)))
 
 
 def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:

@@ -13,6 +13,9 @@ MOST_LISTED = 8
 _FAR = 1000.0
 """A limit so many times off its estimate is none."""
 
+PART = "\f"
+"""Between headline, text and numbers of a finding."""
+
 LONGEST_NAME = 24
 """Longer names are cut in figures, where they would push everything else aside."""
 
@@ -158,7 +161,7 @@ def macros(package: str, template: str, words: Mapping[str, Any]) -> Any:
     environment.tests |= {"finite": math.isfinite, "nan": math.isnan}
     environment.filters |= {"listed": listed, "sentence": sentence}
     environment.globals |= {"agree": agree, "counted": counted, "number": number, "of_all": of_all}
-    environment.globals |= words
+    environment.globals |= words | {"part": PART}
     return environment.get_template(template).module
 
 
