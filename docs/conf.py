@@ -58,6 +58,8 @@ myst_heading_anchors = 3
 autodoc_typehints = "none"
 numpydoc_show_class_members = False
 suppress_warnings = ["myst.header", "ref.python", "misc.highlighting_failure"]
+# of a checkout in a folder with a space in its name; the links hold
+suppress_warnings += ["sphinx_gallery.space_in_filename"]
 
 SUBPACKAGES = {
     "rockfrag.system": (

@@ -3,6 +3,7 @@
 import math
 import numbers
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -24,18 +25,28 @@ def real_number(name: str, value: object, unit: str = "") -> float:
 
     Text, booleans, None, arrays, complex and infinite numbers are none.
     """
-    is_number = isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_))
-    if not is_number or not math.isfinite(value):  # type: ignore[arg-type]
-        raise InputError(f"{name}: expected a finite number{_of(unit)}, got {shown(value)}.")
-    return float(value)  # type: ignore[arg-type]
+    return _above(-math.inf, name, value, f"a finite number{_of(unit)}")
 
 
 def positive_number(name: str, value: object, unit: str = "") -> float:
     """Return a finite number above 0, or say in one sentence why it is none."""
+    return _above(0.0, name, value, f"a positive number{_of(unit)}")
+
+
+def number_from_zero(name: str, value: object, unit: str = "") -> float:
+    """Return a finite number that is 0 or more, or say in one sentence why it is none."""
+    return _above(-math.ulp(0.0), name, value, f"a number{_of(unit)} that is not negative")
+
+
+def _above(bound: float, name: str, value: object, wanted: str) -> float:
+    number = math.nan
     is_number = isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_))
-    if not is_number or not (math.isfinite(value) and value > 0):  # type: ignore[arg-type, operator]
-        raise InputError(f"{name}: expected a positive number{_of(unit)}, got {shown(value)}.")
-    return float(value)  # type: ignore[arg-type]
+    # a whole number may have more digits than a float takes
+    with suppress(OverflowError):
+        number = float(value) if is_number else number  # type: ignore[arg-type]
+    if not (math.isfinite(number) and number > bound):
+        raise InputError(f"{name}: expected {wanted}, got {shown(value)}.")
+    return number
 
 
 def whole_number(name: str, value: object) -> int:

@@ -139,5 +139,5 @@ def test_block_without_a_critical_angle_is_refused(harmonic, alpha):
 
 
 def test_block_without_a_frequency_parameter_is_refused():
-    with pytest.raises(InputError, match="p must be a positive number"):
+    with pytest.raises(InputError, match="p: expected a positive number"):
         intensity.frequency_ratio(0.5, 0.0)

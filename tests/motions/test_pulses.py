@@ -111,17 +111,17 @@ def test_ida_passes_its_octaves_at_the_stated_rate(start, end):
     ("pulse", "message"),
     [
         (lambda: m.sine(1.0, 0.5, 0), "cycles must be a whole number"),
-        (lambda: m.sine(math.nan, 0.5, 1), "amplitude must be a finite number"),
-        (lambda: m.one_sine(1.0, -0.5), "period must be a positive number of seconds"),
-        (lambda: m.one_sine(1.0, 0.5, 0.0), "dt must be a positive number of seconds"),
+        (lambda: m.sine(math.nan, 0.5, 1), "amplitude: expected a finite number"),
+        (lambda: m.one_sine(1.0, -0.5), "period: expected a positive number of seconds"),
+        (lambda: m.one_sine(1.0, 0.5, 0.0), "dt: expected a positive number of seconds"),
         (lambda: m.one_sine(1.0, 0.5, 0.6), "choose another dt"),
         (lambda: m.one_sine(1.0, 0.5, 1e-300), "choose another dt"),
-        (lambda: m.rectangular(1.0, 0.0), "duration must be a positive number of seconds"),
+        (lambda: m.rectangular(1.0, 0.0), "duration: expected a positive number of seconds"),
         (lambda: m.mavroeidis_papageorgiou(1.0, 1.0, 0.5), "cycles must be one or more"),
         (lambda: m.sine_sweep(1.0, 5.0, 5.0, 1.0), "nothing is swept"),
-        (lambda: m.sine_sweep(1.0, 0.0, 5.0, 1.0), "start_hz must be a positive number"),
+        (lambda: m.sine_sweep(1.0, 0.0, 5.0, 1.0), "start_hz: expected a positive number"),
         (lambda: m.sine_sweep(1.0, 1.0, 500.0, 1.0), "give a smaller dt"),
-        (lambda: m.sine_sweep(1.0, 1.0, 5.0, -1.0), "octaves_per_minute must be a positive"),
+        (lambda: m.sine_sweep(1.0, 1.0, 5.0, -1.0), "octaves_per_minute: expected a positive"),
     ],
 )
 def test_impossible_pulses_are_refused(pulse, message):

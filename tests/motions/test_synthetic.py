@@ -113,12 +113,12 @@ def test_spectrum_compatible_motion_depends_on_its_seed_alone():
     [
         ({"seed": -1}, "seed must be a whole number"),
         ({"seed": 1.5}, "seed must be a whole number"),
-        ({"arias_m_s": 0.0}, "arias_m_s must be a positive"),
+        ({"arias_m_s": 0.0}, "arias_m_s: expected a positive"),
         ({"d5_95_s": 60.0}, "times mid_s"),
-        ({"mid_s": 0.0}, "mid_s must be a positive"),
+        ({"mid_s": 0.0}, "mid_s: expected a positive"),
         ({"filter_damping": 1.0}, "filter_damping must lie"),
         ({"mid_hz": 30.0}, "give a smaller dt"),
-        ({"dt": 0.0}, "dt must be a positive"),
+        ({"dt": 0.0}, "dt: expected a positive"),
         ({"dt": 1e-9}, "number of samples"),
     ],
 )

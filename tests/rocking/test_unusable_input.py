@@ -50,6 +50,11 @@ UNUSABLE = [
         "Block: height: expected a positive number of metres, got -0.5",
     ),
     (lambda: Block(0.1, 0.5, math.inf), "Block: mass: expected a positive number of kilograms"),
+    (
+        lambda: Block(10**400, 0.5, 3.0),
+        "Block: width: expected a positive number of metres, got 1000",
+    ),
+    (simulated(g=10**400), "g: expected"),
     (lambda: Block(0.1, 0.5, 3.0, inertia=[1.0]), "Block: inertia: expected a positive number"),
     (lambda: Block(0.1, 0.5, 3.0, cg_height="low"), "Block: cg_height: expected a positive number"),
     (lambda: Block(0.1, 0.5, 3.0, cg_offset=None), "Block: cg_offset: expected a finite number"),

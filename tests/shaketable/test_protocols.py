@@ -157,8 +157,8 @@ def test_a_monotone_specimen_is_bracketed_within_one_step(growth, threshold):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: LinearSteps(0.1, 0.0), "step_g must be a positive number"),
-        (lambda: GeometricSteps(-0.1, 0.1), "start_g must be a positive number"),
+        (lambda: LinearSteps(0.1, 0.0), "step_g: expected a positive number"),
+        (lambda: GeometricSteps(-0.1, 0.1), "start_g: expected a positive number"),
         (lambda: Protocol(LinearSteps(0.1, 0.1), limit_g=math.inf), "limit_g"),
         (lambda: Protocol(LinearSteps(0.1, 0.1), repetitions=0), "repetitions"),
         (lambda: LinearSteps(0.1, 1e-9).amplitudes(1.0), "so small"),

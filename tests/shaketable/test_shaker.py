@@ -107,8 +107,8 @@ def test_a_force_that_no_filter_helps_is_refused():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"stroke": 0.0}, "stroke must be a positive"),
-        ({"velocity": -1.0}, "velocity must be a positive"),
+        ({"stroke": 0.0}, "stroke: expected a positive"),
+        ({"velocity": -1.0}, "velocity: expected a positive"),
         ({"lowest_hz": 300.0}, "is empty"),
         ({"start": "left"}, "off-centre or centred"),
         ({"table_mass": -1.0}, "table_mass must be zero or more"),

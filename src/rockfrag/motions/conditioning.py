@@ -11,7 +11,8 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import MOST_SAMPLES, not_negative, positive, whole
+from rockfrag.input_checks import number_from_zero, positive_number
+from rockfrag.motions.checks import MOST_SAMPLES, whole
 from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 
@@ -37,7 +38,7 @@ def despike(motion: Motion, times: float = 50.0) -> Motion:
     coarse digits and smooth motions do not turn into zero).  Where most samples
     repeat each other nothing is replaced.
     """
-    times = positive("step despike", "times", times, "standard deviations")
+    times = positive_number("step despike: times", times, "standard deviations")
     _enough_samples("despike", motion, 5)
     from scipy.ndimage import median_filter
 
@@ -78,7 +79,7 @@ def displacement_baseline(motion: Motion, order: int = 6) -> Motion:
 
 def taper(motion: Motion, duration_s: float) -> Motion:
     """Bring both ends to zero with half a cosine bell (Tukey window; SciPy)."""
-    duration_s = positive("step taper", "duration_s", duration_s, "seconds")
+    duration_s = positive_number("step taper: duration_s", duration_s, "seconds")
     length = motion.time[-1]
     if 2 * duration_s > length:
         raise InputError(
@@ -98,8 +99,8 @@ def pad(motion: Motion, before_s: float = 0.0, after_s: float = 0.0) -> Motion:
     Brady 1992, USGS Open-File Report 92-296A), and displacements stay right only while that room is
     kept (Boore 2005, Bull. Seism. Soc. Am. 95(2), 745-750).
     """
-    before_s = not_negative("step pad", "before_s", before_s, "seconds")
-    after_s = not_negative("step pad", "after_s", after_s, "seconds")
+    before_s = number_from_zero("step pad: before_s", before_s, "seconds")
+    after_s = number_from_zero("step pad: after_s", after_s, "seconds")
     if before_s + after_s > MOST_SAMPLES * motion.dt:
         raise InputError(
             f"step pad: {before_s + after_s:g} s of zeros are more than {MOST_SAMPLES} samples of "

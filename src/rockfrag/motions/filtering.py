@@ -15,7 +15,8 @@ from fractions import Fraction
 import numpy as np
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import peaks, positive, whole
+from rockfrag.input_checks import positive_number
+from rockfrag.motions.checks import peaks, whole
 from rockfrag.records.motion import Motion
 
 
@@ -65,7 +66,7 @@ def resample(motion: Motion, dt_s: float) -> Motion:
     end at zero is taken off the straight line between its ends first, so that it does not ring there, and
     nothing is added beyond its last sample.
     """
-    dt_s = positive("step resample", "dt_s", dt_s, "seconds")
+    dt_s = positive_number("step resample: dt_s", dt_s, "seconds")
     if dt_s >= motion.dt * motion.acceleration.size:
         raise InputError(f"step resample: dt_s {dt_s} is not shorter than motion {motion.name!r}.")
     ratio = Fraction(motion.dt / dt_s).limit_denominator(1000)
@@ -85,7 +86,7 @@ def resample(motion: Motion, dt_s: float) -> Motion:
 
 def interpolate(motion: Motion, dt_s: float) -> Motion:
     """Sample the straight lines between samples more finely; the motion itself stays the same."""
-    dt_s = positive("step interpolate", "dt_s", dt_s, "seconds")
+    dt_s = positive_number("step interpolate: dt_s", dt_s, "seconds")
     parts = round(motion.dt / dt_s)
     if not 1 <= parts <= 1000 or abs(parts * dt_s / motion.dt - 1) > 1e-9:
         raise InputError(
@@ -98,7 +99,7 @@ def interpolate(motion: Motion, dt_s: float) -> Motion:
 
 
 def _corner(step: str, name: str, value: float, motion: Motion) -> float:
-    corner = positive(f"step {step}", name, value, "hertz")
+    corner = positive_number(f"step {step}: {name}", value, "hertz")
     nyquist = 0.5 / motion.dt
     # ObsPy takes what is within a millionth of Nyquist for Nyquist and changes the filter
     if corner >= nyquist * (1 - 2e-6):

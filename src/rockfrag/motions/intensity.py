@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.motions.checks import not_negative, positive
+from rockfrag.input_checks import number_from_zero, positive_number
 from rockfrag.motions.declared import intensity_measure
 from rockfrag.records.integration import peak_displacement, peak_velocity
 from rockfrag.records.motion import Motion
@@ -248,7 +248,7 @@ intensity_measure("", power=0, label="pulse explained", name="pulse_explained", 
 @intensity_measure("", power=1, label="a/(g tan α)", of_block=True)
 def uplift_ratio(motion: Motion, alpha: float) -> float:
     """Peak acceleration over that which starts rocking, a/(g tan α) [-] (Kirkpatrick, 1927)."""
-    alpha = positive("uplift_ratio", "alpha", alpha, "radians")
+    alpha = positive_number("uplift_ratio: alpha", alpha, "radians")
     return pga(motion) / (GRAVITY * math.tan(alpha))
 
 
@@ -259,8 +259,8 @@ def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
     It decides over large or quickly shaken blocks (Ishiyama 1982, Earthquake Eng. Struct. Dyn. 10,
     635-650; Dimitrakopoulos & Paraskeva 2015, Earthquake Eng. Struct. Dyn. 44, 2013-2033).
     """
-    alpha = positive("velocity_ratio", "alpha", alpha, "radians")
-    p = not_negative("velocity_ratio", "p", p, "1/s")
+    alpha = positive_number("velocity_ratio: alpha", alpha, "radians")
+    p = number_from_zero("velocity_ratio: p", p, "1/s")
     return p * pgv(motion) / (GRAVITY * math.tan(alpha))
 
 
@@ -270,5 +270,5 @@ def frequency_ratio(pulse_period: float, p: float) -> float:
 
     Zhang & Makris (2001, J. Eng. Mech. 127(5), 473-483).
     """
-    p = positive("frequency_ratio", "p", p, "1/s")
+    p = positive_number("frequency_ratio: p", p, "1/s")
     return 2 * math.pi / (pulse_period * p)

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import MOST_SAMPLES, number, plain, positive, whole
+from rockfrag.input_checks import positive_number, real_number
+from rockfrag.motions.checks import MOST_SAMPLES, plain, whole
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
@@ -50,7 +51,7 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
         "sine",
         "steady harmonic motion from rest",
         lambda t: np.sin(2 * np.pi * t / period),
-        cycles * positive("sine", "period", period, "seconds"),
+        cycles * positive_number("sine: period", period, "seconds"),
         dt,
         amplitude=amplitude,
         period=period,
@@ -85,7 +86,7 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
         "one_sine",
         "Makris & Roussos (2000)",
         lambda t: np.sin(2 * np.pi * t / period),
-        positive("one_sine", "period", period, "seconds"),
+        positive_number("one_sine: period", period, "seconds"),
         dt,
         amplitude=amplitude,
         period=period,
@@ -120,7 +121,7 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
         "one_cosine",
         "Makris & Roussos (2000)",
         lambda t: np.cos(2 * np.pi * t / period),
-        positive("one_cosine", "period", period, "seconds"),
+        positive_number("one_cosine: period", period, "seconds"),
         dt,
         jumps=True,
         amplitude=amplitude,
@@ -135,8 +136,8 @@ def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion
     the table starts and ends at rest, and its acceleration jumps to PGA at the start and from it at the end.
     """
     name = "commanded_cosine"
-    positive(name, "pga", pga, "m/s²")
-    period = 2 * np.pi * positive(name, "pgv_over_pga", pgv_over_pga, "seconds")
+    positive_number(f"{name}: pga", pga, "m/s²")
+    period = 2 * np.pi * positive_number(f"{name}: pgv_over_pga", pgv_over_pga, "seconds")
     cycles = whole(name, "cycles", cycles, 1, 1000)
     return _pulse(
         name,
@@ -178,7 +179,7 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
         "half_sine",
         "Housner (1963)",
         lambda t: np.sin(np.pi * t / duration),
-        positive("half_sine", "duration", duration, "seconds"),
+        positive_number("half_sine: duration", duration, "seconds"),
         dt,
         amplitude=amplitude,
         duration=duration,
@@ -212,7 +213,7 @@ def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
         "rectangular",
         "Housner (1963)",
         np.ones_like,
-        positive("rectangular", "duration", duration, "seconds"),
+        positive_number("rectangular: duration", duration, "seconds"),
         dt,
         jumps=True,
         amplitude=amplitude,
@@ -246,7 +247,9 @@ def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
         If a parameter is not such a number.
     """
     centre = (
-        7.1 * positive("ricker_symmetric", "period", period, "seconds") / (math.sqrt(2) * np.pi)
+        7.1
+        * positive_number("ricker_symmetric: period", period, "seconds")
+        / (math.sqrt(2) * np.pi)
     )
 
     def shape(t: Floats) -> Floats:
@@ -290,7 +293,9 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
         If a parameter is not such a number.
     """
     unit = (
-        math.sqrt(3) * positive("ricker_antisymmetric", "period", period, "seconds") / (2 * np.pi)
+        math.sqrt(3)
+        * positive_number("ricker_antisymmetric: period", period, "seconds")
+        / (2 * np.pi)
     )
     centre = 7.5 * unit
     # the derivative of the shape vanishes at x² = 3 ± √6; the smaller one is the peak
@@ -343,10 +348,13 @@ def mavroeidis_papageorgiou(
         If a parameter is not such a number.
     """
     who = "mavroeidis_papageorgiou"
-    if number(who, "cycles", cycles) < 1:
+    if real_number(f"{who}: cycles", cycles) < 1:
         raise InputError(f"{who}: cycles must be one or more, got {cycles!r}.")
-    length = cycles * positive(who, "period", period, "seconds")
-    omega, phase = 2 * np.pi / period, math.radians(number(who, "phase_deg", phase_deg, "degrees"))
+    length = cycles * positive_number(f"{who}: period", period, "seconds")
+    omega, phase = (
+        2 * np.pi / period,
+        math.radians(real_number(f"{who}: phase_deg", phase_deg, "degrees")),
+    )
 
     def shape(t: Floats) -> Floats:
         s = t - length / 2
@@ -397,10 +405,10 @@ def sine_sweep(
         If a parameter is not such a number.
     """
     who = "sine_sweep"
-    start = positive(who, "start_hz", start_hz, "hertz")
-    end = positive(who, "end_hz", end_hz, "hertz")
-    step = positive(who, "dt", dt, "seconds")
-    rate = positive(who, "octaves_per_minute", octaves_per_minute) / 60
+    start = positive_number(f"{who}: start_hz", start_hz, "hertz")
+    end = positive_number(f"{who}: end_hz", end_hz, "hertz")
+    step = positive_number(f"{who}: dt", dt, "seconds")
+    rate = positive_number(f"{who}: octaves_per_minute", octaves_per_minute) / 60
     octaves = math.log2(end / start)
     if octaves == 0:
         raise InputError(f"{who}: start_hz and end_hz are both {start_hz} and nothing is swept.")
@@ -435,8 +443,8 @@ def _pulse(
     **parameters: Any,
 ) -> Motion:
     """Sample ``amplitude`` × ``shape`` between zeros; see the module's first lines."""
-    number(name, "amplitude", amplitude)
-    samples = length / positive(name, "dt", dt, "seconds")
+    real_number(f"{name}: amplitude", amplitude)
+    samples = length / positive_number(f"{name}: dt", dt, "seconds")
     if not 1 < samples <= MOST_SAMPLES:
         raise InputError(
             f"{name}: {length:g} s make {samples:.3g} samples of dt {dt:g} s, which is not between "

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import number
+from rockfrag.input_checks import real_number
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.orientation import azimuth_of, is_vertical
@@ -37,7 +37,7 @@ def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:
         If the sampling intervals or the lengths differ.
     """
     _check_pair(first, second)
-    angle = math.radians(number("rotate", "angle_deg", angle_deg, "degrees"))
+    angle = math.radians(real_number("rotate: angle_deg", angle_deg, "degrees"))
     turned = first.acceleration * math.cos(angle) + second.acceleration * math.sin(angle)
     return first.after("rotate", turned, second=second.name, angle_deg=float(angle_deg))
 
@@ -68,7 +68,7 @@ def rotd(
     InputError
         If the components do not fit together or the percentile is not from 0 to 100.
     """
-    percentile = number("rotd", "percentile", percentile)
+    percentile = real_number("rotd: percentile", percentile)
     if not 0 <= percentile <= 100:
         raise InputError(f"rotd: percentile must lie between 0 and 100, got {percentile}.")
     values = [measure(rotate(first, second, angle)) for angle in DIRECTIONS_DEG]
@@ -77,7 +77,7 @@ def rotd(
 
 def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Motion:
     """Component of a horizontal motion in the direction of an azimuth."""
-    wanted = math.radians(number("rotate_to_azimuth", "azimuth_deg", azimuth_deg, "degrees"))
+    wanted = math.radians(real_number("rotate_to_azimuth: azimuth_deg", azimuth_deg, "degrees"))
     angles = [math.radians(azimuth(motion)) for motion in (first, second)]
     sine = math.sin(angles[1] - angles[0])
     if abs(sine) < math.cos(math.radians(_RIGHT_ANGLE)):

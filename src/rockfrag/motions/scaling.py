@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import not_negative, positive
+from rockfrag.input_checks import number_from_zero, positive_number
 from rockfrag.motions.intensity import arias, pga, pgv, spectral_acceleration
 from rockfrag.records.motion import Motion
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
@@ -31,7 +31,7 @@ def scale(motion: Motion, factor: float) -> Motion:
     InputError
         If the factor is not a positive number.
     """
-    factor = positive("step scale", "factor", factor)
+    factor = positive_number("step scale: factor", factor)
     return motion.after("scale", motion.acceleration * factor, factor=factor)
 
 
@@ -60,7 +60,7 @@ def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
     InputError
         If the motion is zero throughout or the wanted value is not a positive number.
     """
-    target = positive("step scale_to_pga", "pga_g", pga_g, "g")
+    target = positive_number("step scale_to_pga: pga_g", pga_g, "g")
     return _scaled("scale_to_pga", motion, target * GRAVITY, pga(motion), pga_g=target)
 
 
@@ -83,16 +83,16 @@ def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
     InputError
         If the motion is zero throughout or the wanted value is not a positive number.
     """
-    target = positive("step scale_to_pgv", "pgv_cm_s", pgv_cm_s, "cm/s")
+    target = positive_number("step scale_to_pgv: pgv_cm_s", pgv_cm_s, "cm/s")
     wanted = target / CENTIMETRES_PER_METRE
     return _scaled("scale_to_pgv", motion, wanted, pgv(motion), pgv_cm_s=target)
 
 
 def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0.05) -> Motion:
     """Scale to a pseudo-spectral acceleration [g] at a period [s] and a damping [-]."""
-    target = positive("step scale_to_sa", "sa_g", sa_g, "g")
-    period_s = positive("step scale_to_sa", "period_s", period_s, "seconds")
-    damping = not_negative("step scale_to_sa", "damping", damping)
+    target = positive_number("step scale_to_sa: sa_g", sa_g, "g")
+    period_s = positive_number("step scale_to_sa: period_s", period_s, "seconds")
+    damping = number_from_zero("step scale_to_sa: damping", damping)
     actual = spectral_acceleration(motion, period_s, damping)
     settings = {"sa_g": target, "period_s": period_s, "damping": damping}
     return _scaled("scale_to_sa", motion, target * GRAVITY, actual, **settings)
@@ -100,7 +100,7 @@ def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0
 
 def scale_to_arias(motion: Motion, arias_m_s: float) -> Motion:
     """Scale to an Arias intensity [m/s]."""
-    target = positive("step scale_to_arias", "arias_m_s", arias_m_s, "m/s")
+    target = positive_number("step scale_to_arias: arias_m_s", arias_m_s, "m/s")
     return _scaled("scale_to_arias", motion, target, arias(motion), 0.5, arias_m_s=target)
 
 
@@ -111,7 +111,7 @@ def compress_time(motion: Motion, factor: float) -> Motion:
     by √λ and displacements by λ (similitude of Froude; Harris & Sabnis 1999, Structural Modeling
     and Experimental Techniques, 2nd ed.).  A factor below one stretches time.
     """
-    factor = positive("step compress_time", "factor", factor)
+    factor = positive_number("step compress_time: factor", factor)
     return motion.after("compress_time", motion.acceleration, dt=motion.dt / factor, factor=factor)
 
 

@@ -7,7 +7,7 @@ integrates to other velocities.  Baseline steps after the cut are the user's cho
 import math
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import not_negative, number, positive
+from rockfrag.input_checks import number_from_zero, positive_number, real_number
 from rockfrag.motions.conditioning import starting_later
 from rockfrag.motions.intensity import arias_times, bracketed_times
 from rockfrag.records.motion import Motion
@@ -16,8 +16,8 @@ from rockfrag.units import GRAVITY
 
 def strong_part(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> Motion:
     """Keep the samples between two fractions of the Arias intensity."""
-    lower = number("step strong_part", "lower", lower)
-    upper = number("step strong_part", "upper", upper)
+    lower = real_number("step strong_part: lower", lower)
+    upper = real_number("step strong_part: upper", upper)
     if not 0 <= lower < upper <= 1:
         raise InputError(
             f"step strong_part: lower {lower} and upper {upper} must be fractions of the Arias "
@@ -33,7 +33,7 @@ def strong_part(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> Mot
 
 def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
     """Keep everything between the first and the last sample that reaches a threshold [g]."""
-    threshold_g = positive("step bracketed_part", "threshold_g", threshold_g, "g")
+    threshold_g = positive_number("step bracketed_part: threshold_g", threshold_g, "g")
     start, end = bracketed_times(motion, threshold_g * GRAVITY)
     if math.isnan(start):
         raise InputError(
@@ -45,8 +45,8 @@ def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
 
 def trim(motion: Motion, start_s: float, end_s: float) -> Motion:
     """Keep the samples from ``start_s`` to ``end_s`` [s], counted from the first sample."""
-    start_s = not_negative("step trim", "start_s", start_s, "seconds")
-    end_s = positive("step trim", "end_s", end_s, "seconds")
+    start_s = number_from_zero("step trim: start_s", start_s, "seconds")
+    end_s = positive_number("step trim: end_s", end_s, "seconds")
     length = float(motion.time[-1])
     if not start_s < end_s <= length + motion.dt / 2:
         raise InputError(

@@ -16,7 +16,8 @@ from scipy.signal.windows import tukey
 from scipy.stats import gamma
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import number, plain, positive, whole
+from rockfrag.input_checks import positive_number, real_number
+from rockfrag.motions.checks import plain, whole
 from rockfrag.motions.spectra import oscillator_response, response_spectrum
 from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
@@ -83,10 +84,10 @@ def evolutionary(
     who = "evolutionary"
     seed = whole(who, "seed", seed, 0, 2**63 - 1)
     for name, value in (("arias_m_s", arias_m_s), ("mid_hz", mid_hz), ("corner_hz", corner_hz)):
-        positive(who, name, value)
-    positive(who, "dt", dt, "seconds")
-    number(who, "slope_hz_s", slope_hz_s)
-    if not 0.02 <= number(who, "filter_damping", filter_damping) < 1:
+        positive_number(f"{who}: {name}", value)
+    positive_number(f"{who}: dt", dt, "seconds")
+    real_number(f"{who}: slope_hz_s", slope_hz_s)
+    if not 0.02 <= real_number(f"{who}: filter_damping", filter_damping) < 1:
         raise InputError(f"{who}: filter_damping must lie in 0.02 … 1, got {filter_damping}.")
     shape, spread = _envelope(who, d5_95_s, mid_s)
     end = float(gamma.ppf(1 - 1e-4, shape, scale=spread))
@@ -167,7 +168,7 @@ def spectrum_compatible(
     """
     who = "spectrum_compatible"
     seed = whole(who, "seed", seed, 0, 2**63 - 1)
-    positive(who, "dt", dt, "seconds")
+    positive_number(f"{who}: dt", dt, "seconds")
     given, wanted = _target(who, periods, target_g, dt)
     shape, spread = _envelope(who, d5_95_s, mid_s)
     decades = math.log10(given[-1] / given[0])
@@ -214,8 +215,8 @@ def spectrum_compatible(
 
 def _envelope(who: str, d5_95_s: float, mid_s: float) -> tuple[float, float]:
     """Shape and scale of the gamma density that q² follows, from two properties of its integral."""
-    duration = positive(who, "d5_95_s", d5_95_s, "seconds")
-    middle = positive(who, "mid_s", mid_s, "seconds")
+    duration = positive_number(f"{who}: d5_95_s", d5_95_s, "seconds")
+    middle = positive_number(f"{who}: mid_s", mid_s, "seconds")
 
     def ratio(shape: float) -> float:
         low, mid, high = gamma.ppf([0.05, 0.45, 0.95], shape)

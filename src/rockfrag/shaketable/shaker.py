@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import positive
+from rockfrag.input_checks import positive_number
 from rockfrag.motions.conditioning import pad
 from rockfrag.motions.filtering import highpass
 from rockfrag.motions.scaling import scale_to_pga
@@ -70,7 +70,7 @@ class Shaker:
         if self.velocity is not None:
             limits["velocity"] = self.velocity
         for name, value in limits.items():
-            positive("shaker", name, value)
+            positive_number(f"shaker: {name}", value)
         if not self.lowest_hz < self.highest_hz:
             raise InputError(
                 f"shaker: the band from {self.lowest_hz} to {self.highest_hz} Hz is empty."

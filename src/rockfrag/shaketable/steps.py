@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import positive
+from rockfrag.input_checks import positive_number
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
@@ -24,8 +24,8 @@ class LinearSteps:
     step_g: float
 
     def __post_init__(self) -> None:
-        positive("linear steps", "start_g", self.start_g)
-        positive("linear steps", "step_g", self.step_g)
+        positive_number("linear steps: start_g", self.start_g)
+        positive_number("linear steps: step_g", self.step_g)
 
     def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
         """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
@@ -41,8 +41,8 @@ class GeometricSteps:
     growth: float
 
     def __post_init__(self) -> None:
-        positive("geometric steps", "start_g", self.start_g)
-        positive("geometric steps", "growth", self.growth)
+        positive_number("geometric steps: start_g", self.start_g)
+        positive_number("geometric steps: growth", self.growth)
 
     def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
         """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
@@ -65,7 +65,7 @@ class ForceSteps:
 
     def __post_init__(self) -> None:
         for name in ("start_n", "step_n", "moved_mass_kg"):
-            positive("force steps", name, getattr(self, name))
+            positive_number(f"force steps: {name}", getattr(self, name))
 
     def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
         """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""

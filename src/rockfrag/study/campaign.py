@@ -9,8 +9,7 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.schema import checked
-from rockfrag.study.heading import Heading, heading_of
-from rockfrag.study.steps import Steps, checked_steps
+from rockfrag.study.heading import Heading, Steps, beside, checked_steps, heading_of
 
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
 """Measures from which the motion of a commanded pulse follows."""
@@ -94,7 +93,7 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     fetched = {source.path for source in fetch}
 
     def existing(key: str, name: str | None) -> Path | None:
-        return None if name is None else _existing(source, key, _beside(source, name), fetched)
+        return None if name is None else _existing(source, key, beside(source, name), fetched)
 
     _check_object(source, thing, content["unknowns"])
     _check_columns(source, campaign["columns"], isinstance(campaign["motions"], Mapping))
@@ -114,13 +113,13 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         pulse_cycles = campaign["motions"].get("cycles", 1)
         _check_pulses(source, campaign)
     else:
-        motions = str(_beside(source, campaign["motions"]))
+        motions = str(beside(source, campaign["motions"]))
     if motions.endswith(".npz"):
         _existing(source, "campaign.motions", Path(motions), fetched)
     return CampaignStudy(
-        **heading_of(content, path),
+        **heading_of(content, source),
         fetch=fetch,
-        tests=_existing(source, "campaign.tests", _beside(source, campaign["tests"]), fetched),
+        tests=_existing(source, "campaign.tests", beside(source, campaign["tests"]), fetched),
         columns=dict(campaign["columns"]),
         other_codes=existing("campaign.other_codes", campaign.get("other_codes")),
         motions=motions,
@@ -144,13 +143,9 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     )
 
 
-def _beside(source: Path, name: str) -> Path:
-    return Path(os.path.normpath(source.parent / name))
-
-
 def _kept(source: Path, number: int, name: str) -> Path:
     """Where a fetched file is kept: never outside of the folders of the configuration and of the run."""
-    path = _beside(source, name)
+    path = beside(source, name)
     place = Path(os.path.abspath(path))
     if not any(place.is_relative_to(os.path.abspath(home)) for home in (source.parent, ".")):
         raise InputError(

@@ -1,10 +1,15 @@
-"""What every study says of itself, of whatever kind it is."""
+"""What studies of every kind say: their heading, files that lie beside them, lists of processing steps."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from rockfrag.errors import InputError
+from rockfrag.files import is_file
+
+Steps = tuple[Mapping[str, Any], ...]
 
 
 @dataclass(frozen=True)
@@ -17,7 +22,42 @@ class Heading:
     source: Path
 
 
-def heading_of(content: Mapping[str, Any], path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Return the fields of :class:`Heading` of a configuration that was read from ``path``."""
+def heading_of(content: Mapping[str, Any], source: Path) -> dict[str, Any]:
+    """Return the fields of :class:`Heading` of a configuration that was read from ``source``."""
     named = {"name": content["study"], "title": content["title"], "seed": content["seed"]}
-    return {**named, "source": Path(path)}
+    return {**named, "source": source}
+
+
+def beside(source: Path, name: str) -> Path:
+    """Path of a file that a configuration names relative to itself."""
+    return Path(os.path.normpath(source.parent / name))
+
+
+def existing_file(source: Path, key: str, name: str) -> Path:
+    """Path of a file that exists, which a configuration names under ``key`` relative to itself."""
+    path = beside(source, name)
+    check_file(path, f"{source}: key {key}")
+    return path
+
+
+def check_file(path: Path, where: str) -> None:
+    """Check that a file exists and has a name that the workflow can use; messages begin with ``where``."""
+    if not is_file(path):
+        raise InputError(f"{where}: expected an existing file, found no {path}.")
+    if set("{}") & set(str(path)):
+        raise InputError(
+            f"{where}: {path} has curly brackets in its name, which the workflow takes for wildcards; rename it."
+        )
+
+
+def checked_steps(source: Path, key: str, steps: Sequence[Mapping[str, Any]]) -> Steps:
+    """Return the steps that a configuration lists under ``key``; each step and parameter must be known."""
+    if steps:
+        # the steps need SciPy and ObsPy, which a study without any need not wait for
+        from rockfrag.motions.processing import check_steps
+
+        try:
+            check_steps(steps)
+        except InputError as error:
+            raise InputError(f"{source}: key {key}: {error}") from error
+    return tuple(steps)

@@ -30,15 +30,13 @@ from rockfrag.study.configurations import (
     with_friction,
     with_restitution,
 )
-from rockfrag.study.heading import heading_of
+from rockfrag.study.heading import check_file, checked_steps, existing_file, heading_of
 from rockfrag.study.measured_table import (
     TABLE_KEY,
     MeasuredTable,
     measured_table_from,
 )
-from rockfrag.study.paths import check_file, existing_file
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
-from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.system.blocks import Block
 from rockfrag.system.system import System
@@ -94,7 +92,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     )
     shaker_file = _optional_file(source, "shaker", content)
     study = Study(
-        **heading_of(content, path),
+        **heading_of(content, source),
         catalogue_file=catalogue_file,
         catalogue=_rows(source, read_catalogue(catalogue_file), motions.get("use")),
         processing=checked_steps(source, "motions.processing", motions.get("processing", ())),

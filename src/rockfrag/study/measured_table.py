@@ -9,7 +9,7 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.schema import checked
-from rockfrag.study.heading import Heading, heading_of
+from rockfrag.study.heading import Heading, beside, heading_of
 from rockfrag.tabular import read_cells
 
 TABLE_KEY = "table"
@@ -41,7 +41,7 @@ def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]
     """Make a study of a measured table from a configuration that was read from ``path``."""
     source = Path(path)
     content = checked(content, "measured_table", str(source))
-    table = Path(os.path.normpath(source.parent / content[TABLE_KEY]))
+    table = beside(source, content[TABLE_KEY])
     if not is_file(table):
         raise InputError(
             f"{source}: key {TABLE_KEY}: there is no {table}; put a CSV file with one row per test "
@@ -50,7 +50,7 @@ def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]
     columns = content["columns"]
     _check_columns(source, table, content)
     return MeasuredTable(
-        **heading_of(content, path),
+        **heading_of(content, source),
         table=table,
         measures={name: tuple(factors) for name, factors in content["measures"].items()},
         overturned=columns["overturned"],

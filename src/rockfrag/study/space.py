@@ -13,8 +13,7 @@ from rockfrag.errors import InputError
 from rockfrag.records.catalogue import own_records, read_catalogue
 from rockfrag.rocking.space_sweep import Sweep
 from rockfrag.schema import checked
-from rockfrag.study.heading import Heading, heading_of
-from rockfrag.study.paths import existing_file
+from rockfrag.study.heading import Heading, existing_file, heading_of
 
 SPACE_KEY = "space"
 """Key that only a study of bodies in space has."""
@@ -65,7 +64,7 @@ def space_study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -
     if "catalogue" in space:
         catalogue_file = existing_file(Path(path), "space.catalogue", space["catalogue"])
     return SpaceStudy(
-        **heading_of(content, path),
+        **heading_of(content, Path(path)),
         every=space.get("every"),
         catalogue_file=catalogue_file,
         catalogue=None if catalogue_file is None else _pairs(catalogue_file),

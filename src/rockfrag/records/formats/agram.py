@@ -6,6 +6,7 @@ rows of ten (F8.2), which need no blank between them.
 """
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
@@ -13,7 +14,7 @@ from obspy import UTCDateTime
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import Section, positive_step, refuse_others
+from rockfrag.records.parsing.fortran_sections import Section, accelerations, positive_step
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
@@ -39,20 +40,18 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
-    channels, quantities = [], []
+    return accelerations(text, _channels(text))
+
+
+def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
     for line, following in text.parts(_RATE_LINE):
         stop = following if following == len(text) else following - _ABOVE
-        section, dt, unit = _section(text, line, stop)
-        samples = section.samples(text)
-        quantities.append(section.quantity)
-        if section.quantity == "acceleration":
-            plain = Channel(section.count, dt, samples.copy, unit)
-            channels.append(_channel(text.lines(max(0, line - _ABOVE), line), plain))
-    refuse_others(text, quantities)
-    return channels
+        section = _section(text, line, stop)
+        words = text.lines(max(0, line - _ABOVE), line)
+        yield section.quantity, _described(section.channel(text), words)
 
 
-def _section(text: TextFile, line: int, stop: int) -> tuple[Section, float, str]:
+def _section(text: TextFile, line: int, stop: int) -> Section:
     rate, size = _RATE.match(text.line(line)), _SIZE.match(text.line(line + 1))
     if rate is None or size is None:
         text.fail("rate, type, number of points or units cannot be read here", line)
@@ -69,10 +68,10 @@ def _section(text: TextFile, line: int, stop: int) -> tuple[Section, float, str]
         text.fail(f"{len(units)} units are stated where acceleration, velocity and "
                   "displacement have one each", line + 1)  # fmt: skip
     dt = positive_step(text, 1 / float(rate["rate"]) if float(rate["rate"]) else 0.0, line)
-    return Section(quantity, int(size["count"]), line + 2, stop, _WIDTH), dt, units[place]
+    return Section(quantity, int(size["count"]), line + 2, stop, _WIDTH, dt, units[place])
 
 
-def _channel(words: list[str], values: Channel) -> Channel:
+def _described(values: Channel, words: list[str]) -> Channel:
     start, component = None, ""
     for line in words:
         match = _TIME.search(line)

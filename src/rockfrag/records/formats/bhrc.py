@@ -11,7 +11,7 @@ import re
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import Section, positive_step
+from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
@@ -54,8 +54,7 @@ def _component(text: TextFile, first: int, stop: int) -> Channel:
     start = at_reals + _REAL_LINES
     count = int(size["count"])
     dt = _step(text, at_reals, count, float(size["duration"]))
-    section = Section("acceleration", count, start, stop, _WIDTH)
-    samples = section.samples(text)
+    samples = text.counted(start, stop, count, _WIDTH)
     component = _COMPONENT.search(words)
     name = component["name"].upper() if component else ""
     station = _STATION.search(words)

@@ -6,10 +6,9 @@ have several channels, and several quantities of one channel.
 """
 
 import re
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
 from obspy import UTCDateTime
 
 from rockfrag.records.parsing.channel import Channel
@@ -17,11 +16,11 @@ from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import (
     QUANTITIES,
     Section,
+    accelerations,
     field_width,
     integers,
     positive_step,
     reals,
-    refuse_others,
 )
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
@@ -91,24 +90,20 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
-    channels: list[Channel] = []
-    quantities: list[str] = []
     if re.search(r"\bspectr", text.line(0), re.IGNORECASE):
         text.refuse("this file holds response spectra, not acceleration; give the V2 file")
+    return accelerations(text, _channels(text))
+
+
+def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
     line = text.find(_HEAD)
     while 0 <= line < len(text):
         at_values, header = _header(text, line)
         while at_values >= 0:
-            section, unit = _section(text, at_values)
-            quantities.append(section.quantity)
-            samples = section.samples(text)
-            if section.quantity == "acceleration":
-                channels.append(_channel(section, samples, unit, header))
-            next_head = text.find(_HEAD, section.stop)
-            at_values = text.find(_VALUES, section.stop, None if next_head < 0 else next_head)
-        line = text.find(_HEAD, section.stop)
-    refuse_others(text, quantities)
-    return channels
+            section = _section(text, at_values, header.dt)
+            yield section.quantity, _described(section.channel(text), header)
+            line = text.find(_HEAD, section.stop)
+            at_values = text.find(_VALUES, section.stop, None if line < 0 else line)
 
 
 def _header(text: TextFile, first: int) -> tuple[int, _Header]:
@@ -163,7 +158,7 @@ def _block(
     return line + 1, line + 1 + lines, field_width(text.line(line)) or width, count
 
 
-def _section(text: TextFile, line: int) -> tuple[Section, str]:
+def _section(text: TextFile, line: int, dt: float) -> Section:
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("the line above the samples does not state their unit", line)
@@ -175,7 +170,7 @@ def _section(text: TextFile, line: int) -> tuple[Section, str]:
         text.refuse(f"the samples are raw {unit}; give the V1 or V2 file, in units of motion", line)
     stop = text.until(_END, line + 1)
     width = field_width(text.line(line).split("ormat", 1)[-1])
-    return Section(quantity, int(match["count"]), line + 1, stop, width), unit
+    return Section(quantity, int(match["count"]), line + 1, stop, width, dt, unit)
 
 
 def _unknown(words: list[str]) -> float:
@@ -197,7 +192,7 @@ def _start(whole: list[int], numbers: list[float], unknown: float) -> UTCDateTim
         return None
 
 
-def _channel(section: Section, samples: NDArray[np.float64], unit: str, header: _Header) -> Channel:
+def _described(values: Channel, header: _Header) -> Channel:
     network = station = location = code = name = component = ""
     for line in header.words:
         found = re.search(r"Code\s*:\s*(\w+)-(\w+)\s*(.*)$", line)
@@ -212,11 +207,8 @@ def _channel(section: Section, samples: NDArray[np.float64], unit: str, header: 
     azimuth = header.azimuth
     if component.lower() in ("", "other", "unknown"):
         component = f"{azimuth:03d}" if 1 <= azimuth <= 360 else _NAMED_AZIMUTHS.get(azimuth, code)
-    return Channel(
-        npts=section.count,
-        dt=header.dt,
-        samples=lambda: samples.copy(),
-        unit=unit,
+    return replace(
+        values,
         start_time=header.start_time,
         network=network,
         station=station,

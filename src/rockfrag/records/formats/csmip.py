@@ -8,6 +8,7 @@ pairs of time and acceleration in g/10.
 """
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 
 from rockfrag.records.parsing.channel import Channel
@@ -15,9 +16,9 @@ from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import (
     QUANTITIES,
     Section,
+    accelerations,
     field_width,
     positive_step,
-    refuse_others,
 )
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
@@ -64,34 +65,28 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
-    channels: list[Channel] = []
-    quantities: list[str] = []
     if _SPECTRA.match(text.line(0)):
         text.refuse(
             "this file holds response spectra (volume 3), not acceleration; give the V2 file"
         )
+    return accelerations(text, _channels(text))
+
+
+def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
     for first, stop in text.parts(_HEAD, _CHANNEL_END):
         words = text.lines(first, min(stop, first + _MAX_HEADER))
-        at_values = text.find(_VALUES, first, stop)
-        if at_values < 0 and is_pairs_header(text, first):
-            pairs = read_pairs(text, first, stop)
-            quantities.append("acceleration")
-            channels.append(_described(pairs.channel(), words))
-        elif at_values < 0:
-            text.fail("no line with the number of samples below; the file is cut short", first)
-        while at_values >= 0:
-            section, dt, unit = _section(text, at_values, stop)
-            quantities.append(section.quantity)
-            samples = section.samples(text)
-            if section.quantity == "acceleration":
-                plain = Channel(section.count, dt, samples.copy, unit)
-                channels.append(_described(plain, words))
-            at_values = text.find(_VALUES, section.stop, stop)
-    refuse_others(text, quantities)
-    return channels
+        line = text.find(_VALUES, first, stop)
+        if line < 0:
+            if not is_pairs_header(text, first):
+                text.fail("no line with the number of samples below; the file is cut short", first)
+            yield "acceleration", _described(read_pairs(text, first, stop).channel(), words)
+        while line >= 0:
+            section = _section(text, line, stop)
+            yield section.quantity, _described(section.channel(text), words)
+            line = text.find(_VALUES, section.stop, stop)
 
 
-def _section(text: TextFile, line: int, stop: int) -> tuple[Section, float, str]:
+def _section(text: TextFile, line: int, stop: int) -> Section:
     words = text.line(line)
     match = _VOLUME_2.match(words) or _VOLUME_1.match(words)
     if match is None:
@@ -103,14 +98,13 @@ def _section(text: TextFile, line: int, stop: int) -> tuple[Section, float, str]
     width = field_width(match["rest"])
     if width is None:
         width = 10 if _VOLUME_2.match(words) else 9
-    section = Section(
-        quantity, int(match["count"]), line + 1, min(stop, text.until(_END, line + 1)), width
-    )
     if unit:
         stated_unit = canonical_unit(unit["unit"]).replace("1/10g", "g/10")
     else:
         stated_unit = _DEFAULT_UNITS[quantity] if _VOLUME_2.match(words) else ""
-    return section, positive_step(text, dt, line), stated_unit
+    dt = positive_step(text, dt, line)
+    end = min(stop, text.until(_END, line + 1))
+    return Section(quantity, int(match["count"]), line + 1, end, width, dt, stated_unit)
 
 
 def _described(values: Channel, lines: list[str]) -> Channel:

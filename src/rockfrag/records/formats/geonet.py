@@ -11,14 +11,13 @@ from obspy import UTCDateTime
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import Section, integers, positive_step, reals
+from rockfrag.records.parsing.fortran_sections import integers, positive_step, reals
 from rockfrag.records.parsing.header_keys import first_match
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import clock_time
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected accelerogram\s+\S+", re.IGNORECASE)
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES, _A_LINE, _WIDTH = 16, 4, 6, 10, 8
-_QUANTITIES = ("acceleration", "velocity", "displacement")
 
 # places in the headers, counted from zero
 _START = (8, 9, 18, 19, 38)
@@ -71,9 +70,9 @@ def _component(text: TextFile, first: int) -> tuple[Channel, int]:
     if min(counts) < 0 or counts[0] < 1:
         text.fail(f"the header promises {counts[0]} samples of acceleration", at_integers + 3)
     acceleration, line = None, start
-    for quantity, count in zip(_QUANTITIES, counts, strict=True):
+    for count in counts:
         stop = line + -(-count // _A_LINE)
-        samples = Section(quantity, count, line, stop, _WIDTH).samples(text)
+        samples = text.counted(line, stop, count, _WIDTH)
         acceleration = samples if acceleration is None else acceleration
         line = stop
     assert acceleration is not None

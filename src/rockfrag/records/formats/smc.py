@@ -15,7 +15,7 @@ from obspy import UTCDateTime
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import Section, integers, positive_step, reals
+from rockfrag.records.parsing.fortran_sections import integers, positive_step, reals
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.time_value_pairs import pairs_of
 
@@ -58,9 +58,8 @@ def _parse(text: TextFile) -> list[Channel]:
     if count < 1 or not 0 <= comments < len(text):
         text.fail(f"the header promises {count} samples and {comments} comments", _TEXT_LINES + 1)
     start = _FIRST_DATA + comments
-    section = Section("acceleration", count, start, len(text), _width(text, start, whole))
     rate = numbers[_RATE]
-    samples, left_out = _without_surplus_lines(section, text)
+    samples, left_out = _without_surplus_lines(text, start, count, _width(text, start, whole))
     if rate == numbers[_MISSING_REAL]:
         # without a rate the values are pairs of time and acceleration
         values = pairs_of(samples, "cm/s2", text, start, count // 2).channel()
@@ -87,28 +86,29 @@ def _parse(text: TextFile) -> list[Channel]:
     ]
 
 
-def _without_surplus_lines(section: Section, text: TextFile) -> tuple[NDArray[np.float64], int]:
+def _without_surplus_lines(
+    text: TextFile, start: int, count: int, width: int
+) -> tuple[NDArray[np.float64], int]:
     """Return the values that the header counts, and how many stand below the last of them.
 
     Old digitised records have a line or two of scattered points at the end that their header does not
     count; a count that ends within a line is a wrong one.
     """
-    values = text.numbers(section.start, section.stop, section.width)
-    surplus = values.size - section.count
-    if 0 < surplus <= _SURPLUS_LINES * _PER_LINE and _ends_a_line(section, text):
-        return values[: section.count], surplus
-    return section.samples(text), 0
+    values = text.numbers(start, None, width)
+    surplus = values.size - count
+    if 0 < surplus <= _SURPLUS_LINES * _PER_LINE and _ends_a_line(text, start, count, width):
+        return values[:count], surplus
+    return text.counted(start, None, count, width), 0
 
 
-def _ends_a_line(section: Section, text: TextFile) -> bool:
+def _ends_a_line(text: TextFile, start: int, count: int, width: int) -> bool:
     """Tell whether the last value that the header counts is the last one of its line."""
-    width = section.width or 1
     found = 0
-    for line in range(section.start, section.stop):
+    for line in range(start, len(text)):
         found += -(-len(text.raw(line).rstrip()) // width)
-        if found >= section.count:
+        if found >= count:
             break
-    return found == section.count
+    return found == count
 
 
 def _noting(channel: Channel, left_out: int) -> Channel:

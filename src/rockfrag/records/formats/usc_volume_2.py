@@ -7,6 +7,7 @@ words above state count and interval. The largest value must be the peak that th
 """
 
 import re
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from rockfrag.records.formats.usc import place_of
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import Section, positive_step, refuse_others
+from rockfrag.records.parsing.fortran_sections import Section, accelerations, positive_step
 from rockfrag.records.parsing.header_keys import first_match
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
@@ -53,25 +54,23 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
-    channels, quantities = [], []
+    return accelerations(text, _channels(text))
+
+
+def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
     for first, stop in text.parts(_HEAD):
         line = text.find(_VALUES, first, stop)
         if line < 0:
-            channels.append(_in_words(text, first, stop))
-            quantities.append("acceleration")
+            yield "acceleration", _in_words(text, first, stop)
             continue
         words = text.lines(first, min(line, first + _MAX_HEADER))
         while line >= 0:
-            section, dt, unit = _section(text, line, words)
-            samples = section.samples(text)
-            quantities.append(section.quantity)
+            section = _section(text, line, words)
+            channel = section.channel(text)
             if section.quantity == "acceleration":
-                _check_peak(text, words, samples, line)
-                plain = Channel(section.count, dt, samples.copy, unit)
-                channels.append(place_of(words, plain))
+                _check_peak(text, words, channel.samples(), line)
+            yield section.quantity, place_of(words, channel)
             line = text.find(_VALUES, section.stop, stop)
-    refuse_others(text, quantities)
-    return channels
 
 
 def _in_words(text: TextFile, first: int, stop: int) -> Channel:
@@ -107,21 +106,22 @@ def _check_peak(text: TextFile, words: list[str], samples: NDArray[np.float64], 
         )
 
 
-def _section(text: TextFile, line: int, words: list[str]) -> tuple[Section, float, str]:
+def _section(text: TextFile, line: int, words: list[str]) -> Section:
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("number of samples, interval or quantity cannot be read here", line)
     peak = first_match(_PEAK, words)
     unit = match["unit"] or (peak["unit"] if peak else "")
-    section = Section(
+    dt = positive_step(text, float(match["dt"]), line)
+    return Section(
         _QUANTITIES[match["quantity"].upper()],
         int(match["count"]),
         line + 1,
         text.until(_END, line + 1),
         _WIDTH,
+        dt,
+        canonical_unit(unit.upper().replace("CMS", "CM")),
     )
-    dt = positive_step(text, float(match["dt"]), line)
-    return section, dt, canonical_unit(unit.upper().replace("CMS", "CM"))
 
 
 FORMAT = Format("USC2", _recognise, _parse)

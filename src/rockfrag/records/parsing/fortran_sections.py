@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.text_file import TextFile
 
 QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
@@ -20,17 +21,20 @@ _FORTRAN = re.compile(
 
 @dataclass(frozen=True)
 class Section:
-    """One run of values in a file: ``count`` samples of a quantity below the line ``line``."""
+    """One run of values in a file: ``count`` samples of a quantity in lines ``start`` up to ``stop``."""
 
     quantity: str
     count: int
     start: int
     stop: int
     width: int | None
+    dt: float  # [s]
+    unit: str
 
-    def samples(self, text: TextFile) -> NDArray[np.float64]:
-        """Return the values, shape (count,), checked against the count of the header."""
-        return text.counted(self.start, self.stop, self.count, self.width)
+    def channel(self, text: TextFile) -> Channel:
+        """Return the values, checked against the count of the header."""
+        samples = text.counted(self.start, self.stop, self.count, self.width)
+        return Channel(self.count, self.dt, samples.copy, self.unit)
 
 
 def integers(text: TextFile, start: int, stop: int, width: int, count: int) -> list[int]:
@@ -68,11 +72,16 @@ def field_width(words: str) -> int | None:
     return int(match["width"]) if match and 1 <= int(match["width"]) <= 40 else None
 
 
-def refuse_others(text: TextFile, quantities: Iterable[str]) -> None:
-    """Refuse a file that has values, but of acceleration none."""
-    held = sorted(set(quantities))
-    if held and "acceleration" not in held:
-        text.refuse(f"this file holds {' and '.join(held)}, not acceleration")
+def accelerations(text: TextFile, channels: Iterable[tuple[str, Channel]]) -> list[Channel]:
+    """Return the channels whose quantity is acceleration; refuse a file that has others alone."""
+    kept, held = [], set()
+    for quantity, channel in channels:
+        held.add(quantity)
+        if quantity == "acceleration":
+            kept.append(channel)
+    if held and not kept:
+        text.refuse(f"this file holds {' and '.join(sorted(held))}, not acceleration")
+    return kept
 
 
 def positive_step(text: TextFile, dt: float, line: int) -> float:
