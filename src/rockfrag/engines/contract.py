@@ -63,26 +63,13 @@ class Wish(Enum):
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked of every case beside its outcome.
+    """What is asked of every case beside its outcome."""
 
-    Attributes
-    ----------
-    history
-        The whole history.
-    forces
-        Friction demand, least normal force and the loss of contact.
-    linear
-        The linearised equations of motion.
-    g
-        Acceleration of gravity [m/s²].
-    step
-        Largest product of frequency parameter and step [-], of engines that take one.
-    """
-
-    history: bool = False
-    forces: bool = False
-    linear: bool = False
-    g: float = GRAVITY
+    history: bool = False  # the whole history
+    forces: bool = False  # friction demand, least normal force and the loss of contact
+    linear: bool = False  # the linearised equations of motion
+    g: float = GRAVITY  # acceleration of gravity [m/s²]
+    # largest product of frequency parameter and step [-], of engines that take one
     step: float = STEP
 
 
@@ -223,13 +210,7 @@ def engines() -> tuple[Engine, ...]:
 
 
 def engine_for(system: System, motion: GroundMotion, request: Request) -> Engine:
-    """Return the first engine that supports what is wanted.
-
-    Raises
-    ------
-    InputError
-        If none does: which wish cannot be met together with which.
-    """
+    """Return the first engine that supports what is wanted; refuse with the wishes that clash."""
     for engine in engines():
         if engine.supports(system, motion, request):
             return engine
@@ -252,13 +233,7 @@ def refusal(system: System, motion: GroundMotion, request: Request) -> str:
 
 
 def run_cases(cases: Cases) -> Outcomes:
-    """Let the engines answer, each for the systems and motions that it is the first to support.
-
-    Raises
-    ------
-    InputError
-        If there is a system that no engine supports.
-    """
+    """Let the engines answer, each for the systems and motions that it is the first to support."""
     if not cases.motions or not cases.systems or not cases.scales.size:
         return empty_outcomes(cases.names, cases.scales)
     chosen = cases.answering

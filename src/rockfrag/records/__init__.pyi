@@ -1,6 +1,3 @@
-from .catalogue import (
-    load_motions as load_motions,
-)
 from .motion import (
     Motion as Motion,
 )

@@ -175,27 +175,11 @@ def _inside(words: str, least: float, most: float) -> bool:
 def load_motions(
     path: str | os.PathLike[str], records: str | os.PathLike[str] = "resources/records"
 ) -> list[Motion]:
-    """Read every motion of a catalogue, in its order, fetching what is not there yet.
+    """Read every motion [m/s²] of a catalogue, in its order, fetching what is not there yet.
 
-    Files of the source ``folder`` are named from the folder of the catalogue; others lie below
-    ``records``, where they are put if absent. The facts of the catalogue go over those of the file.
-
-    Parameters
-    ----------
-    path
-        The catalogue (CSV).
-    records
-        Folder of fetched records.
-
-    Returns
-    -------
-    The motions [m/s²], one per row, in the order of the rows.
-
-    Raises
-    ------
-    InputError
-        If the catalogue or a record is wrong, or a file is not the one of its SHA-256: all that is
-        wrong at once.
+    Files of the source ``folder`` are named from the folder of the catalogue; others lie below ``records``, where
+    they are put if absent. The facts of the catalogue go over those of the file. All that is wrong is refused at
+    once.
     """
     table, lines = _checked(path)
     motions, problems = [], []

@@ -23,7 +23,6 @@ from .simulation import simulate as simulate
 from .spectra import (
     RockingSpectrum as RockingSpectrum,
     rocking_spectrum as rocking_spectrum,
-    uniform_block as uniform_block,
 )
 from .step_sensitivity import (
     StepSizeSensitive as StepSizeSensitive,

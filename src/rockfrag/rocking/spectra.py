@@ -62,26 +62,8 @@ class RockingSpectrum:
 def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
     """Return the uniform block of critical angle α [rad] and apparent period 2π/p [s].
 
-    Its size follows from p = √(3g/4R) (Housner, 1963); its density is 1000 kg/m³ for a depth of
-    1 m, which matters to nothing.
-
-    Parameters
-    ----------
-    alpha
-        Critical angle [rad].
-    period
-        2π/p [s].
-    g
-        Acceleration of gravity [m/s²].
-
-    Returns
-    -------
-    The block.
-
-    Raises
-    ------
-    InputError
-        If the angle is not between 0 and π/2 or the period is not positive.
+    Its size follows from p = √(3g/4R) (Housner, 1963); its density is 1000 kg/m³ for a depth of 1 m, which
+    matters to nothing.
     """
     if not 0 < alpha < math.pi / 2:
         raise InputError(f"alpha: a critical angle lies between 0 and π/2 rad, got {alpha}.")

@@ -116,17 +116,9 @@ class RigidBody:
         return unknown
 
     def seen_along(self, direction_deg: float = 0.0) -> "RigidBody":
-        """Return the planar body that moves in the vertical plane of a direction.
+        """Return the planar body that moves in the vertical plane of a direction, from x towards y [degrees].
 
-        Parameters
-        ----------
-        direction_deg
-            From the body's x axis towards its y axis [degrees]; of a planar body 0.
-
-        Raises
-        ------
-        InputError
-            If a planar body is asked for another plane than its own.
+        A planar body is known in its own plane only, direction 0.
         """
         if self.planar:
             if direction_deg % 360:

@@ -29,23 +29,15 @@ class Shape(NamedTuple):
 
 
 class Pile(NamedTuple):
-    """A statue as it stands on its pedestal.
+    """A statue as it stands on its pedestal."""
 
-    Attributes
-    ----------
-    pedestal, above : the two blocks, each as it stands by itself
-    statue : the statue, as if its base were no wider than the part of it that lies on the pedestal
-    lean : of the pedestal [rad]
-    offset : of the middle of the statue's base from the middle of the pedestal's top [m]
-    low, high : ends of the contact, likewise [m]
-    left, right : these ends, from the middle of the pedestal's base [m]
-    """
-
+    # the two blocks, each as it stands by itself
     lower: Shape
     above: Shape
-    upper: Shape
-    lean: float
-    offset: float
+    upper: Shape  # as if its base were no wider than the part of it that lies on the pedestal
+    lean: float  # of the pedestal [rad]
+    offset: float  # of the middle of the statue's base from the middle of the pedestal's top [m]
+    # ends of the contact, likewise, and from the middle of the pedestal's base [m]
     low: float
     high: float
     left: tuple[float, float]

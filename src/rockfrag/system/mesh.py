@@ -85,21 +85,10 @@ class Shape:
         return np.asarray(seen[ConvexHull(seen).vertices])
 
     def contact_polygon(self, tolerance: float) -> Array:
-        """Return the polygon around all points that are within ``tolerance`` of the lowest one.
+        """Return the corners of the polygon around all points at most ``tolerance`` [m] above the lowest one.
 
-        Parameters
-        ----------
-        tolerance
-            Height above the lowest point up to which a point carries [m].
-
-        Returns
-        -------
-        Corners relative to the centre of gravity, in order [m], shape (n, 2).
-
-        Raises
-        ------
-        InputError
-            If fewer than three points carry, or they lie on one line.
+        They are relative to the centre of gravity, in order [m], shape (n, 2). Fewer than three points that
+        carry, or points on one line, are refused.
         """
         low = self.points[self.points[:, 2] <= tolerance - self.cg_height][:, :2]
         try:
@@ -123,12 +112,7 @@ class Shape:
     def edges(self, direction_deg: float, tolerance: float) -> tuple[float, float]:
         """Return the distances of the edges from the centre of gravity, against and along a direction [m].
 
-        Parameters
-        ----------
-        direction_deg
-            Direction of shaking, from the mesh's x axis towards its y axis [degrees].
-        tolerance
-            As in :meth:`contact_polygon`.
+        The direction runs from the mesh's x axis towards its y axis [degrees].
         """
         angle = math.radians(direction_deg)
         along = self.contact_polygon(tolerance) @ np.array([math.cos(angle), math.sin(angle)])
@@ -137,12 +121,7 @@ class Shape:
     def scanned_again(self, scan_tolerance: float, rng: np.random.Generator) -> "Shape":
         """Return the shape as another scan of the same accuracy might have seen it.
 
-        Parameters
-        ----------
-        scan_tolerance
-            Standard deviation of the height of a point of the surface [m].
-        rng
-            Source of the random numbers.
+        ``scan_tolerance`` is the standard deviation of the height of a point of the surface [m].
         """
         points = self.points.copy()
         points[:, 2] += scan_tolerance * rng.standard_normal(len(points))
@@ -159,8 +138,10 @@ class Shape:
 
         Parameters
         ----------
-        direction_deg, tolerance
-            As in :meth:`edges`.
+        direction_deg
+            Direction of shaking, from the mesh's x axis towards its y axis [degrees].
+        tolerance
+            Height above the lowest point up to which a point carries [m].
         retreat
             Distance by which the edges lie further in than the polygon [m].
 
@@ -186,23 +167,9 @@ class Shape:
         )
 
     def body(self, direction_deg: float, tolerance: float, retreat: float = 0.0) -> RigidBody:
-        """Return the body in space on the polygon that carries, turned so that a direction is its x axis.
+        """Return the body in space on the polygon that carries, turned so that a direction [degrees] is its x.
 
-        Parameters
-        ----------
-        direction_deg, tolerance
-            As in :meth:`edges`.
-        retreat
-            Distance by which the edges lie further in than the polygon [m].
-
-        Returns
-        -------
-        A body with the full tensor of inertia; its origin lies below its centre of gravity.
-
-        Raises
-        ------
-        InputError
-            If the centre of gravity is not above what is left of the base.
+        Its origin lies below its centre of gravity; its edges lie ``retreat`` [m] further in than the polygon.
         """
         angle = -math.radians(direction_deg)
         c, s = math.cos(angle), math.sin(angle)
@@ -230,7 +197,7 @@ class Shape:
         Parameters
         ----------
         tolerance
-            As in :meth:`contact_polygon`.
+            Height above the lowest point up to which a point carries [m].
         step_deg
             Step of the search [degrees].
 

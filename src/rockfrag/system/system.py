@@ -137,13 +137,7 @@ class System:
 
     @cached_property
     def pile(self) -> geometry.Pile:
-        """The two bodies of a planar system as the kernels know them.
-
-        Raises
-        ------
-        InputError
-            If the system has another number of bodies.
-        """
+        """The two bodies of a planar system as the kernels know them."""
         if self.count != 2:
             raise InputError(f"System: expected two bodies, got {self.count}.")
         lower, upper = self.in_plane().bodies

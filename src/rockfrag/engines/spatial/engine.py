@@ -152,33 +152,10 @@ def run_in_space(
 ) -> Outcomes:
     """Say for every body × motion × scale what becomes of it in space.
 
-    Parameters
-    ----------
-    bodies
-        Blocks with a depth or round ones, or systems of one body in space.
-    motions
-        Motions of the ground with one to three components.
-    scales
-        Factors on all components, shape (scales,) or (motions, scales).
-    spread
-        Largest displacement of each vertex of the base over its extent, and largest angle by which the body is
-        turned about the vertical [rad], drawn anew for each motion [-]: an ideal base has outcomes that no real
-        one has.
-    seed
-        Seed of the displacements.
-    threads
-        Threads to use; outcomes do not depend on it.
-    g
-        Acceleration of gravity [m/s²].
-
-    Returns
-    -------
-    Outcomes of shape (systems, motions, scales).
-
-    Raises
-    ------
-    InputError
-        If a system is more than one body, or planar, or asks for what this engine does not know.
+    The outcomes have shape (systems, motions, scales); ``scales`` has shape (scales,) or (motions, scales).
+    ``spread`` is the largest displacement of each vertex of the base over its extent [-], and the largest angle by
+    which the body is turned about the vertical [rad], drawn anew from ``seed`` for each motion: an ideal base has
+    outcomes that no real one has.
     """
     request = Request(g=g)
     systems = tuple(as_system(body) for body in bodies)

@@ -31,62 +31,28 @@ RESTS = 99
 
 @dataclass(frozen=True)
 class SpatialOutcome:
-    """What became of a body in space.
+    """What became of a body in space."""
 
-    Attributes
-    ----------
-    overturned
-        Whether it fell.
-    certain_time
-        Instant from which the fall was certain [s]; NaN without one.
-    fall_direction
-        Direction in which it fell, from x towards y [rad]; NaN without a fall.
-    fell_over
-        What it fell over: ``"edge 1-2"``, ``"vertex 2"``, ``"rim"``, ``"flight"``; empty without a fall.
-    peak_rotation
-        Largest tilt over that at which the centre of mass is above the base's outline in the tilt's direction [-];
-        infinite if it fell.
-    peak_tilt
-        Largest tilt until the outcome was known [rad].
-    peak_velocity
-        Largest angular velocity until then [rad/s].
-    walk, peak_walk
-        Displacement of the base's point below the centre of mass, (x, y) at the end and largest distance [m].
-    turn
-        Rotation about the vertical at the end [rad], several turns counted.
-    impacts, slidings, flights
-        Numbers of impacts, of contacts that began to slide, and of flights.
-    ambiguous
-        Impacts and changes of mode with more than one admissible outcome.
-    paradoxes
-        Impacts and changes without one, and jams: contacts that no finite force holds.
-    dissipated
-        Energy lost in impacts, and by friction [J/kg].
-    residual
-        What the balance of energy does not close by [J/kg].
-    gained
-        Energy that contact events added, which they must not: rounding, and the tilt with which a rim leaves rest
-        [J/kg].
-    """
-
-    overturned: bool
-    certain_time: float
-    fall_direction: float
-    fell_over: str
+    overturned: bool  # whether it fell
+    certain_time: float  # instant from which the fall was certain [s]; NaN without one
+    fall_direction: float  # from x towards y [rad]; NaN without a fall
+    fell_over: str  # "edge 1-2", "vertex 2", "rim", "flight"; empty without a fall
+    # largest tilt over that with the centre of mass above the outline [-]; infinite if it fell
     peak_rotation: float
-    peak_tilt: float
-    peak_velocity: float
+    peak_tilt: float  # largest tilt until the outcome was known [rad]
+    peak_velocity: float  # largest angular velocity until then [rad/s]
+    # displacement of the base's point below the centre of mass, (x, y) at the end [m]
     walk: tuple[float, float]
-    peak_walk: float
-    turn: float
-    impacts: int
-    slidings: int
-    flights: int
-    ambiguous: int
-    paradoxes: int
-    dissipated: tuple[float, float]
-    residual: float
-    gained: float
+    peak_walk: float  # its largest distance [m]
+    turn: float  # rotation about the vertical at the end [rad], several turns counted
+    impacts: int  # number of impacts
+    slidings: int  # number of contacts that began to slide
+    flights: int  # number of flights
+    ambiguous: int  # impacts and changes of mode with more than one admissible outcome
+    paradoxes: int  # impacts and changes without one, and jams: contacts that no finite force holds
+    dissipated: tuple[float, float]  # energy lost in impacts, and by friction [J/kg]
+    residual: float  # what the balance of energy does not close by [J/kg]
+    gained: float  # energy that events of contact added, by rounding or as a rim leaves rest tilted [J/kg]
 
 
 def run_case(

@@ -240,18 +240,10 @@ class TextFile:
         """Parse lines as rows of numbers: all of them, shape (n,), and how many each line has.
 
         Numbers are separated by blanks, tabs, commas or semicolons, or touch where a sign tells them
-        apart; a comma beside semicolons is a decimal comma. Lines at the end that have only separators,
-        as spreadsheets leave, do not count.
-
-        Parameters
-        ----------
-        start, stop
-            First line, and the one after the last.
-        decimal_comma
-            Whether a comma is the decimal sign although no semicolon separates.
-        columns
-            Numbers that each row should have; a row of another width above what is no number is
-            left to the caller to tell, and the values are then empty.
+        apart; a comma beside semicolons, or with ``decimal_comma``, is a decimal comma. Lines at the end
+        that have only separators, as spreadsheets leave, do not count. Where rows should have ``columns``
+        numbers, one of another width above what is no number is left to the caller to tell, and the values
+        are then empty.
         """
         stop = len(self) if stop is None else min(stop, len(self))
         body = self.data[self.offset(start) : self.offset(stop)].rstrip(b" \t\r\n,;")

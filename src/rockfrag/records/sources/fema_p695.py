@@ -34,22 +34,10 @@ def read_component(path: str | os.PathLike[str], member: str) -> Motion:
 
 
 def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
-    """Read all records of a set with what its table says of them, as recorded and unscaled.
+    """Read the two horizontal components of each record of a set such as ``farfield.hdf5``, unscaled.
 
-    Parameters
-    ----------
-    path
-        File of a set, such as ``farfield.hdf5``.
-
-    Returns
-    -------
-    The two horizontal components of each record. Their metadata have ``earthquake``, ``station``, ``magnitude``,
-    ``distance_km`` (closest to the rupture), ``vs30_m_s`` and ``set``.
-
-    Raises
-    ------
-    InputError
-        If the file is not such a set.
+    Their metadata have ``earthquake``, ``station``, ``magnitude``, ``distance_km`` (closest to the rupture),
+    ``vs30_m_s`` and ``set``.
     """
     file = Path(path)
     try:
