@@ -102,7 +102,7 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
 
     Tests have object, pedestal ("P" or "NP"), earthquake, floor, amplitude_g [g] and, where present, motion,
     lower_g, upper_g [g], censored ("none", "right"; "left" for a test that overturned at its first step, lower_g
-    0), repetition, reading. What is absent is filled in, and rows are sorted so that results do not depend on
+    0), repetition, definition. What is absent is filled in, and rows are sorted so that results do not depend on
     their order.
     """
     check_names("Table of tests", tests.columns, _NEEDED)

@@ -82,7 +82,7 @@ class Protocol:
             )
         if self.definition not in ("before", "at"):
             raise InputError(
-                f"protocol: reading must be 'before' or 'at', got {self.definition!r}."
+                f"protocol: definition must be 'before' or 'at', got {self.definition!r}."
             )
 
     def amplitudes(self, limit_g: float | None = None, repetition: int = 1) -> Floats:

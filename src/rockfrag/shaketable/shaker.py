@@ -164,13 +164,12 @@ def required_corner(
     """
     if shaker.demand(motion, amplitude_g, payload).fits:
         return 0.0
+    wanted = scale_to_pga(motion, amplitude_g)
     for corner in CORNERS_HZ:
-        if (
-            corner < 0.5 / motion.dt
-            and _demand_of(
-                shaker, _filtered(scale_to_pga(motion, amplitude_g), corner), payload
-            ).fits
-        ):
+        if corner >= 0.5 / motion.dt:
+            break
+        filtered = _filtered(wanted, corner)
+        if shaker.demand(filtered, filtered.pga / GRAVITY, payload).fits:
             return corner
     raise InputError(
         f"shaker: no high-pass corner up to {CORNERS_HZ[-1]:g} Hz lets motion {motion.name!r} at "
@@ -274,7 +273,3 @@ def _filtered(motion: Motion, corner: float) -> Motion:
     # room for the transients of an acausal filter: Converse & Brady (1992)
     room = 1.5 * FILTER_ORDER / corner
     return highpass(pad(motion, room, room), corner, FILTER_ORDER)
-
-
-def _demand_of(shaker: Shaker, motion: Motion, payload: float) -> Demand:
-    return shaker.demand(motion, motion.pga / GRAVITY, payload)
