@@ -83,7 +83,6 @@ SUBPACKAGES = {
     ),
     "rockfrag.pedestal": ("Paired comparisons", "the effect of a pedestal, tested"),
     "rockfrag.shaketable": ("Shaking tables", "limits, protocols and tables of tests"),
-    "rockfrag.campaign": ("Campaigns", "a laboratory's tests, simulated one by one"),
     "rockfrag.assess": ("One object at one place", "what the command `rockfrag assess` does"),
 }
 """Subpackages whose public names are documented, in the order in which people need them."""

@@ -17,7 +17,7 @@ with warnings.catch_warnings():
 
 SUBPACKAGES = (
     *("", ".assess", ".rocking", ".motions", ".building", ".shaketable", ".fragility"),
-    *(".pedestal", ".records", ".campaign"),
+    *(".pedestal", ".records"),
 )
 FORM = {"GL05", "GL06", "GL07", "GL08", "PR02", "PR03", "YD01"}
 PARAMETERS = "PR01"

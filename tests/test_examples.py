@@ -15,7 +15,7 @@ from rockfrag.rocking.inputs import UnitWarning
 from rockfrag.system.blocks import UnlikelyBlock
 
 SUBPACKAGES = (
-    *("", ".assess", ".building", ".campaign", ".fragility", ".motions", ".pedestal", ".records"),
+    *("", ".assess", ".building", ".fragility", ".motions", ".pedestal", ".records"),
     *(".rocking", ".shaketable"),
 )
 SHOWN_FIRST = (

@@ -8,6 +8,7 @@ import sys
 import tomllib
 import zipfile
 from pathlib import Path
+from pkgutil import resolve_name
 
 import pytest
 import yaml
@@ -71,7 +72,7 @@ def test_pre_commit_has_the_pinned_versions():
 
 
 SUBPACKAGES = (
-    *("", ".assess", ".building", ".campaign", ".fragility", ".motions", ".pedestal", ".records"),
+    *("", ".assess", ".building", ".fragility", ".motions", ".pedestal", ".records"),
     *(".rocking", ".shaketable", ".system"),
 )
 
@@ -79,7 +80,7 @@ SUBPACKAGES = (
 @pytest.mark.parametrize("package", SUBPACKAGES)
 def test_every_public_name_is_listed_and_loads(package):
     module = importlib.import_module(f"rockfrag{package}")
-    assert len(module.__all__) >= 6
+    assert module.__all__
     assert set(module.__all__) <= set(dir(module))
     for name in module.__all__:
         # functions, classes and subpackages; a few are constants, which have no name of their own
@@ -196,11 +197,12 @@ def test_what_an_addition_costs_stands_where_the_table_says():
     files = {path.stem for path in (ROOT / "src/rockfrag/laws").glob("[!_]*.py")}
     assert files == set(importlib.import_module("rockfrag.laws").BUILT_IN)
     for name in importlib.import_module("rockfrag.engines.contract").BUILT_IN:
-        assert importlib.import_module(name).ENGINE.name
+        assert resolve_name(name).name
     # a declaration a measure, beside its function
     source = (ROOT / "src/rockfrag/motions/intensity.py").read_text(encoding="utf-8")
     declared = importlib.import_module("rockfrag.motions.declared").declared()
-    assert source.count("@intensity_measure(") == len(declared) > 15
+    declarations = re.findall(r"^@?intensity_measure\(", source, re.MULTILINE)
+    assert len(declarations) == len(declared) > 15
     states = (ROOT / "src/rockfrag/outcomes/limit_states.py").read_text(encoding="utf-8")
     known = importlib.import_module("rockfrag.outcomes.limit_states").limit_states()
     assert states.count("\n@limit_state(") == len(known) == 3

@@ -22,7 +22,6 @@ rocking     single histories, ensembles, thresholds, rocking spectra
 shaketable  what a shaking table can do, and protocols of its tests
 fragility   curves and their intervals, choice of the intensity measure, exports
 pedestal    paired comparison of objects with and without a pedestal
-campaign    a laboratory's tests, simulated one by one
 assess      one object at one place: what ``rockfrag assess`` does
 ==========  ======================================================================
 """
@@ -36,7 +35,7 @@ __version__ = "0.2.0"
 _find, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 _SUBPACKAGES = (
     *("records", "motions", "building", "system", "outcomes", "rocking", "shaketable", "fragility"),
-    *("pedestal", "campaign", "assess"),
+    *("pedestal", "assess"),
 )
 
 

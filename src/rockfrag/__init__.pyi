@@ -1,7 +1,6 @@
 from . import (
     assess as assess,
     building as building,
-    campaign as campaign,
     fragility as fragility,
     motions as motions,
     outcomes as outcomes,

@@ -6,7 +6,3 @@ conditioned), ``trials`` (what nobody measured, such as the direction of shaking
 (every trial × test simulated), ``validation`` (trials chosen by some motions and judged by others),
 ``comparison`` (against the measurement, thresholds on intensity measures and other codes).
 """
-
-import lazy_loader
-
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -34,20 +34,8 @@ def simulate_tests(
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Simulate each test with what stood on the table in each trial.
 
-    Parameters
-    ----------
-    systems
-        What stood on the table in each trial.
-    motions
-        Motion of the table in each test.
-    threads
-        Threads to use; all cores if None.
-    done
-        Called with the number of tests done after each batch.
-
-    Returns
-    -------
-    Whether a body overturns, and whether any rocks at all, each of shape (trials, tests).
+    Returns whether a body overturns, and whether any rocks at all, each of shape (trials, tests). ``done`` is
+    called with the number of tests done after each batch.
     """
     overturned, rocked = np.zeros((2, len(systems), len(motions)), dtype=bool)
     for first in range(0, len(motions), BATCH):

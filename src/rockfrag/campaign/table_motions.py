@@ -33,32 +33,12 @@ def table_motions(
     conditioning: Sequence[Mapping[str, Any]] = (),
     done: Callable[[int], None] = lambda count: None,
 ) -> list[Motion]:
-    """Read and condition the measured motion of the table in each test.
+    """Read and condition the measured motion of the table in each test, in the order of the tests [m/s²].
 
-    Parameters
-    ----------
-    source
-        An ``.npz`` archive with one array per motion, or a pattern of file names such as
-        ``motions/Test{motion}.txt`` of records in any format that :func:`read_motion` reads.
-    names
-        Keys of the archive, or what to put for ``{motion}``, one a test.
-    unit, dt
-        Unit of acceleration and sampling interval [s] where the files do not state them.
-    channel
-        Channel or title of the column, where files have several.
-    conditioning
-        Steps as in :func:`rockfrag.motions.process`.
-    done
-        Called with the number of motions done after each.
-
-    Returns
-    -------
-    The motions [m/s²], one a test, in the order of the tests.
-
-    Raises
-    ------
-    InputError
-        If motions are missing, cannot be read, or are no acceleration of a table.
+    ``source`` is an ``.npz`` archive with one array per motion, or a pattern of file names such as
+    ``motions/Test{motion}.txt``; ``names`` are keys of the archive, or what to put for ``{motion}``. ``unit``,
+    ``dt`` [s] and ``channel`` are for files that do not state them; ``conditioning`` has steps as in
+    :func:`rockfrag.motions.process`; ``done`` is called with the number of motions done after each.
     """
     found = []
     for count, motion in enumerate(_read(str(source), list(names), unit, dt, channel), start=1):

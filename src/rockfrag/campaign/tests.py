@@ -22,22 +22,14 @@ NOTED = ("rocked", "slid")
 
 @dataclass(frozen=True)
 class Campaign:
-    """Tests of one object on a shake table.
+    """Tests of one object on a shake table."""
 
-    Attributes
-    ----------
-    tests
-        One row a test: ``test`` (its name), ``motion`` (key or file of the table's motion), ``group``
-        (tests of one input motion share it), ``overturned`` (bool), ``amplitude_g`` (peak to which the motion
-        is scaled, NaN for as recorded) and a column per intensity measure.
-    measures
-        Names of the columns with intensity measures.
-    codes
-        Outcomes of other programs, a bool column each, a row per row of ``tests``.
-    """
-
+    # one row a test: ``test`` (its name), ``motion`` (key or file of the table's motion), ``group`` (tests of one
+    # input motion share it), ``overturned`` (bool), ``amplitude_g`` (peak to which the motion is scaled, NaN for
+    # as recorded) and a column per intensity measure
     tests: pd.DataFrame
-    measures: tuple[str, ...]
+    measures: tuple[str, ...]  # names of the columns with intensity measures
+    # outcomes of other programs, a bool column each, a row per row of ``tests``
     codes: pd.DataFrame
 
     __repr__ = short_repr
@@ -58,31 +50,14 @@ def read_campaign(
     measures: Mapping[str, Sequence[str | float]],
     other_codes: str | os.PathLike[str] | None = None,
 ) -> Campaign:
-    """Read a table of tests and, if there is one, a table of other programs' outcomes.
+    """Read a table of tests, one row a test, and, if there is one, a table of other programs' outcomes by test.
 
-    Parameters
-    ----------
-    path
-        CSV with one row a test.
-    columns
-        Its columns: ``test`` and ``motion`` (without it the measures of a test name its motion); either
-        ``overturned`` (yes or no) or ``lower_g`` and ``upper_g``, the largest peak survived and the one that
-        overturned, which make two tests; ``group`` where tests of one input motion share a name, else the
-        motion; ``amplitude_g`` where motions are scaled to a peak; ``rocked`` and ``slid`` (yes or no) and
-        ``which_way`` (text) where the laboratory noted them.
-    measures
-        For each intensity measure the columns and numbers whose product it is.
-    other_codes
-        CSV with the column of test names and one column of outcomes per program.
-
-    Returns
-    -------
-    The :class:`Campaign`.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read, a column or a value is missing or cannot be used, or a test stands twice.
+    ``columns`` are ``test`` and ``motion`` (without it the measures of a test name its motion); either
+    ``overturned`` (yes or no) or ``lower_g`` and ``upper_g``, the largest peak survived and the one that
+    overturned, which make two tests; ``group`` where tests of one input motion share a name, else the motion;
+    ``amplitude_g`` where motions are scaled to a peak; ``rocked``, ``slid`` (yes or no) and ``which_way`` (text)
+    where the laboratory noted them. ``measures`` has for each intensity measure the columns and numbers whose
+    product it is.
     """
     source = Path(path).name
     recipes = list(measures.values())

@@ -12,17 +12,7 @@ from rockfrag.fragility.batch_glm import fit_batch
 
 
 def best_threshold(measure: Floats, overturned: Bools) -> float:
-    """Return the value of a measure above which "overturned" is right most often.
-
-    Parameters
-    ----------
-    measure, overturned
-        Shape (tests,).
-
-    Returns
-    -------
-    The threshold, in the unit of the measure.
-    """
+    """Return the value of a measure above which "overturned" is right most often, in the measure's unit."""
     order = np.argsort(measure, kind="stable")
     fell = overturned[order]
     # right outcomes if the first k tests are taken as survived
@@ -47,18 +37,9 @@ def cross_validated_threshold(
     repeats: int,
     seed: int,
 ) -> Bools:
-    """Outcomes by thresholds that tests of other motions chose.
+    """Outcomes by thresholds on one or two measures that tests of other motions chose, shape (repeats, tests).
 
-    Parameters
-    ----------
-    measures
-        One or two intensity measures, shape (tests,) or (tests, 2).
-    overturned, groups, folds, repeats, seed
-        As in :func:`rockfrag.campaign.validation.cross_validate`, so that the folds are the same.
-
-    Returns
-    -------
-    Shape (repeats, tests).
+    The folds are those of :func:`rockfrag.campaign.validation.cross_validate`.
     """
     rng = np.random.default_rng(seed)
     outcomes = np.empty((repeats, len(overturned)), dtype=bool)

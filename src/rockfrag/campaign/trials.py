@@ -34,24 +34,14 @@ _LOGARITHMIC = ("contact_tolerance_mm",)
 
 @dataclass(frozen=True)
 class Trials:
-    """Guesses of what was not measured.
+    """Guesses of what was not measured."""
 
-    Attributes
-    ----------
-    table
-        One row a trial: the unknowns, ``left_m`` and ``right_m`` (edge distances from the centre of gravity)
-        and ``alpha_deg`` (the smaller critical angle); of blocks on each other those of the uppermost.
-    systems
-        What stood on the table in each trial.
-    refused
-        Guesses under which the object could not have stood.
-    planar
-        The planar block of each, where both ``friction`` and ``restitution`` are unknown; none elsewhere.
-    """
-
+    # one row a trial: the unknowns, ``left_m`` and ``right_m`` (edge distances from the centre of gravity) and
+    # ``alpha_deg`` (the smaller critical angle); of blocks on each other those of the uppermost
     table: pd.DataFrame
-    systems: tuple[System, ...]
-    refused: int
+    systems: tuple[System, ...]  # what stood on the table in each trial
+    refused: int  # guesses under which the object could not have stood
+    # the planar block of each, where both friction and restitution are unknown
     planar: tuple[System, ...] = ()
 
     __repr__ = short_repr
@@ -60,29 +50,10 @@ class Trials:
 def sample_trials(
     thing: Shape | Block | Column, ranges: Mapping[str, tuple[float, float]], count: int, seed: int
 ) -> Trials:
-    """Fill the ranges of the unknowns evenly with trials.
+    """Fill the ranges of the unknowns evenly with trials; a power of two fills them most evenly.
 
-    Parameters
-    ----------
-    thing
-        The object: a shape, or the planar block itself where its edges were measured, or blocks on each other.
-    ranges
-        Lowest and highest value of each of :data:`UNKNOWNS`; for a block without direction and tolerance. A shape
-        with ``friction`` is a body in space, beside the planar block if it has ``restitution`` as well; a column
-        has ``friction`` too.
-    count
-        Number of guesses; a power of two fills the ranges most evenly.
-    seed
-        Of the scrambling.
-
-    Returns
-    -------
-    The :class:`Trials`.
-
-    Raises
-    ------
-    InputError
-        If the object could not stand under any guess.
+    A shape with ``friction`` is a body in space, beside the planar block if it has ``restitution`` as well; a
+    block whose edges were measured has no direction and tolerance; blocks on each other have ``friction`` too.
     """
     names = [name for name in UNKNOWNS if name in ranges]
     points = qmc.Sobol(len(names), scramble=True, rng=np.random.default_rng(seed)).random(count)

@@ -25,19 +25,12 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Validated:
-    """What cross-validation says of each test.
+    """What cross-validation says of each test."""
 
-    Attributes
-    ----------
-    votes
-        Fraction of plausible trials under which the object overturns in each test, chosen by tests with other
-        motions, shape (repeats, tests).
-    plausible
-        Number of trials that voted, shape (repeats, folds).
-    """
-
+    # fraction of plausible trials under which the object overturns in each test, chosen by tests with other
+    # motions, shape (repeats, tests)
     votes: Floats
-    plausible: NDArray[np.int64]
+    plausible: NDArray[np.int64]  # number of trials that voted, shape (repeats, folds)
 
     __repr__ = short_repr
 
@@ -103,24 +96,9 @@ def cross_validate(
 ) -> Validated:
     """Let trials that are plausible by the tests of other motions vote on each test.
 
-    Parameters
-    ----------
-    outcomes
-        Simulated outcomes, shape (trials, tests).
-    measured
-        What the laboratory saw, shape (tests,).
-    groups
-        Group of each test, from 0 up; groups are never split.
-    folds, repeats
-        Number of folds, and of random divisions into folds.
-    seed
-        Of the divisions.
-    asked
-        What the plausible trials vote on, if not the outcomes that they are chosen by, shape (trials, tests).
-
-    Returns
-    -------
-    The :class:`Validated`.
+    ``outcomes`` are simulated, shape (trials, tests), ``measured`` has the shape (tests,), ``groups`` count from 0
+    and are never split; there are ``repeats`` random divisions into ``folds``. ``asked`` is what the plausible
+    trials vote on, if not the outcomes that they are chosen by.
     """
     rng = np.random.default_rng(seed)
     right = outcomes == measured

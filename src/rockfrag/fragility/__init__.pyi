@@ -1,15 +1,4 @@
-from .censored import (
-    Brackets as Brackets,
-    bracket_interval as bracket_interval,
-    brackets_from_table as brackets_from_table,
-    fit_brackets as fit_brackets,
-)
-from .empirical import (
-    local_fraction as local_fraction,
-    fraction_in_bins as fraction_in_bins,
-    find_resurrections as find_resurrections,
-    wilson_interval as wilson_interval,
-)
+from .empirical import find_resurrections as find_resurrections
 from .estimators import (
     Fragility as Fragility,
     IncrementalFragility as IncrementalFragility,
@@ -17,7 +6,6 @@ from .estimators import (
     fit_incremental as fit_incremental,
     fit_step_tests as fit_step_tests,
     fit_stripes as fit_stripes,
-    fragility_of as fragility_of,
 )
 from .goodness import (
     GoodnessOfFit as GoodnessOfFit,
@@ -44,13 +32,9 @@ from .observations import (
 )
 from .simcenter import write_simcenter as write_simcenter
 from .ida_curves import (
-    fragility_row as fragility_row,
     fragility_table as fragility_table,
     record_set_hash as record_set_hash,
-    table_hash as table_hash,
-    with_measures as with_measures,
 )
-from .tests_file import read_tests as read_tests
 from .user_table import (
     UserFragility as UserFragility,
     fit_user_table as fit_user_table,

@@ -63,16 +63,10 @@ def fit_batch(
 ) -> BatchFit:
     """Fit ``batch`` binomial regressions that share their predictors, the ``design`` of shape (rows, k) with ones.
 
-    Parameters
-    ----------
-    failures, trials
-        Counts, shape (batch, rows); a row with 0 trials takes no part.
-    penalised
-        Add half the logarithm of the determinant of the information to the log-likelihood (Firth,
-        1993, Biometrika 80: 27-38). The maximum is then finite under separation also (Kosmidis and
-        Firth, 2021, Biometrika 108: 71-82).
-    start
-        Coefficients to start from, shape (k,), for example those of all the data.
+    ``failures`` and ``trials`` are counts, shape (batch, rows); a row with 0 trials takes no part.  ``penalised``
+    adds half the logarithm of the determinant of the information to the log-likelihood (Firth, 1993, Biometrika
+    80: 27-38), whose maximum is finite under separation also (Kosmidis and Firth, 2021, Biometrika 108: 71-82).
+    ``start`` are coefficients to start from, shape (k,).
     """
     batch, columns = failures.shape[0], design.shape[1]
     mixed = (failures.sum(axis=1) > 0) & (failures.sum(axis=1) < trials.sum(axis=1))

@@ -38,17 +38,10 @@ _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
 
 @dataclass(frozen=True)
 class Brackets(Grouped):
-    """Overturning amplitudes known to lie between two bounds.
+    """Overturning amplitudes known to lie between two bounds, in ``unit``, each array of shape (n,).
 
-    Attributes
-    ----------
-    lower, upper
-        Bounds in ``unit``, shape (n,): lower 0 means overturned at the first step, upper infinite
-        means never overturned (right-censored), equal bounds an amplitude known exactly.
-    motion, earthquake
-        Labels, shape (n,).
-    name, unit
-        The intensity measure.
+    ``lower`` 0 means overturned at the first step, ``upper`` infinite never overturned (right-censored), equal
+    bounds an amplitude known exactly.
     """
 
     lower: Floats
@@ -78,35 +71,8 @@ def brackets_from_table(
 ) -> Brackets:
     """Read the bounds of the overturning amplitude out of a table of tests, one row per test.
 
-    A missing upper bound means right-censored. ``measure`` is a column name that tells the measure
-    and its unit.
-
-    Parameters
-    ----------
-    table
-        One row a test.
-    lower
-        Column of the largest amplitude survived.
-    upper
-        Column of the amplitude that overturned.
-    motion
-        Column with the name of the motion; None where tests have none.
-    earthquake
-        Column with the name of the earthquake; None where it is not known.
-    measure
-        Name of the measure that the bounds are given in.
-    source
-        What messages call the table.
-
-    Returns
-    -------
-    The :class:`Brackets`.
-
-    Raises
-    ------
-    InputError
-        If the table is empty, a column is absent, a lower bound is missing or negative, or a pair
-        of bounds is not in order.
+    A missing upper bound means right-censored. ``measure`` is a column name that tells the measure and its unit;
+    ``source`` is what messages call the table.
     """
     if len(table) == 0:
         raise InputError(f"{source}: there is no row; give at least one test.")
@@ -130,18 +96,9 @@ def brackets_from_table(
 def fit_brackets(brackets: Brackets) -> FragilityFit:
     """Fit θ and β to bracketed amplitudes by maximum likelihood.
 
-    Where one amplitude lies inside every bracket the likelihood grows without end as β tends to
-    zero; then θ is the middle of the common bracket and β its logarithmic width / √12, and the fit
-    says so. Where no test overturned there is no curve, only a bound.
-
-    Parameters
-    ----------
-    brackets
-        Bounds of the amplitudes, see :class:`Brackets`.
-
-    Returns
-    -------
-    The :class:`FragilityFit`.
+    Where one amplitude lies inside every bracket the likelihood grows without end as β tends to zero; then θ is
+    the middle of the common bracket and β its logarithmic width / √12, and the fit says so. Where no test
+    overturned there is no curve, only a bound.
     """
     low, high = _logs(brackets)
     n, fell = low.size, brackets.n_overturned
@@ -216,19 +173,7 @@ def bracket_fitter(brackets: Brackets, over: Over = "motion") -> tuple[WeightedF
 def bracket_interval(
     brackets: Brackets, *, over: Over | None = None, level: float = 0.90
 ) -> Interval:
-    """Confidence limits of a curve fitted to brackets, by leaving out whole motions or earthquakes.
-
-    Parameters
-    ----------
-    brackets
-        Bounds of the amplitudes, see :class:`Brackets`.
-    over, level
-        As of :func:`rockfrag.fragility.interval_over_motions`.
-
-    Returns
-    -------
-    The :class:`Interval`.
-    """
+    """Confidence limits of a curve fitted to brackets, by leaving out whole motions or earthquakes."""
     over, notes = population(brackets, over)
     fit, groups = bracket_fitter(brackets, over)
     found = resampled_interval(fit, groups, over=over, notes=notes, level=level)

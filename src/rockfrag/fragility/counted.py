@@ -161,14 +161,9 @@ def _count(
 class CountedIda:
     """IDA curves of one configuration, counted part by part.
 
-    Parameters
-    ----------
-    parts, again
-        The IDA curves, read twice: once for their windows, once to be counted.
-    measures
-        One row per motion as recorded, with ``name`` and ``pga_g``.
-    columns
-        Measures that will be asked for, by floor; those under the empty name are of all floors together.
+    ``parts`` and ``again`` are the IDA curves, read twice: for their windows, and to be counted. ``measures`` has
+    one row per motion as recorded, with ``name`` and ``pga_g``; ``columns`` are the measures that will be asked
+    for, by floor, those under the empty name of all floors together.
     """
 
     def __init__(

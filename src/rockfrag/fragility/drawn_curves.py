@@ -18,17 +18,11 @@ _TAIL = 2.6
 def curve_points(
     labels: Mapping[str, Any], curve: Fragility, outcomes: Observations
 ) -> pd.DataFrame:
-    """Points of one curve over the range of its data.
+    """Points of one curve over the range of its data: ``x``, ``probability``, its limits, and what needs no curve.
 
-    Returns
-    -------
-    pandas.DataFrame
-        ``labels``; ``im``, ``unit``; ``x``: the measure, rising; ``probability`` of overturning, with
-        ``lower`` and ``upper`` at the interval's level (missing where there is no interval); ``local``:
-        fraction of overturned tests near x, which may fall where the curve cannot (missing where all
-        tests are at one value); ``fraction`` with ``fraction_lower`` and ``fraction_upper``: the curve without a
-        form, which is to be used where the fitted one is rejected. Without a curve ``probability`` is
-        missing.
+    ``local`` is the fraction of overturned tests near x, which may fall where the curve cannot (missing where all
+    tests are at one value), ``fraction`` with its limits the curve without a form. Without a curve ``probability``
+    is missing.
     """
     fit = curve.fit
     low, high = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
@@ -66,11 +60,7 @@ def curve_points(
 def fraction_points(labels: Mapping[str, Any], curve: Fragility) -> pd.DataFrame:
     """Points of the non-parametric fragility function, if the fitted one is rejected; no row otherwise.
 
-    Returns
-    -------
-    pandas.DataFrame
-        ``labels``, ``im``, ``unit``; ``x``: the measure, rising; ``fraction`` of overturned tests, never falling
-        and straight over ln x between the points, with ``lower`` and ``upper`` at the interval's level.
+    ``fraction`` of overturned tests never falls, and is straight over ln ``x`` between the points.
     """
     fractions = curve.checks.fractions
     x = fractions.knots()[0] if curve.checks.rejected else np.empty(0)

@@ -20,21 +20,7 @@ from rockfrag.shaketable.swept import Swept
 def wilson_interval(
     overturned: ArrayLike, trials: ArrayLike, level: float = 0.90
 ) -> tuple[Floats, Floats]:
-    """Confidence limits of a binomial fraction (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212).
-
-    Parameters
-    ----------
-    overturned
-        Numbers of overturned tests.
-    trials
-        Numbers of tests, of the same shape.
-    level
-        Of the confidence limits [-], 0 to 1.
-
-    Returns
-    -------
-    Lower and upper limits [-], each of the shape of the counts.
-    """
+    """Confidence limits of binomial fractions [-] (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212)."""
     from statsmodels.stats.proportion import proportion_confint
 
     lower, upper = proportion_confint(overturned, trials, alpha=1.0 - level, method="wilson")
@@ -55,25 +41,9 @@ def bin_codes(outcomes: Observations, bins: int = 10) -> NDArray[np.int64]:
 
 
 def fraction_in_bins(outcomes: Observations, bins: int = 10, level: float = 0.90) -> pd.DataFrame:
-    """Fraction of overturned tests in bins of about equal numbers of tests.
+    """Fraction of overturned tests in bins of about equal numbers of tests; up to ``bins`` levels keep a bin each.
 
-    Stripes with at most ``bins`` levels keep their levels.
-
-    Parameters
-    ----------
-    outcomes
-        Outcomes with their measure, see :class:`Observations`.
-    bins
-        Number of bins.
-    level
-        Of the confidence limits [-], 0 to 1.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``im`` (geometric mean), ``im_lower``, ``im_upper``, ``tests``, ``motions``, ``overturned``,
-        ``fraction``, ``fraction_lower``, ``fraction_upper`` (binomial limits, in which several rows of one
-        motion in a bin count once).
+    ``im`` is the geometric mean of a bin. In the binomial limits several rows of one motion in a bin count once.
     """
     code = bin_codes(outcomes, bins)
     rows, independent = [], []
@@ -102,19 +72,8 @@ def fraction_in_bins(outcomes: Observations, bins: int = 10, level: float = 0.90
 def local_fraction(outcomes: Observations, im: ArrayLike, bandwidth: float | None = None) -> Floats:
     """Fraction of overturned tests near each ``im``, weighted by a normal kernel in ln IM; may fall.
 
-    Parameters
-    ----------
-    outcomes
-        The tests.
-    im
-        Values > 0, shape (n,).
-    bandwidth
-        Standard deviation of the kernel in ln IM; by default 0.53 s n^(-1/5), half of Silverman's,
-        which would flatten a steep rise.
-
-    Returns
-    -------
-    Fractions at the values asked for [-], of their shape.
+    The kernel's standard deviation in ln IM is 0.53 s n^(-1/5) by default, half of Silverman's, which would
+    flatten a steep rise.
     """
     if bandwidth is None:
         bandwidth = 0.53 * outcomes.log_spread * outcomes.n ** (-0.2)

@@ -99,18 +99,7 @@ def fragility_of(
 ) -> Fragility:
     """Fit a curve to outcomes and give it limits over motions, or earthquakes where they are known.
 
-    Parameters
-    ----------
-    outcomes
-        Outcomes with their measure, see :class:`Observations`.
-    level
-        Of the confidence limits [-], 0 to 1.
-    seed, dependence
-        How the goodness of fit is simulated, see :func:`goodness_of_fit`.
-
-    Returns
-    -------
-    The :class:`Fragility`.
+    ``seed`` and ``dependence`` say how the goodness of fit is simulated, see :func:`goodness_of_fit`.
     """
     fit = fit_lognormal(outcomes)
     limits = interval_over_motions(outcomes, level=level)

@@ -32,17 +32,8 @@ def outcome_scores(
 ) -> Floats:
     """Log score of each group's outcomes under the probit fitted to the other folds, (groups,); NaN for one fold.
 
-    Parameters
-    ----------
-    logs
-        Logarithms of one or more measures, shape (n, k).
-    overturned, trials
-        Counts, shape (n,).
-    group
-        Number of each row's motion or earthquake, shape (n,).
-    fitted
-        Number of leading measures that the curve knows; by default all. The others only share in
-        putting tests into cells, so that scores with and without them compare.
+    ``logs`` are logarithms of one or more measures, shape (n, k), of which the curve knows the first ``fitted``;
+    the others only share in putting tests into cells, so that scores with and without them compare.
     """
     cell, values = _cells(logs)
     fell, total = counts(group, cell, overturned), counts(group, cell, trials)

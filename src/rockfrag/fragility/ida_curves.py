@@ -33,25 +33,10 @@ def scale_power(measure: str) -> int:
 def with_measures(
     ida: pd.DataFrame, measures: pd.DataFrame, columns: Sequence[str]
 ) -> pd.DataFrame:
-    """Add intensity measures of the scaled motions to the rows of an IDA curve.
+    """Add intensity measures of the scaled motions to the rows of an IDA curve, which have ``amplitude_g``.
 
-    Parameters
-    ----------
-    ida
-        One row per test, with ``motion`` and ``amplitude_g`` (peak of the motion as scaled).
-    measures
-        One row per motion as recorded, with ``name`` and ``pga_g``.
-    columns
-        Measures to add; ``pga_g`` becomes the amplitude itself.
-
-    Returns
-    -------
-    The table with the columns of the measures.
-
-    Raises
-    ------
-    InputError
-        If a motion or a column is missing, or a measure scales in an unknown way.
+    ``measures`` has one row per motion as recorded, with ``name`` and ``pga_g``; ``pga_g`` of the result is the
+    amplitude itself.
     """
     if measures["name"].duplicated().any():
         twice = measures.loc[measures["name"].duplicated(), "name"].iloc[0]
@@ -94,17 +79,7 @@ def record_set_hash(motions: Iterable[Motion]) -> str:
 
 
 def table_hash(table: pd.DataFrame) -> str:
-    """SHA-256 of a table's text, for data that are no records; the order of the rows counts.
-
-    Parameters
-    ----------
-    table
-        Any table.
-
-    Returns
-    -------
-    The digest, in hexadecimal digits.
-    """
+    """SHA-256 of a table's text, for data that are no records; the order of the rows counts."""
     text = table.to_csv(index=False, lineterminator="\n")
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
@@ -112,23 +87,7 @@ def table_hash(table: pd.DataFrame) -> str:
 def fragility_row(
     fragility: Fragility, labels: Mapping[str, Any], estimator: str, record_set: str
 ) -> dict[str, Any]:
-    """Return one row of the fragility table, see :func:`fragility_table`.
-
-    Parameters
-    ----------
-    fragility
-        The fitted curve.
-    labels
-        What the row is of, such as its configuration.
-    estimator
-        Name of the estimator.
-    record_set
-        Digest of the motions.
-
-    Returns
-    -------
-    The row, values by the names of their columns.
-    """
+    """Return one row of the fragility table, see :func:`fragility_table`."""
     fit, interval, checks = fragility.fit, fragility.interval, fragility.checks
     fractions = checks.fractions
     return {

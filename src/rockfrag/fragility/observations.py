@@ -123,12 +123,7 @@ class Observations(Grouped):
     def drawn(self, capacity: Floats, cell: NDArray[np.intp]) -> Floats:
         """Outcomes by cell where each motion has one capacity [ln IM], shape (replicates, cells).
 
-        Parameters
-        ----------
-        capacity
-            Of the motions in the order in which they first appear, shape (replicates, motions).
-        cell
-            Cell of each row, shape (n,).
+        The capacities, shape (replicates, motions), are in the order in which the motions first appear.
         """
         codes = pd.factorize(pd.Series(self.motion))[0]
         log_im = self.log_im

@@ -45,32 +45,8 @@ def read_tests(
 ) -> pd.DataFrame:
     """Read a table of tests, one row per test.
 
-    Parameters
-    ----------
-    path
-        Text file with a header.
-    measures
-        Columns of the file, named with their unit (``pga_g``, ``pgv_cm_s``), or for each new column the
-        columns and numbers whose product it is.
-    overturned
-        Column of outcomes: 0/1, yes/no, true/false, overturned/survived.
-    motion, earthquake
-        Columns that name motion and earthquake; without them every row is a motion of its own.
-    given
-        Further columns of numbers.
-    keep
-        Further columns of text.
-
-    Returns
-    -------
-    pandas.DataFrame
-        ``motion``, ``earthquake`` (text), ``overturned`` (0 or 1), the measures (above zero), ``given``, ``keep``.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, a column is absent or there twice, a measure has no unit, or a value
-        cannot be used.
+    The result has ``motion``, ``earthquake`` (text), ``overturned`` (0 or 1), the measures (above zero), numbers
+    ``given`` and texts to ``keep``. Without columns of motion and earthquake every row is a motion of its own.
     """
     source = Path(path).name
     recipes: dict[str, Sequence[str | float]] = (

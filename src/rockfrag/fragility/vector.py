@@ -118,22 +118,10 @@ class VectorFragility:
     def contour(
         self, probability: float, second: ArrayLike, of: int = 0
     ) -> tuple[Floats, Floats, Floats]:
-        """Value of one measure at which overturning has a probability, at given values of the other.
+        """Value and limits of one measure at which overturning has a probability, at values of the other, (n,).
 
-        Parameters
-        ----------
-        probability
-            Between 0 and 1 [-].
-        second
-            Values of the other measure, shape (n,).
-        of
-            Which measure is asked for: 0 the first, 1 the second.
-
-        Returns
-        -------
-        value, lower, upper
-            The contour and its limits, each of shape (n,); NaN where the probability does not rise with the
-            measure, limits of 0 and infinity where the earthquakes set none.
+        ``of`` says which measure is asked for: 0 the first, 1 the second. The value is NaN where the probability
+        does not rise with the measure, limits are 0 and infinity where the earthquakes set none.
         """
         other = np.log(np.atleast_1d(np.asarray(second, dtype=np.float64)))
         centre = _log_contour(
@@ -144,20 +132,10 @@ class VectorFragility:
         return np.exp(centre), np.exp(centre - half), np.exp(centre + half)
 
     def mean_over(self, first: ArrayLike, second: ArrayLike, weights: ArrayLike = 1.0) -> Floats:
-        """Probability in the first measure alone: the mean over the second one's values of a set of records.
+        """Probability in the first measure alone, (n,): the mean over the second one's values of some records.
 
-        Parameters
-        ----------
-        first
-            Values of the first measure, shape (n,).
-        second
-            Values of the second one by record, shape (records,), or (n, records) where they change with the first.
-        weights
-            Weight of each record, shape (records,).
-
-        Returns
-        -------
-        Array of shape (n,).
+        ``second`` has the shape (records,), or (n, records) where it changes with the first; ``weights`` are of
+        the records.
         """
         x = np.atleast_1d(np.asarray(first, dtype=np.float64))[:, np.newaxis]
         y = np.asarray(second, dtype=np.float64)

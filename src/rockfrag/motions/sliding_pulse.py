@@ -32,21 +32,10 @@ def best_place(
 ) -> tuple[float, int, float, float]:
     """Find the best place of a pulse of a period [s], γ = ``cycles`` ≥ 1, by least squares at each place.
 
-    Parameters
-    ----------
-    velocity
-        Velocity [m/s], shape (n,).
-    energy
-        Sum of its squares before each sample and in all [m²/s²], shape (n + 1,).
-    known
-        Only a pulse that explains more than this is of interest [m²/s²].
-
-    Returns
-    -------
-    explained, middle, even, odd
-        Explained sum of squares [m²/s²], the sample in the middle of the pulse, and the amplitudes of the
-        even and the odd pulse [m/s]; all zero where no window holds more than ``known`` or the pulse is
-        longer than the velocity.
+    ``velocity`` [m/s] has shape (n,), ``energy`` [m²/s²] is the sum of its squares before each sample and in
+    all, shape (n + 1,); only a pulse that explains more than ``known`` [m²/s²] is of interest. Returned are the
+    explained sum of squares, the sample in the middle of the pulse, and the amplitudes of the even and the odd
+    pulse [m/s]: all zero without a pulse of interest, or where it is longer than the velocity.
     """
     half = half_length(cycles * period, dt)
     first, last = half, velocity.size - half - 1

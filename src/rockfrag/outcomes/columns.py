@@ -14,20 +14,11 @@ SUFFIXES = {"": "", "s": "_s", "rad": "_rad", "rad/s": "_rad_s", "m": "_m", "N":
 
 @dataclass(frozen=True)
 class Column:
-    """One column of a table of outcomes.
+    """One column of a table of outcomes: an attribute of :class:`rockfrag.outcomes.Outcomes`.
 
-    Attributes
-    ----------
-    name
-        Name of the attribute of :class:`rockfrag.outcomes.Outcomes`.
-    table
-        Table that it belongs to.
-    unit
-        Unit, empty for a number without one, a count or a statement.
-    meaning
-        What it says, in one sentence; what NaN means where it can be NaN.
-    empty
-        What stands where no engine has answered; its type is that of the column.
+    ``unit`` is empty for a number without one, a count or a statement; ``meaning`` says in one sentence what it
+    is, and what NaN means where it can be NaN; ``empty``, of the column's type, stands where no engine has
+    answered.
     """
 
     name: str

@@ -181,13 +181,8 @@ class Outcomes:
     def wide(self, system: int, columns_of: Sequence[str]) -> dict[str, NDArray[Any]]:
         """Return columns of one system with a number per case, the scale running fastest.
 
-        Parameters
-        ----------
-        system
-            Position of the system.
-        columns_of
-            Attributes; one of bodies or contacts becomes a column for each, numbered from below, such as
-            ``peak_slip_contact_1_m``.
+        Those of bodies or contacts become a column for each, numbered from below, such as
+        ``peak_slip_contact_1_m``.
         """
         found = {}
         for known in (each for each in columns() if each.name in columns_of):

@@ -17,22 +17,11 @@ DRAWN_AT_ONCE = 2_000_000
 def rank_probabilities(
     table: pd.DataFrame, factor: str, cluster: str, seed: int, *, within: bool = False
 ) -> pd.DataFrame:
-    """How often each level of a factor has the largest and the smallest mean of d in resampled data.
+    """How often each level of a factor has the largest and the smallest mean of ``d`` in resampled data.
 
-    Parameters
-    ----------
-    table
-        Rows with the columns ``factor``, ``cluster``, ``d``.
-    cluster
-        What is drawn with replacement: ``earthquake`` or ``motion``; all rows of a drawn cluster come.
-    within
-        Draw clusters separately inside each level (the motions of each earthquake); otherwise the same
-        clusters for all levels, which keeps what the levels share.
-
-    Returns
-    -------
-    pandas.DataFrame
-        level, mean, p_largest, p_smallest; ties share their draw.
+    All rows of a drawn ``cluster`` (earthquake or motion) come. ``within`` draws clusters separately inside each
+    level (the motions of each earthquake); otherwise the same ones for all levels, which keeps what the levels
+    share. Columns: level, mean, p_largest, p_smallest; ties share their draw.
     """
     rng = np.random.default_rng(seed)
     levels = sorted(table[factor].unique())

@@ -37,22 +37,9 @@ class TooFewUnitsError(ValueError):
 
 @dataclass(frozen=True)
 class Estimate:
-    """A mean over sampled units with its t interval, in logarithms.
+    """A mean over sampled units with its t interval, in logarithms of ratios [-].
 
-    Parameters
-    ----------
-    mean
-        Mean over the units, ln of a ratio [-].
-    se
-        Its standard error [-]; NaN for one unit.
-    units
-        Number of sampled units.
-    lower, upper
-        Limits of the interval [-]; NaN for one unit.
-    p
-        Two-sided p value of a mean of zero; NaN for one unit, 1 within the resolution.
-    resolution
-        Half-width below which the data cannot tell the mean from another value [-].
+    Of one unit ``se``, the limits and ``p`` are NaN.
     """
 
     mean: float
@@ -60,7 +47,8 @@ class Estimate:
     units: int
     lower: float
     upper: float
-    p: float
+    p: float  # two-sided p value of a mean of zero; 1 within the resolution
+    # half-width below which the data cannot tell the mean from another value
     resolution: float = 0.0
 
     @property

@@ -100,24 +100,10 @@ def _counted(n: int, noun: str) -> str:
 def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     """Return a clean copy of a table of tests, or say which row cannot be used.
 
-    Parameters
-    ----------
-    tests
-        One row per test: object, pedestal ("P" or "NP"), earthquake, floor, amplitude_g [g] and, where
-        present, motion, lower_g, upper_g [g], censored ("none", "right"; "left" for a test that
-        overturned at its first step, lower_g 0), repetition, reading.
-
-    Returns
-    -------
-    pandas.DataFrame
-        The same rows with motion, censored, repetition, lower_g, upper_g filled in, sorted so that
-        results do not depend on the order of rows.
-
-    Raises
-    ------
-    InputError
-        If a column is missing, a value is not one of those allowed, an amplitude is not a positive
-        number, a test is given twice, or several definitions of one IDA curve are mixed.
+    Tests have object, pedestal ("P" or "NP"), earthquake, floor, amplitude_g [g] and, where present, motion,
+    lower_g, upper_g [g], censored ("none", "right"; "left" for a test that overturned at its first step, lower_g
+    0), repetition, definition. What is absent is filled in, and rows are sorted so that results do not depend on
+    their order.
     """
     check_names("Table of tests", tests.columns, _NEEDED)
     missing = [name for name in _NEEDED if name not in tests.columns]
@@ -285,22 +271,7 @@ def _sides(clean: pd.DataFrame) -> pd.DataFrame:
 def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = None) -> Pairs:
     """Pair tests with and without pedestal by object and motion.
 
-    Parameters
-    ----------
-    tests
-        See `check_tests`.
-    slenderness
-        Height over width by object [-]; needed only for slopes on it.
-
-    Returns
-    -------
-    The :class:`Pairs`.
-
-    Raises
-    ------
-    InputError
-        As `check_tests`; if an object's slenderness is not in the mapping; if no object was tested
-        under the same motion with and without pedestal.
+    ``slenderness`` is height over width by object [-], needed only for slopes on it.
     """
     tests, origin = pedestals_apart(tests)
     clean = check_tests(tests)

@@ -95,24 +95,12 @@ def population(table: pd.DataFrame) -> str:
 
 
 def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFrame:
-    """Ratio P/NP for every scope.
+    """Ratio P/NP for every scope of pairs (`Pairs.table`), with floors in the given order.
 
-    Parameters
-    ----------
-    table
-        Pairs (`Pairs.table`).
-    floors
-        Order in which the floors are listed; others follow by name.
-
-    Returns
-    -------
-    pandas.DataFrame
-        scope, level, pairs, unit, units, ratio, lower, upper [-] (95 %), p, p_holm (within the
-        scope), p_bh (over all rows), p_sign_flip, smallest_p, p_equivalence (±10 %), equivalent,
-        detectable_ratio (80 % power with the scatter and number of units at hand), resolution_ratio
-        (ratio up to which the steps of the amplitudes leave the mean open; no interval is narrower),
-        tied (pairs with equal amplitudes on both sides), at_bound (pairs of which one test never
-        overturned, counted at the bound).
+    Limits are of 95 %; p_holm adjusts within the scope, p_bh over all rows; p_equivalence is of ±10 %;
+    detectable_ratio has 80 % power with the scatter and number of units at hand; up to resolution_ratio the steps
+    of the amplitudes leave the mean open (no interval is narrower); tied pairs have equal amplitudes on both
+    sides; of those at_bound one test never overturned.
     """
     rows: list[dict[str, object]] = []
     known = [name for name in floors if name in set(table["floor"])]

@@ -1,8 +1,3 @@
-from .instruments import (
-    Accelerometer as Accelerometer,
-    Exact as Exact,
-    ForceOverMass as ForceOverMass,
-)
 from .laboratory_table import read_measured as read_measured
 from .protocols import (
     Outcome as Outcome,
@@ -14,20 +9,11 @@ from .definitions import (
     step_protocol as step_protocol,
     tests_from_ida as tests_from_ida,
 )
-from .settings import (
-    make_shaker as make_shaker,
-    read_shaker as read_shaker,
-)
+from .settings import read_shaker as read_shaker
 from .shaker import (
-    Demand as Demand,
     Shaker as Shaker,
     limits_g as limits_g,
     produced_motion as produced_motion,
     required_corner as required_corner,
     shaker_table as shaker_table,
-)
-from .steps import (
-    ForceSteps as ForceSteps,
-    GeometricSteps as GeometricSteps,
-    LinearSteps as LinearSteps,
 )

@@ -149,7 +149,7 @@ def tests_from_ida(
         Columns ``configuration``, ``object``, ``pedestal``, ``motion``, ``earthquake``, ``floor``,
         ``amplitude_g``, ``overturned``, ``overturned_body``; in any order of rows.
     protocol
-        Protocol of the laboratory; its repetitions concern the step protocol, its reading and its
+        Protocol of the laboratory; its repetitions concern the step protocol, its definition and its
         measurement concern all definitions.
     definitions
         Which of ``step_protocol``, ``first_overturning`` and ``always_overturning`` to take.
@@ -160,7 +160,7 @@ def tests_from_ida(
     Returns
     -------
     Table of tests, see :mod:`rockfrag.shaketable.tests_table`; in the order in which
-    the IDA curves first appear, then by reading and repetition.
+    the IDA curves first appear, then by definition and repetition.
 
     Raises
     ------
@@ -175,7 +175,7 @@ def tests_from_ida(
     for definition in definitions:
         if definition not in DEFINITIONS:
             raise InputError(
-                f"protocol: reading {definition!r} is not one of {', '.join(DEFINITIONS)}."
+                f"protocol: definition {definition!r} is not one of {', '.join(DEFINITIONS)}."
             )
     return tests_from_swept(
         swept_of(ida, ["configuration", "motion"], list(ABOUT)),

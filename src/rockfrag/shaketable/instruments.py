@@ -18,18 +18,10 @@ class Exact:
 
 @dataclass(frozen=True)
 class ForceOverMass:
-    """Amplitude computed as the shaker's force over the mass it is believed to move.
+    """Amplitude computed as the shaker's force over the mass it is believed to move [kg], by configuration.
 
-    The force moves the unaccounted mass too, so the figure is too large by the ratio of the masses,
-    and by more for a light specimen: a bias that differs with and without the pedestal.
-
-    Attributes
-    ----------
-    believed_mass
-        Mass the force is divided by [kg], for each configuration.
-    unaccounted_mass
-        Mass that moves as well but is left out [kg], such as a table; negative if too much is
-        counted.
+    The force moves the unaccounted mass too, so the figure is too large by the ratio of the masses, and by more
+    for a light specimen: a bias that differs with and without the pedestal. Too much counted is negative.
     """
 
     believed_mass: Mapping[str, float]
@@ -44,13 +36,7 @@ class ForceOverMass:
                 )
 
     def measure(self, amplitude_g: float, configuration: str) -> float:
-        """Return the measured amplitude [g].
-
-        Raises
-        ------
-        InputError
-            If there is no mass for the configuration.
-        """
+        """Return the measured amplitude [g]."""
         if configuration not in self.believed_mass:
             raise InputError(
                 f"force over mass: no mass is given for configuration {configuration!r}; known are "
@@ -61,13 +47,7 @@ class ForceOverMass:
 
 @dataclass(frozen=True)
 class Accelerometer:
-    """Amplitude read from an accelerometer that shows no more than its range.
-
-    Attributes
-    ----------
-    clip_g
-        End of its range [g].
-    """
+    """Amplitude read from an accelerometer that shows no more than its range, ``clip_g`` [g]."""
 
     clip_g: float
 

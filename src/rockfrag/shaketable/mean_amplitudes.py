@@ -14,19 +14,14 @@ _ALL = ""
 
 
 def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
-    """Geometric means of what is compared, over the motions that overturned all that is compared.
+    """Geometric means of what is compared, over the motions that overturned all that is compared, a row a mean.
 
-    ``tests`` are of one definition; ``amplitude_g`` [g] is missing where the test has none.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row per mean. ``by``: what is compared, all configurations over the same motions
-        (``configuration``), the floors by side over the same records and objects (``floor``), or the
-        same for each object (``object_floor``); ``configuration``, ``object``, ``pedestal``,
-        ``floor``: of what, empty where all are taken together; ``mean_g``: geometric mean [g],
-        missing where no motion overturned all that is compared; ``motions``: how many did, ``of`` how
-        many. Repetitions are averaged in the logarithm, and count only if each of them overturned.
+    ``tests`` are of one definition; ``amplitude_g`` [g] is missing where the test has none. ``by`` is what is
+    compared: all configurations over the same motions (``configuration``), the floors by side over the same
+    records and objects (``floor``), or the same for each object (``object_floor``). ``configuration``, ``object``,
+    ``pedestal`` and ``floor`` are empty where all are taken together; ``mean_g`` [g] is missing where no motion
+    overturned all; of ``of`` motions ``motions`` did. Repetitions are averaged in the logarithm, and count only if
+    each of them overturned.
     """
     known = tests.assign(
         ln_a=np.log(tests["amplitude_g"]),

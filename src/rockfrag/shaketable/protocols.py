@@ -82,19 +82,11 @@ class Protocol:
             )
         if self.definition not in ("before", "at"):
             raise InputError(
-                f"protocol: reading must be 'before' or 'at', got {self.definition!r}."
+                f"protocol: definition must be 'before' or 'at', got {self.definition!r}."
             )
 
     def amplitudes(self, limit_g: float | None = None, repetition: int = 1) -> Floats:
-        """Amplitudes to be tested [g], rising.
-
-        Parameters
-        ----------
-        limit_g
-            Limit of the shaker for this motion [g], if it has one.
-        repetition
-            Number of the repetition, from 1.
-        """
+        """Rising amplitudes up to the protocol's and the shaker's limit [g]; repetitions count from 1."""
         limit = self.limit_g if limit_g is None else min(limit_g, self.limit_g)
         return self.steps.amplitudes(limit, (repetition - 1) / self.repetitions)
 

@@ -41,26 +41,7 @@ def read_shaker(path: str | os.PathLike[str]) -> Shaker:
 
 
 def make_shaker(settings: Any, source: str = "shaker") -> Shaker:
-    """Make a shaker from a mapping with units in its keys.
-
-    Parameters
-    ----------
-    settings
-        Any of ``stroke_m``, ``force_n``, ``lowest_hz``, ``highest_hz``, ``start``,
-        ``armature_mass_kg``, ``table_mass_kg`` (lengths and masses also in other units) and
-        ``velocity_m_s``; the schema ``shaker`` says what each holds.
-    source
-        Where the mapping comes from, for messages.
-
-    Returns
-    -------
-    The :class:`Shaker`.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown, or a value makes no sense.
-    """
+    """Make a shaker from a mapping with units in its keys, as the schema ``shaker`` has them."""
     values = checked(settings, "shaker", source)
     try:
         return Shaker(**{_FIELDS[key]: value for key, value in values.items()})

@@ -82,13 +82,7 @@ class Shaker:
                 raise InputError(f"shaker: {name}_mass must be zero or more kg, got {value}.")
 
     def demand(self, motion: Motion, amplitude_g: float, payload: float = 0.0) -> "Demand":
-        """What a motion scaled to a peak of ``amplitude_g`` [g] asks, with ``payload`` [kg] on it.
-
-        Raises
-        ------
-        InputError
-            If the motion is zero throughout, or the payload is negative or leaves no mass.
-        """
+        """What a motion scaled to a peak of ``amplitude_g`` [g] asks, with ``payload`` [kg] on it."""
         velocity, displacement = integrate(
             scale_to_pga(motion, amplitude_g).acceleration, motion.dt
         )
@@ -119,28 +113,12 @@ class Shaker:
 
 @dataclass(frozen=True)
 class Demand:
-    """What one motion at one amplitude asks of a shaker.
-
-    Attributes
-    ----------
-    shaker
-        The shaker.
-    amplitude_g
-        Peak acceleration [g].
-    travel
-        Peak-to-peak displacement [m].
-    excursion
-        Largest displacement from the start [m].
-    velocity
-        Largest velocity [m/s].
-    force
-        Largest force [N].
-    """
+    """What one motion at one amplitude asks of a shaker: peak-to-peak travel [m], velocity [m/s], force [N]."""
 
     shaker: Shaker
     amplitude_g: float
     travel: float
-    excursion: float
+    excursion: float  # largest displacement from the start [m]
     velocity: float
     force: float
 
@@ -186,13 +164,12 @@ def required_corner(
     """
     if shaker.demand(motion, amplitude_g, payload).fits:
         return 0.0
+    wanted = scale_to_pga(motion, amplitude_g)
     for corner in CORNERS_HZ:
-        if (
-            corner < 0.5 / motion.dt
-            and _demand_of(
-                shaker, _filtered(scale_to_pga(motion, amplitude_g), corner), payload
-            ).fits
-        ):
+        if corner >= 0.5 / motion.dt:
+            break
+        filtered = _filtered(wanted, corner)
+        if shaker.demand(filtered, filtered.pga / GRAVITY, payload).fits:
             return corner
     raise InputError(
         f"shaker: no high-pass corner up to {CORNERS_HZ[-1]:g} Hz lets motion {motion.name!r} at "
@@ -296,7 +273,3 @@ def _filtered(motion: Motion, corner: float) -> Motion:
     # room for the transients of an acausal filter: Converse & Brady (1992)
     room = 1.5 * FILTER_ORDER / corner
     return highpass(pad(motion, room, room), corner, FILTER_ORDER)
-
-
-def _demand_of(shaker: Shaker, motion: Motion, payload: float) -> Demand:
-    return shaker.demand(motion, motion.pga / GRAVITY, payload)

@@ -18,15 +18,7 @@ MOST_STEPS = 100_000
 
 @dataclass(frozen=True)
 class LinearSteps:
-    """Amplitudes that grow by the same amount.
-
-    Attributes
-    ----------
-    start_g
-        First amplitude [g].
-    step_g
-        Difference of one amplitude and the next [g].
-    """
+    """Amplitudes that grow by the same amount."""
 
     start_g: float
     step_g: float
@@ -43,15 +35,7 @@ class LinearSteps:
 
 @dataclass(frozen=True)
 class GeometricSteps:
-    """Amplitudes that grow by the same factor.
-
-    Attributes
-    ----------
-    start_g
-        First amplitude [g].
-    growth
-        Growth from one amplitude to the next [-]; 0.05 raises each by 5 %.
-    """
+    """Amplitudes that grow by the same factor: a ``growth`` of 0.05 raises each by 5 %."""
 
     start_g: float
     growth: float
@@ -72,14 +56,7 @@ class GeometricSteps:
 class ForceSteps:
     """Amplitudes set by the shaker's force, which grows by the same amount.
 
-    Attributes
-    ----------
-    start_n
-        First peak force [N].
-    step_n
-        Difference of one force and the next [N].
-    moved_mass_kg
-        Mass that the shaker moves: armature, table and specimen [kg].
+    The shaker moves armature, table and specimen.
     """
 
     start_n: float

@@ -16,7 +16,7 @@ censored         ``none``, or ``right`` if it did not overturn up to ``lower_g``
 overturned_body  ``statue``, ``pedestal``, or empty
 repetition       1, 2, …
 remark           anything else
-reading          how the bounds were found (``step_protocol``, ``measured``, …)
+definition       how the bounds were found (``step_protocol``, ``measured``, …)
 ===============  ==================================================================================
 """
 

@@ -56,9 +56,9 @@ def floor_curves(
     another measure varies from motion to motion. Fractions are points of the non-parametric fragility function,
     of those that are rejected: see :func:`rockfrag.fragility.drawn_curves.fraction_points`.
     """
-    from rockfrag.fragility import fragility_of, fragility_row, with_measures
     from rockfrag.fragility.drawn_curves import fraction_points
-    from rockfrag.fragility.estimators import fit_uplift
+    from rockfrag.fragility.estimators import fit_uplift, fragility_of
+    from rockfrag.fragility.ida_curves import fragility_row, with_measures
 
     floor_labels = {measure.label: measure.floor_label for measure in intensity_measures()}
     fractions = []

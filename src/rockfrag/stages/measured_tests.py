@@ -80,7 +80,8 @@ def beside(measured: pd.DataFrame, simulated: pd.DataFrame) -> pd.DataFrame:
 
 
 def _curves(measured: pd.DataFrame, level: float, notes: list[str]) -> pd.DataFrame:
-    from rockfrag.fragility import fit_step_tests, fragility_row, table_hash
+    from rockfrag.fragility import fit_step_tests
+    from rockfrag.fragility.ida_curves import fragility_row, table_hash
 
     rows = []
     digest = table_hash(measured)

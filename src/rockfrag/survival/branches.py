@@ -34,17 +34,7 @@ WEIGHT_ERROR = 1e-3
 
 @dataclass(frozen=True)
 class Branch:
-    """One end branch of a logic tree at a site.
-
-    Attributes
-    ----------
-    name
-        What it is called.
-    weight
-        Its weight; those of all branches sum to 1.
-    curves
-        Its hazard curves by measure.
-    """
+    """One end branch of a logic tree at a site: its weight, of sum 1, and its hazard curves by measure."""
 
     name: str
     weight: float
@@ -54,23 +44,10 @@ class Branch:
 def read_branches(
     paths: Sequence[str | os.PathLike[str]], realizations: str | os.PathLike[str] | None = None
 ) -> list[Branch]:
-    """Read the branches of a site.
+    """Read the branches of a site in the order of the file, with weights of sum 1 to the last digit.
 
-    Parameters
-    ----------
-    paths
-        Tables of branches, one a measure; or, with ``realizations``, OpenQuake's files of hazard curves.
-    realizations
-        OpenQuake's file of realizations, with the columns ``rlz_id``, ``branch_path`` and ``weight``.
-
-    Returns
-    -------
-    The branches in the order of the file, with weights of sum 1 to the last digit.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read, weights do not sum to one, or branches do not have the same measures.
+    ``paths`` are tables of branches, one a measure; or, with OpenQuake's file of ``realizations``, its files of
+    hazard curves.
     """
     if not paths:
         raise InputError("hazard: name at least one file with hazard curves of branches.")

@@ -19,31 +19,17 @@ TAIL = 6.0
 
 @dataclass(frozen=True)
 class Age:
-    """For how long an object has stood as fragile as it is today [year]: certain, a range, or lognormal.
+    """For how long an object has stood as fragile as it is today [year]: certain, a range, or lognormal."""
 
-    Attributes
-    ----------
-    low, high
-        Ends of a range in which every value is equally probable; equal for a certain age.
-    sd_ln
-        Standard deviation of the logarithm of a lognormal age with the median ``low``; 0 for the others.
-    fragile_for
-        Longest time for which it has been so fragile, which limits the age; infinite if none is given.
-    """
-
-    low: float
+    low: float  # ends of a range in which every value is equally probable; equal for a certain age
     high: float
+    # standard deviation of the logarithm of a lognormal age with the median ``low``; 0 for the others
     sd_ln: float = 0.0
+    # longest time for which it has been so fragile, which limits the age; infinite if none is given
     fragile_for: float = math.inf
 
     def exposure(self, uniform: Floats) -> Floats:
-        """Years of exposure at given probabilities, shape (n,).
-
-        Parameters
-        ----------
-        uniform
-            Between 0 and 1, shape (n,).
-        """
+        """Years of exposure at given probabilities, shape (n,)."""
         if self.sd_ln > 0:
             age = self.low * np.exp(self.sd_ln * special.ndtri(uniform))
         else:
@@ -56,24 +42,12 @@ class StandingObject:
     """An object that still stands, with its fragility in PGA, PGV, Sa(T), or PGA and PGV/PGA.
 
     P(topples | x) = Φ(c0 + c1 ln x), or Φ(c0 + c1 ln PGA + c2 ln(PGV/PGA)) with PGA in g and PGV/PGA in s.
-
-    Attributes
-    ----------
-    name
-        What it is called.
-    measure
-        Intensity measure of c1.
-    coefficients
-        (c0, c1) or (c0, c1, c2).
-    sd_ln
-        Standard deviation of the logarithm of the shaking that it withstands, for what is not known of it [-].
-    age
-        For how long it has stood.
     """
 
     name: str
-    measure: IntensityMeasure
-    coefficients: tuple[float, ...]
+    measure: IntensityMeasure  # intensity measure of c1
+    coefficients: tuple[float, ...]  # (c0, c1) or (c0, c1, c2)
+    # standard deviation of ln of the shaking that it withstands, for what is not known of it [-]
     sd_ln: float
     age: Age
 

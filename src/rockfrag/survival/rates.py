@@ -24,12 +24,8 @@ NODES = 15
 class VelocityRelation:
     """How fast the ground moves at a site when its peak acceleration is known: ln(PGV/PGA) is normal.
 
-    Attributes
-    ----------
-    median_s
-        Median of PGV/PGA [s].
-    sd_ln
-        Standard deviation of ln(PGV/PGA) from one earthquake to the next [-].
+    ``median_s`` is the median of PGV/PGA [s], ``sd_ln`` the standard deviation of its logarithm from one
+    earthquake to the next [-].
     """
 
     median_s: float

@@ -82,17 +82,9 @@ class Reweighted:
         )
 
     def curves(self, measure: IntensityMeasure) -> pd.DataFrame:
-        """Mean and fractile curves before and after.
+        """Mean and fractile curves before and after: annual rates by ``level``.
 
-        Parameters
-        ----------
-        measure
-            A measure of the branches.
-
-        Returns
-        -------
-        A row a level: ``level``, and annual rates ``mean_before``, ``mean_after`` and such as
-        ``fractile_0.84_before``.
+        Columns such as ``mean_before`` and ``fractile_0.84_after``.
         """
         levels = common_levels(self.branches, measure)
         rates = np.array([branch.curves[measure].rate(levels) for branch in self.branches])
@@ -105,12 +97,9 @@ class Reweighted:
         return pd.DataFrame(columns)
 
     def ratios(self, measure: IntensityMeasure) -> pd.DataFrame:
-        """Mean hazard before and after at annual rates of 1e-2 to 1e-5.
+        """Mean hazard before and after at annual rates of 1e-2 to 1e-5; levels beyond the curves are NaN.
 
-        Returns
-        -------
-        A row a rate: ``annual_rate``, ``level_before``, ``level_after`` (NaN beyond the curves),
-        ``level_ratio``, and ``rate_ratio``, by which the rate at the level before has changed.
+        ``rate_ratio`` is by how much the rate at the level before has changed.
         """
         curves = self.curves(measure)
         log_level = np.log(curves["level"].to_numpy())
@@ -148,31 +137,10 @@ def reweight(
 ) -> Reweighted:
     """Weigh branches of the hazard by how probably they let all objects stand.
 
-    Parameters
-    ----------
-    branches
-        Branches with weights of sum 1 and a hazard curve each.
-    objects
-        Objects that stand.
-    shared_error
-        Correlation of the errors of the objects' fragilities, 0 (each its own) to 1 (all the same) [-].
-    same_earthquakes
-        Whether the objects stand at one site and feel the same earthquakes; False where they are so far apart that
-        each feels its own.
-    velocity
-        PGV that comes with a PGA at the site, where a fragility asks for both.
-    samples
-        Draws of errors and ages, a power of two.
-
-    Returns
-    -------
-    Reweighted
-        Survival and weights of every branch.
-
-    Raises
-    ------
-    InputError
-        If there is no object, the correlation is not within 0 to 1, or a measure is in no hazard curve.
+    ``shared_error`` is the correlation of the errors of the objects' fragilities, 0 (each its own) to 1 (all the
+    same) [-]. Objects so far apart that each feels its own earthquakes do not have the ``same_earthquakes``.
+    ``velocity`` gives the PGV that comes with a PGA, where a fragility asks for both; ``samples`` of errors and
+    ages are a power of two.
     """
     if not objects:
         raise InputError("objects: give at least one that stands.")

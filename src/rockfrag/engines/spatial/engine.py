@@ -29,21 +29,15 @@ if TYPE_CHECKING:
 class SpatialResponse:
     """Outcome and history of one analysis in space.
 
-    Attributes
-    ----------
-    outcome
-        What became of the body.
-    history
-        A row per sample: ``time_s``; ``x_m``, ``y_m``, ``z_m`` of the centre of mass relative to the ground;
-        ``tilt_rad`` of the body's axis and ``axis_x``, ``axis_y``, its horizontal components; ``turn_rad`` about
-        the vertical; ``base_x_m``, ``base_y_m``, the base's point below the centre of mass; ``omega_x_rad_s`` to
-        ``omega_z_rad_s`` in the body; ``contacts``, the number of closed points, NaN at rest.
-    outline
-        Outline of the base as it stands at first, from below the centre of mass, shape (n, 2) [m].
+    The history has a row per sample: ``time_s``; ``x_m``, ``y_m``, ``z_m`` of the centre of mass relative to the
+    ground; ``tilt_rad`` of the body's axis and ``axis_x``, ``axis_y``, its horizontal components; ``turn_rad``
+    about the vertical; ``base_x_m``, ``base_y_m``, the base's point below the centre of mass; ``omega_x_rad_s``
+    to ``omega_z_rad_s`` in the body; ``contacts``, the number of closed points, NaN at rest.
     """
 
     outcome: SpatialOutcome
     history: pd.DataFrame
+    # of the base at first, from below the centre of mass, shape (n, 2) [m]
     outline: NDArray[np.float64]
 
     @property

@@ -10,13 +10,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
-from obspy import UTCDateTime
-
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import Section, accelerations, positive_step
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import time_at
 
 _RATE = re.compile(
     r"^\s*SAMPLES/SEC\s*=\s*(?P<rate>[\d.]+).*\bDATA\s+TYPE\s*=\s*(?P<type>\w\w)", re.IGNORECASE
@@ -78,11 +77,7 @@ def _described(values: Channel, words: list[str]) -> Channel:
         if match:
             year, day, hour, minute = (int(part) for part in match.groups()[:4])
             component = f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
-            try:
-                start = UTCDateTime(year=year, julday=day, hour=hour, minute=minute)
-                start += float(match[5])
-            except (ValueError, OverflowError, TypeError):
-                start = None
+            start = time_at(float(match[5]), year=year, julday=day, hour=hour, minute=minute)
     earthquake = next((line.strip() for line in words if "EARTHQUAKE" in line.upper()), "")
     return replace(
         values,

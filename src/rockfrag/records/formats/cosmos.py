@@ -24,6 +24,7 @@ from rockfrag.records.parsing.fortran_sections import (
 )
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import time_at
 
 _FIRST = re.compile(
     r"^\s*(?:un)?(?:raw|processed|corrected)?\s*\w+.*\(\s*Format\s+v\s*0?1\.\d+", re.IGNORECASE
@@ -186,10 +187,7 @@ def _start(whole: list[int], numbers: list[float], unknown: float) -> UTCDateTim
     if unknown in (year, month, day, hour, minute) or year <= 0:
         return None
     second = 0.0 if numbers[_SECOND] == unknown else numbers[_SECOND]
-    try:
-        return UTCDateTime(year, month, day, hour, minute) + second
-    except (ValueError, OverflowError, TypeError):
-        return None
+    return time_at(second, year=year, month=month, day=day, hour=hour, minute=minute)
 
 
 def _described(values: Channel, header: _Header) -> Channel:

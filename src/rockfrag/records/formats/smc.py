@@ -18,6 +18,7 @@ from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import integers, positive_step, reals
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.time_value_pairs import pairs_of
+from rockfrag.records.parsing.timestamps import time_at
 
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
 _FIRST_DATA = _TEXT_LINES + _INTEGER_LINES + _REAL_LINES
@@ -131,12 +132,9 @@ def _start(whole: list[int]) -> UTCDateTime | None:
     missing = whole[_MISSING]
     if missing in (year, day, hour, minute) or year <= 0:
         return None
-    try:
-        start = UTCDateTime(year=year, julday=day, hour=hour, minute=minute)
-    except (ValueError, OverflowError, TypeError):
-        return None
-    seconds = 0 if second == missing else second
-    return start + seconds + (0 if millisecond == missing else millisecond / 1000)
+    seconds: float = 0 if second == missing else second
+    seconds += 0 if millisecond == missing else millisecond / 1000
+    return time_at(seconds, year=year, julday=day, hour=hour, minute=minute)
 
 
 def _station_code(line: str, whole: list[int], missing: int) -> str:

@@ -145,11 +145,18 @@ def clock_time(
     full = int(year)
     if full < 100:
         full += 2000 if full <= _LAST_YEAR_OF_2000S else 1900
+    seconds = float(second) + 3600.0 * behind
+    return time_at(
+        seconds, year=full, month=int(month), day=int(day), hour=int(hour), minute=int(minute)
+    )
+
+
+def time_at(seconds: float, **minute: int) -> UTCDateTime | None:
+    """Return the time some seconds after a minute, by arguments of UTCDateTime, or None if it is no time."""
     try:
-        start = UTCDateTime(full, int(month), int(day), int(hour), int(minute))
+        return UTCDateTime(**minute) + seconds
     except (ValueError, OverflowError, TypeError):
         return None
-    return start + float(second) + 3600.0 * behind
 
 
 _AMERICAN = re.compile(

@@ -27,7 +27,7 @@ EFFECT_COLUMNS = (
     Column("equivalent", "Within ±10 %"),
     Column("p_text", "p (Holm)", numeric=True),
 )
-"""What is shown of :func:`rockfrag.pedestal.effects_table` after :func:`shown_effects`."""
+"""What is shown of :func:`rockfrag.pedestal.study.effects_table` after :func:`shown_effects`."""
 
 _METHODS = (
     Column("definition", "Definition"),

@@ -26,7 +26,7 @@ def ratios_figure(effects: pd.DataFrame) -> Figure:
     Parameters
     ----------
     effects
-        Rows of one definition of :func:`rockfrag.pedestal.effects_table`.
+        Rows of one definition of :func:`rockfrag.pedestal.study.effects_table`.
     """
     whole, floors = effects[effects["scope"] == "whole"], effects[effects["scope"] == "floor"]
     rows = [("all pairs", row) for row in whole.to_dict("records")]
