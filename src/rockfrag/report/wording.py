@@ -161,7 +161,8 @@ def macros(package: str, template: str, words: Mapping[str, Any]) -> Any:
     environment.tests |= {"finite": math.isfinite, "nan": math.isnan}
     environment.filters |= {"listed": listed, "sentence": sentence}
     environment.globals |= {"agree": agree, "counted": counted, "number": number, "of_all": of_all}
-    environment.globals |= words | {"part": PART}
+    environment.globals |= words
+    environment.globals["part"] = PART
     return environment.get_template(template).module
 
 
