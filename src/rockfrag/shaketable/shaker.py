@@ -88,7 +88,6 @@ class Shaker:
         )
         return Demand(
             shaker=self,
-            amplitude_g=amplitude_g,
             travel=float(np.ptp(displacement)),
             excursion=float(np.abs(displacement).max()),
             velocity=float(np.abs(velocity).max()),
@@ -116,7 +115,6 @@ class Demand:
     """What one motion at one amplitude asks of a shaker: peak-to-peak travel [m], velocity [m/s], force [N]."""
 
     shaker: Shaker
-    amplitude_g: float
     travel: float
     excursion: float  # largest displacement from the start [m]
     velocity: float
