@@ -19,7 +19,7 @@ from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page
 from rockfrag.rocking import Block, Column, Stack, overturns
-from rockfrag.rocking.browser import ENGINE
+from rockfrag.rocking.browser import InPage
 from rockfrag.rocking.options import system_of
 from rockfrag.system.system import turned_about_vertical
 
@@ -88,7 +88,7 @@ def test_what_the_kernel_of_the_page_does_not_know_is_left_out_by_name():
     assert [body["name"] for body in data_of(html)["bodies"]] == list(BODIES)
     assert "and so not: measured, slippery, drums." in html
     assert live_kernel({"measured": held}, [motion()]) == ""
-    assert isinstance(ENGINE, Engine)
+    assert isinstance(InPage(), Engine)
 
 
 def test_the_outcomes_are_those_of_the_table_it_is_given():

@@ -40,9 +40,7 @@ else:
             bodies=STUDY.body_files,
         output:
             ida_curves=[
-                f"{RESULTS}/{STUDY.ida_file(configuration, 0)}".replace(
-                    "/000/", "/{part}/"
-                )
+                f"{RESULTS}/{STUDY.ida_file(configuration)}"
                 for configuration in STUDY.configurations
             ],
         log:

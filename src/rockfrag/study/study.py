@@ -156,9 +156,10 @@ class Study(Heading):
         motions = len(self.catalogue) * len(self.floors)
         return max(1, min(math.ceil(self.histories / HISTORIES_A_JOB), MOST_JOBS, motions))
 
-    def ida_file(self, configuration: System, job: int) -> str:
-        """Path of a configuration's IDA curve under the motions of a job."""
-        folder = "ida" if self.ida_jobs == 1 else f"ida/{job:03d}"
+    def ida_file(self, configuration: System, job: int | None = None) -> str:
+        """Path of a configuration's IDA curve under the motions of a job; without one the pattern of all jobs."""
+        part = "{part}" if job is None else f"{job:03d}"
+        folder = "ida" if self.ida_jobs == 1 else f"ida/{part}"
         return f"{folder}/{file_name(configuration.name)}.parquet"
 
     @property
