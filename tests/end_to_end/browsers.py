@@ -11,6 +11,8 @@ import time
 from pathlib import Path
 from typing import Any, Protocol, Self
 
+import pytest
+
 
 class Browser(Protocol):
     """What the tests ask of a browser."""
@@ -322,6 +324,11 @@ BROWSERS = {
     "firefox": (Firefox, _firefox()),
 }
 """Each with the path of its program, or None where there is none."""
+
+QUICK_IN_ONE = pytest.mark.parametrize(
+    "browser", ["chromium", pytest.param("firefox", marks=pytest.mark.slow)], indirect=True
+)
+"""Marks long tests whose figures and words are seen in both browsers by quick ones."""
 
 
 READY = """

@@ -16,7 +16,7 @@ from rockfrag.assess.words import five_lines
 from rockfrag.cli import main
 
 from ..app_forms import options_of, some_form
-from .browsers import Browser
+from .browsers import QUICK_IN_ONE, Browser
 
 FORM = {"width": "25 cm", "height": "1 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
 SETTINGS = {"width": "25 cm", "height": "1 m", "pga": "0.4 g", "return_period": "475"}
@@ -165,6 +165,7 @@ def test_the_last_key_stroke_is_answered(browser, app_page):
     assert browser.console == []
 
 
+@QUICK_IN_ONE
 def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
     browser.open(app_page)
     assert browser.run(STAGE)

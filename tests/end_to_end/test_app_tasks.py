@@ -13,7 +13,7 @@ import pytest
 
 from rockfrag.cli import main
 
-from .browsers import Browser
+from .browsers import QUICK_IN_ONE, Browser
 
 STAGE = "document.body.dataset.stage === 'complete' && !document.querySelector('.stale')"
 LINES = "[...document.querySelectorAll('#lines dd')].map(line => line.textContent)"
@@ -77,6 +77,7 @@ def printed(browser: Browser, folder: Path, name: str) -> str:
     return browser.run("document.getElementById('sheets').textContent")
 
 
+@QUICK_IN_ONE
 def test_a_bust_on_a_plinth_on_the_first_floor_of_a_masonry_house(browser, page, tmp_path):
     browser.open(page, 1400, 1000)
     waited(browser, STAGE)
@@ -100,6 +101,7 @@ def test_a_bust_on_a_plinth_on_the_first_floor_of_a_masonry_house(browser, page,
     assert browser.console == []
 
 
+@QUICK_IN_ONE
 def test_a_vase_in_a_gallery_on_a_phone_in_italian(browser, page, tmp_path):
     browser.open(page, 390, 844)
     waited(browser, STAGE)
@@ -144,6 +146,7 @@ Trolley,40 cm,1.3 m,60 kg,0/5,PGA,0.2 g,475
 """
 
 
+@QUICK_IN_ONE
 def test_cabinets_of_a_hospital_with_a_hazard_curve(browser, page, tmp_path):
     browser.open(page, 1400, 1000, dark=True)
     waited(browser, STAGE)
