@@ -136,7 +136,7 @@ def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
             left_out.append({"cell": "floors by object", "earthquake": "earthquakes"}[scope])
     caption = (
         f"Overturning a{about.divided[1:]}, with 95 % intervals; grey is ±10 %, the range "
-        " that counts as no effect. Step protocol."
+        "that counts as no effect. Step protocol."
     )
     if left_out:
         caption += f" Not drawn, and in the table only: {listed(left_out)}."
