@@ -2,7 +2,7 @@
 
 import math
 import numbers
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -25,26 +25,27 @@ def real_number(name: str, value: object, unit: str = "") -> float:
 
     Text, booleans, None, arrays, complex and infinite numbers are none.
     """
-    return _above(-math.inf, name, value, f"a finite number{_of(unit)}")
+    return _checked(name, value, f"a finite number{_of(unit)}", lambda _: True)
 
 
 def positive_number(name: str, value: object, unit: str = "") -> float:
     """Return a finite number above 0, or say in one sentence why it is none."""
-    return _above(0.0, name, value, f"a positive number{_of(unit)}")
+    return _checked(name, value, f"a positive number{_of(unit)}", lambda x: x > 0)
 
 
 def number_from_zero(name: str, value: object, unit: str = "") -> float:
     """Return a finite number that is 0 or more, or say in one sentence why it is none."""
-    return _above(-math.ulp(0.0), name, value, f"a number{_of(unit)} that is not negative")
+    wanted = f"a number{_of(unit)} that is not negative"
+    return _checked(name, value, wanted, lambda x: x >= 0)
 
 
-def _above(bound: float, name: str, value: object, wanted: str) -> float:
+def _checked(name: str, value: object, wanted: str, allowed: Callable[[float], bool]) -> float:
     number = math.nan
     is_number = isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_))
     # a whole number may have more digits than a float takes
     with suppress(OverflowError):
         number = float(value) if is_number else number  # type: ignore[arg-type]
-    if not (math.isfinite(number) and number > bound):
+    if not (math.isfinite(number) and allowed(number)):
         raise InputError(f"{name}: expected {wanted}, got {shown(value)}.")
     return number
 

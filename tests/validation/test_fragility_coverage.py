@@ -252,7 +252,7 @@ def nonparametric() -> pd.DataFrame:
             }
             rows.append(design | {"median": theta, "half of 16 to 84 %": beta})
     found = pd.DataFrame(rows)
-    document("validation-fragility.md", "without a form", found)
+    document("validation-fragility.md", "non-parametric function", found)
     return found
 
 

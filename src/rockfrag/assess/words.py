@@ -169,39 +169,44 @@ def _said(name: str, *about: Any) -> list[str]:
     return said(getattr(_sentences(), name)(*about))
 
 
+def _words(name: str, *about: Any) -> str:
+    """What a macro says, in one line."""
+    return " ".join(_said(name, *about))
+
+
 def headline(found: Assessment) -> str:
     """Say in a few words whether the object rocks and topples; the heading of the page."""
-    return " ".join(_said("headline", found))
+    return _words("headline", found)
 
 
 def at_the_site(found: Assessment) -> str:
     """What happens at the level asked about, or which levels topple the object."""
-    return " ".join(_said("at_the_site", found))
+    return _words("at_the_site", found)
 
 
 def risk(found: Assessment) -> str:
     """The probability, whether that is much, and what to do."""
-    return " ".join(_said("risk", found))
+    return _words("risk", found)
 
 
 def positions(found: Assessment) -> str:
     """The ways in which it can stand, the best one, and the direction that it faces."""
-    return " ".join(_said("positions", found))
+    return _words("positions", found)
 
 
 def worst_direction(found: Assessment) -> str:
     """In which plane it rocks, and whether the worst direction is counted."""
-    return " ".join(_said("worst_direction", found))
+    return _words("worst_direction", found)
 
 
 def helps(found: Assessment) -> str:
     """Changes that help, most helpful first."""
-    return " ".join(_said("helps", found))
+    return _words("helps", found)
 
 
 def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
     """A change and what it does to the risk, or to the shaking that the object bears."""
-    return " ".join(_said("mitigation", found, mitigation))
+    return _words("mitigation", found, mitigation)
 
 
 def uncertainty(found: Assessment) -> list[str]:
@@ -226,5 +231,5 @@ def five_lines(found: Assessment) -> list[str]:
         f"Risk: {risk(found)}",
         f"Position: {positions(found)}",
         f"What helps: {helps(found)}",
-        f"How sure: {' '.join(_said('sure', found))}",
+        f"How sure: {_words('sure', found)}",
     ]

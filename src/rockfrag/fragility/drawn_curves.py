@@ -21,8 +21,8 @@ def curve_points(
     """Points of one curve over the range of its data: ``x``, ``probability``, its limits, and what needs no curve.
 
     ``local`` is the fraction of overturned tests near x, which may fall where the curve cannot (missing where all
-    tests are at one value), ``fraction`` with its limits the curve without a form. Without a curve ``probability``
-    is missing.
+    tests are at one value), ``fraction`` with its limits the non-parametric fragility function. Without a curve
+    ``probability`` is missing.
     """
     fit = curve.fit
     low, high = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
