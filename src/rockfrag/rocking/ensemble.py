@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.engines.contract import Cases, Request, run_cases
-from rockfrag.engines.steps import STEP
+from rockfrag.engines.steps import STEP, rocking_shapes
 from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
 from rockfrag.outcomes.outcomes import Outcomes
@@ -211,7 +211,10 @@ def shaken(cases: Cases) -> Outcomes:
     if not outcomes.overturned.size:
         return outcomes
     if any(motion.z is not None for motion in cases.motions):
-        outcomes.minimum_gravity_ratio[:] = _minimum_gravity_ratio(cases)
+        ups = [motion.z.acceleration if motion.z else np.zeros(1) for motion in cases.motions]
+        ends = np.array([(up.min(initial=0.0), up.max(initial=0.0)) for up in ups])
+        least = np.min(ends[:, np.newaxis, :] * cases.scales[..., np.newaxis], axis=2)
+        outcomes.minimum_gravity_ratio[:] = 1.0 + least / cases.request.g
     # a body that is answered in space leaves the ground where it has to, and so do more than two bodies
     in_space = any(motion.y is not None for motion in cases.motions)
     stuck = np.array(
@@ -259,14 +262,6 @@ def overturned_cases(
     return overturned
 
 
-def _minimum_gravity_ratio(cases: Cases) -> Array:
-    """Least weight under each motion at each scale, over that on a ground at rest, (motions, scales)."""
-    ups = [motion.z.acceleration if motion.z else np.zeros(1) for motion in cases.motions]
-    ends = np.array([(up.min(initial=0.0), up.max(initial=0.0)) for up in ups])
-    least = np.min(ends[:, np.newaxis, :] * cases.scales[..., np.newaxis], axis=2)
-    return np.asarray(1.0 + least / cases.request.g)
-
-
 def _warn_of_weight(ratio: Array) -> None:
     """Warn of cases in which bodies may leave the ground because it drops."""
     light, none = int((ratio < LIGHT).sum()), int((ratio <= 0).sum())
@@ -307,11 +302,8 @@ def lifting_acceleration(system: System, g: float) -> float:
 
     The centre of gravity falls with b θ'' where θ'' = m (a h + g b) / I_O brakes the rocking: at g it is free.
     """
-    shapes = list(system.carried)
-    if system.count == 2:
-        shapes[0] = geometry.joined(system.pile)
     found = np.inf
-    for shape in shapes:
+    for shape in rocking_shapes(system):
         for pivot in (+1, -1):
             x, y = geometry.arm(shape, pivot)
             if x:

@@ -17,7 +17,7 @@ from rockfrag.engines.contract import (
     engines,
     run_cases,
 )
-from rockfrag.engines.response import Response
+from rockfrag.engines.response import ROCKING_MODES, Response, with_slips
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.system.system import System
@@ -135,9 +135,6 @@ def scaled(motion: GroundMotion, factor: float) -> GroundMotion:
 
 def without_slip(response: Response) -> Response:
     """Give a response of pure rocking the columns of one with friction."""
-    from rockfrag.engines.response import ROCKING_MODES
-    from rockfrag.engines.response_tables import with_slips
-
     bodies = response.slip.shape[1]
     states = {name: pair[2 - bodies :] for pair, name in ROCKING_MODES.items()}
     after = np.array([states[name] for name in response.contact_events["to"]], dtype=np.int64)

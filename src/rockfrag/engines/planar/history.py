@@ -22,8 +22,14 @@ from rockfrag.engines.planar.integrate import (
     integrate,
 )
 from rockfrag.engines.planar.records import posed, system_record, working_memory
-from rockfrag.engines.response import FLIGHT, Response, sampled_demand
-from rockfrag.engines.response_tables import contact_event_table, energy_table, with_slips
+from rockfrag.engines.response import (
+    FLIGHT,
+    Response,
+    contact_event_table,
+    energy_table,
+    sampled_demand,
+    with_slips,
+)
 from rockfrag.engines.steps import STEP, free_samples, step_count
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.system.system import System
@@ -62,23 +68,19 @@ class ContactRun(NamedTuple):
 
 
 def contact_run(
-    system: System,
-    motion: GroundMotion,
-    g: float = GRAVITY,
-    step: float = STEP,
-    closing: float = CLOSING,
+    system: System, motion: GroundMotion, g: float = GRAVITY, closing: float = CLOSING
 ) -> ContactRun:
     """Integrate one planar system that may slide, rock and fly; :func:`response_of` makes a response of it.
 
-    ``step`` is the largest product of the frequency parameter and the step [-], ``closing`` the parting speed over
-    √(g b) below which a contact that would fall shut again stays closed after an impact [-].
+    ``closing`` is the parting speed over √(g b) below which a contact that would fall shut again stays closed
+    after an impact [-].
     """
     values, interval = motion.x.acceleration, motion.dt
     up = np.zeros(0) if motion.z is None else motion.z.acceleration
     p = system_record(system, g)
     blocks = int(p["count"])
     start = posed(p, *started(system))
-    substeps = int(step_count(system, interval, g, step))
+    substeps = int(step_count(system, interval, g, STEP))
     free = int(free_samples(system, interval, g))
     shaking = Shaking(values, up, interval, 1.0, substeps, free)
     history = np.zeros((values.size + free, history_columns(blocks)))
@@ -107,6 +109,7 @@ def response_of(run: ContactRun) -> Response:
     state, slides = _modes(history[:, -1], blocks)
     fallen = int(work["fallen"])
     table = _contact_events(run.contact_events, blocks)
+    meets = np.array([np.abs(np.diff([0.0, *omega])).max() for omega in table["omega_before"]])
     ground = np.zeros(done)
     ground[: min(done, values.size)] = values[:done]
     return Response(
@@ -128,7 +131,7 @@ def response_of(run: ContactRun) -> Response:
         normal_force=normal,
         friction_force=shear,
         impacts=int(work["impacts"]),
-        grazings=_grazings(table),
+        grazings=int((table["kind"].eq("impact") & (meets < GRAZING_SPEED)).sum()),
         given_way=int(work["given_way"]),
         friction_demand=sampled_demand(normal, shear),
         least_normal_force=np.asarray(normal.min(axis=0)),
@@ -172,12 +175,6 @@ def _kind_of_change(before: Ints, after: Ints, slid: Ints, slides: Ints) -> str:
     if np.any(after != before):
         return "closing"
     return "slip" if np.any((slides != 0) & (slides != slid)) else "stick"
-
-
-def _grazings(contact_events: pd.DataFrame) -> int:
-    """Impacts that met with less than the speed of grazing."""
-    speeds = [np.abs(np.diff([0.0, *omega])).max() for omega in contact_events["omega_before"]]
-    return int(((contact_events["kind"] == "impact") & (np.array(speeds) < GRAZING_SPEED)).sum())
 
 
 def _energies(p: np.void, time: Array, history: Array, contact_events: Array) -> pd.DataFrame:
