@@ -4,6 +4,7 @@ import math
 
 from rockfrag.elementary import atan2, sin_cos
 from rockfrag.engines.kernels.jit import entry_kernel, kernel
+from rockfrag.engines.kernels.roots import narrowed
 from rockfrag.engines.spatial._algebra import (
     cross,
     norm,
@@ -109,11 +110,10 @@ MOST_STEPS = 400_000
 COARSE = 1e-6
 """Error of a step that is allowed then [m, m/s, rad/s]."""
 
-OUTCOME = 21
+OUTCOME = 16
 (
-    FELL, FALL_TIME, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, PEAK_WALK, WALK_X,
-    WALK_Y, TURN, STEPS, LOST, ENERGY_BALANCE, END_TIME, CERTAIN_TIME, FIRST_MOTION, LEAST_GRAVITY, CONTACT_EVENTS,
-    GAINED,
+    FELL, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, WALK_X, WALK_Y, TURN, STEPS,
+    LOST, ENERGY_BALANCE, CERTAIN_TIME, CONTACT_EVENTS, GAINED,
 ) = range(OUTCOME)  # fmt: skip
 
 COLUMNS = 17
@@ -153,28 +153,20 @@ def rest_ends(body, y, field, tau, dt):
     rows = rotation(y)
     if rest_margin(body, y, rows, pull_at(field, dt)) >= 0:
         return -1.0
-    low, high = tau, dt
-    above = rest_margin(body, y, rows, pull_at(field, low))
+    above = rest_margin(body, y, rows, pull_at(field, tau))
     if above <= 0:
-        return low
-    below = rest_margin(body, y, rows, pull_at(field, high))
-    side = 0
+        return tau
+    bracket = (tau, above, dt, rest_margin(body, y, rows, pull_at(field, dt)), 0)
     for _ in range(100):
+        low, above, high, below, _ = bracket
         middle = (low * below - high * above) / (below - above)
         value = rest_margin(body, y, rows, pull_at(field, middle))
-        if value >= 0:
-            low, above = middle, value
-            below *= 0.5 if side > 0 else 1.0
-            side = 1
-        else:
-            high, below = middle, value
-            above *= 0.5 if side < 0 else 1.0
-            side = -1
+        bracket = narrowed(bracket, middle, value)
         if abs(value) < 1e-14:
             return middle
-        if high - low < 1e-15:
+        if bracket[2] - bracket[0] < 1e-15:
             break
-    return high
+    return bracket[2]
 
 
 @kernel
@@ -349,7 +341,6 @@ def locate(body, tau, h, y, s):
 
     Returns the step up to there, and what happens.
     """
-    low, high = 0.0, h
     below, what = margin(body, s.new, s)
     middle = guess_landing(body, h, y, below, s) if what == LANDS else 0.0
     rates(body, tau, y, s.slopes[0], s)
@@ -358,8 +349,9 @@ def locate(body, tau, h, y, s):
         for i in range(SIZE):
             s.new[i] = y[i]
         return 0.0, at_once
-    side = 0
+    bracket = (0.0, above, h, below, 0)
     for _ in range(80):
+        low, above, high, below, _ = bracket
         if not low < middle < high:
             middle = (low * below - high * above) / (below - above)
         if not low < middle < high:
@@ -374,21 +366,14 @@ def locate(body, tau, h, y, s):
             if abs(rest) < BRIEF and low < at + rest < high:
                 go_on(s, rest)
                 return at + rest, what
-        if value >= 0:
-            low, above = at, value
-            below *= 0.5 if side > 0 else 1.0
-            side = 1
-        else:
-            high, below = at, value
-            above *= 0.5 if side < 0 else 1.0
-            side = -1
+        bracket = narrowed(bracket, at, value)
         if abs(value) < 1e-12:
             return at, what
-        if high - low < 1e-14:
+        if bracket[2] - bracket[0] < 1e-14:
             break
-    attempt(body, tau, high, y, s)
+    attempt(body, tau, bracket[2], y, s)
     _, what = margin(body, s.new, s)
-    return high, what
+    return bracket[2], what
 
 
 @kernel
@@ -517,7 +502,6 @@ def note_peaks(body, y, start, out):
     out[PEAK_SPEED] = max(out[PEAK_SPEED], speed)
     foot = position_of_base(y, rows, (0.0, 0.0, -body.height))
     out[WALK_X], out[WALK_Y] = foot[0] - start[0], foot[1] - start[1]
-    out[PEAK_WALK] = max(out[PEAK_WALK], norm(out[WALK_X], out[WALK_Y]))
     return up[2]
 
 
@@ -559,12 +543,10 @@ def fall_is_certain(body, y, peaks, scale, g):
 
 
 @kernel
-def note_fall(y, s, time, lies, out):
+def note_fall(y, s, time, out):
     """Write down how the body fell, and when it lies or, before that, when its fall is certain."""
     rows = rotation(y)
     out[FELL], out[CERTAIN_TIME] = 1.0, time
-    if lies:
-        out[FALL_TIME] = time
     out[FALL_AZIMUTH] = atan2(rows[1][2], rows[0][2])
     out[FALL_FIRST] = s.closed[0] if s.count > 0 else -1
     out[FALL_SECOND] = s.closed[1] if s.count > 1 else -1
@@ -712,8 +694,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     choose_mode(body, 0.0, y, s)
     rim_instead_of_feet(body, y, pull_at(s.field, 0.0), s)
     anchor_all(body, y, s)
-    out[FIRST_MOTION] = -1.0
-    out[FALL_TIME] = out[CERTAIN_TIME] = math.nan
+    out[CERTAIN_TIME] = math.nan
     last = acceleration.shape[0] - 1
     stuck = lost_track = 0
     ahead = dt
@@ -731,8 +712,6 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
                 tau = rest_ends(body, y, s.field, tau, dt)
                 if tau < 0:
                     break
-                if out[FIRST_MOTION] < 0:
-                    out[FIRST_MOTION] = k * dt + tau
                 s.goes_on = 0
                 standing = energy(body, y, g) - y[WORK]
                 leave_rest(body, y, tau, s)
@@ -764,14 +743,13 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
             up = note_peaks(body, y, start, out)
             before = note_turn(y, before, out)
             if up <= 0.0 or fall_is_certain(body, y, peaks[min(k, last)], scale, g):
-                note_fall(y, s, (k + 1) * dt, up <= 0.0, out)
+                note_fall(y, s, (k + 1) * dt, out)
                 break
         if out[FELL] > 0 or lost_track > PATIENCE or out[STEPS] > MOST_STEPS:
             break
         k += 1
     if out[FELL] == 0.0:
         record(history, k, y, out, s)
-    out[END_TIME] = k * dt
     out[ENERGY_BALANCE] = energy(body, y, g) - started - y[WORK] + y[FRICTION] + out[LOST]
 
 

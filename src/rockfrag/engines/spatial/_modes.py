@@ -26,7 +26,7 @@ from rockfrag.engines.spatial._body import (
     position_of_base,
     rim_contact,
 )
-from rockfrag.engines.spatial._cone import in_set, solve_cones
+from rockfrag.engines.spatial._cone import solve_cones
 from rockfrag.engines.spatial._forces import (
     GENERAL,
     HINGE,
@@ -39,6 +39,7 @@ from rockfrag.engines.spatial._forces import (
     fill_accelerations,
     fill_delassus,
     fill_velocities,
+    in_set,
     kind_of,
     pull_at,
     push_at,
