@@ -6,22 +6,11 @@ samples.
 
 import numpy as np
 
+from rockfrag.engines.kernels import roots
 from rockfrag.engines.kernels.contact_states import HALF_TURN
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.lanes.case import CLOSES, LANES, NEARS, QUIET, RELEASE
 from rockfrag.engines.kernels.lanes.stack_constants import HOLD
-from rockfrag.engines.kernels.roots import (
-    NEVER,
-    closing_time,
-    crossing_time,
-    dips,
-    guess_between,
-    hops,
-    is_narrow,
-    narrowed,
-    slope,
-    value,
-)
 from rockfrag.engines.kernels.taylor import (
     ORDER,
     keep_rates,
@@ -132,7 +121,7 @@ def _advance(lane, g, upward):
         gap = side * theta
         out = side * w
         out_end = side * z
-        near = dips(gap, out, out_end) | hops(gap, out, out_end, side * rates[1])
+        near = roots.dips(gap, out, out_end) | roots.hops(gap, out, out_end, side * rates[1])
         flag = NEARS if near | (abs(end) >= HALF_TURN) else QUIET
         flag = CLOSES if side * end < 0.0 else flag
         # the closed contact would have to be pulled
@@ -203,12 +192,12 @@ def go_back(lane, i, g, upward):
 def next_contact_event(lanes_of_one, lane, i, series, g):
     """Time in the lane's step of its next contact event, or NEVER; whether the closed contact opens."""
     if lane.flag[i] == CLOSES:
-        when = crossing_time(series.gap)
-        omega = slope(series.one.angle, when) / lane.was_left[i]
+        when = roots.crossing_time(series.gap)
+        omega = roots.slope(series.one.angle, when) / lane.was_left[i]
         if least_hold(lanes_of_one, 0.0, omega, pull_at(lane, i, when), g) >= 0.0:
             return when, False
     else:
-        when = closing_time(series.gap, 1.0)
+        when = roots.closing_time(series.gap, 1.0)
     time = _release_time(lanes_of_one, lane, i, series, min(1.0, when), g)
     if time < when:
         return time, True
@@ -250,18 +239,18 @@ def _release_time(lanes_of_one, lane, i, series, end, g):
     at_low = least_hold(lanes_of_one, angle[0], angle[1] / left, pull_at(lane, i, 0.0), g)
     if at_low < 0.0:
         return 0.0
-    omega = slope(angle, end) / left
-    at_high = least_hold(lanes_of_one, value(angle, end), omega, pull_at(lane, i, end), g)
+    omega = roots.slope(angle, end) / left
+    at_high = least_hold(lanes_of_one, roots.value(angle, end), omega, pull_at(lane, i, end), g)
     if at_high >= 0.0:
-        return NEVER
+        return roots.NEVER
     bracket = (0.0, at_low, end, at_high, -1)
     for _ in range(200):
-        if is_narrow(bracket):
+        if roots.is_narrow(bracket):
             break
-        tau = guess_between(bracket)
-        omega = slope(angle, tau) / left
-        hold = least_hold(lanes_of_one, value(angle, tau), omega, pull_at(lane, i, tau), g)
-        bracket = narrowed(bracket, tau, hold)
+        tau = roots.guess_between(bracket)
+        omega = roots.slope(angle, tau) / left
+        hold = least_hold(lanes_of_one, roots.value(angle, tau), omega, pull_at(lane, i, tau), g)
+        bracket = roots.narrowed(bracket, tau, hold)
     return bracket[2]
 
 
