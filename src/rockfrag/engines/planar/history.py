@@ -8,19 +8,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.engines.kernels.single import GRAZING_SPEED
+from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar.ensemble import started
-from rockfrag.engines.planar.integrate import (
-    CHANGE,
-    FALLEN,
-    IMPACT,
-    PARADOX,
-    PASSING,
-    Book,
-    Shaking,
-    contact_event_columns,
-    history_columns,
-    integrate,
-)
 from rockfrag.engines.planar.records import posed, system_record, working_memory
 from rockfrag.engines.response import (
     FLIGHT,
@@ -41,7 +30,12 @@ Ints = NDArray[np.int64]
 CLOSING = 1e-6
 """Parting speed over √(g b) below which a contact stays closed after an impact, where the history is kept."""
 
-_KINDS = {IMPACT: "impact", PARADOX: "paradox", FALLEN: "fall", PASSING: "edge"}
+_KINDS = {
+    contact.IMPACT: "impact",
+    contact.PARADOX: "paradox",
+    contact.FALLEN: "fall",
+    contact.PASSING: "edge",
+}
 _STATES = np.array([FLIGHT, -1, +1, 0])
 """Contact state of an interface whose closed ends are the bits (left, right) of a number."""
 
@@ -82,14 +76,14 @@ def contact_run(
     start = posed(p, *started(system))
     substeps = int(step_count(system, interval, g, STEP))
     free = int(free_samples(system, interval, g))
-    shaking = Shaking(values, up, interval, 1.0, substeps, free)
-    history = np.zeros((values.size + free, history_columns(blocks)))
+    shaking = contact.Shaking(values, up, interval, 1.0, substeps, free)
+    history = np.zeros((values.size + free, contact.history_columns(blocks)))
     work = working_memory()
     capacity = 4096
     while True:
-        contact_events = np.zeros((capacity, contact_event_columns(blocks)))
-        done, count, fall = integrate(
-            p, shaking, start, closing, Book(history, contact_events), work
+        contact_events = np.zeros((capacity, contact.contact_event_columns(blocks)))
+        done, count, fall = contact.integrate(
+            p, shaking, start, closing, contact.Book(history, contact_events), work
         )
         if count <= capacity:
             break
@@ -167,7 +161,7 @@ def _contact_events(contact_events: Array, blocks: int) -> pd.DataFrame:
 
 def _kind_of_change(before: Ints, after: Ints, slid: Ints, slides: Ints) -> str:
     """Name of a contact event without an impact: what opens first, then what slides."""
-    assert CHANGE not in _KINDS
+    assert contact.CHANGE not in _KINDS
     if np.any((after == FLIGHT) & (before != FLIGHT)):
         return "flight"
     if np.any((after != 0) & (before == 0)):
@@ -183,7 +177,7 @@ def _energies(p: np.void, time: Array, history: Array, contact_events: Array) ->
     inertia = 1.0 / p["inverse"][: 3 * blocks]
     kinetic = (inertia * history[:, 3 * blocks : 6 * blocks] ** 2).sum(axis=1) / 2
     potential = float(p["g"]) * (p["mass"][:blocks] * history[:, 1 : 3 * blocks : 3]).sum(axis=1)
-    struck = np.isin(contact_events[:, 1], (IMPACT, PARADOX))
+    struck = np.isin(contact_events[:, 1], (contact.IMPACT, contact.PARADOX))
     loss = np.where(struck, contact_events[:, 4] - contact_events[:, 5], 0.0)
     # the lowest contact whose mode changes as it comes down, or the uppermost
     before, after = (_modes(contact_events[:, column], blocks)[0] for column in (2, 3))

@@ -14,20 +14,15 @@ from rockfrag.engines.kernels import chatter, contact_states, equations
 from rockfrag.engines.kernels.by_reference import by_reference
 from rockfrag.engines.kernels.impact import ground_impact, interface_impact
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel, lowest_bit, take_next
+from rockfrag.engines.kernels.lanes import case as lanes
 from rockfrag.engines.kernels.lanes import stack_constants, stack_one, stack_two
-from rockfrag.engines.kernels.lanes.case import (
-    LANES,
-    QUIET,
-    RELEASE,
-    next_uplift,
-    place_of,
-    weight_of,
-)
 from rockfrag.engines.kernels.roots import slope, value
 from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP, resolve_impact
 from rockfrag.engines.kernels.taylor import SERIES, quick_sine_cosine
 
-SLOTS = 2 * LANES  # cases in flight, so that lanes of one kind or the other can always be filled
+SLOTS = (
+    2 * lanes.LANES
+)  # cases in flight, so that lanes of one kind or the other can always be filled
 
 CASE = np.dtype(
     [
@@ -99,7 +94,7 @@ def worker() -> Worker:
         twos=np.zeros((SLOTS, 9), stack_constants.TWO),
         impacts=np.zeros((SLOTS, 9), stack_constants.IMPACT),
         restoring=np.zeros(SLOTS, chatter.RESTORING),
-        series=np.zeros(LANES, SERIES),
+        series=np.zeros(lanes.LANES, SERIES),
         state=np.zeros(1, equations.STATE)[0],
     )
 
@@ -145,7 +140,7 @@ def _goes_on(case, ensemble, motions, state):
     if case.c1 == 0 and case.c2 == 0:
         if case.k >= case.last or case.factor == 0.0:
             return False
-        k, tau, ground, weight = next_uplift(
+        k, tau, ground, weight = lanes.next_uplift(
             motions, case.k, case.tau, case.last, case.factor, (case.low, case.high)
         )
         if k < 0:
@@ -192,7 +187,7 @@ def _put_down(case, outcome):
 @kernel
 def _take_up(case, number, ensemble, motions, worker):
     """Begin a case in a slot, at rest."""
-    body, motion, scale = place_of(number, ensemble)
+    body, motion, scale = lanes.place_of(number, ensemble)
     h = ensemble.intervals[body, motion]
     slot = case.slot
     if case.body != body or case.interval != h:
@@ -244,7 +239,7 @@ def contact_event_of_one(i, case, worker, ensemble, motions, g):
     Returned is whether ground and interface close and ``general_impact`` has to say what comes of it.
     """
     lane, series = worker.one, worker.series[i]
-    if lane.flag[i] == RELEASE and lane.has_before[i] == 1.0:
+    if lane.flag[i] == lanes.RELEASE and lane.has_before[i] == 1.0:
         # it let go in the sample before
         stack_one.go_back(lane, i, g, motions.vertical.size > 0)
         case.k -= 1
@@ -293,7 +288,7 @@ def find_contact_events_of_two(stops, worker):
     while stops != 0:
         i = lowest_bit(stops)
         stops &= stops - 1
-        if lane.slot[i] >= 0 and lane.flag[i] > QUIET:
+        if lane.slot[i] >= 0 and lane.flag[i] > lanes.QUIET:
             case, series = worker.cases[lane.slot[i]], worker.series[i]
             stack_two.take_series(lane, i, series)
             lane.when[i], lane.closes1[i], lane.closes2[i] = stack_two.next_contact_event(
@@ -500,8 +495,8 @@ def place_two(i, case, worker, motions):
 @inlined_kernel
 def _weight(case, motions):
     """Weight at the time of a case and at the end of its sample."""
-    before = weight_of(motions, case.k, case.factor) if case.k <= case.last else 1.0
-    after = weight_of(motions, case.k + 1, case.factor) if case.k < case.last else 1.0
+    before = lanes.weight_of(motions, case.k, case.factor) if case.k <= case.last else 1.0
+    after = lanes.weight_of(motions, case.k + 1, case.factor) if case.k < case.last else 1.0
     return before + case.tau * (after - before), after
 
 
