@@ -79,7 +79,7 @@ def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
         if line < 0:
             if not is_pairs_header(text, first):
                 text.fail("no line with the number of samples below; the file is cut short", first)
-            yield "acceleration", _described(read_pairs(text, first, stop).channel(), words)
+            yield "acceleration", _described(read_pairs(text, first, stop), words)
         while line >= 0:
             section = _section(text, line, stop)
             yield section.quantity, _described(section.channel(text), words)

@@ -27,7 +27,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 def _parse(text: TextFile) -> list[Channel]:
     return [
-        _channel(text, first, read_pairs(text, first, stop).channel())
+        _channel(text, first, read_pairs(text, first, stop))
         for first, stop in text.parts(_HEAD, _END)
     ]
 

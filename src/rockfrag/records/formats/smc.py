@@ -63,7 +63,7 @@ def _parse(text: TextFile) -> list[Channel]:
     samples, left_out = _without_surplus_lines(text, start, count, _width(text, start, whole))
     if rate == numbers[_MISSING_REAL]:
         # without a rate the values are pairs of time and acceleration
-        values = pairs_of(samples, "cm/s2", text, start, count // 2).channel()
+        values = pairs_of(samples, "cm/s2", text, start, count // 2)
     else:
         step = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
         values = Channel(count, positive_step(text, step, at_reals), samples.copy, "cm/s2")
