@@ -199,7 +199,6 @@ def _facts(header: list[str]) -> dict[str, str]:
 
 
 FORMAT = Format("AT2", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:

@@ -223,4 +223,3 @@ def _described(values: Channel, header: _Header) -> Channel:
 
 
 FORMAT = Format("COSMOS", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

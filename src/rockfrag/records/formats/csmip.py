@@ -145,4 +145,3 @@ def _earthquake(lines: list[str]) -> str:
 
 
 FORMAT = Format("CSMIP", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

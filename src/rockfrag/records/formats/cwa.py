@@ -115,4 +115,3 @@ def _time(stated: tuple[str, str] | None) -> UTCDateTime | None:
 
 
 FORMAT = Format("CWA", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

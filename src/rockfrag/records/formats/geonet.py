@@ -115,4 +115,3 @@ def _start(whole: list[int]) -> UTCDateTime | None:
 
 
 FORMAT = Format("GEONET", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

@@ -132,7 +132,6 @@ def _number(text: TextFile, line: int, name: str, words: str) -> float:
 
 
 FORMAT = Format("OPENSEES", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:

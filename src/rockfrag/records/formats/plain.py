@@ -519,7 +519,6 @@ def _replacing(
 
 
 FORMAT = Format("PLAINTEXT", _recognise, _parse, wants_dt=True, encoding="latin-1")
-is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:

@@ -53,4 +53,3 @@ def _channel(text: TextFile, first: int, values: Channel) -> Channel:
 
 
 FORMAT = Format("RENADIC", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

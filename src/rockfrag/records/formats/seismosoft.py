@@ -85,7 +85,6 @@ def _station_and_component(words: str) -> tuple[str, str]:
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:

@@ -165,4 +165,3 @@ def _place(numbers: list[float]) -> dict[str, float]:
 
 
 FORMAT = Format("SMC", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

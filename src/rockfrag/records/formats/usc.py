@@ -57,4 +57,3 @@ def _earthquake(lines: list[str]) -> str:
 
 
 FORMAT = Format("USC", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read
