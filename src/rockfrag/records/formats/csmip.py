@@ -95,13 +95,10 @@ def _section(text: TextFile, line: int, stop: int) -> Section:
     quantity = QUANTITIES[match["quantity"].upper()]
     dt = float(stated["dt"]) if stated.get("dt") else 1 / float(stated["rate"])
     unit = _UNIT.search(match["rest"])
-    width = field_width(match["rest"])
-    if width is None:
-        width = 10 if _VOLUME_2.match(words) else 9
+    width = field_width(match["rest"]) or (10 if _VOLUME_2.match(words) else 9)
+    stated_unit = _DEFAULT_UNITS[quantity] if _VOLUME_2.match(words) else ""
     if unit:
         stated_unit = canonical_unit(unit["unit"]).replace("1/10g", "g/10")
-    else:
-        stated_unit = _DEFAULT_UNITS[quantity] if _VOLUME_2.match(words) else ""
     dt = positive_step(text, dt, line)
     end = min(stop, text.until(_END, line + 1))
     return Section(quantity, int(match["count"]), line + 1, end, width, dt, stated_unit)
