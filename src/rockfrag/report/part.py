@@ -88,15 +88,7 @@ class Section:
 
 
 class Results:
-    """The results of a study, read when asked for.
-
-    Parameters
-    ----------
-    study
-        The study.
-    folder
-        Folder of its results.
-    """
+    """The results of a study in a folder, read when asked for."""
 
     def __init__(self, study: Study, folder: Path) -> None:
         self.study = study

@@ -54,21 +54,9 @@ def first_page(
 ) -> list[Finding]:
     """Say what the thesis reports, what the simulations of a study give, and what would give an effect.
 
-    Parameters
-    ----------
-    effects
-        Effects of the pedestal in the study's simulations, as
-        :func:`rockfrag.stages.pedestal.pedestal_tables` returns them.
-    hypotheses
-        The table of hypotheses of the study, columns of `rockfrag_thesis.hypotheses.COLUMNS`.
-    sensitivity_analysis
-        Effects of perturbed parameters of the ideal model, see
-        `rockfrag_thesis.sensitivity_analysis.explain.explain`.
-    inverse_problem
-        Perturbed parameters that come closest to an effect that was asked for, see
-        `rockfrag_thesis.sensitivity_analysis.inverse_problem.invert`.
-    wanted_percent
-        That effect, change of P/NP on the ``ground`` and ``above`` it [%].
+    ``effects`` are of the study's simulations, ``hypotheses`` the table of all, ``sensitivity_analysis`` the
+    effects of perturbed parameters, ``inverse_problem`` those that come closest to ``wanted_percent``, the change
+    of P/NP on the ``ground`` and ``above`` it [%].
     """
     here = effects[effects["definition"] == DEFINITION]
     found = [_reported(here, hypotheses.set_index("number"))]

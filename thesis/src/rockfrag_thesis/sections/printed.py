@@ -36,15 +36,7 @@ def _section(results: Results) -> Section:
 
 
 def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:
-    """Render computed values with the printed ones below them, a row per name.
-
-    Parameters
-    ----------
-    comparison
-        See :func:`rockfrag_thesis.printed_tables.compare`.
-    caption
-        What the table shows.
-    """
+    """Render computed values with the printed ones below them, a row per name."""
     # a lone block has no pattern 3: the order of the columns is that of the fullest row
     fullest = max((part for _, part in comparison.groupby("name")), key=len)
     titles = {

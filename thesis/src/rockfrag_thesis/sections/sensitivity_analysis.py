@@ -39,21 +39,11 @@ from rockfrag_thesis.settings import settings_of
 
 
 class Factor(NamedTuple):
-    """A parameter of the ideal model that is perturbed, in words that stand in a sentence as they are.
+    """A parameter of the ideal model that is perturbed, in words that stand in a sentence as they are."""
 
-    Attributes
-    ----------
-    title
-        The factor, whatever its level.
-    level
-        How a level is written, its value at ``{}``.
-    phrase
-        The factor at a level, which stands at ``{}``.
-    """
-
-    title: str
-    level: str
-    phrase: str
+    title: str  # The factor, whatever its level
+    level: str  # How a level is written, its value at ``{}``
+    phrase: str  # The factor at a level, which stands at ``{}``
 
     def at(self, level: str) -> str:
         """The factor at a level, as a phrase."""
@@ -138,16 +128,9 @@ def asks_sensitivity_analysis(study: Study) -> bool:
 def perturbations(effects: pd.DataFrame) -> pd.DataFrame:
     """Every perturbation over all floors, in the order of ``FACTORS``.
 
-    Parameters
-    ----------
-    effects
-        As :func:`rockfrag_thesis.stages.sensitivity_analysis.sensitivity_analysis_tables` returns them.
-
-    Returns
-    -------
-    The rows with ``name`` (for a sentence), ``lower`` and ``upper``, ``arithmetic`` (whether it is computed
-    without a
-    simulation) and ``p_adjusted`` (Benjamini and Hochberg over the simulated ones; NaN of the others).
+    Returns rows of the effects with ``name`` (for a sentence), ``lower`` and ``upper``, ``arithmetic`` (whether it
+    is computed without a simulation) and ``p_adjusted`` (Benjamini and Hochberg over the simulated ones; NaN of
+    the others).
     """
     whole = effects[(effects["floor"] == "all") & (effects["level"] != REFERENCE)]
     order = list(FACTORS)
@@ -286,12 +269,7 @@ def _laws_differ(whole: pd.DataFrame, beyond: pd.Series) -> pd.Series:
 def sensitivity_analysis_figure(effects: pd.DataFrame, order: Sequence[str] = ()) -> Figure:
     """Draw the ratio with over without pedestal of the perturbations with the largest effect.
 
-    Parameters
-    ----------
-    effects
-        As :func:`rockfrag_thesis.stages.sensitivity_analysis.sensitivity_analysis_tables` returns them.
-    order
-        Floors in the order of the legend; others follow.
+    Floors are in the given order in the legend; others follow.
     """
     simulated = perturbations(effects)
     simulated = simulated[~simulated["arithmetic"]]
