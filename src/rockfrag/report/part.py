@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
+from rockfrag.report.wording import PART, said
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.shaketable.swept import read_swept
 from rockfrag.study.study import Study
@@ -34,6 +35,11 @@ class FigureSpec:
     alt: str  # What it shows, for readers who do not see it
     caption: str  # What stands below it
     draw: Callable[[], Figure]  # Draws it
+
+
+def figure_of(text: str, name: str, draw: Callable[[], Figure]) -> FigureSpec:
+    """A figure of which a macro says what it shows, and what stands below it."""
+    return FigureSpec(name, *_parted(text), draw)
 
 
 @dataclass(frozen=True)
@@ -55,9 +61,13 @@ class Finding:
         return f"{self.shown} {self.numbers}".strip()
 
 
-def opened(finding: Finding) -> list[str]:
-    """What a chapter says of its finding once it is open: the sentences behind the headline."""
-    return [words for words in (finding.text, finding.numbers) if words]
+def finding_of(text: str) -> Finding:
+    """What a macro says, parted into headline, text and numbers."""
+    return Finding(*_parted(text))
+
+
+def _parted(text: str) -> list[str]:
+    return [" ".join(said(words)) for words in text.split(PART)]
 
 
 @dataclass(frozen=True)
@@ -85,6 +95,12 @@ class Section:
     message: str  # What it found, in one short sentence that stands on the page before it is opened
     paragraphs: Sequence[str] = ()  # How to read it
     parts: Sequence[Markup | FigureSpec] = ()  # Its figures, and the tables behind them
+
+
+def section_of(text: str, anchor: str, parts: Sequence[Markup | FigureSpec]) -> Section:
+    """A chapter of which a macro says title, message and paragraphs, of these each in a line."""
+    title, message, paragraphs = text.split(PART)
+    return Section(anchor, " ".join(said(title)), " ".join(said(message)), said(paragraphs), parts)
 
 
 class Results:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 MOST_LISTED = 8
 """More names than this are not listed in a sentence, but counted."""
@@ -153,7 +153,7 @@ def sentence(words: str) -> str:
 def macros(package: str, template: str, words: Mapping[str, Any]) -> Any:
     """Return the macros of a template of sentences, which use the words given and those of this module."""
     environment = Environment(
-        loader=PackageLoader(package, ""),
+        loader=ChoiceLoader([PackageLoader(package, ""), PackageLoader("rockfrag.report")]),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
