@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from rockfrag.figure_style import note_figure
@@ -175,10 +176,10 @@ def _curves(
         beta_text=estimates(fitted, "beta"),
     )
     level, notes = _level(study), [*goodness["finding"], *warnings]
-    tables_and_figure = [
+    parts: list[Markup | FigureSpec] = [
         table_html(fitted, curves, f"Medians and dispersions, {level} intervals."),
         table_html(goodness, fits, "Goodness of fit."),
         figures["calibration"],
     ]
     text = _sentences().curves(len(goodness), level, notes)
-    return section_of(text, "fragility", tables_and_figure)
+    return section_of(text, "fragility", parts)

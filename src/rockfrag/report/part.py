@@ -39,7 +39,8 @@ class FigureSpec:
 
 def figure_of(text: str, name: str, draw: Callable[[], Figure]) -> FigureSpec:
     """A figure of which a macro says what it shows, and what stands below it."""
-    return FigureSpec(name, *_parted(text), draw)
+    alt, caption = _parted(text)
+    return FigureSpec(name, alt, caption, draw)
 
 
 @dataclass(frozen=True)

@@ -33,8 +33,8 @@ def _section(results: Results) -> Section:
     rejected = int((known_curves["p_fit"] < REJECTED).sum())
     total, notes = len(known_curves), _notes(curves)
     text = sentences().fragility(found, level, rejected, total, REJECTED, without, notes)
-    parts = [*_figures(results, curves), *_tables(known_curves, level)]
-    return section_of(text, "fragility", parts)
+    figures, tables = _figures(results, curves), _tables(known_curves, level)
+    return section_of(text, "fragility", [*figures, *tables])
 
 
 def _notes(curves: pd.DataFrame) -> list[str]:
@@ -71,11 +71,11 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
             for row in chosen.dropna(subset=["theta"]).to_dict("records")
         ]
         text = sentences().fragility_figure(name, measure, level, nonparametric, medians)
-        behind = (
+        band, points = (
             table[table["configuration"].isin(own) & (table["im"] == measure)]
             for table in (bands, bins)
         )
-        draw = partial(fragility_figure, chosen, *behind, nonparametric)
+        draw = partial(fragility_figure, chosen, band, points, nonparametric)
         specs.append(figure_of(text, f"fragility_{file_name(name)}", draw))
     return specs
 
