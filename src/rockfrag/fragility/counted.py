@@ -68,10 +68,7 @@ class CountedObservations(Observations):
     def by_value(self) -> Observations:
         """Cells of all blocks together."""
         values, cell = np.unique(self.im, return_inverse=True)
-        trials = np.bincount(cell, self.trials).astype(np.float64)
-        labels = np.full(values.size, "", dtype=object)
-        fell = np.bincount(cell, self.overturned).astype(np.float64)
-        return Observations(values, fell, trials, labels, labels, self.name, self.unit)
+        return self.pooled(cell, values)
 
     def group_weights(self, weights: Floats) -> Floats:
         """Weights of the blocks of motions, all of whose motions or earthquakes must weigh the same."""
