@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
+from jinja2 import ChoiceLoader, PackageLoader
 
 from rockfrag import sentences
 from rockfrag.sentences import said as said
@@ -155,6 +156,7 @@ def sentence(words: str) -> str:
 def macros(package: str, template: str, words: Mapping[str, Any]) -> Any:
     """Return the macros of a template of sentences, which use the words given and those of this module."""
     environment = sentences.environment(package)
+    environment.loader = ChoiceLoader([environment.loader, PackageLoader("rockfrag.report")])
     environment.filters |= {"listed": listed, "sentence": sentence}
     environment.globals |= {"agree": agree, "counted": counted, "number": number, "of_all": of_all}
     environment.globals |= words
