@@ -12,7 +12,7 @@ from rockfrag.engines.planar.integrate import (
     integrate,
 )
 from rockfrag.engines.planar.records import posed, system_record, working_memory
-from rockfrag.system import Block, Column, ImpactLaw, System, as_system
+from rockfrag.system import Block, Column, System, as_system
 
 from .cases import DT
 
@@ -60,9 +60,7 @@ def random_column(rng: np.random.Generator, bodies: int) -> Column:
     return Column(tuple(blocks), tuple(offsets))
 
 
-def with_contacts(
-    thing: object, frictions: list[float], laws: list[ImpactLaw] | None = None
-) -> System:
+def with_contacts(thing, frictions, laws=None):
     """Give the contacts of a system their friction and laws."""
     from dataclasses import replace
 
@@ -78,17 +76,7 @@ def with_contacts(
     return replace(system, contacts=tuple(contacts))
 
 
-def run(
-    system: System,
-    motion: np.ndarray,
-    dt: float = DT,
-    *,
-    vertical: np.ndarray | None = None,
-    theta: list[float] | None = None,
-    closing: float = 1e-6,
-    substeps: int = 2,
-    free: int = 800,
-) -> Found:
+def run(system, motion, dt=DT, *, vertical=None, theta=None, closing=1e-06, substeps=2, free=800):
     """Integrate a system through a motion and on until it rests or has fallen."""
     p, w, n = system_record(system, G), working_memory(), system.count
     start = posed(p, theta or [0.0] * n, [0.0] * n)

@@ -1,7 +1,6 @@
 """The fast kernel beside a plain contact event-driven integrator and beside time stepping with complementarity."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -23,18 +22,23 @@ LENGTH = 3.2
 """How long the reference integrates, a little more than the motions last [s]."""
 
 
-def compare_with_reference(cases: int, stacks: bool, seed: int) -> tuple[int, int]:
-    """Check histories up to the eighth contact event; number of outcomes that differ, and of eventful cases.
+STACKS = pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
+
+
+@STACKS
+@pytest.mark.parametrize(
+    ("cases", "seed", "least"), [(4, 20, 2), pytest.param(60, 21, 30, marks=pytest.mark.slow)]
+)
+def test_histories_are_those_of_the_reference(cases, seed, least, stacks):
+    """Up to the eighth contact event.
 
     The reference, which takes a second for a hundred contact events, stops soon after the last contact event up
     to which histories are compared; outcomes are those up to then.
     """
-    rng = np.random.default_rng(seed)
-    differing = eventful = 0
+    rng, eventful = np.random.default_rng(seed), 0
     for _ in range(cases):
         body, mus, motion, up = case(rng, stacks)
-        kwargs = {"friction": as_friction(mus), "vertical": up}
-        fast = simulate_with_friction(body, motion, DT, **kwargs)
+        fast = simulate_with_friction(body, motion, DT, friction=as_friction(mus), vertical=up)
         length = LENGTH
         if len(fast.contact_events) > 10:
             length = min(LENGTH, fast.contact_events["time"].iloc[10] + 2 * DT)
@@ -46,32 +50,15 @@ def compare_with_reference(cases: int, stacks: bool, seed: int) -> tuple[int, in
         np.testing.assert_allclose(fast.theta[:n], plain.theta[:n], atol=2e-6)
         np.testing.assert_allclose(fast.slip[:n], plain.slip[:n], atol=2e-6)
         eventful += len(times) > 4
-        fell = fast.overturned and fast.overturning_time < length
-        differing += plain.overturned != fell
-    return differing, eventful
+        assert plain.overturned == (fast.overturned and fast.overturning_time < length)
+    assert eventful >= least
 
 
-class Comparison(NamedTuple):
-    """What differs between the package and time stepping.
+def compare_with_stepping(cases, stacks, seed, step):
+    """Beside time stepping: outcomes that differ, falls, slips that differ [m], and turns that do [rad].
 
-    Attributes
-    ----------
-    differing, fallen
-        Outcomes that differ, and falls.
-    slips
-        Differences of the residual slip of those that stand [m].
-    turns
-        Largest differences of rotation up to the fourth contact event of each case [rad].
+    Slips are those left of what stands, turns those up to the fourth contact event.
     """
-
-    differing: int
-    fallen: int
-    slips: list[float]
-    turns: list[float]
-
-
-def compare_with_stepping(cases: int, stacks: bool, seed: int, step: float) -> Comparison:
-    """March random cases both ways."""
     rng = np.random.default_rng(seed)
     differing = fallen = 0
     slips, turns = [], []
@@ -90,47 +77,33 @@ def compare_with_stepping(cases: int, stacks: bool, seed: int, step: float) -> C
         elif not fell:
             start = 3 * (len(mus) - 1)
             moved = rows[-1, start] - rows[0, start]
-            slips.append(float(moved - fast.slip[-1].sum()))
-    return Comparison(differing, fallen, slips, turns)
+            slips.append(abs(float(moved - fast.slip[-1].sum())))
+    return differing, fallen, np.array(slips), np.array(turns)
 
 
-@pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
-@pytest.mark.parametrize(
-    ("cases", "seed", "least"), [(4, 20, 2), pytest.param(60, 21, 30, marks=pytest.mark.slow)]
-)
-def test_histories_are_those_of_the_reference(
-    cases: int, seed: int, least: int, stacks: bool
-) -> None:
-    differing, eventful = compare_with_reference(cases, stacks, seed)
-    assert differing == 0 and eventful >= least
-
-
-@pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
-def test_outcomes_are_those_of_time_stepping(stacks: bool) -> None:
-    found = compare_with_stepping(5 if stacks else 8, stacks, seed=25, step=1e-4)
-    assert found.differing <= 1
-    assert found.fallen >= 1
-    assert np.median(np.abs(found.slips)) < 1e-3
-    assert np.median(found.turns) < 1e-4
+@STACKS
+def test_outcomes_are_those_of_time_stepping(stacks):
+    differing, fallen, slips, turns = compare_with_stepping(5 if stacks else 8, stacks, 25, 1e-4)
+    assert differing <= 1 <= fallen
+    assert np.median(slips) < 1e-3
+    assert np.median(turns) < 1e-4
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
-def test_two_hundred_cases_are_those_of_time_stepping(stacks: bool) -> None:
-    found = compare_with_stepping(200, stacks, seed=23, step=2e-5)
-    assert found.differing <= 6
-    assert 20 <= found.fallen <= 180
-    assert np.median(np.abs(found.slips)) < 1e-5
+@STACKS
+def test_two_hundred_cases_are_those_of_time_stepping(stacks):
+    differing, fallen, slips, turns = compare_with_stepping(200, stacks, 23, 2e-5)
+    assert differing <= 6 and 20 <= fallen <= 180
+    assert np.median(slips) < 1e-5
     # some graze: there the time of a contact event hangs on a root, and the stepping's error is as large
-    turns = np.array(found.turns)
     assert np.median(turns) < 1e-5
     assert (turns > 1e-3).sum() <= 4
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
-def test_histories_of_time_stepping_converge_to_those_of_contact_events(stacks: bool) -> None:
-    coarse, fine = (compare_with_stepping(15, stacks, 29, step).turns for step in (8e-5, 1e-5))
-    moving = np.array(coarse) > 1e-6
+@STACKS
+def test_histories_of_time_stepping_converge_to_those_of_contact_events(stacks):
+    coarse, fine = (compare_with_stepping(15, stacks, 29, step)[3] for step in (8e-5, 1e-5))
+    moving = coarse > 1e-6
     assert moving.sum() > 5
-    assert np.median(np.array(fine)[moving] / np.array(coarse)[moving]) < 0.25
+    assert np.median(fine[moving] / coarse[moving]) < 0.25

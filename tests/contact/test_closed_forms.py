@@ -57,9 +57,7 @@ def test_a_pulse_moves_a_block_on_a_tilted_support_as_newmark_says(slope: float)
 
 
 @pytest.mark.parametrize(("mu", "first"), [(0.2, "slides"), (0.5, "rocks")])
-def test_a_block_on_a_plane_tilted_slowly_slides_or_topples_at_the_lesser_angle(
-    mu: float, first: str
-) -> None:
+def test_a_block_on_a_plane_tilted_slowly_slides_or_topples_at_the_lesser_angle(mu, first):
     slope = np.linspace(0.0, 0.5, 2001)
     response = simulate_with_friction(
         T1, G * np.sin(slope), 0.01, friction=mu, vertical=G * (np.cos(slope) - 1)

@@ -158,9 +158,7 @@ def test_without_friction_nothing_rocks_and_nothing_falls() -> None:
         assert np.ptp(response.slip[:, 0]) > 1e-3
 
 
-def test_the_slenderest_motion_of_the_thesis_cannot_rock_t1_at_a_friction_of_three_tenths(
-    shared: object,
-) -> None:
+def test_the_slenderest_motion_of_the_thesis_cannot_rock_t1_at_a_friction_of_three_tenths(shared):
     """Slenderness 3 needs µ > 1/3 to rise, at any amplitude."""
     records = sorted(shared.glob("records/*.dat"))  # type: ignore[attr-defined]
     assert len(records) == 4

@@ -1,7 +1,4 @@
-"""Cases of mechanics that once were answered wrongly, each as it was seen; `HELD` says which test holds each."""
-
-import ast
-from pathlib import Path
+"""Cases of mechanics that once were answered wrongly, each as it was seen."""
 
 import numpy as np
 import pytest
@@ -180,69 +177,3 @@ def test_an_interval_that_no_instrument_has_is_refused_where_free_rocking_is_sam
 def test_a_centre_of_gravity_above_the_top_is_refused():
     with pytest.raises(InputError, match="above the top"):
         Block(0.2, 0.8, 50.0, cg_height=1.5)
-
-
-HELD = {
-    "a body that vertical motion throws off the ground is not said to stand": (
-        "engines/test_examined.py::test_vertical_motion_that_throws_a_body_off_the_ground_is_warned_of"
-    ),
-    "a fall under friction keeps to that friction, in outcome and history": (
-        "engines/test_examined.py::test_a_fall_keeps_to_the_friction_that_was_given"
-    ),
-    "one rule chooses where two outcomes of an impact satisfy the laws": (
-        "engines/test_examined.py::test_histories_and_outcomes_choose_alike_where_two_outcomes_satisfy_the_laws"
-    ),
-    "how often that rule decides is counted": (
-        "engines/test_examined.py::test_where_two_outcomes_satisfy_the_laws_the_choice_is_counted"
-    ),
-    "a motion in g does not pass for one in m/s²": (
-        "engines/test_examined.py::test_a_motion_in_g_is_doubted"
-    ),
-    "a pair of friction has one meaning": (
-        "engines/test_examined.py::test_a_pair_of_friction_has_one_meaning_or_none"
-    ),
-    "squat bodies that lift themselves are warned of": (
-        "engines/test_examined.py::test_squat_bodies_that_lift_themselves_are_warned_of"
-    ),
-    "the command line simulates with friction and vertical motion": (
-        "test_cli.py::test_a_vertical_component_shakes_too"
-    ),
-    "energy balances where friction nearly jams a corner": (
-        "engines/test_examined.py::test_energy_is_kept_where_friction_nearly_jams_a_corner"
-    ),
-    "the instant of a fall has one meaning": (
-        "engines/test_examined.py::test_the_instant_of_a_fall_has_one_meaning"
-    ),
-    "components in columns and other units are not taken in silence": (
-        "engines/test_examined.py::test_what_looks_like_components_or_other_units_is_not_taken_in_silence"
-    ),
-    "forces with friction are not left out in silence": (
-        "engines/test_examined.py::test_forces_with_friction_are_refused_and_not_left_out"
-    ),
-    "streams and thresholds take friction, vertical motion and a start, or refuse them": (
-        "engines/test_doors.py::test_every_pair_of_options_works_or_is_refused_in_one_sentence"
-    ),
-    "an interval that no instrument has is refused": (
-        "engines/test_examined.py::test_an_interval_that_no_instrument_has_is_refused_where_free_rocking_is_sampled"
-    ),
-    "a centre of gravity above the top is refused": (
-        "engines/test_examined.py::test_a_centre_of_gravity_above_the_top_is_refused"
-    ),
-    "a restitution of nothing is taken as it is said": (
-        "engines/test_examined.py::test_a_restitution_of_nothing_is_taken_as_it_is_said"
-    ),
-    "a mass that no depth explains is doubted": (
-        "engines/test_examined.py::test_a_mass_without_a_depth_is_doubted_only_where_no_depth_explains_it"
-    ),
-    "the worst direction in a plane is no bound for a body in space": (
-        "rocking/test_worst_direction.py::test_the_worst_direction_in_a_plane_is_no_bound_for_a_body_in_space"
-    ),
-}
-"""What was answered wrongly once, and the test that holds it."""
-
-
-@pytest.mark.parametrize("statement", HELD)
-def test_what_was_wrong_once_has_a_test(statement):
-    path, _, name = HELD[statement].partition("::")
-    tree = ast.parse((Path(__file__).parents[1] / path).read_text(encoding="utf-8"))
-    assert name in {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}

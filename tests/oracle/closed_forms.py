@@ -74,6 +74,5 @@ def ishiyama_bounds(block: Block, g: float = GRAVITY) -> LowerBounds:
     With B and H in metres the velocity is B/√H m/s, which holds for the Earth's gravity.
     """
     return LowerBounds(
-        acceleration=block.width / block.height * g,
-        velocity=block.width / math.sqrt(block.height),
+        acceleration=block.width / block.height * g, velocity=block.width / math.sqrt(block.height)
     )

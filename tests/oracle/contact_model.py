@@ -68,17 +68,7 @@ def _perp(v: Array) -> Array:
 
 
 class Model:
-    """Bodies, faces and friction.
-
-    Parameters
-    ----------
-    system
-        Planar bodies.
-    friction
-        Of each interface, the ground first.
-    g
-        Gravity [m/s²].
-    """
+    """Planar bodies, their faces, and the friction of each interface, the ground first."""
 
     def __init__(self, system: System, friction: tuple[float, ...], g: float) -> None:
         self.g, self.friction = g, friction

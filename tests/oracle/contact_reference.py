@@ -41,19 +41,9 @@ def simulate_reference(
 ) -> Response:
     """Rock, slide and fly bodies on each other on a shaken ground, slowly and accurately.
 
-    Parameters
-    ----------
-    body
-        What stands.
-    acceleration, vertical
-        Horizontal and vertical acceleration of the ground [m/s²], shape (n,), linear between samples and
-        zero one sample after the last.
-    dt
-        Time between samples [s].
-    friction
-        Of each contact from below.
-    duration
-        When to stop at the latest [s]; by default when all is at rest or a block has fallen.
+    Accelerations [m/s²] are linear between samples and zero one sample after the last.  ``friction`` is of
+    each contact from below, ``duration`` when to stop at the latest [s]; by default when all rests or one has
+    fallen.
     """
     motion = np.append(acceleration, 0.0)
     up = np.zeros(motion.size) if vertical is None else np.append(vertical, 0.0)

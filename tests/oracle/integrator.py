@@ -42,23 +42,11 @@ class ContactEvent(NamedTuple):
 
 
 class Response(NamedTuple):
-    """Response at the samples, up to the last one before a fall.
+    """Response at the samples, up to the last one before a fall."""
 
-    Attributes
-    ----------
-    time
-        [s], shape (n,).
-    theta, slip
-        Rotations [rad], and displacements along each interface [m] where bodies slide, shape (n, bodies).
-    contact_events
-        In their order.
-    overturned
-        Whether a body fell.
-    """
-
-    time: Array
-    theta: Array
-    slip: Array
+    time: Array  # [s], shape (n,)
+    theta: Array  # rotations [rad], shape (n, bodies)
+    slip: Array  # displacements along each interface [m] where bodies slide, shape (n, bodies)
     contact_events: list[ContactEvent]
     overturned: bool
 
@@ -66,16 +54,8 @@ class Response(NamedTuple):
 class Integrator(ABC):
     """One response as it unfolds; time inside a sample interval is counted from its start.
 
-    Parameters
-    ----------
-    motions
-        Horizontal and vertical acceleration of the ground [m/s²], shape (2, n), zero from the last sample on.
-    dt
-        Time between samples [s].
-    longest
-        Longest step [s].
-    tail
-        Longest free motion after the last sample [s].
+    ``motions`` are the horizontal and vertical acceleration of the ground [m/s²], shape (2, n), zero from the last
+    sample on; ``longest`` is the longest step and ``tail`` the longest free motion after the last sample [s].
     """
 
     def __init__(self, motions: Array, dt: float, longest: float, tail: float) -> None:

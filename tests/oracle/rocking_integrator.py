@@ -39,27 +39,10 @@ def simulate_reference(
 ) -> Response:
     """Rock a block or a stack on a shaken ground, slowly and accurately.
 
-    Parameters
-    ----------
-    body
-        A block or a stack.
-    acceleration
-        Acceleration of the ground at the samples [m/s²], shape (n,), linear in between and zero
-        after the last.
-    dt
-        Time between samples [s].
-    restitution
-        None conserves angular momentum about the new pivot.  A measured value instead, one number
-        for a block, a pair (ground, interface) for a stack, either of which may be None, or a
-        :class:`MeasuredRestitution` with its law: the lone block leaves with ω⁺ = value · ω⁻.
-    linear
-        Use the linearised equations 2.9 and 2.60 to 2.65.
-    vertical
-        Acceleration of the ground upwards [m/s²], sampled likewise.
-    duration
-        When to stop at the latest [s]; by default when all is at rest or a block has overturned.
-    chatter
-        Parting speed after an impact, over p, below which a contact is closed [-].
+    Accelerations [m/s²] are linear between samples and zero after the last.  ``restitution`` is a number of a
+    block, a pair (ground, interface) of a stack, either of which may be None, or a :class:`MeasuredRestitution`;
+    ``duration`` is as of :func:`contact_reference.simulate_reference`, and ``chatter`` the parting speed after an
+    impact, over p, below which a contact is closed [-].
     """
     motion = np.asarray(acceleration, dtype=float)
     up = np.zeros(motion.size) if vertical is None else vertical

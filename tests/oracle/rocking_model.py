@@ -49,18 +49,7 @@ def _dot(u: Vector, v: Vector) -> float:
 
 
 class Model:
-    """Two blocks (or one) with their pivots; angles in [rad], SI units throughout.
-
-    Parameters
-    ----------
-    body
-        A block or a stack.
-    g
-        Gravity [m/s²].
-    restitution
-        None, a number for a block, or a pair (ground, interface) for a stack; see
-        `rocking_integrator.simulate_reference`.
-    """
+    """Two blocks (or one) with their pivots and restitution; angles in [rad], SI units throughout."""
 
     def __init__(self, body: Block | Stack, g: float, restitution: object = None) -> None:
         self.g = g
@@ -296,17 +285,11 @@ class Model:
         return *shared(float(brentq(spare, 0.0, 1.0, xtol=1e-15))), True
 
     def _wanted(
-        self,
-        contact: int,
-        closing: State,
-        before: Pair,
-        plain: Pair,
-        moved: Pair | None,
+        self, contact: int, closing: State, before: Pair, plain: Pair, moved: Pair | None
     ) -> float:
         """Rate at which a contact comes off, by its law if it closes and never on its old pivot.
 
-        ``before``, ``plain`` and ``moved`` are the velocities before the impact, after it by momentum,
-        and after it with impulses where the law of position has them.
+        ``plain`` and ``moved`` are the velocities after it by momentum, and with impulses where position has them.
         """
         law = self._laws[contact][-closing[contact]] if closing[contact] else None
         if law is None:
@@ -320,13 +303,7 @@ class Model:
         return rate if rate * closing[contact] < 0 else 0.0
 
     def _coming_off(
-        self,
-        old: State,
-        closing: State,
-        theta: Pair,
-        before: Pair,
-        given: list[bool],
-        rates: Pair,
+        self, old: State, closing: State, theta: Pair, before: Pair, given: list[bool], rates: Pair
     ) -> tuple[State, Pair]:
         """State and velocities after an impact whose closing contacts come off at given rates.
 

@@ -144,26 +144,10 @@ def _fly(tensor, inverse, pull, step, velocity, omega):
 def stepping(points, inertia, friction, ground, dt, g, step, turned):
     """Integrate a body that stands at rest until it lies, or two seconds after the motion.
 
-    Parameters
-    ----------
-    points
-        Corners of the base of a box from the centre of mass, shape (4, 3) [m].
-    inertia
-        Tensor over the mass, shape (3, 3) [m²].
-    friction
-        Coefficient of friction.
-    ground
-        Acceleration of the ground, shape (n, 3) [m/s²], linear between samples.
-    dt, step
-        Sampling interval and step [s].
-    g
-        Gravity [m/s²].
-    turned
-        Turn about the vertical in which it stands [rad].
-
-    Returns
-    -------
-    Whether it fell, and tilt [rad] at each sample.
+    ``points`` are the corners of the base of a box from the centre of mass, shape (4, 3) [m], ``inertia`` its
+    tensor over the mass [m²], ``ground`` accelerations, shape (n, 3) [m/s²], linear between samples, ``turned``
+    the turn about the vertical in which it stands [rad].  Returned are whether it fell, and its tilt [rad] at
+    each sample.
     """
     height = -points[:, 2].min()
     c, s = math.cos(turned), math.sin(turned)

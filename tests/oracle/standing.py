@@ -9,29 +9,15 @@ from rockfrag.system import System
 
 
 class StandingBody(NamedTuple):
-    """One body as it stands.
-
-    Attributes
-    ----------
-    mass, inertia
-        [kg], about the centre [kg m²].
-    centre
-        Centre of gravity on the ground's frame, shape (2,) [m].
-    corners
-        Left and right end of its contact from its centre, shape (2, 2) [m].
-    edges
-        Left and right end of its face from its centre, shape (2, 2) [m].
-    base, face
-        Angles of base and face, clockwise [rad].
-    """
+    """One body as it stands."""
 
     mass: float
-    inertia: float
-    centre: np.ndarray
-    corners: np.ndarray
-    edges: np.ndarray
-    base: float
-    face: float
+    inertia: float  # about the centre
+    centre: np.ndarray  # of gravity in the ground's frame, shape (2,)
+    corners: np.ndarray  # left and right end of its contact from its centre, shape (2, 2)
+    edges: np.ndarray  # of its face, likewise
+    base: float  # angle of the base, clockwise
+    face: float  # of the face
 
 
 def turn(angle: float) -> np.ndarray:

@@ -34,9 +34,7 @@ def test_restitution_and_frequency_of_the_specimens(block: Block, e: float, p: f
 @pytest.mark.parametrize(
     ("upper", "e", "p"), [(T1, 0.8289, 5.092), (T2, 0.8809, 4.631), (T3, 0.9138, 4.2655)]
 )
-def test_restitution_and_frequency_of_the_stacks_as_one_body(
-    upper: Block, e: float, p: float
-) -> None:
+def test_restitution_and_frequency_of_the_stacks_as_one_body(upper, e, p):
     whole = Stack(P, upper).rigidly_joined()
     assert whole.momentum_restitution() == pytest.approx(e, abs=5e-4)
     assert whole.frequency() == pytest.approx(p, abs=5e-4)
@@ -149,9 +147,7 @@ def test_linear_amplitudes_decay_by_the_closed_relation() -> None:
     [(True, (3.0186, 6.3181, 7.1681)), (False, (3.032, 6.743, 7.493))],
     ids=["linear", "nonlinear"],
 )
-def test_one_sine_overturns_after_an_impact_then_not_then_without(
-    linear: bool, limits: tuple[float, float, float]
-) -> None:
+def test_one_sine_overturns_after_an_impact_then_not_then_without(linear, limits):
     # one sine of ωp = 5 p and amplitude x α g, measured restitution 0.9
     pulse = BLOCK.alpha * G * np.sin(np.linspace(0, 2 * math.pi, 201))
     dt = 2 * math.pi / (5 * BLOCK.frequency()) / 200

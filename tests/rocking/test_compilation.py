@@ -36,15 +36,7 @@ def test_one_compilation_serves_every_ensemble(body, entry):
 KERNELS = Path(jit.__file__).parent
 
 
-@pytest.mark.parametrize(
-    "path",
-    [
-        *KERNELS.rglob("*.py"),
-        *KERNELS.parent.glob("browser/*.py"),
-        *KERNELS.parent.glob("contact/_[a-z]*.py"),
-    ],
-    ids=lambda path: path.stem,
-)
+@pytest.mark.parametrize("path", [*KERNELS.rglob("*.py")], ids=lambda path: path.stem)
 def test_no_kernel_has_more_than_eight_parameters(path):
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.FunctionDef):

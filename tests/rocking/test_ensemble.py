@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, columns
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import overturns
@@ -206,19 +205,3 @@ def test_cases_with_a_start_of_their_own_end_as_single_simulations_do(linear):
         assert found.impacts[i, j, k] == response.impacts
         assert found.unstable_distance[i, j, k] == response.unstable_distance
     assert found.overturned.any() and not found.overturned.all()
-
-
-@pytest.mark.parametrize(
-    ("change", "says"),
-    [
-        ({"scales": np.ones((3, 2))}, "scales: expected finite numbers"),
-        ({"scales": [np.nan]}, "scales: expected finite numbers"),
-        ({"step": 0.0}, "step: expected a positive number"),
-        ({"restitution": [0.5]}, "restitution: expected 2 entries"),
-        ({"dt": -0.01}, "dt: expected a positive number"),
-    ],
-)
-def test_wrong_input_is_named(change, says):
-    given = {"bodies": LONE[:2], "motions": MOTIONS[:2], "dt": 0.01, "scales": [1.0]}
-    with pytest.raises(InputError, match=says):
-        overturns(**(given | change))

@@ -57,9 +57,7 @@ def near_critical(stack: Stack, motion: np.ndarray) -> bool:
     ("cases", "seed", "most", "falls"),
     [(12, 100, 1, (2, 10)), pytest.param(100, 101, 5, (20, 80), marks=pytest.mark.slow)],
 )
-def test_mujoco_gives_the_same_outcome(
-    cases: int, seed: int, most: int, falls: tuple[int, int]
-) -> None:
+def test_mujoco_gives_the_same_outcome(cases, seed, most, falls):
     rng = np.random.default_rng(seed)
     differing = fallen = 0
     for _ in range(cases):

@@ -102,9 +102,7 @@ def test_a_mirrored_motion_mirrors_the_response(body: Body, motion: np.ndarray) 
 
 @few
 @given(body=bodies(crooked=False), motion=motions())
-def test_a_mirrored_motion_gives_a_symmetric_body_the_same_outcome(
-    body: Body, motion: np.ndarray
-) -> None:
+def test_a_mirrored_motion_gives_a_symmetric_body_the_same_outcome(body, motion):
     found = overturns([body], [motion, -motion], DT, [0.7, 1.0, 1.6])
     for name in ("overturned", "overturned_body", "impacts"):
         values = getattr(found, name)[0]
@@ -128,9 +126,7 @@ def test_similar_blocks_share_one_response(block: Block, motion: np.ndarray, siz
 
 @few
 @given(stack=stacks(), motion=motions(), size=st.floats(0.2, 20), weight=st.floats(0.01, 100))
-def test_similar_stacks_share_one_response_whatever_they_weigh(
-    stack: Stack, motion: np.ndarray, size: float, weight: float
-) -> None:
+def test_similar_stacks_share_one_response_whatever_they_weigh(stack, motion, size, weight):
     def grown(block: Block) -> Block:
         return Block(block.width * size, block.height * size, block.mass * weight)
 
@@ -146,9 +142,7 @@ def test_similar_stacks_share_one_response_whatever_they_weigh(
 
 @few
 @given(upper=blocks(), motion=motions())
-def test_on_a_pedestal_that_cannot_move_the_statue_rocks_alone(
-    upper: Block, motion: np.ndarray
-) -> None:
+def test_on_a_pedestal_that_cannot_move_the_statue_rocks_alone(upper, motion):
     stack = Stack(Block(1e3, 1.0, 1e12), upper)
     alone, carried = simulate(upper, motion, DT), simulate(stack, motion, DT)
     assert alone.overturned == carried.overturned
@@ -159,9 +153,7 @@ def test_on_a_pedestal_that_cannot_move_the_statue_rocks_alone(
 
 @few
 @given(motion=motions(), height=st.floats(1.0, 3.0), top=st.floats(0.05, 0.2))
-def test_two_blocks_that_never_part_rock_as_one(
-    motion: np.ndarray, height: float, top: float
-) -> None:
+def test_two_blocks_that_never_part_rock_as_one(motion, height, top):
     # a flat plate on a column has no cause to rock on its own
     stack = Stack(Block(0.5, height, 300.0), Block(0.5, top * 0.5, 30.0))
     together, item = simulate(stack, motion, DT), simulate(stack.rigidly_joined(), motion, DT)
@@ -176,9 +168,7 @@ def test_two_blocks_that_never_part_rock_as_one(
 
 @few
 @given(body=bodies(crooked=True), motion=motions(), zeros=st.integers(1, 200))
-def test_a_later_start_shifts_the_response_rigidly(
-    body: Body, motion: np.ndarray, zeros: int
-) -> None:
+def test_a_later_start_shifts_the_response_rigidly(body, motion, zeros):
     first = simulate(body, motion, DT)
     other = simulate(body, np.r_[np.zeros(zeros), motion], DT)
     n = len(first.time)
@@ -189,9 +179,7 @@ def test_a_later_start_shifts_the_response_rigidly(
 
 @few
 @given(body=bodies(crooked=True), motion=motions())
-def test_energy_is_never_gained_at_impacts_and_the_energy_balance_closes(
-    body: Body, motion: np.ndarray
-) -> None:
+def test_energy_is_never_gained_at_impacts_and_the_energy_balance_closes(body, motion):
     response = simulate(body, motion, DT)
     impacts = response.contact_events.query("kind != 'opening'")
     before, after = impacts["energy_before"], impacts["energy_after"]
@@ -207,9 +195,7 @@ def test_energy_is_never_gained_at_impacts_and_the_energy_balance_closes(
 
 @few
 @given(body=bodies(crooked=True), motion=motions(), scale=st.floats(0.5, 2.0))
-def test_the_ensemble_gives_the_outcome_of_the_single_simulation(
-    body: Body, motion: np.ndarray, scale: float
-) -> None:
+def test_the_ensemble_gives_the_outcome_of_the_single_simulation(body, motion, scale):
     found = overturns([body], [motion], DT, [scale])
     response = simulate(body, scale * motion, DT)
     margin = min(float(found.unstable_distance[0, 0, 0]), response.unstable_distance)

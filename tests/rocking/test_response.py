@@ -8,11 +8,9 @@ import pytest
 from rockfrag.rocking import Block, Response, Stack, simulate
 from rockfrag.rocking.restitution import quarter_period
 
+from .reference_bodies import T1, T2, T3, P
+
 G = 9.81
-T1 = Block(0.124, 0.372, 2.172)
-T2 = Block(0.124, 0.496, 2.790)
-T3 = Block(0.124, 0.620, 3.456)
-P = Block(0.184, 0.208, 2.300)
 OFF_CENTRE = Stack(
     Block(0.30, 0.25, 20.0, cg_offset=0.01, lean=0.004),
     Block(0.20, 0.80, 15.0, inertia=1.1, cg_height=0.34, cg_offset=-0.012),

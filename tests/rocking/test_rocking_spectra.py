@@ -77,8 +77,6 @@ def test_pulses_of_similar_blocks_share_one_curve() -> None:
         ([1.0], [math.nan], "critical angle lies between"),
     ],
 )
-def test_impossible_blocks_are_refused(
-    motion: Motion, periods: list[float], alpha: list[float], message: str
-) -> None:
+def test_impossible_blocks_are_refused(motion, periods, alpha, message):
     with pytest.raises(InputError, match=message):
         rocking_spectrum(motion, periods, alpha)

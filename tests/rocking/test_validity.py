@@ -8,9 +8,9 @@ import pytest
 from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.rocking.ensemble import LightBodies
 
+from .reference_bodies import T2, P
+
 G = 9.81
-T2 = Block(0.124, 0.496, 2.790)
-P = Block(0.184, 0.208, 2.300)
 
 
 def shaking(seed, peak, dt=0.01, samples=3000):

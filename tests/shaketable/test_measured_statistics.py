@@ -1,3 +1,5 @@
+from itertools import product
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -9,6 +11,7 @@ from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.steps import GeometricSteps
 
+TOWERS, FLOORS = ("T1", "T2", "T3"), ("GF", "F3", "F5")
 AMPLITUDES = 0.05 * 1.02 ** np.arange(150)
 
 
@@ -17,29 +20,19 @@ def simulated():
     """Tests of synthetic objects that overturn above a threshold of their own, one of them censored."""
     rng = np.random.default_rng(7)
     ida_curves = []
-    for object_name in ("T1", "T2", "T3"):
-        for earthquake in ("A", "B", "C", "D"):
-            for floor in ("GF", "F3", "F5"):
-                for pedestal in ("P", "NP"):
-                    threshold = 0.3 * np.exp(0.3 * rng.normal())
-                    over = threshold < AMPLITUDES
-                    ida_curves.append(
-                        pd.DataFrame(
-                            {
-                                "configuration": f"P&{object_name}"
-                                if pedestal == "P"
-                                else object_name,
-                                "object": object_name,
-                                "pedestal": pedestal,
-                                "motion": f"{earthquake}_{floor}",
-                                "earthquake": earthquake,
-                                "floor": floor,
-                                "amplitude_g": AMPLITUDES,
-                                "overturned": over,
-                                "overturned_body": np.where(over, "statue", ""),
-                            }
-                        )
-                    )
+    for name, earthquake, floor, side in product(TOWERS, "ABCD", FLOORS, ("P", "NP")):
+        over = 0.3 * np.exp(0.3 * rng.normal()) < AMPLITUDES
+        about = {
+            "configuration": f"P&{name}" if side == "P" else name,
+            "object": name,
+            "pedestal": side,
+            "motion": f"{earthquake}_{floor}",
+            "earthquake": earthquake,
+            "floor": floor,
+        }
+        body = np.where(over, "statue", "")
+        curve = {"amplitude_g": AMPLITUDES, "overturned": over, "overturned_body": body}
+        ida_curves.append(pd.DataFrame(about | curve))
     return read_ida(
         pd.concat(ida_curves),
         Protocol(GeometricSteps(0.05, 0.05)),

@@ -15,8 +15,13 @@ from rockfrag.shaketable.definitions import (
 from rockfrag.shaketable.definitions import (
     tests_from_ida as read_ida,
 )
-from rockfrag.shaketable.instruments import Accelerometer, ForceOverMass
-from rockfrag.shaketable.protocols import Outcome, Protocol, measured
+from rockfrag.shaketable.protocols import (
+    Accelerometer,
+    ForceOverMass,
+    Outcome,
+    Protocol,
+    measured,
+)
 from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
 from rockfrag.shaketable.tests_table import COLUMNS
 

@@ -11,7 +11,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.shaker import Shaker, limits_g
+from rockfrag.shaketable.shaker import Shaker, shaker_table
 from rockfrag.shaketable.steps import GeometricSteps
 from rockfrag.study.configurations import configuration_of, each_alone
 from rockfrag.system.blocks import Block
@@ -59,12 +59,13 @@ def ida(motions, values):
 
 
 def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
-    motions, shaker = list(records.values()), Shaker()
+    motions = list(records.values())
+    limits = shaker_table(Shaker(), motions).set_index("motion")["limit_g"]
     tests = read_ida(
         ida(motions, amplitudes(0.2, 0.7, 0.01)),
         Protocol(GeometricSteps(0.2, 0.01)),
         definitions=["step_protocol"],
-        limits_g=limits_g(shaker, motions),
+        limits_g=limits,
     )
     censored = tests[tests["censored"] == "right"]
     assert censored[["object", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta"]]

@@ -290,21 +290,13 @@ class OfTwoCurves(SiteVelocity):
 
 @dataclass(frozen=True)
 class VelocityRelation:
-    """How ln (PGV over a measure) follows magnitude, ln distance and ln Vs30 among the records of a set.
+    """How ln (PGV over a measure) follows magnitude, ln distance and ln Vs30 among the records of a set."""
 
-    Attributes
-    ----------
-    coefficients
-        Of 1 and the three; only the mean where fewer than ``FEWEST_RECORDS`` records are known so well.
-    middle
-        Mean of the three in the set.
-    scatter
-        Standard deviation about the relation [-].
-    """
-
+    # Of 1 and the three; only the mean where fewer than ``FEWEST_RECORDS`` records are known so
+    # well
     coefficients: tuple[float, ...]
-    middle: tuple[float, ...]
-    scatter: float
+    middle: tuple[float, ...]  # Mean of the three in the set
+    scatter: float  # Standard deviation about the relation [-]
 
     @classmethod
     def of(cls, about: Sequence[Mapping[str, object]], logs: Floats) -> "VelocityRelation":

@@ -55,13 +55,7 @@ class Inventory:
 
 
 class FaultyRows(InputError):
-    """Rows of an inventory that cannot be used, all of them.
-
-    Parameters
-    ----------
-    faults
-        What is wrong with each, a sentence.
-    """
+    """Rows of an inventory that cannot be used, with what is wrong with each, a sentence."""
 
     def __init__(self, faults: Sequence[str]) -> None:
         more = f" ({len(faults)} rows are wrong in all)" if len(faults) > 1 else ""

@@ -64,8 +64,8 @@ class Pairs:
             )
             notes.append(
                 f"{_counted(len(bounded), 'pair')} in the means with the bound of P/NP, because one of the two "
-                f"tests never overturned, or did so at its first step ({names}): the "
-                "true means lie further on that side; the interval likelihood takes them as bounds"
+                f"tests never overturned, or did so at its first step ({names}): the true means lie further on "
+                "that side"
             )
         lost = self.censored[
             np.isneginf(self.censored["d_lower"]) & np.isposinf(self.censored["d_upper"])

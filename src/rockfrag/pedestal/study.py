@@ -7,9 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from rockfrag.errors import InputError
 from rockfrag.pedestal.bootstrap import rank_probabilities
-from rockfrag.pedestal.censored import CensoredFit, fit_censored
 from rockfrag.pedestal.cluster_means import (
     ROUNDING,
     effect_of,
@@ -66,7 +64,7 @@ class PedestalStudy:
     ranks
         factor, level, mean ratio, p_largest, p_smallest.
     notes
-        In words: population, what was left out, what could not be fitted.
+        In words: population, what was left out, what the steps cannot tell.
     """
 
     pairs: Pairs
@@ -153,57 +151,32 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     return result[EFFECT_COLUMNS]
 
 
-def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -> pd.DataFrame:
+def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     effect, unit = mean_effect(table), sampled_unit(table)
     flips = sign_flip_test(unit_means(table, "earthquake"), seed)
-    rows: list[tuple[str, float, float, float, float, float, int, str]] = [
-        (
-            f"t on the means of {unit}s",
-            effect.mean,
-            effect.lower,
-            effect.upper,
-            effect.p,
-            np.nan,
-            effect.units,
-            "keeps its level in the crossed design; the conclusions rest on it",
-        ),
-        (
-            "sign flips over earthquakes",
-            effect.mean,
-            np.nan,
-            np.nan,
-            flips.p,
-            flips.smallest_p,
-            flips.units,
-            "exact" if flips.exact else f"drawn with seed {seed}",
-        ),
+    remark = "keeps its level in the crossed design; the conclusions rest on it"
+    if effect.upper <= effect.mean + effect.resolution:
+        remark += STEPS_DECIDE
+    rows = [
+        {
+            "method": f"t on the means of {unit}s",
+            "estimate": effect.ratio,
+            "lower": effect.ratio_lower,
+            "upper": effect.ratio_upper,
+            "p": effect.p,
+            "units": effect.units,
+            "remark": remark,
+        },
+        {
+            "method": "sign flips over earthquakes",
+            "estimate": effect.ratio,
+            "p": flips.p,
+            "smallest_p": flips.smallest_p,
+            "units": flips.units,
+            "remark": "exact" if flips.exact else f"drawn with seed {seed}",
+        },
     ]
-    if censored is not None:
-        likely = censored.effect
-        rows.append(
-            (
-                "interval likelihood with a random effect of the pair",
-                likely.mean,
-                likely.lower,
-                likely.upper,
-                likely.p,
-                np.nan,
-                likely.units,
-                f"{censored.tests} tests, {censored.censored} censored; jackknife over earthquakes",
-            )
-        )
-    result = pd.DataFrame(rows, columns=WHOLE_COLUMNS)
-    # what the steps hide is hidden from every method
-    within = effect.resolution
-    by_steps = (result["upper"] <= result["estimate"] + within) & (
-        result["lower"] >= result["estimate"] - within
-    )
-    result["remark"] = result["remark"].where(~by_steps, result["remark"] + STEPS_DECIDE)
-    result["lower"] = result["lower"].clip(upper=result["estimate"] - within)
-    result["upper"] = result["upper"].clip(lower=result["estimate"] + within)
-    for name in ("estimate", "lower", "upper"):
-        result[name] = np.exp(result[name])
-    return result
+    return pd.DataFrame(rows, columns=WHOLE_COLUMNS)
 
 
 def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
@@ -297,17 +270,11 @@ def study_pedestal(
     table = pairs.table
     if table.empty:
         return _no_ratio(pairs)
-    notes = [population(table), *pairs.notes(), *ties_note(table)]
-    censored: CensoredFit | None = None
-    try:
-        censored = fit_censored(tests)
-    except InputError as error:
-        notes.append(str(error))
     return PedestalStudy(
         pairs=pairs,
         effects=effects_table(table, list(tests["floor"].astype(str).unique())),
-        whole=_whole_tests(table, censored, seed),
+        whole=_whole_tests(table, seed),
         without_earthquake=leave_one_earthquake_out(table),
         ranks=_ranks(table, seed),
-        notes=tuple(notes),
+        notes=(population(table), *pairs.notes(), *ties_note(table)),
     )

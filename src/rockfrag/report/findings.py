@@ -8,10 +8,9 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.fragility.compared import Compared, compared_curves
-from rockfrag.report.part import Finding
+from rockfrag.report.part import Finding, finding_of
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import (
-    PART,
     decimals_of,
     estimate,
     estimates,
@@ -50,11 +49,6 @@ def _sentences() -> Any:
 def _finding(name: str, **about: Any) -> Finding:
     """What a macro says."""
     return finding_of(getattr(_sentences(), name)(**about))
-
-
-def finding_of(text: str) -> Finding:
-    """What a macro says, parted into headline, text and numbers."""
-    return Finding(*(" ".join(said(part)) for part in text.split(PART)))
 
 
 def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:

@@ -6,6 +6,7 @@ specimen always overturns are three different figures; between the last two lie 
 
 import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
+from functools import cache, partial
 
 import numpy as np
 import pandas as pd
@@ -24,32 +25,11 @@ DEFINITIONS = ("step_protocol", "first_overturning", "always_overturning")
 DEFINITION = "step_protocol"
 """The definition that resembles a laboratory's: statistics rest on it, the others stand beside."""
 
-_NEEDED = (
-    *("configuration", "object", "pedestal", "motion", "earthquake", "floor"),
-    *("amplitude_g", "overturned", "overturned_body"),
-)
+_NEEDED = (*ABOUT, "amplitude_g", "overturned", "overturned_body")
 
 
 def first_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
-    """Bounds of the least amplitude that overturns.
-
-    Parameters
-    ----------
-    amplitudes
-        Amplitudes [g], rising, shape (n,).
-    overturned
-        Whether each overturned, shape (n,).
-
-    Returns
-    -------
-    The :class:`Outcome`: bounds of the amplitude.
-    """
-    _check_ida(amplitudes, overturned, "ida")
-    return _climbed(amplitudes, overturned)
-
-
-def _climbed(amplitudes: Floats, overturned: Flags) -> Outcome:
-    """Bounds of the first overturning."""
+    """Bounds of the least amplitude that overturns, of rising ones [g], shape (n,)."""
     first = int(overturned.argmax()) if overturned.any() else overturned.size
     survived = float(amplitudes[first - 1]) if first else 0.0
     if first == overturned.size:
@@ -59,26 +39,7 @@ def _climbed(amplitudes: Floats, overturned: Flags) -> Outcome:
 
 
 def always_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
-    """Bounds of the amplitude above which every amplitude of the IDA curve overturns.
-
-    Censored if the largest amplitude was survived.
-
-    Parameters
-    ----------
-    amplitudes
-        Amplitudes [g], rising, shape (n,).
-    overturned
-        Whether each overturned, shape (n,).
-
-    Returns
-    -------
-    The :class:`Outcome`: bounds of the amplitude.
-    """
-    _check_ida(amplitudes, overturned, "ida")
-    return _always(amplitudes, overturned)
-
-
-def _always(amplitudes: Floats, overturned: Flags) -> Outcome:
+    """Bounds of the amplitude above which all overturn; censored if the largest was survived."""
     survived = np.flatnonzero(~overturned)
     if survived.size == 0:
         return Outcome(0.0, float(amplitudes[0]), "overturned at the first step")
@@ -88,39 +49,16 @@ def _always(amplitudes: Floats, overturned: Flags) -> Outcome:
     return Outcome(float(amplitudes[last]), float(amplitudes[last + 1]))
 
 
-def step_protocol(
-    amplitudes: Floats,
-    overturned: Flags,
-    protocol: Protocol,
-    limit_g: float | None = None,
-    repetition: int = 1,
-) -> Outcome:
-    """Climb the protocol's series of levels on an IDA curve, each level at the nearest amplitude of the IDA curve.
-
-    Parameters
-    ----------
-    amplitudes, overturned
-        As of :func:`first_overturning`.
-    protocol
-        Protocol; levels beyond the end of the IDA curve are not climbed.
-    limit_g
-        Limit of the shaker for this motion [g], if it has one; no level is above it.
-    repetition
-        Number of the repetition, from 1.
-
-    Returns
-    -------
-    The :class:`Outcome`: bounds of the amplitude.
-    """
-    _check_ida(amplitudes, overturned, "ida")
-    climbed = _levels(amplitudes, protocol, limit_g, repetition)
-    return _climbed(amplitudes[climbed], overturned[climbed])
+def step_protocol(amplitudes: Floats, overturned: Flags, protocol: Protocol) -> Outcome:
+    """Bounds where the protocol's series of levels is climbed, each level at the nearest amplitude."""
+    climbed = _levels(amplitudes, protocol, None, 1)
+    return first_overturning(amplitudes[climbed], overturned[climbed])
 
 
 def _levels(
     amplitudes: Floats, protocol: Protocol, limit_g: float | None, repetition: int
 ) -> NDArray[np.intp]:
-    """Which amplitudes of an IDA curve the protocol's series of levels takes."""
+    """Which amplitudes of an IDA curve the series of levels takes; levels beyond its end are not climbed."""
     levels = protocol.amplitudes(limit_g, repetition)
     spacing = float(np.diff(amplitudes[-2:])[0]) if amplitudes.size > 1 else 0.0
     levels = levels[levels <= amplitudes[-1] + spacing / 2]
@@ -195,19 +133,11 @@ def tests_from_swept(
     """Read IDA curves as tests, part after part, as :func:`tests_from_ida` does those of a table."""
     rows: list[dict[str, object]] = []
     for part in parts:
-        level_series: dict[tuple[float | None, int], NDArray[np.intp]] = {}
+        _check_amplitudes(part)
+        levels = cache(partial(_levels, part.amplitude_g, protocol))
         for place, about in enumerate(part.about.to_dict("records")):
             limit = None if limits_g is None else limits_g.get(about["motion"])
-            _check_ida(
-                part.amplitude_g,
-                part.overturned[place],
-                f"{about['configuration']} {about['motion']}",
-            )
-            for repetition in range(1, protocol.repetitions + 1):
-                if (limit, repetition) not in level_series:
-                    intensity_levels = _levels(part.amplitude_g, protocol, limit, repetition)
-                    level_series[limit, repetition] = intensity_levels
-            climbed = [level_series[limit, number + 1] for number in range(protocol.repetitions)]
+            climbed = [levels(limit, number) for number in range(1, protocol.repetitions + 1)]
             for definition in definitions:
                 rows.extend(_rows(part, place, about, protocol, definition, climbed))
     return as_tests_table(rows)
@@ -223,11 +153,13 @@ def _rows(
 ) -> list[dict[str, object]]:
     amplitudes, overturned = part.amplitude_g, part.overturned[place]
     if definition == "step_protocol":
-        outcomes = [_climbed(amplitudes[levels], overturned[levels]) for levels in level_series]
+        outcomes = [
+            first_overturning(amplitudes[levels], overturned[levels]) for levels in level_series
+        ]
     elif definition == "first_overturning":
-        outcomes = [_climbed(amplitudes, overturned)]
+        outcomes = [first_overturning(amplitudes, overturned)]
     else:
-        outcomes = [_always(amplitudes, overturned)]
+        outcomes = [always_overturning(amplitudes, overturned)]
     rows = []
     for repetition, true in enumerate(outcomes, start=1):
         shown = measured(true, protocol.measurement, str(about["configuration"]))
@@ -251,12 +183,12 @@ def _rows(
     return rows
 
 
-def _check_ida(amplitudes: Floats, overturned: Flags, name: str) -> None:
-    if amplitudes.size == 0 or amplitudes.shape != overturned.shape:
-        raise InputError(f"{name}: an IDA curve needs amplitudes and as many outcomes.")
-    if not (
-        np.isfinite(amplitudes).all() and amplitudes[0] > 0 and (np.diff(amplitudes) > 0).all()
-    ):
+def _check_amplitudes(part: Swept) -> None:
+    amplitudes = part.amplitude_g
+    rising = np.isfinite(amplitudes).all() and (np.diff(amplitudes, prepend=0.0) > 0).all()
+    if not (amplitudes.size and rising):
+        about = part.about.iloc[0]
         raise InputError(
-            f"{name}: amplitudes must be positive, rise, and occur once; check the IDA curve's rows."
+            f"{about['configuration']} {about['motion']}: amplitudes must be positive, rise, and occur once; "
+            "check the IDA curve's rows."
         )

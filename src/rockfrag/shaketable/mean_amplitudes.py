@@ -10,8 +10,6 @@ import pandas as pd
 _LABELS = ("configuration", "object", "pedestal", "floor")
 COLUMNS = ("by", *_LABELS, "mean_g", "motions", "of")
 
-_ALL = ""
-
 
 def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     """Geometric means of what is compared, over the motions that overturned all that is compared, a row a mean.
@@ -60,15 +58,13 @@ def _means(
     return [
         {
             "by": by,
-            **{name: _common(part, name) for name in _LABELS},
+            **{
+                name: str(part[name].iloc[0]) if len(set(part[name])) == 1 else ""
+                for name in _LABELS
+            },
             "mean_g": float(np.exp(complete.iloc[:, column].mean())) if len(complete) else np.nan,
             "motions": len(complete),
             "of": len(table),
         }
         for column, part in enumerate(parts)
     ]
-
-
-def _common(rows: pd.DataFrame, column: str) -> str:
-    values = rows[column].unique()
-    return str(values[0]) if len(values) == 1 else _ALL

@@ -1,17 +1,66 @@
-"""Test protocols: amplitudes raised from rest until the first overturning or the limit."""
+"""Test protocols: amplitudes raised from rest to the first overturning or the limit, and shown by instruments."""
 
 import math
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.shaketable.instruments import Accelerometer, Exact, Measurement
 from rockfrag.shaketable.steps import Steps
 
 Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ForceOverMass:
+    """Amplitude computed as the shaker's force over the mass it is believed to move [kg], by configuration.
+
+    The force moves the unaccounted mass too, so the figure is too large by the ratio of the masses, and by more
+    for a light specimen: a bias that differs with and without the pedestal. Too much counted is negative.
+    """
+
+    believed_mass: Mapping[str, float]
+    unaccounted_mass: float = 0.0
+
+    def __post_init__(self) -> None:
+        for configuration, mass in self.believed_mass.items():
+            if not (math.isfinite(mass) and mass > 0 and mass + self.unaccounted_mass > 0):
+                raise InputError(
+                    f"force over mass: configuration {configuration!r} moves {mass} kg and "
+                    f"{self.unaccounted_mass} kg unaccounted for, which must be positive masses."
+                )
+
+    def measure(self, amplitude_g: float, configuration: str) -> float:
+        """Return the measured amplitude [g]."""
+        if configuration not in self.believed_mass:
+            raise InputError(
+                f"force over mass: no mass is given for configuration {configuration!r}; known are "
+                f"{', '.join(self.believed_mass)}."
+            )
+        return amplitude_g * (1 + self.unaccounted_mass / self.believed_mass[configuration])
+
+
+@dataclass(frozen=True)
+class Accelerometer:
+    """Amplitude read from an accelerometer that shows no more than its range, ``clip_g`` [g]."""
+
+    clip_g: float
+
+    def __post_init__(self) -> None:
+        if not self.clip_g > 0:
+            raise InputError(
+                f"accelerometer: clip_g must be a positive number of g, got {self.clip_g}."
+            )
+
+    def measure(self, amplitude_g: float, configuration: str) -> float:
+        """Return the measured amplitude [g]."""
+        return min(amplitude_g, self.clip_g)
+
+
+Measurement = ForceOverMass | Accelerometer
 
 
 @dataclass(frozen=True)
@@ -57,7 +106,7 @@ class Protocol:
     definition
         Amplitude reported: the largest ``before`` overturning, or the one ``at`` overturning.
     measurement
-        How the amplitude becomes a figure.
+        How the amplitude becomes a figure; None shows it as it is.
 
     Raises
     ------
@@ -69,7 +118,7 @@ class Protocol:
     limit_g: float = 2.0
     repetitions: int = 1
     definition: Literal["before", "at"] = "before"
-    measurement: Measurement = field(default_factory=Exact)
+    measurement: Measurement | None = None
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.limit_g) and self.limit_g > 0):
@@ -99,11 +148,13 @@ class Protocol:
         return outcome.lower_g if outcome.lower_g > 0 else math.nan
 
 
-def measured(outcome: Outcome, measurement: Measurement, configuration: str) -> Outcome:
+def measured(outcome: Outcome, measurement: Measurement | None, configuration: str) -> Outcome:
     """Return an outcome as the instruments show it.
 
     An accelerometer at the end of its range gives a lower bound only.
     """
+    if measurement is None:
+        return outcome
     if isinstance(measurement, Accelerometer):
         true = outcome.lower_g if outcome.censored else outcome.upper_g
         if true > measurement.clip_g:

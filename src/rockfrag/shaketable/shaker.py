@@ -5,7 +5,7 @@ They are taken at the samples; between them a peak is larger by less than 2 part
 records of Table 3.3.
 """
 
-import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -14,17 +14,28 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number
+from rockfrag.input_checks import number_from_zero, positive_number
 from rockfrag.motions.conditioning import pad
 from rockfrag.motions.filtering import highpass
 from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
+from rockfrag.schema import checked
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
+from rockfrag.yaml_file import read_yaml
 
 FILTER_ORDER = 4  # order of the zero-phase Butterworth high-pass that makes room for a motion
 CORNERS_HZ = tuple(float(corner) for corner in np.round(np.arange(0.02, 5.001, 0.02), 2))
 """Corners tried, from the mildest on [Hz]."""
+
+_FIELDS = {
+    "stroke_m": "stroke",
+    "force_n": "force",
+    "armature_mass_kg": "armature_mass",
+    "table_mass_kg": "table_mass",
+    "velocity_m_s": "velocity",
+}
+"""Fields of a shaker by the keys of its file that are called otherwise."""
 
 
 @dataclass(frozen=True)
@@ -77,9 +88,8 @@ class Shaker:
             )
         if self.start not in ("off-centre", "centred"):
             raise InputError(f"shaker: start must be off-centre or centred, got {self.start!r}.")
-        for name, value in (("armature", self.armature_mass), ("table", self.table_mass)):
-            if not (math.isfinite(value) and value >= 0):
-                raise InputError(f"shaker: {name}_mass must be zero or more kg, got {value}.")
+        number_from_zero("shaker: armature_mass", self.armature_mass, "kg")
+        number_from_zero("shaker: table_mass", self.table_mass, "kg")
 
     def demand(self, motion: Motion, amplitude_g: float, payload: float = 0.0) -> "Demand":
         """What a motion scaled to a peak of ``amplitude_g`` [g] asks, with ``payload`` [kg] on it."""
@@ -96,9 +106,8 @@ class Shaker:
 
     def moved_mass(self, payload: float) -> float:
         """Mass that moves with ``payload`` on the table [kg]; the specimen as if it were bolted on."""
-        if not (math.isfinite(payload) and payload >= 0):
-            raise InputError(f"shaker: the payload must be zero or more kg, got {payload}.")
-        mass = self.armature_mass + self.table_mass + payload
+        mass = self.armature_mass + self.table_mass
+        mass += number_from_zero("shaker: the payload", payload, "kg")
         if mass <= 0:
             raise InputError("shaker: nothing moves; give armature_mass, table_mass or payload.")
         return mass
@@ -133,6 +142,30 @@ class Demand:
     def fits(self) -> bool:
         """Whether every limit is kept."""
         return max(self.uses().values()) <= 1
+
+
+def read_shaker(path: str | os.PathLike[str]) -> Shaker:
+    """Read a shaker from a YAML file such as ``config/experiment/shaker.yaml``.
+
+    Parameters
+    ----------
+    path
+        Path of the YAML file.
+
+    Returns
+    -------
+    The :class:`Shaker`.
+
+    Raises
+    ------
+    InputError
+        If the file is absent, is not YAML, or does not describe a shaker.
+    """
+    values = checked(read_yaml(path), "shaker", str(path))
+    try:
+        return Shaker(**{_FIELDS.get(key, key): value for key, value in values.items()})
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
 
 
 def required_corner(
@@ -207,27 +240,6 @@ def produced_motion(
     wanted = scale_to_pga(motion, amplitude_g)
     corner = max(shaker.lowest_hz, required_corner(shaker, motion, amplitude_g, payload))
     return _filtered(wanted, corner)
-
-
-def limits_g(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0) -> dict[str, float]:
-    """Largest amplitude of each motion as it is [g], by its name; see :meth:`Shaker.limit`.
-
-    For tests of several specimens ``payload`` is the heaviest of them [kg].
-
-    Parameters
-    ----------
-    shaker
-        The shaker.
-    motions
-        Motions as they are.
-    payload
-        Mass on the table [kg].
-
-    Returns
-    -------
-    Largest amplitudes [g], by the names of the motions.
-    """
-    return {motion.name: shaker.limit(motion, payload)[0] for motion in motions}
 
 
 def shaker_table(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0) -> pd.DataFrame:

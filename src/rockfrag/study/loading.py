@@ -19,7 +19,7 @@ from rockfrag.laws import law_names
 from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.schema import checked
-from rockfrag.shaketable.settings import read_shaker
+from rockfrag.shaketable.shaker import read_shaker
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.campaign import CAMPAIGN_KEY, CampaignStudy, campaign_from
 from rockfrag.study.configurations import (

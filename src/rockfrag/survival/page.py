@@ -7,13 +7,32 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from markupsafe import Markup
 
 from rockfrag.files import file_name, write_table, write_text
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import page_text
+from rockfrag.sentences import sayer
 from rockfrag.survival.answer import DECISION_RATE, LIMITS, RULED_OUT, Constrained
 from rockfrag.survival.figures import curves_figure, weights_figure
+
+BRANCHES = (
+    Column("branch", "Branch"),
+    Column("weight_before", "Weight before", 4),
+    Column("weight_after", "Weight after", 4),
+    Column("survival", "Probability that all stand", 4),
+)
+OBJECTS = (
+    Column("object", "Object"),
+    Column("information_bit", "Information alone [bit]", 2),
+    Column("level_ratio_alone", "Level at 1e-4 with it alone, after / before", 2),
+    Column("level_ratio_without", "Level at 1e-4 without it, after / before", 2),
+)
+ASSUMED = (
+    Column("assumption", "Assumption"),
+    Column("level_ratio", "Level at 1e-4, after / before", 2),
+)
 
 
 def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Path:
@@ -67,95 +86,66 @@ def json_of(found: Constrained) -> str:
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
+_say = sayer("rockfrag.survival", "page.j2", {"RULED_OUT": RULED_OUT, "LIMITS": LIMITS})
+
+
+def _sentences(found: Constrained) -> list[str]:
+    """Hazard, branches, evidence and what the answer hangs on, a sentence each."""
+    hazard = found.result.ratios(found.site.measure).set_index("annual_rate")
+    moved = found.sensitivity.iloc[1:]
+    moved = moved[moved["level_ratio"] > 0]
+    worst = None
+    if len(moved) and found.level_ratio > 0:
+        away = np.log(moved["level_ratio"] / found.level_ratio).abs()
+        worst = moved.iloc[int(away.to_numpy().argmax())].to_dict()
+    return _say("sentences", found, hazard.loc[DECISION_RATE].to_dict(), worst)
+
+
 def lines_of(found: Constrained) -> list[str]:
     """The answer in lines for a screen."""
-    objects = found.by_object
-    ruled = len(found.ruled_out)
-    return [
-        f"Hazard    {_level_sentence(found)}",
-        f"Branches  {ruled} of {len(found.result.branches)} keep less than {100 * RULED_OUT:.0f} % of their "
-        f"weight; the "
-        f"weights moved by {found.result.information:.2f} bit.",
-        f"Evidence  {_object_sentence(objects)}",
-        f"Hangs on  {_sensitivity_sentence(found)}",
-        f"Limits    {' '.join(LIMITS)}",
-    ]
-
-
-def _level_sentence(found: Constrained) -> str:
-    measure = found.site.measure
-    row = found.result.ratios(measure).set_index("annual_rate").loc[DECISION_RATE]
-    if not row["level_ratio"] > 0:
-        return "The mean hazard at 1e-4 a year lies beyond the curves; extend them."
-    change = row["level_ratio"] - 1
-    direction = "lower" if change < 0 else "higher"
-    return (
-        f"The mean {measure.imt} at 1e-4 a year is {row['level_after']:.3g} {measure.unit} after "
-        f"{row['level_before']:.3g} {measure.unit} before, {100 * abs(change):.0f} % {direction}."
-    )
-
-
-def _object_sentence(objects: pd.DataFrame) -> str:
-    first = objects.iloc[0]
-    if len(objects) == 1:
-        return f"{first['object']} is the only object; one object is weak evidence."
-    most = f"{first['object']} tells most ({first['information_bit']:.2f} bit alone)"
-    if not first["level_ratio_without"] > 0:
-        return f"{most}."
-    return (
-        f"{most}; without it the mean hazard at 1e-4 a year is {first['level_ratio_without']:.2f} times that "
-        "before."
-    )
-
-
-def _sensitivity_sentence(found: Constrained) -> str:
-    table = found.sensitivity.iloc[1:]
-    table = table[table["level_ratio"] > 0]
-    if table.empty or not found.level_ratio > 0:
-        return "No assumption can be named, as the level at 1e-4 a year lies beyond the curves."
-    away = (table["level_ratio"] / found.level_ratio).map(abs).map(lambda r: max(r, 1 / r))
-    row = table.iloc[int(away.to_numpy().argmax())]
-    return (
-        f"With {row['assumption']} the level would be {row['level_ratio']:.2f} times that before, with all as "
-        f"stated {found.level_ratio:.2f} times."
-    )
+    return _say("lines", found, *_sentences(found))
 
 
 def page_of(found: Constrained) -> str:
     """Return the page as HTML, which loads nothing from outside."""
+    hazard, branches, evidence, hangs_on = _sentences(found)
+    names = ", ".join(body.name for body in found.site.objects)
+    title, lead = _say("head", found, names)
     curves = FigureSpec(
         "curves",
-        f"Mean hazard before and after survival. {_level_sentence(found)}",
+        f"Mean hazard before and after survival. {hazard}",
         "Mean hazard before (dashed) and after survival (solid); shaded from the 16th to the 84th percentile "
         "of the branches.",
         lambda: curves_figure(found),
     )
-    weights = FigureSpec(
-        "weights",
-        "Weights of the branches before and after survival.",
-        "Weights of the branches that matter most.",
-        lambda: weights_figure(found),
-    )
-    names = ", ".join(body.name for body in found.site.objects)
+    caption = "What each object says by itself, and what is left without it."
+    objects = table_html(found.by_object, OBJECTS, caption)
+    caption = "One assumption at a time taken otherwise."
+    assumed = table_html(found.sensitivity, ASSUMED, caption)
     return page_text(
-        title=f"What {names} say about the hazard of {found.site.name}",
-        lead=f"{len(found.result.branches)} branches of the hazard reweighted by what still stands: {names}.",
+        title=title,
+        lead=lead,
         answer=Answer(
             asked="How strong can shaking have been, since these objects stand?",
             sentences=[
-                Finding("Hazard", _level_sentence(found)),
-                Finding("Evidence", _object_sentence(found.by_object)),
-                Finding("It hangs on", _sensitivity_sentence(found)),
+                Finding("Hazard", hazard),
+                Finding("Evidence", evidence),
+                Finding("It hangs on", hangs_on),
             ],
             figure=curves,
             rests_on=LIMITS,
         ),
-        sections=[_hazard(found), _branches(found, weights), _objects(found), _hangs_on(found)],
+        sections=[
+            Section("hazard", "Mean hazard before and after", hazard, (), [_hazard(found)]),
+            Section("branches", "Branches", branches, (), _branches(found)),
+            Section("objects", "Which object decides", evidence, (), [objects]),
+            Section("hangs-on", "What it hangs on", hangs_on, LIMITS, [assumed]),
+        ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
     )
 
 
-def _hazard(found: Constrained) -> Section:
+def _hazard(found: Constrained) -> Markup:
     unit = found.site.measure.unit
     columns = (
         Column("annual_rate", "Annual rate [1/year]", numeric=True),
@@ -166,72 +156,16 @@ def _hazard(found: Constrained) -> Section:
     )
     table = found.result.ratios(found.site.measure)
     table["annual_rate"] = [f"{rate:g}" for rate in table["annual_rate"]]
-    return Section(
-        "hazard",
-        "Mean hazard before and after",
-        _level_sentence(found),
-        (),
-        [table_html(table, columns, "Mean hazard at annual rates of 1e-2 to 1e-5.")],
-    )
+    return table_html(table, columns, "Mean hazard at annual rates of 1e-2 to 1e-5.")
 
 
-def _branches(found: Constrained, weights: FigureSpec) -> Section:
-    columns = (
-        Column("branch", "Branch"),
-        Column("weight_before", "Weight before", 4),
-        Column("weight_after", "Weight after", 4),
-        Column("survival", "Probability that all stand", 4),
+def _branches(found: Constrained) -> list[Markup | FigureSpec]:
+    weights = FigureSpec(
+        "weights",
+        "Weights of the branches before and after survival.",
+        "Weights of the branches that matter most.",
+        lambda: weights_figure(found),
     )
-    ruled = len(found.ruled_out)
-    return Section(
-        "branches",
-        "Branches",
-        f"{ruled} of {len(found.result.branches)} branches keep less than {100 * RULED_OUT:.0f} % of their "
-        "weight.",
-        (),
-        [
-            weights,
-            table_html(
-                found.result.table(),
-                columns,
-                "Branches of the hazard with their weights.",
-                f"{file_name(found.site.name)}-weights.csv",
-            ),
-        ],
-    )
-
-
-def _objects(found: Constrained) -> Section:
-    columns = (
-        Column("object", "Object"),
-        Column("information_bit", "Information alone [bit]", 2),
-        Column("level_ratio_alone", "Level at 1e-4 with it alone, after / before", 2),
-        Column("level_ratio_without", "Level at 1e-4 without it, after / before", 2),
-    )
-    return Section(
-        "objects",
-        "Which object decides",
-        _object_sentence(found.by_object),
-        (),
-        [
-            table_html(
-                found.by_object,
-                columns,
-                "What each object says by itself, and what is left without it.",
-            )
-        ],
-    )
-
-
-def _hangs_on(found: Constrained) -> Section:
-    columns = (
-        Column("assumption", "Assumption"),
-        Column("level_ratio", "Level at 1e-4, after / before", 2),
-    )
-    return Section(
-        "hangs-on",
-        "What it hangs on",
-        _sensitivity_sentence(found),
-        LIMITS,
-        [table_html(found.sensitivity, columns, "One assumption at a time taken otherwise.")],
-    )
+    caption = "Branches of the hazard with their weights."
+    file = f"{file_name(found.site.name)}-weights.csv"
+    return [weights, table_html(found.result.table(), BRANCHES, caption, file)]

@@ -9,17 +9,9 @@ from .systems import System, impact_map, random_systems
 Array = np.ndarray
 
 
-def ground_impact(s: System) -> System:
-    return s.with_(th1=0.0)
-
-
-def interface_impact(s: System) -> System:
-    return s.with_(th2=s.th1)
-
-
-def truth(where, old: tuple[int, int], new: tuple[int, int]):
+def truth(old: tuple[int, int], new: tuple[int, int]):
     """Return the conserved-momentum velocities after the impact."""
-    return lambda s: np.array(impact_map(where(s), old, new))
+    return lambda s: np.array(impact_map(s, old, new))
 
 
 def solved(rows: tuple[tuple[Array, ...], tuple[Array, ...]], s: System) -> Array:
@@ -110,6 +102,10 @@ def case_280(s: System, printed: bool) -> Array:
     return np.array([a * s.w1 + b * s.w2, c * s.w1 + d * s.w2])
 
 
+def case_281(s: System, printed: bool) -> Array:
+    return printed_281(s) if printed else mended_281(s)
+
+
 def printed_281(s: System) -> Array:
     e1 = s.io2
     e2 = s.io1 + s.m2 * s.length_ * s.rr * sin(s.big - s.beta_ + s.th1)
@@ -191,11 +187,12 @@ def four_a() -> System:
 
 
 def ground_systems() -> System:
-    return ground_impact(random_systems())
+    return random_systems().with_(th1=0.0)
 
 
 def interface_systems() -> System:
-    return interface_impact(random_systems())
+    s = random_systems()
+    return s.with_(th2=s.th1)
 
 
 def closing_sign(s: System) -> Array:
@@ -211,75 +208,28 @@ def closing_sign(s: System) -> Array:
     return np.sign(corner_speed - under)
 
 
+def misprinted(number, case, old, new, systems) -> Equation:
+    """An equation that holds in another form than the printed one."""
+    return Equation(
+        number, lambda s: case(s, True), truth(old, new), lambda s: case(s, False), systems=systems
+    )
+
+
 EQUATIONS = [
-    Equation(
-        "2.76",
-        lambda s: case_276(s, True),
-        truth(ground_impact, (1, 1), (-1, 1)),
-        lambda s: case_276(s, False),
-        systems=ground_systems,
-    ),
+    misprinted("2.76", case_276, (1, 1), (-1, 1), ground_systems),
     Equation("2.77", lambda s: np.sign(s.w2 - s.w1), closing_sign, systems=interface_systems),
-    Equation(
-        "2.78",
-        lambda s: case_278(s, True),
-        truth(interface_impact, (1, 1), (1, -1)),
-        lambda s: case_278(s, False),
-        systems=interface_systems,
-    ),
-    Equation(
-        "2.79",
-        lambda s: case_279(s, True),
-        truth(interface_impact, (1, 1), (1, 0)),
-        lambda s: case_279(s, False),
-        systems=interface_systems,
-    ),
-    Equation(
-        "2.80",
-        lambda s: case_280(s, True),
-        truth(ground_impact, (1, -1), (-1, -1)),
-        lambda s: case_280(s, False),
-        systems=ground_systems,
-    ),
-    Equation(
-        "2.81",
-        printed_281,
-        truth(interface_impact, (1, -1), (1, 1)),
-        mended_281,
-        systems=interface_systems,
-    ),
-    Equation(
-        "2.82",
-        lambda s: case_282(s, True),
-        truth(interface_impact, (1, -1), (1, 0)),
-        lambda s: case_282(s, False),
-        systems=interface_systems,
-    ),
-    Equation(
-        "2.83",
-        lambda s: case_283(s, True),
-        truth(lambda s: s, (1, 0), (-1, -1)),
-        lambda s: case_283(s, False),
-        systems=glued_at_rest,
-    ),
-    Equation(
-        "2.84",
-        lambda s: case_284(s, True),
-        truth(lambda s: s, (1, 0), (-1, 0)),
-        lambda s: case_284(s, False),
-        systems=glued_at_rest,
-    ),
-    Equation(
-        "2.85",
-        lambda s: case_285(s, True),
-        truth(lambda s: s, (0, 1), (-1, -1)),
-        lambda s: case_285(s, False),
-        systems=four_a,
-    ),
+    misprinted("2.78", case_278, (1, 1), (1, -1), interface_systems),
+    misprinted("2.79", case_279, (1, 1), (1, 0), interface_systems),
+    misprinted("2.80", case_280, (1, -1), (-1, -1), ground_systems),
+    misprinted("2.81", case_281, (1, -1), (1, 1), interface_systems),
+    misprinted("2.82", case_282, (1, -1), (1, 0), interface_systems),
+    misprinted("2.83", case_283, (1, 0), (-1, -1), glued_at_rest),
+    misprinted("2.84", case_284, (1, 0), (-1, 0), glued_at_rest),
+    misprinted("2.85", case_285, (0, 1), (-1, -1), four_a),
     Equation(
         "2.86",
         lambda s: np.array([0 * s.w2, (s.io2 - 2 * s.m2 * s.b2**2) / s.io2 * s.w2]),
-        truth(lambda s: s, (0, 1), (0, -1)),
+        truth((0, 1), (0, -1)),
         systems=four_a,
     ),
 ]

@@ -152,9 +152,7 @@ def linear_2(s: System, reach: Array, mass: Array) -> Array:  # 2.62
 def linear_truth(opposite: int):
     def truth(s: System) -> Array:
         return np.where(
-            s.th1 > 0,
-            s.get("linear_motion", 1, opposite),
-            s.get("linear_motion", -1, -opposite),
+            s.th1 > 0, s.get("linear_motion", 1, opposite), s.get("linear_motion", -1, -opposite)
         )
 
     return truth
@@ -242,10 +240,7 @@ EQUATIONS = [
     Equation(
         "2.29",
         lambda s: np.array(
-            [
-                s.xg + s.b1 - s.r1 * sin(s.tc1 - s.th1),
-                s.r1 * cos(s.tc1 - s.th1) - s.h1,
-            ]
+            [s.xg + s.b1 - s.r1 * sin(s.tc1 - s.th1), s.r1 * cos(s.tc1 - s.th1) - s.h1]
         ),
         positions(1, 1, 1),
     ),
@@ -275,11 +270,7 @@ EQUATIONS = [
         ),
         lambda s: np.concatenate([s.get("velocity1", 1, 1), s.get("velocity2", 1, 1)]),
     ),
-    Equation(
-        "2.32",
-        block_1_speed_squared,
-        lambda s: (s.get("velocity1", 1, 1) ** 2).sum(0),
-    ),
+    Equation("2.32", block_1_speed_squared, lambda s: (s.get("velocity1", 1, 1) ** 2).sum(0)),
     Equation(
         "2.33",
         lambda s: speed_squared(s, 0.0),
@@ -416,10 +407,7 @@ EQUATIONS = [
     ),
     Equation("2.63", lambda s: s.xi_, lambda s: _between(s, 1, -1)),
     Equation(
-        "2.64",
-        lambda s: linear_3(s, s.b2),
-        linear_3_truth,
-        mended=lambda s: linear_3(s, s.b1),
+        "2.64", lambda s: linear_3(s, s.b2), linear_3_truth, mended=lambda s: linear_3(s, s.b1)
     ),
     Equation(
         "2.65",

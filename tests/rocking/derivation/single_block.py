@@ -17,14 +17,6 @@ def one_sided(side: int) -> System:
     return s.with_(th2=side * mag(s.th2))
 
 
-def right() -> System:
-    return one_sided(1)
-
-
-def left() -> System:
-    return one_sided(-1)
-
-
 def tiny() -> System:
     s = random_systems().standing()
     return s.with_(th2=1e-7 * s.th2)
@@ -140,7 +132,7 @@ EQUATIONS = [
             s.io2 * s.q2 + moment(s) * sin(s.tc2 - s.th2) + s.m2 * s.r2 * cos(s.tc2 - s.th2) * s.a
         ),
         lone,
-        systems=right,
+        systems=lambda: one_sided(1),
     ),
     Equation(
         "2.3",
@@ -148,7 +140,7 @@ EQUATIONS = [
             s.io2 * s.q2 - moment(s) * sin(s.tc2 + s.th2) + s.m2 * s.r2 * cos(s.tc2 + s.th2) * s.a
         ),
         lone,
-        systems=left,
+        systems=lambda: one_sided(-1),
     ),
     Equation(
         "2.4",
@@ -213,17 +205,9 @@ EQUATIONS = [
         mended=lambda s: s.io2 * s.q2 + moment(s) * sign(s.th2) * (s.tc2 - mag(s.th2)),
         systems=slender,
     ),
+    Equation("2.16", lambda s: np.sqrt(p(s)), rate_of_departure, mended=p),
     Equation(
-        "2.16",
-        lambda s: np.sqrt(p(s)),
-        rate_of_departure,
-        mended=p,
-    ),
-    Equation(
-        "2.17",
-        lambda s: sqrt(3 * s.g / (4 * s.r2)),
-        rate_of_departure,
-        systems=uniform_systems,
+        "2.17", lambda s: sqrt(3 * s.g / (4 * s.r2)), rate_of_departure, systems=uniform_systems
     ),
     Equation(
         "2.18",

@@ -14,7 +14,6 @@ from rockfrag.rocking import Block, MeasuredRestitution, Stack
 from rockfrag.rocking.options import system_of
 
 from ...oracle.rocking_model import LinearModel, Model
-from .motion import lagrange_by_newton
 from .systems import System, error, impact_map, random_systems
 
 PIVOTS = list(itertools.product((1, -1), (1, -1)))
@@ -69,35 +68,17 @@ def pull(k: int) -> tuple[float, float]:
     return float(S.a[k]), float(S.g[k])
 
 
+@pytest.mark.parametrize("linear", [False, True])
 @pytest.mark.parametrize("pivots", PIVOTS)
-def test_equations_of_motion(pivots: tuple[int, int]) -> None:
-    true = S.moments(*pivots)
+def test_equations_of_motion(pivots, linear):
+    true = S.get("linear_motion" if linear else "motion", *pivots)
 
-    def reference(k: int) -> tuple[float, float]:
-        theta, omega = state(S, k)
-        terms = Model(STACKS[k], S.g[k]).terms(pivots, theta, omega, pull(k))
-        return moments_of(terms, (S.q1[k], S.q2[k]))
+    def reference(k):
+        terms = (LinearModel if linear else Model)(STACKS[k], S.g[k]).terms
+        return moments_of(terms(pivots, *state(S, k), pull(k)), (S.q1[k], S.q2[k]))
 
-    def kernel(k: int) -> tuple[float, float]:
-        p = body_record(STACKS[k].system(), g=S.g[k])
-        terms = kernel_equations(p, *pivots, record(pivots, *state(S, k), pull(k)))
-        return moments_of(terms, (S.q1[k], S.q2[k]))
-
-    assert error(each(reference), true).max() < 1e-12
-    assert error(each(kernel), true).max() < 1e-12
-
-
-@pytest.mark.parametrize("pivots", PIVOTS)
-def test_linearised_equations_of_motion(pivots: tuple[int, int]) -> None:
-    true = S.get("linear_motion", *pivots)
-
-    def reference(k: int) -> tuple[float, float]:
-        theta, omega = state(S, k)
-        terms = LinearModel(STACKS[k], S.g[k]).terms(pivots, theta, omega, pull(k))
-        return moments_of(terms, (S.q1[k], S.q2[k]))
-
-    def kernel(k: int) -> tuple[float, float]:
-        p = body_record(STACKS[k].system(), linear=True, g=S.g[k])
+    def kernel(k):
+        p = body_record(STACKS[k].system(), linear=linear, g=S.g[k])
         terms = kernel_equations(p, *pivots, record(pivots, *state(S, k), pull(k)))
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
@@ -129,31 +110,17 @@ def corner_force(s: System, contact: int, pivot: int, pivots: tuple[int, int]) -
 
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("pivot", [1, -1])
-def test_a_full_contact_persists_while_both_its_corners_are_pressed(side: int, pivot: int) -> None:
-    glued, standing = S.rigidly_joined(), S.standing()
-    # pattern 3: the interface; the true angular acceleration is that of the stuck state
+@pytest.mark.parametrize("contact", [2, 1], ids=["pattern 3", "pattern 4"])
+def test_a_full_contact_persists_while_both_its_corners_are_pressed(contact, side, pivot):
+    stuck, at = (S.rigidly_joined(), (side, 0)) if contact == 2 else (S.standing(), (0, side))
     models = [Model(STACKS[k], S.g[k]) for k in range(N)]
-    q = np.array(
-        [models[k].accelerations((side, 0), *state(glued, k), pull(k))[0] for k in range(N)]
-    )
-    glued = glued.with_(q1=q, q2=q)
-    force = corner_force(glued, 2, pivot, (side, pivot))
-    found = [models[k].margins((side, 0), *state(glued, k), pull(k))[2, pivot] for k in range(N)]
-    scale = S.m2 * S.g / 2
-    assert error(np.array(found) * scale, force).max() < 1e-11
-    # pattern 4: the ground, with all that stands on it
-    q = np.array(
-        [models[k].accelerations((0, side), *state(standing, k), pull(k))[1] for k in range(N)]
-    )
-    standing = standing.with_(q2=q)
-    whole = corner_force(standing, 1, pivot, (pivot, side))
-    found = [models[k].margins((0, side), *state(standing, k), pull(k))[1, pivot] for k in range(N)]
-    scale = (S.m1 + S.m2) * S.g / 2
-    assert error(np.array(found) * scale, whole).max() < 1e-11
-
-
-def test_lagranges_equations_are_newtons() -> None:
-    assert error(S.moments(1, -1), lagrange_by_newton(S)).max() < 1e-12
+    # the true angular acceleration is that of the stuck state
+    q = each(lambda k: models[k].accelerations(at, *state(stuck, k), pull(k)))
+    stuck = stuck.with_(q1=q[0], q2=q[1])
+    force = corner_force(stuck, contact, pivot, (at[0] or pivot, at[1] or pivot))
+    found = each(lambda k: models[k].margins(at, *state(stuck, k), pull(k))[contact, pivot])
+    scale = (S.m2 if contact == 2 else S.m1 + S.m2) * S.g / 2
+    assert error(found * scale, force).max() < 1e-11
 
 
 @pytest.mark.parametrize(("old", "new"), [(o, n) for o in STATES for n in STATES if o != n])

@@ -7,12 +7,7 @@ from . import impacts, motion, single_block, transitions
 from .equation import Equation
 from .systems import error
 
-EQUATIONS = [
-    *single_block.EQUATIONS,
-    *motion.EQUATIONS,
-    *transitions.EQUATIONS,
-    *impacts.EQUATIONS,
-]
+EQUATIONS = [*single_block.EQUATIONS, *motion.EQUATIONS, *transitions.EQUATIONS, *impacts.EQUATIONS]
 
 # the misprints that docs/derivation.md lists
 WRONG = [

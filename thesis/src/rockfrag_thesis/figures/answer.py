@@ -21,13 +21,7 @@ def has_thesis_floors(effects: pd.DataFrame) -> bool:
 
 
 def ratios_figure(effects: pd.DataFrame) -> Figure:
-    """Draw the ratio with over without pedestal, of all pairs and on each floor.
-
-    Parameters
-    ----------
-    effects
-        Rows of one definition of :func:`rockfrag.pedestal.study.effects_table`.
-    """
+    """Draw the ratio with over without pedestal, of all pairs and on each floor, of effects of one definition."""
     whole, floors = effects[effects["scope"] == "whole"], effects[effects["scope"] == "floor"]
     rows = [("all pairs", row) for row in whole.to_dict("records")]
     rows += [(str(row["level"]), row) for row in floors.to_dict("records")]
