@@ -159,7 +159,7 @@ def macros(package: str, template: str, words: Mapping[str, Any]) -> Any:
         lstrip_blocks=True,
     )
     environment.tests |= {"finite": math.isfinite, "nan": math.isnan}
-    environment.filters |= {"listed": listed, "sentence": sentence}
+    environment.filters |= {"listed": listed, "one_line": one_line, "sentence": sentence}
     environment.globals |= {"agree": agree, "counted": counted, "number": number, "of_all": of_all}
     environment.globals |= words
     environment.globals["part"] = PART
@@ -169,3 +169,8 @@ def macros(package: str, template: str, words: Mapping[str, Any]) -> Any:
 def said(text: str) -> list[str]:
     """Lines of what a macro says that are not empty, each a part of a sentence or more."""
     return [line.strip() for line in text.split("\n") if line.strip()]
+
+
+def one_line(text: str) -> str:
+    """What a macro says, in one line."""
+    return " ".join(said(text))
