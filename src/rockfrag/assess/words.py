@@ -11,7 +11,7 @@ from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.narrowing import MEASUREMENTS, is_wide, narrowed
 from rockfrag.assess.outcomes import LARGEST_FACTOR
 from rockfrag.assess.risk import LEVEL, Estimate
-from rockfrag.assess.scale import SCALE_WORDS, classes
+from rockfrag.assess.scale import SCALE_WORDS, classes, step_of
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.report.wording import macros, one_line, said
 
@@ -148,9 +148,9 @@ def _largest_sources(found: Assessment) -> list[str]:
 
 @cache
 def sentences(template: str = "words.j2") -> Any:
-    """The macros of a template: ``words.j2`` of the answer, ``page.j2`` of its page and of a gallery's."""
+    """The macros of a template: ``words.j2`` of the answer, ``page.j2`` of its page, ``gallery.j2``."""
     words = (
-        *(estimate_words, mitigation_words),
+        *(estimate_words, mitigation_words, step_of),
         *(all_assumed, classes, does_not_move, fraction_words, narrowed, not_decidable),
         *(range_words, short_assumptions, value_words),
     )
@@ -159,7 +159,7 @@ def sentences(template: str = "words.j2") -> Any:
         template,
         {function.__name__: function for function in words}
         | {"LEVEL": LEVEL, "MANY": MANY, "FEW": FEW, "SCALE_WORDS": SCALE_WORDS}
-        | {"LARGEST_FACTOR": LARGEST_FACTOR, "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS}
+        | {"LARGEST_FACTOR": LARGEST_FACTOR, "exp": math.exp, "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS}
         | {"MEASUREMENTS": MEASUREMENTS, "influential": _influential, "limits": _limits}
         | {"largest_sources": _largest_sources, "ranked": _ranked},
     )
