@@ -142,7 +142,7 @@ def test_nrml_refuses_what_openquake_cannot_compute(tmp_path):
         write_nrml(CURVES.assign(im="Arias intensity"), path)
     with pytest.raises(InputError, match="floor F3"):
         write_nrml(CURVES.assign(floor="F3"), path)
-    with pytest.raises(InputError, match="'P&T1' has no lognormal curve"):
+    with pytest.raises(InputError, match="'T1' has no lognormal curve"):
         write_nrml(CURVES.assign(theta=np.nan), path)
     with pytest.raises(InputError, match="'T1' has two curves"):
         write_nrml(pd.concat([CURVES, CURVES]), path)
