@@ -8,7 +8,8 @@ import pandas as pd
 from jinja2 import ChoiceLoader, PackageLoader
 
 from rockfrag import sentences
-from rockfrag.sentences import one_line as one_line, said as said
+from rockfrag.sentences import one_line as one_line
+from rockfrag.sentences import said as said
 
 MOST_LISTED = 8
 """More names than this are not listed in a sentence, but counted."""
