@@ -148,9 +148,7 @@ def ida(amplitudes: list[float], fallen: list[bool]) -> pd.DataFrame:
         ([0.3], [True], 1),
     ],
 )
-def test_the_map_has_a_bar_for_each_range_that_overturns(
-    amplitudes: list[float], fallen: list[bool], bars: int
-):
+def test_the_map_has_a_bar_for_each_range_that_overturns(amplitudes, fallen, bars):
     axes = outcome_map(ida(amplitudes, fallen), ["vase"]).axes[0]
     assert len(axes.collections[0].get_paths()) == bars
 

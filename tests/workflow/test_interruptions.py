@@ -91,9 +91,7 @@ def test_a_killed_run_leaves_neither_a_lock_nor_half_written_files(tmp_path: Pat
 
 
 @pytest.mark.parametrize("number", WITHOUT_FLOCK, ids=errno.errorcode.get)
-def test_where_there_are_no_locks_nobody_waits(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
-):
+def test_where_there_are_no_locks_nobody_waits(tmp_path, monkeypatch, number):
     def refused(*_: object) -> None:
         raise OSError(number, os.strerror(number))
 
@@ -192,9 +190,7 @@ def test_what_a_machine_lacks_is_said_in_a_sentence(error: Exception, words: str
     assert "\n" not in in_words(error)
 
 
-def test_a_job_that_may_not_write_its_log_says_so(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_a_job_that_may_not_write_its_log_says_so(tmp_path, capsys):
     (tmp_path / "file").write_text("")
     with pytest.raises(SystemExit), logged(str(tmp_path / "file" / "x.log"), "ida"):
         pass
@@ -221,7 +217,7 @@ def test_a_run_that_may_not_have_the_memory_it_needs_says_so_at_once(mebibytes: 
 
 
 def test_a_folder_of_results_that_may_not_be_written_is_named_before_the_first_job(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path, monkeypatch
 ):
     figures = tmp_path / "results" / "tiny" / "figures"
     check_folders(figures.parent)
@@ -279,9 +275,7 @@ FOREIGN = {
 
 
 @pytest.mark.slow
-def test_the_same_bytes_on_other_processors_and_in_other_places(
-    study_folder: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_the_same_bytes_on_other_processors_and_in_other_places(study_folder, monkeypatch):
     (study_folder / "building.yaml").write_text((ROOT / "config" / "building.yaml").read_text())
     content = {**study_content(), "building": "building.yaml"}
     content["fragility"]["measures"] = ["pga_g", "pgv_cm_s", "sa_0_3s_g"]

@@ -73,9 +73,7 @@ def test_records_come_first_and_the_report_last(study_folder: Path):
 
 
 @pytest.mark.parametrize(("config", "inside"), [("config", False), ('config["overturning"]', True)])
-def test_another_workflow_takes_the_rules_with_a_prefix(
-    study_folder: Path, config: str, inside: bool
-):
+def test_another_workflow_takes_the_rules_with_a_prefix(study_folder, config, inside):
     content = study_content()
     write_study(study_folder, {"overturning": content, "mine": 1} if inside else content)
     text = MODULE.format(snakefile=str(ROOT / "workflow" / "Snakefile"), config=config)
