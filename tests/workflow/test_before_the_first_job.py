@@ -2,7 +2,6 @@
 
 import hashlib
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -22,7 +21,7 @@ from rockfrag.yaml_file import read_yaml
 
 from .conftest import study_content, write_study
 from .measured_example import write_example, write_synthetic
-from .running import ROOT, snakemake
+from .running import ROOT, SNAKEFILE, called, snakemake
 
 
 def said(capsys: pytest.CaptureFixture[str], path: Path) -> str:
@@ -260,23 +259,9 @@ def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
         "import importlib.util as util, sys\nfind = util.find_spec\nutil.find_spec = lambda name, *rest: None "
         "if name == 'rockfrag' else find(name, *rest)\nfrom snakemake.cli import main\nmain()\n"
     )
-    done = subprocess.run(
-        [
-            *(
-                sys.executable,
-                "-c",
-                program,
-                "--snakefile",
-                str(ROOT / "workflow" / "Snakefile"),
-                "--dry-run",
-            ),
-            *("--directory", str(study_folder), "--configfile", str(study_folder / "study.yaml")),
-        ],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    study = ("--directory", str(study_folder), "--configfile", str(study_folder / "study.yaml"))
+    command = (sys.executable, "-c", program, "--snakefile", SNAKEFILE, "--dry-run")
+    done = called(ROOT, *command, *study)
     assert done.returncode == 0, done.stderr[-2000:]
     assert "results/tiny/report.html" in done.stdout + done.stderr
     assert "rule study" in done.stdout + done.stderr

@@ -23,9 +23,7 @@ from rockfrag.stages.running import RUN
 from rockfrag.stages.same_numbers import same_numbers
 
 from .conftest import study_content, write_study
-from .running import ROOT, tables_of
-
-LAUNCHER = ROOT / "workflow" / "run.py"
+from .running import LAUNCHER, ROOT, called, tables_of
 
 WITHOUT_FLOCK = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP)
 """What the system says of locks where there are none, as on some network drives."""
@@ -206,11 +204,9 @@ def test_a_run_that_may_not_have_the_memory_it_needs_says_so_at_once(mebibytes: 
     # of this process alone, as a limit that was lowered is not raised again
     program = (
         f"import resource, runpy, sys; resource.setrlimit(resource.RLIMIT_AS, ({mebibytes << 20},) * 2); "
-        f"sys.argv = ['run.py', 'no.yaml']; runpy.run_path({str(LAUNCHER)!r}, run_name='__main__')"
+        f"sys.argv = ['run.py', 'no.yaml']; runpy.run_path({LAUNCHER[1]!r}, run_name='__main__')"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=False
-    )
+    done = called(ROOT, sys.executable, "-c", program)
     assert done.returncode == 2
     assert done.stderr.startswith(f"a process may reserve {mebibytes} MiB of memory here")
     assert done.stderr.count("\n") == 1
@@ -231,7 +227,7 @@ def test_a_folder_of_results_that_may_not_be_written_is_named_before_the_first_j
 
 @pytest.mark.slow
 def test_a_run_killed_at_any_level_ends_in_the_same_bytes(study_folder: Path):
-    command = [sys.executable, str(LAUNCHER), "study.yaml", "--cores", "2"]
+    command = [*LAUNCHER, "study.yaml", "--cores", "2"]
     wanted = None
     for wait in (None, 6.0, 12.0):
         process = subprocess.Popen([*command, "--logger", "rockfrag"], cwd=study_folder)
@@ -252,14 +248,9 @@ def test_libraries_take_what_every_processor_has(monkeypatch: pytest.MonkeyPatch
     assert chosen["GLIBC_TUNABLES"].startswith("glibc.malloc.check=1:glibc.cpu.hwcaps=-FMA,")
     assert chosen["OPENBLAS_NUM_THREADS"] == "1"
     program = "import numpy; print(numpy.show_config(mode='dicts')['SIMD Extensions'].get('found'))"
-    found = subprocess.run(
-        [sys.executable, "-W", "error", "-c", program],
-        env={**os.environ, **chosen},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert found.stdout.strip() == "None"
+    asked = (sys.executable, "-W", "error", "-c", program)
+    found = called(ROOT, *asked, env={**os.environ, **chosen})
+    assert found.stdout.strip() == "None", found.stderr
 
 
 FOREIGN = {
@@ -280,7 +271,7 @@ def test_the_same_bytes_on_other_processors_and_in_other_places(study_folder, mo
     content = {**study_content(), "building": "building.yaml"}
     content["fragility"]["measures"] = ["pga_g", "pgv_cm_s", "sa_0_3s_g"]
     write_study(study_folder, content)
-    command = [sys.executable, str(LAUNCHER), "study.yaml", "--cores", "2"]
+    command = [*LAUNCHER, "study.yaml", "--cores", "2"]
     found = []
     for more in ({}, FOREIGN):
         environment = {**os.environ, **more}
