@@ -312,10 +312,7 @@ def _firefox() -> str | None:
     return next((path for name in ("firefox-esr", "firefox") if (path := shutil.which(name))), None)
 
 
-BROWSERS = {
-    "chromium": (Chromium, _chromium()),
-    "firefox": (Firefox, _firefox()),
-}
+BROWSERS = {"chromium": (Chromium, _chromium()), "firefox": (Firefox, _firefox())}
 """Each with the path of its program, or None where there is none."""
 
 QUICK_IN_ONE = pytest.mark.parametrize(

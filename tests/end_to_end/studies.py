@@ -148,10 +148,7 @@ STUDIES = {
         records={"Irpinia": "Irpinia 1980"},
     ),
     "with and without a plinth on one upper floor": Foreign(
-        blocks=MARBLE,
-        configurations=ON_PLINTH,
-        records=TEN,
-        floors={"piano nobile": 2},
+        blocks=MARBLE, configurations=ON_PLINTH, records=TEN, floors={"piano nobile": 2}
     ),
     "three cabinets on floors of their own": Foreign(
         blocks={

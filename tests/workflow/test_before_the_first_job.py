@@ -153,8 +153,7 @@ def test_a_record_in_cm_s2_that_is_taken_for_m_s2_is_refused(study_folder, capsy
 
 
 @pytest.mark.parametrize(
-    "columns",
-    [{"overturned": "fell"}, {"overturned": "overturned", "earthquake": "quake"}],
+    "columns", [{"overturned": "fell"}, {"overturned": "overturned", "earthquake": "quake"}]
 )
 def test_a_column_that_a_measured_table_lacks_is_named(tmp_path, capsys, columns):
     write_synthetic(tmp_path)

@@ -32,10 +32,7 @@ WITHOUT_FLOCK = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP)
 def program(text: str, **more: str) -> subprocess.Popen[str]:
     """Start a program in Python that says when it is there."""
     process = subprocess.Popen(
-        [sys.executable, "-c", text],
-        env={**os.environ, **more},
-        stdout=subprocess.PIPE,
-        text=True,
+        [sys.executable, "-c", text], env={**os.environ, **more}, stdout=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
     assert process.stdout.readline().strip() == "there"

@@ -112,10 +112,7 @@ def test_a_study_runs_from_records_to_report(ran: Path):
     assert 'src="http' not in report
     assert "<strong>Simulated,</strong> unless labelled" in report
     assert "thesis" not in report
-    assert {path.name for path in ran.iterdir() if path.is_dir()} <= {
-        ".snakemake",
-        "results",
-    }
+    assert {path.name for path in ran.iterdir() if path.is_dir()} <= {".snakemake", "results"}
 
     listed = snakemake(ran, "--report", "listed.html")
     assert listed.returncode == 0, listed.stderr[-3000:]

@@ -228,11 +228,7 @@ def _rocking(
     if "rocked" not in campaign.tests:
         return pd.DataFrame(columns=columns)
     found = cross_validate(
-        outcomes,
-        campaign.tests[MEASURED].to_numpy(),
-        groups,
-        asked=rocked,
-        **study.division,
+        outcomes, campaign.tests[MEASURED].to_numpy(), groups, asked=rocked, **study.division
     )
     noted = campaign.tests["rocked"].to_numpy()
     return pd.DataFrame([agreement_row(OURS, found.outcomes, noted, groups, study.confidence)])
