@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.fragility import censored
-from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval, fit_brackets
+from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval
 from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.ida_curves import fragility_table
 from rockfrag.fragility.intervals import interval_over_motions, outcome_fitter
@@ -137,18 +137,6 @@ def test_beta_lies_within_its_limits_under_separation_too():
         assert "penalised" in found.fit.method
         assert found.interval.beta[0] == 0 or np.isnan(found.interval.beta[0])
         assert not found.fit.beta > found.interval.beta[1]
-
-
-@pytest.mark.parametrize("seed", range(150))
-def test_beta_of_four_earthquakes_lies_within_its_limits(seed):
-    rng = np.random.default_rng([7, seed])
-    brackets_at = np.exp(rng.normal(np.log(0.4), 0.3, 4))
-    levels = np.geomspace(0.05, 2.0, 80)
-    place = np.searchsorted(levels, brackets_at)
-    names = np.array([f"e{k}" for k in range(4)], dtype=object)
-    data = Brackets(levels[place - 1], levels[place], names, names)
-    fit, interval = fit_brackets(data), bracket_interval(data)
-    assert interval.beta[0] <= fit.beta <= interval.beta[1]
 
 
 def test_one_step_without_a_block_is_the_fit_without_it(monkeypatch):
