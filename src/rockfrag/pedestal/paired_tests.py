@@ -19,7 +19,11 @@ from rockfrag.sentences import sayer
 from rockfrag.short_repr import short_repr
 
 MOST_NAMED = 100  # pairs and tests that notes call by their names; of more the number
-SAY = sayer("rockfrag.pedestal", "words.j2", {"MOST_NAMED": MOST_NAMED, "expm1": math.expm1})
+SAY = sayer(
+    "rockfrag.pedestal",
+    "words.j2",
+    {"MOST_NAMED": MOST_NAMED, "exp": math.exp, "expm1": math.expm1},
+)
 """What the pairs can say and what not, in notes."""
 
 KEY = ["object", "earthquake", "floor", "motion"]
@@ -58,9 +62,9 @@ class Pairs:
         lost = self.censored[np.isinf(limits).all(axis=1)]
         return SAY(
             "left_out",
-            [f"{x.object}/{x.motion} {x.bound} {math.exp(x.d):.3g}" for x in bounded.itertuples()],
-            [f"{x.object}/{x.motion}" for x in lost.itertuples()],
-            [f"{x.object}/{x.motion} without {x.missing}" for x in self.unpaired.itertuples()],
+            bounded.to_dict("records"),
+            lost.to_dict("records"),
+            self.unpaired.to_dict("records"),
         )
 
 

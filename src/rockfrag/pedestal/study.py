@@ -211,8 +211,9 @@ def study_pedestal(
     table = pairs.table
     if table.empty:
         columns = (EFFECT_COLUMNS, WHOLE_COLUMNS, WITHOUT_COLUMNS, RANK_COLUMNS)
-        empty = (pd.DataFrame(columns=names) for names in columns)
-        return PedestalStudy(pairs, *empty, (*pairs.notes(), *SAY("no_ratio")))
+        effects, whole, without, ranks = (pd.DataFrame(columns=names) for names in columns)
+        notes = (*pairs.notes(), *SAY("no_ratio"))
+        return PedestalStudy(pairs, effects, whole, without, ranks, notes)
     tied = table["d"].abs() < ROUNDING
     widest = float(table.loc[tied, "resolution"].max())
     return PedestalStudy(
