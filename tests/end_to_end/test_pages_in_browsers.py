@@ -49,7 +49,7 @@ def test_a_part_that_is_not_laid_out_writes_no_error(browser: Browser, page: Pat
     browser.open(page, 1400, 900)
     assert browser.run(READY)
     browser.run("document.querySelector('#live .app').style.display = 'none'")
-    browser.run("dispatchEvent(new Event('resize')); new Promise(done => setTimeout(done, 500))")
+    browser.run("dispatchEvent(new Event('resize')), new Promise(done => setTimeout(done, 500))")
     assert browser.console == []
 
 
