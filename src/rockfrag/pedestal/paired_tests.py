@@ -58,8 +58,8 @@ class Pairs:
     def notes(self) -> list[str]:
         """Say in words what is not among the complete pairs."""
         bounded = self.table[self.table["bound"] != ""]
-        limits = self.censored[["d_lower", "d_upper"]]
-        lost = self.censored[np.isinf(limits).all(axis=1)]
+        below, above = self.censored["d_lower"], self.censored["d_upper"]
+        lost = self.censored[np.isneginf(below) & np.isposinf(above)]
         return SAY(
             "left_out",
             bounded.to_dict("records"),
