@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from statsmodels.stats.multitest import multipletests
 
-from rockfrag.pedestal.cluster_means import Estimate, t_estimate
-from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.cluster_means import Estimate, equivalence, t_estimate
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.pedestal.power import detectable_ratio, power_note, power_of_t, units_needed
 

@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 
 from rockfrag.pedestal import study_pedestal
-from rockfrag.pedestal.cluster_means import contrast, mean_effect, slope_effect, t_estimate
-from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.cluster_means import (
+    contrast,
+    equivalence,
+    mean_effect,
+    slope_effect,
+    t_estimate,
+)
 from rockfrag.pedestal.paired_tests import pair_tests
 from rockfrag.pedestal.power import detectable_ratio, power_note
 

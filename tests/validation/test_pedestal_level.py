@@ -13,8 +13,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from rockfrag.pedestal.cluster_means import contrast, mean_effect, t_estimate
-from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.cluster_means import contrast, equivalence, mean_effect, t_estimate
 from rockfrag.pedestal.multiplicity import holm
 from rockfrag.pedestal.power import power_of_t
 

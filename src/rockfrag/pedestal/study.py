@@ -11,12 +11,12 @@ from rockfrag.pedestal.bootstrap import rank_probabilities
 from rockfrag.pedestal.cluster_means import (
     ROUNDING,
     effect_of,
+    equivalence,
     mean_effect,
     sampled_unit,
     sampled_units,
     unit_means,
 )
-from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.pedestal.paired_tests import SAY, Pairs, pair_tests
 from rockfrag.pedestal.permutation import WITHOUT_COLUMNS, leave_one_earthquake_out, sign_flip_test
