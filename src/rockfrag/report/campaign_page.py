@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.campaign.repeats import REPEATS
+from rockfrag.campaign.comparison import REPEATS
 from rockfrag.campaign.trials import preferred_edges
 from rockfrag.campaign.validation import FEWEST_VOTERS
 from rockfrag.fragility.observations import name_and_unit

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.fragility.compared import Compared, compared_curves
+from rockfrag.fragility.curve_facts import Compared, compared_curves
 from rockfrag.report.part import Finding, finding_of
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import (

@@ -24,7 +24,7 @@ from rockfrag.figure_style import (
     one_panel,
     plain_log,
 )
-from rockfrag.fragility.compared import compared_curves
+from rockfrag.fragility.curve_facts import compared_curves
 from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.report.wording import shortened
