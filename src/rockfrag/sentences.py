@@ -18,12 +18,18 @@ def environment(package: str) -> Any:
         lstrip_blocks=True,
     )
     found.tests |= {"finite": math.isfinite, "nan": math.isnan}
+    found.filters["one_line"] = one_line
     return found
 
 
 def said(text: str) -> list[str]:
     """Lines of what a macro says that are not empty, each a part of a sentence or more."""
     return [line.strip() for line in text.split("\n") if line.strip()]
+
+
+def one_line(text: str) -> str:
+    """What a macro says, in one line."""
+    return " ".join(said(text))
 
 
 def sayer(package: str, template: str, words: Mapping[str, Any]) -> Callable[..., list[str]]:

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 import rockfrag
-from rockfrag.fragility.compared import compared_curves
+from rockfrag.fragility.curve_facts import compared_curves
 from rockfrag.report.findings import ONE_MOTION
 from rockfrag.report.glossary import TERMS, terms_used
 from rockfrag.report.page import render

@@ -110,7 +110,10 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
         weights = np.ones((1, low.size))
         found = _fit_weighted(low, high, weights)
         coefficients, information, log_likelihood = found[0][0], found[1][0], float(found[2][0])
-        theta, beta, spread = curve_parameters(coefficients, _inverse(information))
+        covariance = information * np.nan
+        if np.isfinite(information).all():
+            covariance = np.linalg.pinv(information, hermitian=True)
+        theta, beta, spread = curve_parameters(coefficients, covariance)
         if _fraction_a_point(low, high, weights)[0]:
             method, case = "interval estimate (brackets overlap)", "overlap"
             curve, log_likelihood = (theta, beta, NO_COVARIANCE), float("nan")
@@ -348,9 +351,3 @@ def _log_difference(z_low: Floats, z_high: Floats) -> Floats:
     same = lower == upper
     gap = np.where(same | np.isneginf(log_lower), -np.inf, log_lower - np.where(same, 0, log_upper))
     return np.asarray(np.where(same, 0.0, log_upper + np.log1p(-np.exp(gap))))
-
-
-def _inverse(information: Floats) -> Floats:
-    if not np.isfinite(information).all():
-        return np.full((2, 2), np.nan)
-    return np.asarray(np.linalg.pinv(information, hermitian=True))

@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Hashable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
+
+import pandas as pd
 
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.sentences import sayer
@@ -39,3 +41,34 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
     values = {name: row.get(name) for name in NUMBERS}
     known = {name for name, x in values.items() if x is not None and math.isfinite(float(x))}
     return " ".join(_say("facts", row, known, float(row.get("beta_statistical", math.nan))))
+
+
+class Compared(NamedTuple):
+    """Curves that may be compared."""
+
+    # rows of the table with ``theta`` and ``beta``, and their limits, all by the same estimator;
+    # theta is missing where that estimator gives none
+    rows: pd.DataFrame
+    nonparametric: bool  # whether the estimator is the monotone curve without an assumed form
+    rejected: list[str]  # configurations whose lognormal curve is rejected
+
+
+def compared_curves(rows: pd.DataFrame, nonparametric: bool | None = None) -> Compared:
+    """Choose one estimator for all curves of a comparison, which are of one measure and one definition.
+
+    Lognormal curves are compared where none of them is rejected by its goodness of fit (p < 0.05). Where one is,
+    all are replaced by nonparametric monotone curves: an estimator that is chosen body by body would show
+    differences between bodies that are differences between estimators. Where the rows are a part of a larger
+    comparison, that decides (``nonparametric``).
+    """
+    below = rows["p_fit"] < REJECTED
+    rejected = list(dict.fromkeys(rows.loc[below, "configuration"]))
+    if not (bool(rejected) if nonparametric is None else nonparametric):
+        return Compared(rows, False, rejected)
+    values = {
+        f"{name}{end}": rows[f"{name}_isotonic{end}"]
+        for name in ("theta", "beta")
+        for end in ("", "_lower", "_upper")
+        if f"{name}_isotonic{end}" in rows
+    }
+    return Compared(rows.assign(**values), True, rejected)

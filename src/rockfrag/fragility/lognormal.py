@@ -15,7 +15,7 @@ from statsmodels.tools.sm_exceptions import (
 )
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.batch_glm import Link, fit_batch, separated
+from rockfrag.fragility.batch_glm import Link, fit_batch, log_terms, separated
 from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.pooling import cells
 from rockfrag.keywords import named_keywords
@@ -143,7 +143,8 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
     """
     notes = SAY("outcomes", outcomes)
     if outcomes.im.size > MOST_ROWS:
-        whole, outcomes = outcomes, _pooled(outcomes)
+        cell, values = cells(outcomes.log_im, 10_000)
+        whole, outcomes = outcomes, outcomes.pooled(cell, np.exp(values))
         found = fit_lognormal(outcomes, link=link)
         # cells are not tests: which of a cell's tests overturned is known
         likelihood = found.log_likelihood + float(whole.ways().sum() - outcomes.ways().sum())
@@ -159,7 +160,9 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
         notes += SAY("agreeing", outcomes)
     else:
         method, coefficients, information = _estimated(outcomes, link, notes)
-        log_likelihood = _log_likelihood(outcomes, coefficients, link)
+        log_p, log_q, *_ = log_terms(coefficients[0] + coefficients[1] * outcomes.log_im, link)
+        terms = outcomes.overturned * log_p + (outcomes.trials - outcomes.overturned) * log_q
+        log_likelihood = float((terms + outcomes.ways()).sum())
         if coefficients[1] < LEAST_SLOPE:
             method = "none: probability does not rise"
             notes += SAY("falling", outcomes)
@@ -198,12 +201,6 @@ def _estimated(outcomes: Observations, link: Link, notes: list[str]) -> tuple[st
     return f"{link}, penalised likelihood (Firth)", *found
 
 
-def _pooled(outcomes: Observations) -> Observations:
-    """Tests in cells, of which only the likelihood is taken."""
-    cell, values = cells(outcomes.log_im, 10_000)
-    return outcomes.pooled(cell, np.exp(values))
-
-
 def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
     links = {"probit": families.links.Probit, "logit": families.links.Logit}
     # tests at one value are one row of counts: the same likelihood, and a tenth of the time
@@ -225,13 +222,3 @@ def _penalised(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
         design, outcomes.overturned[None, :], outcomes.trials[None, :], link=link, penalised=True
     )
     return fit.coefficients[0], fit.information[0]
-
-
-def _log_likelihood(outcomes: Observations, coefficients: Floats, link: Link) -> float:
-    eta = coefficients[0] + coefficients[1] * outcomes.log_im
-    fell, stood = outcomes.overturned, outcomes.trials - outcomes.overturned
-    if link == "probit":
-        terms = fell * special.log_ndtr(eta) + stood * special.log_ndtr(-eta)
-    else:
-        terms = -fell * np.logaddexp(0.0, -eta) - stood * np.logaddexp(0.0, eta)
-    return float((terms + outcomes.ways()).sum())

@@ -1,10 +1,7 @@
 """Fragility in two intensity measures with what is known of it: interval, interaction, contours, one measure.
 
-Tests under motions of one earthquake depend on each other.  Every statement here therefore takes the earthquake as
-the unit: limits by a jackknife that leaves out an earthquake at a time (Tukey 1958), and a score test of the
-interaction whose contributions are summed by earthquake (Cameron and Miller 2015, sec. VI).  A likelihood-ratio
-test that counts tests as independent finds an interaction that is not there in 7 to 16 of 100 laboratories
-(``docs/fragility.md``).
+Every statement takes the earthquake as the unit: limits by a jackknife that leaves out an earthquake at a time
+(Tukey 1958), and a score test of the interaction summed by earthquake (Cameron and Miller 2015, sec. VI).
 """
 
 from dataclasses import dataclass

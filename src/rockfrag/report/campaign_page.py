@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.campaign.repeats import REPEATS
+from rockfrag.campaign.comparison import REPEATS
 from rockfrag.campaign.trials import preferred_edges
 from rockfrag.campaign.validation import FEWEST_VOTERS
 from rockfrag.fragility.observations import name_and_unit
@@ -33,7 +33,7 @@ from rockfrag.report.part import (
 from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.two_measures import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import estimate, macros, number, probability, said
+from rockfrag.report.wording import estimate, macros, number, one_line, probability, said
 from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
 from rockfrag.study.campaign import CampaignStudy
 
@@ -55,7 +55,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         _answer(study, tables, sections),
         sections,
         title=study.title,
-        lead=" ".join(said(_sentences().lead(tests, _motion(study)))),
+        lead=one_line(_sentences().lead(tests, _motion(study))),
         provenance=provenance(study, {"Tests": study.tests.name}),
         basis="measured",
     )

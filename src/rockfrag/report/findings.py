@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.fragility.compared import Compared, compared_curves
+from rockfrag.fragility.curve_facts import Compared, compared_curves
 from rockfrag.report.part import Finding, finding_of
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import (
@@ -19,7 +19,7 @@ from rockfrag.report.wording import (
     macros,
     number,
     of_all,
-    said,
+    one_line,
 )
 from rockfrag.shaketable.definitions import DEFINITION
 
@@ -160,7 +160,7 @@ def mean_sentence(means: pd.DataFrame) -> str:
     """Say over which motions means are taken, and which had to be left out."""
     rows = means[means["by"] == "configuration"]
     most, of = int(rows["motions"].max()), int(rows["of"].max())
-    return " ".join(said(_sentences().means(most, of)))
+    return one_line(_sentences().means(most, of))
 
 
 def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Finding:
@@ -249,7 +249,7 @@ def friction_sentence(validity: pd.DataFrame) -> str:
         (int((~(part["friction_demand"].astype(float) <= FRICTION)).sum()), len(part), where)
         for where, part in _sides(validity).items()
     ]
-    return " ".join(said(_sentences().friction(beyond)))
+    return one_line(_sentences().friction(beyond))
 
 
 def _demands(validity: pd.DataFrame) -> list[str]:

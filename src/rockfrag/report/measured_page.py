@@ -18,7 +18,7 @@ from rockfrag.report.part import Answer, FigureSpec, Finding, Section, finding_o
 from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.two_measures import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import estimates, macros, probability, said
+from rockfrag.report.wording import estimates, macros, one_line, probability, said
 from rockfrag.study.measured_table import MeasuredTable
 
 _CAPTIONS = {
@@ -98,7 +98,7 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
         answer,
         sections,
         title=study.title,
-        lead=" ".join(said(_sentences().lead(found.tests))),
+        lead=one_line(_sentences().lead(found.tests)),
         provenance=provenance(study, {"Table": values}),
         basis="measured",
     )
@@ -172,8 +172,7 @@ def _curves(
     warnings = list(dict.fromkeys(note for note in fitted["warnings"] if note))
     goodness = goodness.assign(p_text=[probability(p) for p in goodness["p_value"]])
     fitted = fitted.assign(
-        theta_text=estimates(fitted, "theta"),
-        beta_text=estimates(fitted, "beta"),
+        theta_text=estimates(fitted, "theta"), beta_text=estimates(fitted, "beta")
     )
     level, notes = _level(study), [*goodness["finding"], *warnings]
     parts: list[Markup | FigureSpec] = [

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
-from rockfrag.report.wording import PART, said
+from rockfrag.report.wording import PART, one_line, said
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.shaketable.swept import read_swept
 from rockfrag.study.study import Study
@@ -68,7 +68,7 @@ def finding_of(text: str) -> Finding:
 
 
 def _parted(text: str) -> list[str]:
-    return [" ".join(said(words)) for words in text.split(PART)]
+    return [one_line(words) for words in text.split(PART)]
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Section:
 def section_of(text: str, anchor: str, parts: Sequence[Markup | FigureSpec]) -> Section:
     """A chapter of which a macro says title, message and paragraphs, of these each in a line."""
     title, message, paragraphs = text.split(PART)
-    return Section(anchor, " ".join(said(title)), " ".join(said(message)), said(paragraphs), parts)
+    return Section(anchor, one_line(title), one_line(message), said(paragraphs), parts)
 
 
 class Results:

@@ -8,6 +8,7 @@ import pandas as pd
 from jinja2 import ChoiceLoader, PackageLoader
 
 from rockfrag import sentences
+from rockfrag.sentences import one_line as one_line
 from rockfrag.sentences import said as said
 
 MOST_LISTED = 8

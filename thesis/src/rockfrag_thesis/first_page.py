@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.report.part import Finding, finding_of
-from rockfrag.report.wording import estimate, listed, said
+from rockfrag.report.wording import estimate, listed, one_line
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag_thesis.hypotheses.floors import FIFTH, FLOORS, GROUND, THIRD
 from rockfrag_thesis.hypotheses.hypothesis import Finding as Evidence
@@ -113,7 +113,7 @@ def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]
         for row in rows.head(1).to_dict("records")
     ]
     reached = int(inverse_problem["reaches"].sum())
-    return " ".join(said(sentences().inverted(reached, len(inverse_problem), goal, nearest)))
+    return one_line(sentences().inverted(reached, len(inverse_problem), goal, nearest))
 
 
 _ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above the ground alone"}

@@ -10,8 +10,7 @@ from markupsafe import Markup
 
 from rockfrag.files import file_name
 from rockfrag.fragility.checks import REJECTION, TAILS
-from rockfrag.fragility.compared import compared_curves
-from rockfrag.fragility.curve_facts import REJECTED
+from rockfrag.fragility.curve_facts import REJECTED, compared_curves
 from rockfrag.report.answer import has_one_record
 from rockfrag.report.figures.fragility import fragility_figure
 from rockfrag.report.findings import ONE_MOTION, strength_found

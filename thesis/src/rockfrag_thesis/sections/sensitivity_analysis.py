@@ -11,20 +11,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import (
-    BLACK,
-    OKABE_ITO,
-    WIDEST,
-    figure_style,
-    new_figure,
-)
+from rockfrag.figure_style import BLACK, OKABE_ITO, WIDEST, figure_style, new_figure
 from rockfrag.pedestal.multiplicity import benjamini_hochberg
 from rockfrag.report.figures.amplitudes import BAND, GREY, MARKERS
 from rockfrag.report.figures.effects import NONE, ratio_axis
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section, figure_of, section_of
-from rockfrag.report.wording import has_interval, probability, said, sentence, shortened
+from rockfrag.report.wording import has_interval, one_line, probability, sentence, shortened
 from rockfrag.study.study import Study
 from rockfrag_thesis.sections.words import sentences
 from rockfrag_thesis.sensitivity_analysis.simulated import LAW_OF, REFERENCE
@@ -74,9 +68,7 @@ FACTORS = {
     ),
     "pedestal_width_cm": Factor("the width of the pedestal", "{} cm", "a pedestal {} wide"),
     "pedestal_not_counted": Factor(
-        "the pedestal's mass neglected",
-        "{} kg table",
-        "neglecting the pedestal's mass on a {}",
+        "the pedestal's mass neglected", "{} kg table", "neglecting the pedestal's mass on a {}"
     ),
     "table_not_counted": Factor(
         "the table's mass neglected", "{} kg table", "neglecting the mass of a {}"
@@ -150,7 +142,7 @@ def _section(results: Results) -> Section | None:
         return None
     simulated, computed = whole[~whole["arithmetic"]], whole[whole["arithmetic"]]
     small = int(simulated["ratio"].between(*NONE).sum())
-    message = " ".join(said(sentences().within(small, len(simulated))))
+    message = one_line(sentences().within(small, len(simulated)))
     tables = [
         table_html(
             _shown(simulated),
@@ -177,7 +169,7 @@ def adjusted_words(simulated: pd.DataFrame, level: float = 0.05) -> str:
     tests = len(simulated)
     outside = int(((simulated["lower"] > 1) | (simulated["upper"] < 1)).sum())
     left = int((simulated["p_adjusted"] < level).sum())
-    return " ".join(said(sentences().adjusted(outside, left, tests, level)))
+    return one_line(sentences().adjusted(outside, left, tests, level))
 
 
 def _beyond(simulated: pd.DataFrame) -> tuple[list[str], list[str]]:

@@ -12,8 +12,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import mean_effects
-from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.cluster_means import equivalence, mean_effects
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.tabular import join_rows
 
