@@ -17,7 +17,7 @@ from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.request import make_request
 from rockfrag.assess.risk import toppling_rate
-from rockfrag.assess.words import five_lines, quality_flags
+from rockfrag.assess.words import assumptions, five_lines, quality_flags
 from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 
@@ -46,7 +46,7 @@ def topples_from(pgv: float, logs: np.ndarray) -> ObjectOutcomes:
 
 
 def conversion_of(logs, known, weight=1.0):
-    return Conversion(PGA, None, weight, logs, known, 0.0, 0.0, by_statics=False, words="")
+    return Conversion(PGA, None, weight, logs, known, 0.0, 0.0, by_statics=False)
 
 
 def test_an_object_that_velocity_topples_has_the_rate_of_that_velocity(random):
@@ -116,7 +116,7 @@ def test_what_is_known_of_velocity_is_no_longer_a_source(found):
         # what is left of it is the error of the weight of velocity
         assert found[name].conversion.spread == 0 < found["nothing"].conversion.spread
         assert "together" in sources
-        assert "two measures" in found[name].conversion.words
+        assert "two measures" in " ".join(assumptions(found[name]))
 
 
 def test_nothing_known_leaves_counted_fractions(found):

@@ -1,11 +1,10 @@
 """Configurations of campaigns: of the synthetic laboratory, and of the granite rock where its data are."""
 
 from pathlib import Path
-from typing import Any
 
 import yaml
 
-from .conftest import BLOCK, DT, Laboratory
+from .conftest import BLOCK, DT
 
 ROOT = Path(__file__).parents[2]
 
@@ -33,20 +32,16 @@ PEDESTAL = [
 """A base and a plinth, from above."""
 
 
-def configured(folder: Path, laboratory: Laboratory, **changes: Any) -> Path:
+def configured(folder, laboratory, **changes):
     """Write the study of the synthetic laboratory, with keys of the campaign changed."""
-    content: dict[str, Any] = {
+    content = {
         "study": "synthetic",
         "title": "A synthetic laboratory",
         "seed": 1,
         "campaign": {
             "tests": str(laboratory.folder / "synthetic_tests.csv"),
-            "columns": {
-                "test": "test",
-                "motion": "motion",
-                "group": "input",
-                "overturned": "overturned",
-            },
+            "columns": {name: name for name in ("test", "motion", "overturned")}
+            | {"group": "input"},
             "motions": str(laboratory.folder / "synthetic_motions.npz"),
             "unit": "m/s2",
             "dt_s": DT,
@@ -59,16 +54,13 @@ def configured(folder: Path, laboratory: Laboratory, **changes: Any) -> Path:
     }
     for key, value in changes.items():
         part, _, name = key.partition("__")
-        if name:
-            content[part] = {**content[part], name: value}
-        else:
-            content[part] = value
+        content[part] = {**content[part], name: value} if name else value
     path = folder / "study.yaml"
     path.write_text(yaml.safe_dump(content))
     return path
 
 
-def granite(folder: Path, shared: Path, **changes: Any) -> Path:
+def granite(folder, shared, **changes):
     """Write the configuration of the granite rock for the place where its data are."""
     data = (shared / "measured").resolve()
     content = yaml.safe_load((ROOT / "config" / "granite.yaml").read_text())

@@ -4,7 +4,6 @@ import contextlib
 import io
 import math
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +16,6 @@ from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.stages.model_error import main
 from rockfrag.system.blocks import Block
 
-from .conftest import Laboratory
 from .studies import configured, granite
 
 
@@ -69,9 +67,7 @@ def test_a_cut_block_leaves_less_open_than_a_scan():
         ways_to_stand(Block(0.02, 0.8, 30.0), cut, 64, 1)
 
 
-def test_the_command_prints_the_error_of_a_synthetic_laboratory(
-    tmp_path: Path, laboratory: Laboratory, capsys
-):
+def test_the_command_prints_the_error_of_a_synthetic_laboratory(tmp_path, laboratory, capsys):
     assert main([str(configured(tmp_path, laboratory))]) == 0
     said = capsys.readouterr().out
     error = float(re.search(r"ln ratio (-?[\d.]+)", said)[1])
@@ -82,7 +78,7 @@ def test_the_command_prints_the_error_of_a_synthetic_laboratory(
 
 
 @pytest.fixture(scope="module")
-def said_of_granite(tmp_path_factory, shared: Path) -> str:
+def said_of_granite(tmp_path_factory, shared) -> str:
     with contextlib.redirect_stdout(io.StringIO()) as said:
         assert main([str(granite(tmp_path_factory.mktemp("granite"), shared))]) == 0
     return said.getvalue()

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.campaign.repeats import REPEATS, majority_of_repeats
+from rockfrag.campaign.comparison import REPEATS, majority_of_repeats
 from rockfrag.campaign.tests import read_campaign
 from rockfrag.errors import InputError
 from rockfrag.motions.pulses import commanded_cosine

@@ -2,8 +2,6 @@
 
 import logging
 import re
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -23,20 +21,21 @@ from rockfrag.study.loading import load_any
 from rockfrag.system.blocks import Block, Column
 
 from ..stages_in_process import run_stages
-from .conftest import BLOCK, DT, Laboratory
+from .conftest import BLOCK, DT
 from .studies import BY_HAND, PEDESTAL, configured, granite
 
-ROOT = Path(__file__).parents[2]
+NOTED = {name: name for name in ("test", "motion", "overturned", "rocked")} | {"group": "input"}
+"""Columns of a laboratory that noted what rocked."""
 
 
-def without_measures(path: Path) -> Path:
+def without_measures(path):
     content = yaml.safe_load(path.read_text())
     del content["campaign"]["measures"]
     path.write_text(yaml.safe_dump(content))
     return path
 
 
-def run(path: Path, folder: Path) -> dict[str, pd.DataFrame]:
+def run(path, folder):
     """Run all stages of a study in this process; return its tables."""
     study = load_any(path)
     assert isinstance(study, CampaignStudy)
@@ -44,40 +43,57 @@ def run(path: Path, folder: Path) -> dict[str, pd.DataFrame]:
     return {path.stem: pd.read_parquet(path) for path in folder.glob("*.parquet")}
 
 
-def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(
-    tmp_path: Path, laboratory: Laboratory
-):
-    tables = run(configured(tmp_path, laboratory), tmp_path)
-    agreement = tables["agreement"].set_index("who")
+def with_table(folder, laboratory, table, **changes):
+    """Write a study of other tests under the same motions."""
+    table.to_csv(folder / "synthetic_table.csv", index=False)
+    return configured(
+        folder, laboratory, campaign__tests=str(folder / "synthetic_table.csv"), **changes
+    )
+
+
+@pytest.fixture(scope="module")
+def reproduced(tmp_path_factory, laboratory):
+    """Tables, page and folder of a study of the synthetic laboratory, which noted what rocked."""
+    folder = tmp_path_factory.mktemp("reproduced")
+    tables = run(configured(folder, laboratory, campaign__columns=NOTED), folder)
+    return tables, (folder / "report.html").read_text(), folder
+
+
+def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(reproduced):
+    tables, page, folder = reproduced
+    agreement, tests = tables["agreement"].set_index("who"), tables["tests"]
     # a retreat of up to 1 cm of 5 cm is not known: what is left wrong is mostly near-critical
     assert agreement.loc["rockfrag", "right"] > 0.85
-    tests = tables["tests"]
     assert tests.loc[~tests["right"], "near_critical"].mean() > 0.8
     assert agreement.loc["rockfrag", "right"] > agreement.loc["threshold on pga_g", "right"]
-    best = tables["trials"].iloc[0]
-    assert best["edge_retreat_mm"] < 3
-    page = (tmp_path / "report.html").read_text()
+    assert tables["trials"].iloc[0]["edge_retreat_mm"] < 3
     assert "% of the outcomes" in page
-    assert not re.search(
-        r"\b(nan|inf)\b", re.sub(r"<svg.*?</svg>|data:[^\"]*", "", page, flags=re.S)
-    )
+    words = re.sub(r"<svg.*?</svg>|data:[^\"]*", "", page, flags=re.S)
+    assert not re.search(r"\b(nan|inf)\b", words)
     for name in ("agreement", "fragility_beside"):
-        assert (tmp_path / "figures" / f"{name}.svg").stat().st_size > 1000
+        assert (folder / "figures" / f"{name}.svg").stat().st_size > 1000
 
 
-def test_whether_it_rocked_is_compared_where_the_laboratory_noted_it(
-    tmp_path: Path, laboratory: Laboratory
-):
-    columns = {name: name for name in ("test", "motion", "overturned", "rocked")}
-    path = configured(tmp_path, laboratory, campaign__columns={**columns, "group": "input"})
-    rocking = run(path, tmp_path)["rocking"]
-    assert rocking["right"].iloc[0] > 0.9
-    assert "Whether the object rocked at all" in (tmp_path / "report.html").read_text()
+def test_whether_it_rocked_is_compared_where_the_laboratory_noted_it(reproduced):
+    tables, page, _ = reproduced
+    assert tables["rocking"]["right"].iloc[0] > 0.9
+    assert "Whether the object rocked at all" in page
 
 
-def of_a_column(
-    folder: Path, laboratory: Laboratory, every: int = 3, **changes: Any
-) -> tuple[Path, pd.DataFrame]:
+def test_the_headline_of_the_fragility_has_median_and_dispersion_by_majority_and_votes(reproduced):
+    tables, page, _ = reproduced
+    fragility = tables["fragility"].set_index("who")
+    assert re.search(
+        r"Simulated over measured PGA of overturning: median \d.*, dispersion \d"
+        r".*</strong> Fitted to fractions of plausible trials, .*: median \d.*, dispersion \d",
+        page,
+    )
+    # votes that are split leave a wider curve than their majority
+    assert fragility.loc["rockfrag by votes", "beta"] > fragility.loc["rockfrag", "beta"]
+    assert "simulated, votes" in page
+
+
+def of_a_column(folder, laboratory, every=3, **changes):
     """Write a study of the block on a base on a plinth, of every so many-th synthetic test; and its tests."""
     column = Column((Block(0.2, 0.6, 100.0), Block(0.12, 0.3, 40.0), BLOCK))
     table = laboratory.table.iloc[::every]
@@ -87,21 +103,18 @@ def of_a_column(
         overturned=found.overturned[0, :, 0].astype(int),
         rocked=(found.peak_rotation[0, :, 0] > 0).any(axis=-1).astype(int),
     )
-    table.to_csv(folder / "tests.csv", index=False)
-    columns = {name: name for name in ("test", "motion", "overturned", "rocked")}
-    changed: dict[str, Any] = {
-        "campaign__tests": str(folder / "tests.csv"),
-        "campaign__columns": {**columns, "group": "input"},
+    changed = {
+        "campaign__columns": NOTED,
         "object__pedestal": PEDESTAL,
         "unknowns": {"edge_retreat_mm": [0, 2], "friction": [0.1, 0.2]},
         "trials": 16,
     }
-    return configured(folder, laboratory, **(changed | changes)), table
+    return with_table(folder, laboratory, table, **(changed | changes)), table
 
 
 @pytest.mark.parametrize("every", [8, pytest.param(3, marks=pytest.mark.slow)])
 def test_a_column_of_three_bodies_is_reproduced_from_configuration_to_page(
-    tmp_path: Path, laboratory: Laboratory, every: int
+    tmp_path, laboratory, every
 ):
     path, table = of_a_column(tmp_path, laboratory, every)
     assert 0.2 < table["overturned"].mean() < 0.8
@@ -118,9 +131,7 @@ def test_a_column_of_three_bodies_is_reproduced_from_configuration_to_page(
     assert "stands on 2 blocks" in page
 
 
-def test_a_column_of_which_all_is_known_is_simulated_as_it_was(
-    tmp_path: Path, laboratory: Laboratory
-):
+def test_a_column_of_which_all_is_known_is_simulated_as_it_was(tmp_path, laboratory):
     known = {"edge_retreat_mm": [0, 0], "friction": [0.15, 0.15]}
     path, table = of_a_column(tmp_path, laboratory, unknowns=known)
     study = load_any(path)
@@ -142,41 +153,31 @@ def test_a_column_of_which_all_is_known_is_simulated_as_it_was(
         ({"object": {**BY_HAND, "pedestal": [{}]}}, "pedestal"),
     ],
 )
-def test_a_pedestal_that_does_not_fit_ends_in_one_sentence(
-    tmp_path: Path, laboratory: Laboratory, changes: dict[str, Any], said: str
-):
+def test_a_pedestal_that_does_not_fit_ends_in_one_sentence(tmp_path, laboratory, changes, said):
     path, _ = of_a_column(tmp_path, laboratory, **changes)
     with pytest.raises(InputError, match=said) as raised:
         load_any(path)
     assert "\n" not in str(raised.value)
 
 
-def test_the_model_error_is_of_an_object_alone(tmp_path: Path, laboratory: Laboratory, capsys: Any):
+def test_the_model_error_is_of_an_object_alone(tmp_path, laboratory, capsys):
     path, _ = of_a_column(tmp_path, laboratory)
     assert model_error.main([str(path)]) == 2
     assert "object.pedestal" in capsys.readouterr().err
 
 
-def test_without_measures_the_motions_are_measured(tmp_path: Path, laboratory: Laboratory):
+def test_without_measures_the_motions_are_measured(tmp_path, laboratory):
     tests = run(without_measures(configured(tmp_path, laboratory)), tmp_path)["tests"]
     peaks = [np.abs(motion).max() / 9.81 for motion in laboratory.motions.values()]
     assert tests["pga_g"].to_numpy() == pytest.approx(peaks)
     assert (tests["pgv_cm_s"] > 0).all()
 
 
-def test_amplitudes_of_overturning_are_simulated_on_both_sides(
-    tmp_path: Path, laboratory: Laboratory
-):
+def test_amplitudes_of_overturning_are_simulated_on_both_sides(tmp_path, laboratory):
     rows = laboratory.table.drop_duplicates("input")
     found = pd.DataFrame({"test": rows["test"], "motion": rows["motion"], "low": 0.05, "high": 2.5})
-    found.to_csv(tmp_path / "synthetic_amplitudes.csv", index=False)
     columns = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
-    path = configured(
-        tmp_path,
-        laboratory,
-        campaign__tests=str(tmp_path / "synthetic_amplitudes.csv"),
-        campaign__columns=columns,
-    )
+    path = with_table(tmp_path, laboratory, found, campaign__columns=columns)
     tests = run(without_measures(path), tmp_path)["tests"]
     # nothing falls at a twentieth of g, everything at two and a half
     assert tests["right"].all()
@@ -198,7 +199,7 @@ def test_amplitudes_of_overturning_are_simulated_on_both_sides(
     ],
 )
 def test_a_bad_campaign_ends_in_one_sentence_before_anything_runs(
-    tmp_path: Path, laboratory: Laboratory, changes: dict[str, Any], sentence: str
+    tmp_path, laboratory, changes, sentence
 ):
     with pytest.raises(InputError, match=re.escape(sentence)) as caught:
         load_any(configured(tmp_path, laboratory, **changes))
@@ -207,7 +208,7 @@ def test_a_bad_campaign_ends_in_one_sentence_before_anything_runs(
 
 
 @pytest.mark.slow
-def test_the_granite_rock_is_simulated_better_than_by_any_rival(tmp_path: Path, shared: Path):
+def test_the_granite_rock_is_simulated_better_than_by_any_rival(tmp_path, shared):
     tables = run(granite(tmp_path, shared, trials=512, varied_conditioning={}), tmp_path)
     agreement = tables["agreement"].set_index("who")
     assert agreement.loc["rockfrag", "tests"] == 490
@@ -230,27 +231,21 @@ IN_SPACE = {
 }
 
 
-def of_a_mesh(folder: Path, laboratory: Laboratory) -> Path:
+def of_a_mesh(folder, laboratory):
     """Write a study of every sixth synthetic test on the block as a mesh, in space and in one plane."""
     x, y, z = np.meshgrid([-0.05, 0.05], [-0.2, 0.2], [0, 0.6], indexing="ij")
     corners = [f"v {a} {b} {c}" for a, b, c in zip(x.ravel(), y.ravel(), z.ravel(), strict=True)]
     sides = ["1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"]
     (folder / "block.obj").write_text("\n".join([*corners, *(f"f {side}" for side in sides)]))
-    laboratory.table.iloc[::6].to_csv(folder / "table.csv", index=False)
     narrow = {"direction_deg": [-5, 5], "edge_retreat_mm": [0, 5], "restitution": [0.8, 1.0]}
-    return configured(
-        folder,
-        laboratory,
-        campaign__tests=str(folder / "table.csv"),
-        object={"mesh": str(folder / "block.obj"), "mass_kg": 60.0},
-        unknowns=IN_SPACE | narrow,
-        trials=16,
+    about = {"mesh": str(folder / "block.obj"), "mass_kg": 60.0}
+    table = laboratory.table.iloc[::6]
+    return with_table(
+        folder, laboratory, table, object=about, unknowns=IN_SPACE | narrow, trials=16
     )
 
 
-def test_a_mesh_is_simulated_in_space_and_in_one_plane_side_by_side(
-    tmp_path: Path, laboratory: Laboratory
-):
+def test_a_mesh_is_simulated_in_space_and_in_one_plane_side_by_side(tmp_path, laboratory):
     path = of_a_mesh(tmp_path, laboratory)
     agreement = run(path, tmp_path)["agreement"].set_index("who")
     plane = agreement.loc["rockfrag in one plane"]
@@ -268,16 +263,14 @@ def test_a_mesh_is_simulated_in_space_and_in_one_plane_side_by_side(
         ((0.02, -0.01, 0.05), 0.3, "is no gain over one plane"),
     ],
 )
-def test_space_is_called_better_or_worse_only_where_the_numbers_say_so(
-    better: tuple[float, float, float], p: float, said: str
-):
+def test_space_is_called_better_or_worse_only_where_the_numbers_say_so(better, p, said):
     row = {"right": 0.9, "lower": 0.8, "upper": 0.95, "missed": 3.0, "false_alarms": 1.0, "p": p}
     row |= dict(zip(("better", "better_lower", "better_upper"), better, strict=True))
     assert said in _beside_plane(row, row).headline
 
 
 @pytest.mark.slow
-def test_the_granite_rock_in_space_under_few_guesses(tmp_path: Path, shared: Path):
+def test_the_granite_rock_in_space_under_few_guesses(tmp_path, shared):
     """Every third test; docs/campaigns.md has the figures of 128 guesses and all tests."""
     study = load_any(granite(tmp_path, shared, unknowns=IN_SPACE, trials=32))
     assert isinstance(study, CampaignStudy)
@@ -292,7 +285,7 @@ def test_the_granite_rock_in_space_under_few_guesses(tmp_path: Path, shared: Pat
 
 
 @pytest.mark.slow
-def test_the_granite_rock_fitted(tmp_path: Path, shared: Path):
+def test_the_granite_rock_fitted(tmp_path, shared):
     """Seen: 92.4 % right; medians 1.04 and by votes 1.06, dispersions 1.08 and by votes 1.32 times."""
     tables = run(granite(tmp_path, shared, varied_conditioning={}), tmp_path)
     assert tables["agreement"].set_index("who").loc["rockfrag", "right"] >= 0.92
@@ -303,7 +296,7 @@ def test_the_granite_rock_fitted(tmp_path: Path, shared: Path):
         assert fragility.loc[who, "beta_ratio"] == pytest.approx(1, abs=beta)
 
 
-def test_the_laboratory_s_own_files_are_read_as_the_archive_holds_them(shared: Path):
+def test_the_laboratory_s_own_files_are_read_as_the_archive_holds_them(shared):
     from rockfrag.campaign.table_motions import table_motions
 
     folder = shared / "measured" / "granite"
@@ -315,7 +308,7 @@ def test_the_laboratory_s_own_files_are_read_as_the_archive_holds_them(shared: P
     assert text.acceleration == pytest.approx(array.acceleration, abs=1e-5)
 
 
-def test_a_wrong_unit_stops_a_campaign_with_its_factor(tmp_path: Path, laboratory: Laboratory):
+def test_a_wrong_unit_stops_a_campaign_with_its_factor(tmp_path, laboratory):
     with pytest.raises(
         InputError, match=r"are 1\d\.\d times the pga_g that the tests list .* unit"
     ):
@@ -323,32 +316,9 @@ def test_a_wrong_unit_stops_a_campaign_with_its_factor(tmp_path: Path, laborator
     assert not list(tmp_path.glob("*.parquet"))
 
 
-def test_the_headline_of_the_fragility_has_median_and_dispersion_by_majority_and_votes(
-    tmp_path: Path, laboratory: Laboratory
-):
-    fragility = run(configured(tmp_path, laboratory), tmp_path)["fragility"].set_index("who")
-    page = (tmp_path / "report.html").read_text()
-    assert re.search(
-        r"Simulated over measured PGA of overturning: median \d.*, dispersion \d"
-        r".*</strong> Fitted to fractions of plausible trials, .*: median \d.*, dispersion \d",
-        page,
-    )
-    # votes that are split leave a wider curve than their majority
-    assert fragility.loc["rockfrag by votes", "beta"] > fragility.loc["rockfrag", "beta"]
-    assert "simulated, votes" in page
-
-
-def test_one_kind_of_outcome_or_one_input_motion_ends_in_a_page_or_a_sentence(
-    tmp_path: Path, laboratory: Laboratory
-):
-    table = laboratory.table.assign(overturned=0)
-    table.to_csv(tmp_path / "synthetic_survivors.csv", index=False)
-    path = configured(
-        tmp_path, laboratory, campaign__tests=str(tmp_path / "synthetic_survivors.csv")
-    )
-    run(path, tmp_path)
+def test_one_kind_of_outcome_or_one_input_motion_ends_in_a_page_or_a_sentence(tmp_path, laboratory):
+    run(with_table(tmp_path, laboratory, laboratory.table.assign(overturned=0)), tmp_path)
     assert (tmp_path / "report.html").exists()
-    laboratory.table.assign(input="one").to_csv(tmp_path / "synthetic_group.csv", index=False)
-    path = configured(tmp_path, laboratory, campaign__tests=str(tmp_path / "synthetic_group.csv"))
+    path = with_table(tmp_path, laboratory, laboratory.table.assign(input="one"))
     with pytest.raises(InputError, match="single input motion; give those of two or more"):
         run(path, tmp_path)

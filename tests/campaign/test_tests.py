@@ -8,16 +8,17 @@ from rockfrag.campaign.tests import read_campaign
 from rockfrag.errors import InputError
 
 COLUMNS = {"test": "test", "motion": "motion", "group": "input", "overturned": "fell"}
+BRACKETED = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
 GOOD = "test,motion,input,fell,pga_g\nA,1,x,yes,0.2\nB,2,x,0,0.1\nC,3,y,1,0.3\n"
 
 
-def table(folder: Path, text: str, name: str = "tests.csv") -> Path:
+def table(folder, text, name="tests.csv") -> Path:
     path = folder / name
     path.write_text(text)
     return path
 
 
-def test_a_table_of_outcomes_is_read(tmp_path: Path):
+def test_a_table_of_outcomes_is_read(tmp_path):
     campaign = read_campaign(table(tmp_path, GOOD), COLUMNS, {"pga_m_s2": ["pga_g", 9.81]})
     assert list(campaign.tests["overturned"]) == [True, False, True]
     assert list(campaign.tests["group"]) == ["x", "x", "y"]
@@ -25,20 +26,13 @@ def test_a_table_of_outcomes_is_read(tmp_path: Path):
     assert campaign.tests["amplitude_g"].isna().all()
 
 
-def test_an_amplitude_of_overturning_makes_one_test_survived_and_one_overturned(tmp_path: Path):
+def test_an_amplitude_of_overturning_makes_one_test_survived_and_one_overturned(tmp_path):
     text = "test,motion,low,high\nA,1,0.3,0.33\nB,2,0.5,0.6\n"
-    columns = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
-    tests = read_campaign(table(tmp_path, text), columns, {}).tests
+    tests = read_campaign(table(tmp_path, text), BRACKETED, {}).tests
     assert list(tests["overturned"]) == [False, False, True, True]
     assert list(tests["amplitude_g"]) == [0.3, 0.5, 0.33, 0.6]
     assert list(tests["group"]) == ["1", "2", "1", "2"]
     assert tests["test"].iloc[2] == "A at 0.33 g"
-
-
-def test_outcomes_of_other_programs_follow_the_tests(tmp_path: Path):
-    codes = table(tmp_path, "test,dem,fem\nC,1,0\nA,0,0\nB,0,1\n", "codes.csv")
-    found = read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes).codes
-    assert found.to_dict("list") == {"dem": [0, 0, 1], "fem": [0, 1, 0]}
 
 
 @pytest.mark.parametrize(
@@ -51,33 +45,32 @@ def test_outcomes_of_other_programs_follow_the_tests(tmp_path: Path):
         ("fell", "outcome", "there is no column 'fell'"),
     ],
 )
-def test_a_bad_table_ends_in_one_sentence(tmp_path: Path, wrong: str, right: str, sentence: str):
+def test_a_bad_table_ends_in_one_sentence(tmp_path, wrong, right, sentence):
     path = table(tmp_path, GOOD.replace(wrong, right))
     with pytest.raises(InputError, match=sentence) as caught:
         read_campaign(path, COLUMNS, {"pga_g": ["pga_g"]})
     assert "\n" not in str(caught.value)
 
 
-def test_an_object_that_fell_below_what_it_survived_is_refused(tmp_path: Path):
-    columns = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
+def test_an_object_that_fell_below_what_it_survived_is_refused(tmp_path):
     with pytest.raises(InputError, match="row 2: lower_g is not below upper_g"):
-        read_campaign(table(tmp_path, "test,motion,low,high\nA,1,0.3,0.2\n"), columns, {})
+        read_campaign(table(tmp_path, "test,motion,low,high\nA,1,0.3,0.2\n"), BRACKETED, {})
 
 
-def test_another_program_is_compared_as_far_as_its_outcomes_are_given(tmp_path: Path):
-    codes = table(tmp_path, "test,dem\nC,1\nA,0\n", "codes.csv")
-    found = read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes).codes["dem"]
-    assert found.isna().tolist() == [False, True, False]
-    assert found.dropna().tolist() == [0, 1]
+def test_outcomes_of_other_programs_follow_the_tests_as_far_as_they_are_given(tmp_path):
+    codes = table(tmp_path, "test,dem,fem\nC,1,0\nA,0,1\n", "codes.csv")
+    found = read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes).codes
+    assert found["dem"].isna().tolist() == [False, True, False]
+    assert found.dropna().to_dict("list") == {"dem": [0, 1], "fem": [1, 0]}
 
 
-def test_a_table_of_other_tests_is_refused(tmp_path: Path):
+def test_a_table_of_other_tests_is_refused(tmp_path):
     codes = table(tmp_path, "test,dem\nX,1\nY,0\n", "codes.csv")
     with pytest.raises(InputError, match="has none of the 3 tests"):
         read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes)
 
 
-def test_the_template_has_the_columns_of_a_campaign(tmp_path: Path):
+def test_the_template_has_the_columns_of_a_campaign(tmp_path):
     template = Path(__file__).parents[2] / "config" / "experiment" / "campaign-template.csv"
     text = template.read_text() + "A,run1,wave,yes\n"
     columns = {name: name for name in ("test", "motion", "group", "overturned")}

@@ -11,29 +11,14 @@ from rockfrag.fragility.measure_selection import recommend_measure
 from rockfrag.fragility.observations import observations_from_table
 from rockfrag.fragility.vector import fit_vector
 
-
-def ida(capacities, levels):
-    return pd.DataFrame(
-        [
-            {
-                "configuration": "T",
-                "motion": f"m{k}",
-                "earthquake": f"e{k}",
-                "amplitude_g": a,
-                "overturned": a > capacity,
-            }
-            for k, capacity in enumerate(capacities)
-            for a in levels
-        ]
-    )
+from .made import ida_of, reading
 
 
 def test_capacities_of_two_kinds_are_found_not_lognormal_and_the_shares_are_offered():
     """Half of the motions overturn at 0.1 g, half at 1 g: no lognormal curve is like that."""
     rng = np.random.default_rng(1)
     low, high = 0.1 * np.exp(0.05 * rng.normal(size=20)), np.exp(0.05 * rng.normal(size=22))
-    table = fragility_table(ida([*low, *high], np.geomspace(0.05, 2.0, 60)))
-    first = table.set_index("estimator").loc["first_overturning"]
+    first = reading(fragility_table(ida_of([*low, *high], np.geomspace(0.05, 2.0, 60))))
     assert first["p_fit"] < 0.01
     assert "The lognormal curve is rejected" in first["warnings"]
     assert first["theta_isotonic"] == pytest.approx(1.0, rel=0.15)
@@ -49,8 +34,8 @@ def test_shares_of_motions_that_mostly_overturn_nothing_are_offered_without_numb
 ):
     rng = np.random.default_rng(1)
     capacities = [*0.1 * np.exp(0.02 * rng.normal(size=30)), *np.full(6, 1.5), *np.full(never, 9.0)]
-    table = fragility_table(ida(capacities, np.geomspace(0.05, 2.0, 40)))
-    first = table.set_index("estimator").loc["mean_probability"]
+    table = fragility_table(ida_of(capacities, np.geomspace(0.05, 2.0, 40)))
+    first = reading(table, "mean_probability")
     assert first["p_fit"] < 0.05
     assert said in first["warnings"]
     assert "nan" not in first["warnings"]
@@ -58,27 +43,24 @@ def test_shares_of_motions_that_mostly_overturn_nothing_are_offered_without_numb
 
 def test_lognormal_capacities_pass_and_agree_with_the_shares():
     rng = np.random.default_rng(2)
-    table = fragility_table(
-        ida(0.4 * np.exp(0.3 * rng.normal(size=60)), np.geomspace(0.05, 3.0, 120))
-    )
-    first = table.set_index("estimator").loc["first_overturning"]
+    ida = ida_of(0.4 * np.exp(0.3 * rng.normal(size=60)), np.geomspace(0.05, 3.0, 120))
+    first = reading(fragility_table(ida))
     assert first["p_fit"] > 0.05 and "does not describe" not in first["warnings"]
     assert first["theta_isotonic"] == pytest.approx(first["theta"], rel=0.1)
     assert first["beta_isotonic"] == pytest.approx(first["beta"], rel=0.25)
 
 
 def test_motion_that_moves_the_median_most_is_named():
-    capacities = [0.3, 0.31, 0.29, 0.305, 0.295, 2.0]
-    first = fragility_table(ida(capacities, np.geomspace(0.1, 3.0, 200)))
-    row = first.set_index("estimator").loc["first_overturning"]
+    capacities, levels = [0.3, 0.31, 0.29, 0.305, 0.295, 2.0], np.geomspace(0.1, 3.0, 200)
+    row, without = (
+        reading(fragility_table(ida_of(some, levels))) for some in (capacities, capacities[:-1])
+    )
     assert row["influential"] == "m5"
-    without = fragility_table(ida(capacities[:-1], np.geomspace(0.1, 3.0, 200)))
-    theta = without.set_index("estimator").loc["first_overturning", "theta"]
-    assert row["influence"] == pytest.approx(theta / row["theta"], rel=1e-6)
+    assert row["influence"] == pytest.approx(without["theta"] / row["theta"], rel=1e-6)
 
 
 def test_few_motions_are_said():
-    row = fragility_table(ida([0.3, 0.5, 0.4, 0.6], np.geomspace(0.1, 2.0, 60))).iloc[0]
+    row = fragility_table(ida_of([0.3, 0.5, 0.4, 0.6], np.geomspace(0.1, 2.0, 60))).iloc[0]
     assert "based on only 4 motions" in row["warnings"]
     tests = pd.DataFrame(
         {"lower_g": [0.3, 0.4, 0.5], "upper_g": [0.33, 0.44, 0.55], "motion": list("abc")}

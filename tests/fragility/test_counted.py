@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.fragility.counted import CountedIda
+from rockfrag.fragility.counted import count_ida
 from rockfrag.fragility.drawn_curves import outcome_bins
 from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.ida_curves import with_measures
@@ -65,7 +65,7 @@ def rows() -> pd.DataFrame:
 @pytest.mark.parametrize("column", ["pga_g", "pgv_cm_s", "arias_m_s"])
 def test_counts_give_the_curve_of_the_rows(column: str):
     wanted = {"": [column], "ground": [column]}
-    counted = CountedIda(parts(5), parts(5), measures(), wanted).of_floor("ground")
+    counted = count_ida(parts(5), parts(5), measures(), wanted)["ground"]
     table = TableIda(with_measures(rows(), measures(), [column]))
     few, many = counted.outcomes(column), table.outcomes(column)
     assert (few.n, few.n_overturned) == (many.n, many.n_overturned)
@@ -84,18 +84,12 @@ def test_counts_give_the_curve_of_the_rows(column: str):
     assert bins[0]["motions"].to_numpy() == pytest.approx(bins[1]["motions"].to_numpy(), abs=1)
 
 
-def test_parts_change_nothing():
-    wanted = {"": ["pga_g"]}
-    first, other = (CountedIda(parts(k), parts(k), measures(), wanted) for k in (1, 24))
-    pd.testing.assert_frame_equal(first.resurrections(""), other.resurrections(""))
-    assert np.array_equal(
-        first.outcomes("", "pga_g").overturned, other.outcomes("", "pga_g").overturned
-    )
-
-
-def test_windows_are_those_of_the_table():
-    counted = CountedIda(parts(7), [], measures(), {}).of_floor("")
-    known = TableIda(rows()).resurrections("amplitude_g", ["motion", "earthquake"])
-    pd.testing.assert_frame_equal(
-        counted.resurrections("amplitude_g", ["motion", "earthquake"]), known, check_dtype=False
-    )
+def test_parts_change_nothing_and_windows_are_those_of_the_table():
+    by = ["motion", "earthquake"]
+    known = TableIda(rows()).resurrections("amplitude_g", by)
+    counted = [count_ida(parts(k), parts(k), measures(), {"": ["pga_g"]})[""] for k in (1, 7, 24)]
+    for found in counted:
+        windows = found.resurrections("amplitude_g", by)
+        pd.testing.assert_frame_equal(windows, known, check_dtype=False)
+        outcomes = found.outcomes("pga_g").overturned
+        assert np.array_equal(outcomes, counted[0].outcomes("pga_g").overturned)

@@ -16,10 +16,13 @@ from rockfrag.fragility.ida_curves import (
     with_measures,
 )
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
-from rockfrag.fragility.nrml import lognormal_moments, write_nrml
+from rockfrag.fragility.nrml import write_nrml
 from rockfrag.fragility.simcenter import write_simcenter
 from rockfrag.records.motion import Motion
 
+from .made import ida_of
+
+SPACE = {"n": "http://openquake.org/xmlns/nrml/0.5"}
 CURVES = pd.DataFrame(
     {
         "configuration": ["T1", "P&T1"],
@@ -33,77 +36,61 @@ CURVES = pd.DataFrame(
 
 def synthetic_ida():
     """Two configurations under six synthetic motions of three earthquakes, at common amplitudes."""
-    rng = np.random.default_rng(1)
-    rows = []
-    for name, theta in (("T1", 0.5), ("T2", 0.3)):
-        for k in range(6):
-            capacity = theta * np.exp(0.3 * rng.normal())
-            rows += [
-                {
-                    "configuration": name,
-                    "motion": f"m{k}",
-                    "earthquake": f"e{k // 2}",
-                    "amplitude_g": a,
-                    "overturned": a > capacity,
-                }
-                for a in np.geomspace(0.05, 2.0, 75)
-            ]
-    return pd.DataFrame(rows)
+    rng, levels = np.random.default_rng(1), np.geomspace(0.05, 2.0, 75)
+    parts = [
+        ida_of(theta * np.exp(0.3 * rng.normal(size=6)), levels, name, each=2)
+        for name, theta in (("T1", 0.5), ("T2", 0.3))
+    ]
+    return pd.concat(parts, ignore_index=True)
 
 
-def test_nrml_moments_are_those_of_the_lognormal_distribution():
-    expected = stats.lognorm(s=0.4, scale=0.5)
-    assert lognormal_moments(0.5, 0.4) == pytest.approx((expected.mean(), expected.std()))
+def functions_of(path):
+    """Functions of an NRML file by their names, and the file's root."""
+    root = ElementTree.parse(path).getroot()
+    return {item.get("id"): item for item in root.findall(".//n:fragilityFunction", SPACE)}, root
 
 
 def test_nrml_gives_back_median_and_dispersion_in_its_own_units(tmp_path):
     path = tmp_path / "model.xml"
     write_nrml(CURVES, path)
-    space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
-    root = ElementTree.parse(path).getroot()
-    assert root.find(".//n:limitStates", space).text == "overturns"
-    functions = {f.get("id"): f for f in root.findall(".//n:fragilityFunction", space)}
+    functions, root = functions_of(path)
+    assert root.find(".//n:limitStates", SPACE).text == "overturns"
     for name, imt, theta, beta in (("T1", "PGA", 0.5, 0.4), ("P_T1", "PGV", 30.0, 0.5)):
-        params = functions[name].find("n:params", space)
+        params = functions[name].find("n:params", SPACE)
         mean, deviation = float(params.get("mean")), float(params.get("stddev"))
         found = np.sqrt(np.log1p((deviation / mean) ** 2))
-        assert functions[name].find("n:imls", space).get("imt") == imt
+        assert functions[name].find("n:imls", SPACE).get("imt") == imt
         assert found == pytest.approx(beta)
         assert mean / np.exp(found**2 / 2) == pytest.approx(theta)
 
 
-def states_of_one() -> pd.DataFrame:
+def states_of_one(theta=0.4):
     """Rocking at exactly 0.25 g, and overturning whose lognormal curve begins below it."""
-    item = {"configuration": "urn", "im": "PGA", "unit": "g"}
-    return pd.DataFrame(
-        [
-            {**item, "state": "rocks", "theta": 0.25, "beta": 1e-9},
-            {**item, "state": "overturns", "theta": 0.4, "beta": 0.4},
-        ]
-    )
+    states = {"state": ["rocks", "overturns"], "theta": [0.25, theta], "beta": [1e-9, 0.4]}
+    return pd.DataFrame({"configuration": "urn", "im": "PGA", "unit": "g", **states})
 
 
-def levels_of(path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
-    (function,) = ElementTree.parse(path).getroot().findall(".//n:fragilityFunction", space)
+def levels_of(path):
+    (function,) = functions_of(path)[0].values()
     assert function.get("format") == "discrete"
-    levels = np.array(function.find("n:imls", space).text.split(), dtype=float)
+    levels = np.array(function.find("n:imls", SPACE).text.split(), dtype=float)
     return levels, {
         item.get("ls"): np.array(item.text.split(), dtype=float)
-        for item in function.findall("n:poes", space)
+        for item in function.findall("n:poes", SPACE)
     }
 
 
-def test_nothing_that_does_not_rock_overturns_in_nrml(tmp_path):
-    """Two lognormal curves said so: 12 % overturned at the amplitude below which nothing rocks."""
-    curves = states_of_one()
-    assert stats.norm.cdf(np.log(0.25 / 0.4) / 0.4) > 0.1
-    write_nrml(curves, tmp_path / "model.xml")
+@pytest.mark.parametrize("sigmas", [np.log(0.25 / 0.4) / 0.4, -3.24])
+def test_nothing_that_does_not_rock_overturns_in_nrml(tmp_path, sigmas):
+    """Lognormal curves say so: 12 % at the amplitude below which nothing rocks, or a small tail of 6e-4."""
+    assert stats.norm.cdf(sigmas) > 5e-4
+    theta = 0.25 * np.exp(-0.4 * sigmas)
+    write_nrml(states_of_one(theta), tmp_path / "model.xml")
     levels, chance = levels_of(tmp_path / "model.xml")
     assert (chance["overturns"] <= chance["rocks"]).all()
-    assert (chance["overturns"][levels < 0.24] < 1e-6).all()
+    assert (chance["overturns"][levels < 0.24] < 1e-9).all()
     high = levels > 0.26
-    lognormal = stats.norm.cdf(np.log(levels[high] / 0.4) / 0.4)
+    lognormal = stats.norm.cdf(np.log(levels[high] / theta) / 0.4)
     assert chance["overturns"][high] == pytest.approx(lognormal, abs=1e-9)
     assert (np.diff(levels) > 0).all()
 
@@ -136,35 +123,29 @@ def test_rejected_curve_is_exported_as_its_points(tmp_path):
     )
 
 
-def test_nrml_refuses_what_openquake_cannot_compute(tmp_path):
-    path = tmp_path / "model.xml"
-    with pytest.raises(InputError, match="Arias intensity is no intensity measure"):
-        write_nrml(CURVES.assign(im="Arias intensity"), path)
-    with pytest.raises(InputError, match="floor F3"):
-        write_nrml(CURVES.assign(floor="F3"), path)
-    with pytest.raises(InputError, match="'P&T1' has no lognormal curve"):
-        write_nrml(CURVES.assign(theta=np.nan), path)
-    with pytest.raises(InputError, match="'T1' has two curves"):
-        write_nrml(pd.concat([CURVES, CURVES]), path)
-    assert not path.exists()
+@pytest.mark.parametrize(
+    ("curves", "said"),
+    [
+        (CURVES.assign(im="Arias intensity"), "Arias intensity is no intensity measure"),
+        (CURVES.assign(floor="F3"), "floor F3"),
+        (CURVES.assign(theta=np.nan), "'T1' has no lognormal curve"),
+        (pd.concat([CURVES, CURVES]), "'T1' has two curves"),
+        (CURVES.iloc[:0], "there is no curve to write"),
+    ],
+)
+def test_nrml_refuses_what_openquake_cannot_compute(tmp_path, curves, said):
+    with pytest.raises(InputError, match=said):
+        write_nrml(curves, tmp_path / "model.xml")
+    assert not (tmp_path / "model.xml").exists()
 
 
 def test_simcenter_rows_carry_theta_and_beta_and_their_story(tmp_path):
     csv, story = tmp_path / "damage.csv", tmp_path / "damage.json"
     write_simcenter(CURVES.assign(im=["PGA", "PFV"]), csv, story)
     table = pd.read_csv(csv)
-    assert list(table.columns) == [
-        "ID",
-        "Incomplete",
-        "Demand-Type",
-        "Demand-Unit",
-        "Demand-Offset",
-        "Demand-Directional",
-        "LS1-Family",
-        "LS1-Theta_0",
-        "LS1-Theta_1",
-        "LS1-DamageStateWeights",
-    ]
+    titles = "ID Incomplete Demand-Type Demand-Unit Demand-Offset Demand-Directional "
+    titles += "LS1-Family LS1-Theta_0 LS1-Theta_1 LS1-DamageStateWeights"
+    assert list(table.columns) == titles.split()
     rows = table.set_index("ID")
     assert rows.loc["ROCKFRAG.T1", "Demand-Type"] == "Peak Ground Acceleration"
     assert rows.loc["ROCKFRAG.P_T1", "Demand-Type"] == "Peak Floor Velocity"
@@ -230,9 +211,7 @@ def test_files_say_how_few_motions_a_curve_rests_on_and_what_is_known_of_it(tmp_
     curves = curves_of(ida[ida.motion.isin(["m0", "m2", "m4", "m5"])])
     write_nrml(curves, tmp_path / "model.xml")
     write_simcenter(curves, tmp_path / "d.csv", tmp_path / "d.json")
-    space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
-    model = ElementTree.parse(tmp_path / "model.xml").getroot()
-    description = model.find(".//n:description", space).text
+    description = functions_of(tmp_path / "model.xml")[1].find(".//n:description", SPACE).text
     said = (tmp_path / "model.xml").read_text()
     told = json.loads((tmp_path / "d.json").read_text())["ROCKFRAG.T1"]["Comments"]
     for text in (said, told):
@@ -251,12 +230,11 @@ def test_files_say_how_few_motions_a_curve_rests_on_and_what_is_known_of_it(tmp_
 def test_limit_states_come_in_the_order_in_which_a_body_passes_them(tmp_path):
     curves = curves_of(synthetic_ida())
     write_nrml(curves.iloc[::-1], tmp_path / "model.xml")
-    space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
-    root = ElementTree.parse(tmp_path / "model.xml").getroot()
-    assert root.find(".//n:limitStates", space).text == "rocks overturns"
-    function = root.find(".//n:fragilityFunction", space)
+    functions, root = functions_of(tmp_path / "model.xml")
+    assert root.find(".//n:limitStates", SPACE).text == "rocks overturns"
+    function = functions["T1"]
     kinds = ("n:params", "n:poes")
-    states = [item.get("ls") for kind in kinds for item in function.findall(kind, space)]
+    states = [item.get("ls") for kind in kinds for item in function.findall(kind, SPACE)]
     assert states == ["rocks", "overturns"]
     write_simcenter(curves.iloc[::-1], tmp_path / "d.csv", tmp_path / "d.json")
     row = pd.read_csv(tmp_path / "d.csv").iloc[0]
@@ -268,20 +246,8 @@ def test_limit_states_come_in_the_order_in_which_a_body_passes_them(tmp_path):
 
 
 def test_uncertainties_of_motions_estimate_and_model_add_as_squares():
-    table = fragility_table(synthetic_ida())
-    row = table[table.estimator == "first_overturning"].iloc[0]
+    row = fragility_table(synthetic_ida()).iloc[1]
     half = np.log(row.theta_upper / row.theta_lower) / 2
     assert row.beta_statistical == pytest.approx(half / stats.norm.ppf(0.95))
     squares = row.beta**2 + row.beta_statistical**2 + MODEL_ERRORS[CUT].blind ** 2
     assert row.beta_total == pytest.approx(np.sqrt(squares))
-
-
-def test_a_small_tail_below_the_threshold_is_no_probability_to_overturn_either(tmp_path):
-    """A lognormal tail of 6e-4 at a level that starts nothing: small, and still impossible."""
-    curves = states_of_one()
-    curves.loc[curves["state"] == "overturns", "theta"] = 0.25 * np.exp(0.4 * 3.24)
-    assert 1e-4 < stats.norm.cdf(-3.24) < 1e-3
-    write_nrml(curves, tmp_path / "model.xml")
-    levels, chance = levels_of(tmp_path / "model.xml")
-    assert (chance["overturns"] <= chance["rocks"]).all()
-    assert (chance["overturns"][levels < 0.24] < 1e-9).all()

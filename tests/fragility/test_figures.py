@@ -1,32 +1,26 @@
 """Figures say what the numbers say."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.goodness import goodness_of_fit
 from rockfrag.fragility.observations import observations_from_table
-from rockfrag.report.figures.fragility import (
-    calibration_figure,
-    measures_figure,
-)
+from rockfrag.report.figures.fragility import calibration_figure, measures_figure
+
+from .made import ida_of
 
 
 @pytest.fixture(scope="module")
 def ida():
     """Synthetic IDA curves of eight motions, half of them with a structural resurrection."""
-    rng = np.random.default_rng(1)
     levels = np.geomspace(0.1, 1.5, 40)
-    rows = []
-    for k in range(8):
-        a = 0.4 * np.exp(0.3 * rng.normal())
-        fell = (levels > a) & ~((levels > 1.3 * a) & (levels < 1.6 * a) & (k % 2 == 0))
-        rows += [
-            {"motion": f"m{k}", "amplitude_g": level, "pgv_cm_s": 80 * level**1.2, "overturned": x}
-            for level, x in zip(levels, fell, strict=True)
-        ]
-    return pd.DataFrame(rows)
+    capacity = 0.4 * np.exp(0.3 * np.random.default_rng(1).normal(size=8))
+    table, ratio = ida_of(capacity, levels), np.divide.outer(levels, capacity).T.ravel()
+    window = (ratio > 1.3) & (ratio < 1.6) & (np.arange(ratio.size) // 40 % 2 == 0)
+    return table.assign(
+        pgv_cm_s=80 * table["amplitude_g"] ** 1.2, overturned=table["overturned"] & ~window
+    )
 
 
 def test_each_measure_has_a_panel_with_its_curve(ida):

@@ -29,9 +29,7 @@ def test_outcomes_and_capacities_give_the_same_curve():
     log_a = 0.3 * rng.normal(size=18)
     found = swept(log_a, earthquakes, np.geomspace(0.2, 5, 1000))
     tested = fractions_of_outcomes(found, found.earthquake, 0.9)
-    exact = fractions_of_capacities(
-        log_a, np.array([f"e{k}" for k in earthquakes], dtype=object), 0.9
-    )
+    exact = fractions_of_capacities(log_a, earthquakes.astype(object), 0.9)
     assert tested.theta == pytest.approx(exact.theta, rel=0.02)
     assert tested.theta_limits == pytest.approx(exact.theta_limits, rel=0.01)
     assert tested.beta == pytest.approx(exact.beta, rel=0.01)
@@ -106,31 +104,11 @@ def test_rejected_curve_says_the_median_and_dispersion_to_use_with_their_limits(
     assert found.checks.fractions.theta == pytest.approx(1.0, rel=0.15)
 
 
-@pytest.mark.parametrize("law", ["normal", "t3"])
-def test_limits_of_the_median_and_the_dispersion_hold_in_few_data_sets(law):
-    """300 data sets tell gross faults only; the validation has the coverage."""
-    rng = np.random.default_rng(RNG)
-    truth = 0.4 if law == "normal" else 0.4 * 0.6914
-    held = []
-    groups = np.repeat(np.arange(6), 2).astype(object)
-    for _ in range(300):
-        drawn = rng.normal(size=12) if law == "normal" else rng.standard_t(3, 12) / np.sqrt(3)
-        found = fractions_of_capacities(0.4 * drawn, groups, 0.9)
-        held.append(
-            [
-                found.theta_limits[0] <= 1.0 <= found.theta_limits[1],
-                found.beta_limits[0] <= truth <= found.beta_limits[1],
-            ]
-        )
-    assert (np.mean(held, axis=0) > 0.84).all()
-
-
 def test_many_groups_are_left_out_in_blocks_with_the_same_curve():
     rng = np.random.default_rng(RNG)
     capacity = np.round(0.3 * rng.normal(size=600), 2)
-    each = np.array([f"e{k}" for k in range(600)], dtype=object)
-    few = np.array([f"e{k % 60}" for k in range(600)], dtype=object)
-    many, known = (fractions_of_capacities(capacity, groups, 0.9) for groups in (each, few))
+    each = np.arange(600).astype(object)
+    many, known = (fractions_of_capacities(capacity, groups, 0.9) for groups in (each, each % 60))
     assert np.array_equal(many.fraction, known.fraction)
     assert many.theta == known.theta
     width = np.diff(np.log(many.theta_limits))[0] / np.diff(np.log(known.theta_limits))[0]

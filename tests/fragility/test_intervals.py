@@ -5,25 +5,29 @@ import pandas as pd
 import pytest
 
 from rockfrag.fragility import censored
-from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval, fit_brackets
+from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval
 from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.ida_curves import fragility_table
 from rockfrag.fragility.intervals import interval_over_motions, outcome_fitter
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.observations import observations_from_table
 
+from .made import ida_of, reading
+
+STEPS = np.geomspace(0.1, 1.0, 12)
 LEVELS = np.exp(np.arange(np.log(0.1), np.log(1.2), 0.1))
 
 
 def swept_motions(n, seed=0, theta=0.35, beta=0.4):
     """Outcomes of n motions at common levels, each with one lognormal capacity."""
     capacity = np.exp(np.random.default_rng(seed).normal(np.log(theta), beta, n))
-    rows = [
-        {"motion": f"m{k}", "amplitude_g": level, "overturned": level > capacity[k]}
-        for k in range(n)
-        for level in LEVELS
-    ]
-    return observations_from_table(pd.DataFrame(rows), "amplitude_g")
+    return observations_from_table(ida_of(capacity, LEVELS), "amplitude_g")
+
+
+def table_of(data):
+    return pd.DataFrame(
+        {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}
+    )
 
 
 def test_the_refit_with_unit_weights_is_the_estimator():
@@ -36,11 +40,8 @@ def test_the_refit_with_unit_weights_is_the_estimator():
 def test_leaving_a_motion_out_by_its_weight_equals_leaving_its_rows_out():
     data = swept_motions(5)
     fit, _ = outcome_fitter(data, "motion")
-    kept = data.motion != "m2"
-    table = pd.DataFrame(
-        {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}
-    )[kept]
-    alone = fit_lognormal(observations_from_table(table, "amplitude_g"))
+    rest = table_of(data)[data.motion != "m2"]
+    alone = fit_lognormal(observations_from_table(rest, "amplitude_g"))
     weights = np.array([[1.0, 1.0, 0.0, 1.0, 1.0]])
     assert fit(weights)[0] == pytest.approx(alone.coefficients, abs=1e-6)
 
@@ -63,10 +64,8 @@ def test_limits_enclose_the_estimate_and_narrow_with_more_motions():
 def test_intervals_follow_motions_and_not_the_number_of_amplitudes():
     # every test of every motion ten times over tells nothing new about other motions
     once = swept_motions(8, seed=5)
-    table = pd.DataFrame(
-        {"amplitude_g": once.im, "overturned": once.overturned, "motion": once.motion}
-    )
-    often = observations_from_table(pd.concat([table] * 10, ignore_index=True), "amplitude_g")
+    tenfold = pd.concat([table_of(once)] * 10, ignore_index=True)
+    often = observations_from_table(tenfold, "amplitude_g")
     first = interval_over_motions(once)
     second = interval_over_motions(often)
     assert second.theta == pytest.approx(first.theta, rel=1e-6)
@@ -78,22 +77,6 @@ def test_one_motion_gives_no_interval_and_says_so():
     assert interval.method == "none"
     assert np.isnan(interval.theta[0])
     assert "One motion" in interval.warnings[0]
-
-
-def swept(capacities):
-    """IDA curves of motions with given capacities at common levels from 0.1 to 1 g."""
-    rows = [
-        {
-            "configuration": "T1",
-            "motion": f"m{k}",
-            "earthquake": f"e{k}",
-            "amplitude_g": level,
-            "overturned": level > capacity,
-        }
-        for k, capacity in enumerate(capacities)
-        for level in np.geomspace(0.1, 1.0, 12)
-    ]
-    return pd.DataFrame(rows)
 
 
 @pytest.mark.parametrize(
@@ -109,7 +92,7 @@ def swept(capacities):
     ],
 )
 def test_the_poorest_ida_curves_give_a_stated_result(capacities, theta_known, limits_known):
-    table = fragility_table(swept(capacities))
+    table = fragility_table(ida_of(capacities, STEPS))
     assert (table["theta"].notna() == theta_known).all()
     assert (table["theta_lower"].notna() == limits_known).all()
     assert (table["warnings"].str.len() > 20).all() or len(capacities) >= 4
@@ -124,9 +107,7 @@ def test_the_poorest_ida_curves_give_a_stated_result(capacities, theta_known, li
 def test_limits_over_motions_of_shared_earthquakes_warn():
     data = swept_motions(8)
     assert not interval_over_motions(data).warnings
-    table = pd.DataFrame(
-        {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}
-    )
+    table = table_of(data)
     table["earthquake"] = table["motion"].map(lambda name: int(name[1:]) % 4)
     shared = observations_from_table(table, "amplitude_g", earthquake="earthquake")
     assert interval_over_motions(shared).over == "earthquake"
@@ -135,10 +116,9 @@ def test_limits_over_motions_of_shared_earthquakes_warn():
 
 
 def test_capacities_in_one_step_give_limits_of_the_step_and_a_beta_from_zero():
-    table = fragility_table(swept([0.3, 0.3, 0.3, 0.3]))
-    levels = np.geomspace(0.1, 1.0, 12)
-    step = levels[levels <= 0.3].max(), levels[levels > 0.3].min()
-    row = table[table["estimator"] == "first_overturning"].iloc[0]
+    table = fragility_table(ida_of([0.3, 0.3, 0.3, 0.3], STEPS))
+    step = STEPS[STEPS <= 0.3].max(), STEPS[STEPS > 0.3].min()
+    row = reading(table)
     assert (row["theta_lower"], row["theta_upper"]) == pytest.approx(step)
     assert row["beta_lower"] == 0 < row["beta"] <= row["beta_upper"] < 0.3
     assert row["interval_method"] == "common step"
@@ -157,18 +137,6 @@ def test_beta_lies_within_its_limits_under_separation_too():
         assert "penalised" in found.fit.method
         assert found.interval.beta[0] == 0 or np.isnan(found.interval.beta[0])
         assert not found.fit.beta > found.interval.beta[1]
-
-
-@pytest.mark.parametrize("seed", range(150))
-def test_beta_of_four_earthquakes_lies_within_its_limits(seed):
-    rng = np.random.default_rng([7, seed])
-    brackets_at = np.exp(rng.normal(np.log(0.4), 0.3, 4))
-    levels = np.geomspace(0.05, 2.0, 80)
-    place = np.searchsorted(levels, brackets_at)
-    names = np.array([f"e{k}" for k in range(4)], dtype=object)
-    data = Brackets(levels[place - 1], levels[place], names, names)
-    fit, interval = fit_brackets(data), bracket_interval(data)
-    assert interval.beta[0] <= fit.beta <= interval.beta[1]
 
 
 def test_one_step_without_a_block_is_the_fit_without_it(monkeypatch):

@@ -172,26 +172,6 @@ def test_tables_hold_the_fit_its_contours_and_its_cells_and_a_figure_is_drawn_of
     assert axes.get_xlabel() == "PGA [g]" and axes.get_ylabel() == "PGV/PGA [s]"
 
 
-def test_aic_of_the_granite_rock_is_that_of_statsmodels_and_the_published_one(shared):
-    table = pd.read_csv(shared / "measured" / "granite_rock_1.csv")
-    table["pgv_cm_s"] = table["pga_g"] * table["pgv_over_pga_s"] * 980.665
-    fit = fit_vector(table, ("pga_g", "pgv_cm_s"), earthquake="record")
-    plain = fit_vector(table, ("pga_g", "pgv_cm_s"), earthquake="record", try_interaction=False)
-    logs = np.log(table[["pga_g", "pgv_cm_s"]])
-    logs["product"] = logs["pga_g"] * logs["pgv_cm_s"]
-
-    def aic(columns):
-        family = sm.families.Binomial(sm.families.links.Probit())
-        design = sm.add_constant(logs[columns])
-        return sm.GLM(table["overturned"], design, family=family).fit(tol=1e-13).aic
-
-    both = ["pga_g", "pgv_cm_s"]
-    assert plain.aic == pytest.approx(aic(both), abs=1e-6)
-    assert plain.aic == pytest.approx(309.4, abs=0.05)
-    chosen = [*both, "product"] if fit.interaction.kept else both
-    assert fit.aic == pytest.approx(aic(chosen), abs=1e-6)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("earthquakes", [4, 10, 40])
 def test_limits_cover_and_the_interaction_test_keeps_its_level(earthquakes):

@@ -44,7 +44,9 @@ def test_every_pulse_starts_and_ends_at_zero_and_says_what_it_is(name, amplitude
     assert pulse.metadata["synthetic"] is True
     if name != "mavroeidis_papageorgiou":
         assert m.pga(pulse) <= abs(amplitude) * (1 + 1e-12)
-        assert m.pga(pulse) == pytest.approx(abs(amplitude), rel=2e-3)
+        # half an interval beside the peak, of which a Ricker wavelet has the sharpest
+        lost = 3 * (math.pi * DT / 2 / period) ** 2
+        assert m.pga(pulse) == pytest.approx(abs(amplitude), rel=lost + 1e-12)
 
 
 def test_one_sine_is_a_forward_displacement():

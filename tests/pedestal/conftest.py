@@ -1,7 +1,5 @@
 """Synthetic tests with known effects, for everything about the pedestal."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -12,14 +10,8 @@ TOWERS = {"T1": 0.46, "T2": 0.36, "T3": 0.29}
 
 
 def synthetic_tests(
-    seed: int,
-    *,
-    effect: float = 0.1,
-    floor_effect: dict[str, float] | None = None,
-    sd_earthquake: float = 0.05,
-    sd_motion: float = 0.05,
-    sd_pair: float = 0.134,
-) -> pd.DataFrame:
+    seed, *, effect=0.1, floor_effect=None, sd_earthquake=0.05, sd_motion=0.05, sd_pair=0.134
+):
     """Tests of the thesis's design: ln(P/NP) is effect + floor + earthquake + motion + pair."""
     rng = np.random.default_rng(seed)
     rows = []
@@ -35,27 +27,16 @@ def synthetic_tests(
                 d = effect + by_earthquake + by_motion + own
                 d += (floor_effect or {}).get(floor, 0.0)
                 common = np.log(amplitude) + level + rng.normal(0, 0.1)
-                for pedestal, ln_a in (("NP", common - noise), ("P", common + d)):
-                    rows.append(
-                        {
-                            "test": f"{object_name}-{pedestal}-{earthquake}-{floor}",
-                            "object": object_name,
-                            "pedestal": pedestal,
-                            "earthquake": earthquake,
-                            "floor": floor,
-                            "motion": f"{earthquake}-{floor}",
-                            "lower_g": np.exp(ln_a),
-                            "upper_g": np.exp(ln_a),
-                            "amplitude_g": np.exp(ln_a),
-                            "censored": "none",
-                            "overturned_body": "statue",
-                            "repetition": 1,
-                            "remark": "synthetic",
-                        }
-                    )
-    return pd.DataFrame(rows)
+                about = (object_name, earthquake, floor, f"{earthquake}-{floor}")
+                rows += [
+                    (*about, "NP", np.exp(common - noise)),
+                    (*about, "P", np.exp(common + d)),
+                ]
+    names = ["object", "earthquake", "floor", "motion", "pedestal", "amplitude_g"]
+    table = pd.DataFrame(rows, columns=names).assign(censored="none", repetition=1)
+    return table.assign(lower_g=table["amplitude_g"], upper_g=table["amplitude_g"])
 
 
 @pytest.fixture
-def tests_table() -> Callable[..., pd.DataFrame]:
+def tests_table():
     return synthetic_tests

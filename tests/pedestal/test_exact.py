@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from rockfrag.pedestal import permutation
 from rockfrag.pedestal.cluster_means import (
     contrast,
     mean_effect,
@@ -91,3 +92,16 @@ def test_of_very_many_earthquakes_none_is_left_out(tests_table, monkeypatch):
     table = pair_tests(tests_table(3)).table
     monkeypatch.setattr("rockfrag.pedestal.permutation.MOST_LEFT_OUT", 3)
     assert leave_one_earthquake_out(table).empty
+
+
+def test_flipped_signs_of_many_are_those_that_are_drawn(monkeypatch):
+    values = np.random.default_rng(4).normal(0.08, 1.0, 400)
+    drawn = sign_flip_test(values)
+    monkeypatch.setattr(permutation, "MOST_DRAWN", 100)
+    assert sign_flip_test(values).p == pytest.approx(drawn.p, abs=0.015)
+
+
+def test_flipped_signs_of_few_are_all_counted():
+    # of the eight patterns four have sums of three or more
+    found = sign_flip_test([1.0, 2.0, 0.0])
+    assert (found.p, found.exact) == (0.5, True)

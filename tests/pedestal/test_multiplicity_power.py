@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from statsmodels.stats.multitest import multipletests
 
-from rockfrag.pedestal.cluster_means import Estimate, t_estimate
-from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.cluster_means import Estimate, equivalence, t_estimate
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.pedestal.power import detectable_ratio, power_note, power_of_t, units_needed
 
@@ -30,12 +29,6 @@ def test_p_values_outside_0_to_1_are_refused():
         holm([0.2, 1.2])
 
 
-def test_detectable_change_has_the_power_by_definition():
-    effect = t_estimate([0.1, -0.05, 0.08, 0.02])
-    ratio = detectable_ratio(effect)
-    assert power_of_t(ratio, effect.sd, effect.units) == pytest.approx(0.8, abs=1e-6)
-
-
 @pytest.mark.parametrize(("pairs_an_earthquake", "percent"), [(9, 10.0), (3, 17.9)])
 def test_four_earthquakes_show_what_the_documentation_says(pairs_an_earthquake, percent):
     """0.134 per pair and no other scatter: the test is t over four means, not over 36 pairs."""
@@ -44,12 +37,13 @@ def test_four_earthquakes_show_what_the_documentation_says(pairs_an_earthquake, 
     assert 100 * (detectable_ratio(effect) - 1) == pytest.approx(percent, abs=0.05)
 
 
-def test_units_needed_are_the_fewest_with_the_power():
+def test_detectable_change_and_units_needed_have_the_power_by_definition():
     effect = t_estimate([0.1, -0.05, 0.08, 0.02])
+    detectable = power_of_t(detectable_ratio(effect), effect.sd, effect.units)
+    assert detectable == pytest.approx(0.8, abs=1e-6)
     n = int(units_needed(effect))
-    assert (
-        power_of_t(effect.ratio, effect.sd, n) >= 0.8 > power_of_t(effect.ratio, effect.sd, n - 1)
-    )
+    fewer, enough = (power_of_t(effect.ratio, effect.sd, k) for k in (n - 1, n))
+    assert fewer < 0.8 <= enough
     assert f"{n} earthquakes" in power_note(effect)
 
 

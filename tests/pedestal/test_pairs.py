@@ -17,12 +17,10 @@ def test_thesis_design_gives_36_pairs_in_12_motions_of_4_earthquakes(tests_table
 
 
 def test_d_is_log_ratio_with_over_without(tests_table):
-    tests = tests_table(1)
-    pairs = pair_tests(tests).table.set_index(["object", "motion"])
-    test = tests[(tests["object"] == "T2") & (tests["motion"] == "Kobe-F3")]
-    p = test.loc[test["pedestal"] == "P", "amplitude_g"].item()
-    np_ = test.loc[test["pedestal"] == "NP", "amplitude_g"].item()
-    assert pairs.loc[("T2", "Kobe-F3"), "d"] == pytest.approx(np.log(p / np_), abs=1e-14)
+    tests = tests_table(1).set_index(["object", "motion", "pedestal"])["amplitude_g"]
+    pairs = pair_tests(tests_table(1)).table.set_index(["object", "motion"])
+    ratio = tests["T2", "Kobe-F3", "P"] / tests["T2", "Kobe-F3", "NP"]
+    assert pairs.loc[("T2", "Kobe-F3"), "d"] == pytest.approx(np.log(ratio), abs=1e-14)
 
 
 def test_an_arrangement_is_paired_with_the_one_that_it_names(tests_table):
@@ -56,17 +54,26 @@ def test_missing_partner_is_left_out_and_named(tests_table):
     assert "T1/Friuli-GF without NP" in pairs.notes()[0]
 
 
-def test_censored_side_bounds_the_log_ratio(tests_table):
+@pytest.mark.parametrize(
+    ("censored", "lower", "upper", "bound", "limits"),
+    [
+        ("right", 0.6, np.nan, "at least", ("d", np.inf)),
+        ("none", 0.0, 0.6, "at most", (-np.inf, "d")),
+    ],
+)
+def test_censored_side_bounds_the_log_ratio(tests_table, censored, lower, upper, bound, limits):
+    """On a pedestal that never overturned, or did at its first step."""
     tests = tests_table(1)
-    row = tests.index[(tests["object"] == "T1") & (tests["motion"] == "Kobe-GF")]
-    np_row, p_row = row[0], row[1]
-    tests.loc[p_row, ["censored", "lower_g", "upper_g", "amplitude_g"]] = ["right", 0.6, None, None]
+    lone, on = tests.index[(tests["object"] == "T1") & (tests["motion"] == "Kobe-GF")]
+    values = [censored, lower, upper, np.nan]
+    tests.loc[on, ["censored", "lower_g", "upper_g", "amplitude_g"]] = values
     pairs = pair_tests(tests)
-    item = pairs.censored.iloc[0]
-    assert len(pairs.table) == 36
-    assert pairs.table.set_index(["object", "motion"])["bound"]["T1", "Kobe-GF"] == "at least"
-    assert item["d_lower"] == pytest.approx(np.log(0.6 / tests.loc[np_row, "amplitude_g"]))
-    assert item["d_upper"] == np.inf
+    item = pairs.table.set_index(["object", "motion"]).loc["T1", "Kobe-GF"]
+    d = np.log(0.6 / tests.loc[lone, "amplitude_g"])
+    assert len(pairs.table) == 36 and item["bound"] == bound
+    assert (item["d"], item["a_p_g"]) == pytest.approx((d, 0.6))
+    expected = [d if limit == "d" else limit for limit in limits]
+    assert pairs.censored.iloc[0][["d_lower", "d_upper"]].tolist() == pytest.approx(expected)
     assert "never" in pairs.notes()[0]
 
 
@@ -103,42 +110,19 @@ def test_what_cannot_be_used_is_said_in_one_sentence(tests_table, column, value,
     assert str(error.value).count("\n") == 0
 
 
-def test_duplicate_row_is_refused_with_both_row_numbers(tests_table):
-    tests = tests_table(1)
-    with pytest.raises(InputError, match="row 73: the same test as row 4"):
-        pair_tests(pd.concat([tests, tests.iloc[[3]]]))
-
-
-def test_mixed_readings_of_one_ida_are_refused(tests_table):
-    tests = tests_table(1).assign(definition="step_protocol")
-    tests.loc[0, "definition"] = "first_overturning"
-    with pytest.raises(InputError, match="several definitions"):
-        pair_tests(tests)
-
-
-def test_only_one_side_tested_is_an_error(tests_table):
-    tests = tests_table(1)
-    with pytest.raises(InputError, match="with and without pedestal"):
-        pair_tests(tests[tests["pedestal"] == "P"])
-
-
-def test_missing_column_and_empty_table_are_errors(tests_table):
-    with pytest.raises(InputError, match="floor missing"):
-        pair_tests(tests_table(1).drop(columns="floor"))
-    with pytest.raises(InputError, match="no rows"):
-        pair_tests(tests_table(1).iloc[:0])
-
-
-def test_test_that_overturned_at_its_first_step_bounds_the_ratio_from_above(tests_table):
-    tests = tests_table(1)
-    row = tests.index[(tests["object"] == "T1") & (tests["motion"] == "Kobe-GF")]
-    on = next(k for k in row if tests.loc[k, "pedestal"] == "P")
-    tests.loc[on, ["lower_g", "upper_g", "amplitude_g"]] = [0.0, 0.05, np.nan]
-    pairs = pair_tests(tests)
-    item = pairs.table.set_index(["object", "motion"]).loc[("T1", "Kobe-GF")]
-    assert item["bound"] == "at most"
-    assert item["a_p_g"] == pytest.approx(0.05)
-    assert np.isneginf(pairs.censored.iloc[0]["d_lower"])
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda t: pd.concat([t, t.iloc[[3]]]), "row 73: the same test as row 4"),
+        (lambda t: t.assign(definition=["first", *["step"] * 71]), "several definitions"),
+        (lambda t: t[t["pedestal"] == "P"], "with and without pedestal"),
+        (lambda t: t.drop(columns="floor"), "floor missing"),
+        (lambda t: t.iloc[:0], "no rows"),
+    ],
+)
+def test_tables_without_pairs_are_refused(tests_table, change, words):
+    with pytest.raises(InputError, match=words):
+        pair_tests(change(tests_table(1)))
 
 
 def test_each_pedestal_of_an_object_is_paired_with_the_lone_object(tests_table):

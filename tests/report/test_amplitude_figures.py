@@ -119,11 +119,7 @@ def effects() -> pd.DataFrame:
 def test_the_forest_draws_an_interval_only_where_there_is_one():
     figure = forest_figure(effects())
     labels = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
-    assert labels == [
-        "all pairs (3 earthquakes)",
-        "cellar (3 earthquakes)",
-        "attic (1 earthquake)",
-    ]
+    assert labels == ["all pairs (3 earthquakes)", "cellar (3 earthquakes)", "attic (1 earthquake)"]
     lines = [line for line in figure.axes[0].lines if len(line.get_xdata()) == 2]
     assert len(lines) == 2  # that of one, and one interval
 
@@ -148,9 +144,7 @@ def ida(amplitudes: list[float], fallen: list[bool]) -> pd.DataFrame:
         ([0.3], [True], 1),
     ],
 )
-def test_the_map_has_a_bar_for_each_range_that_overturns(
-    amplitudes: list[float], fallen: list[bool], bars: int
-):
+def test_the_map_has_a_bar_for_each_range_that_overturns(amplitudes, fallen, bars):
     axes = outcome_map(ida(amplitudes, fallen), ["vase"]).axes[0]
     assert len(axes.collections[0].get_paths()) == bars
 

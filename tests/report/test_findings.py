@@ -126,9 +126,7 @@ def effects(lower: float, ratio: float, upper: float, **changes: object) -> pd.D
         (effects(1.0, 1.0, 1.0), "The amplitudes with and without pedestal are the same"),
     ],
 )
-def test_the_pedestal_has_an_effect_only_where_the_interval_excludes_none(
-    table: pd.DataFrame, words: str
-):
+def test_the_pedestal_has_an_effect_only_where_the_interval_excludes_none(table, words):
     (found,) = pedestal_effect(table)
     assert words in found.headline
     assert "nan" not in found.said

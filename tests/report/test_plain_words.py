@@ -9,12 +9,12 @@ import pandas as pd
 import pytest
 
 import rockfrag
-from rockfrag.fragility.compared import compared_curves
+from rockfrag.fragility.curve_facts import compared_curves
 from rockfrag.report.findings import ONE_MOTION
 from rockfrag.report.glossary import TERMS, terms_used
 from rockfrag.report.page import render
-from rockfrag.report.part import Answer, Finding, Section, opened
-from rockfrag.report.wording import agree, estimate, spelled
+from rockfrag.report.part import Answer, Finding, Section, section_of
+from rockfrag.report.wording import agree, estimate, macros, spelled
 from rockfrag.stages.measure_selection import best_of
 
 SPEAKING = ("report", "assess", "survival", "pedestal", "fragility", "campaign", "stages")
@@ -155,8 +155,10 @@ def test_one_motion_gives_no_fragility_and_no_half_of_the_cases():
 
 
 def test_an_open_chapter_says_what_its_headline_rests_on():
-    assert opened(Finding("A", "b", "c")) == ["b", "c"]
-    assert opened(Finding("A")) == []
+    opening = macros("rockfrag.report", "opening.j2", {}).opening
+    section = section_of(opening("Title", Finding("A", "b", "c")), "anchor", [])
+    assert section == Section("anchor", "Title", "A.", ["b", "c"], [])
+    assert section_of(opening("Title", Finding("A")), "anchor", []).paragraphs == []
 
 
 def test_best_measures_are_among_those_asked_for():

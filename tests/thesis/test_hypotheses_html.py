@@ -2,7 +2,7 @@
 
 from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
 from rockfrag_thesis.hypotheses_html import hypotheses_html, outcomes_by_kind
-from rockfrag_thesis.sections.hypotheses import words_on_outcomes
+from rockfrag_thesis.sections.hypotheses import outcomes_section
 
 
 def test_the_hypothesis_table_shows_kind_outcome_rule_and_error_rate(made):
@@ -25,4 +25,5 @@ def test_outcomes_are_counted_by_kind(made):
 def test_the_words_state_how_many_statements_are_inferred(made):
     hypotheses = hypothesis_table(Evidence(made(noise=0.1), "measured"))
     inferred = hypotheses["p"].notna().sum()
-    assert f"of the {inferred} hypotheses" in words_on_outcomes(hypotheses)
+    section = outcomes_section("anchor", "Title", hypotheses, [])
+    assert f"of the {inferred} hypotheses" in section.paragraphs[0]

@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag_thesis.sections.inverse_problem import inverse_problem_words
 from rockfrag_thesis.sensitivity_analysis.inverse_problem import (
     friction_perturbations,
     hotelling,
-    inverse_problem_words,
     invert,
 )
 

@@ -53,9 +53,7 @@ def test_what_mechanics_settles_is_settled(hypothesis_table: pd.DataFrame, numbe
 
 
 @pytest.mark.parametrize("number", [9, 11, 12, 21, 23])
-def test_what_holds_for_the_specimens_alone_says_so(
-    hypothesis_table: pd.DataFrame, number: int
-) -> None:
+def test_what_holds_for_the_specimens_alone_says_so(hypothesis_table, number):
     row = hypothesis_table.loc[number]
     assert row["outcome"] == "confirmed for the specimens, with exceptions elsewhere", row
 
@@ -81,8 +79,8 @@ def test_error_of_the_linearised_quarter_period(hypothesis_table: pd.DataFrame) 
 
 
 def test_a_sudden_acceleration_starts_rocking_mode_1_and_a_continuous_one_does_not(
-    hypothesis_table: pd.DataFrame,
-) -> None:
+    hypothesis_table,
+):
     records, sudden = hypothesis_table.loc[9, "figure"].split("under motions")
     fraction, total = records.split(" start")[0].split(" of ")
     assert fraction == total
@@ -142,9 +140,7 @@ def test_the_thesis_s_own_formula_has_the_pedestal_lifted(name: str) -> None:
     assert after2 == pytest.approx(b * before, rel=1e-9)
 
 
-def test_pedestals_of_random_stacks_come_to_rest_under_a_rocking_statue(
-    hypothesis_table: pd.DataFrame,
-) -> None:
+def test_pedestals_of_random_stacks_come_to_rest_under_a_rocking_statue(hypothesis_table):
     specimens, elsewhere = hypothesis_table.loc[11, "figure"].split("; random stacks")
     assert "0 neither" in specimens
     assert "1a→4a" in elsewhere
@@ -170,9 +166,7 @@ def history(name: str, e: float) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize(
     ("restitution", "outcome"), [(0.87, "confirmed"), (None, "rejected")], ids=["real", "ideal"]
 )
-def test_measured_free_rocking_decides_about_restitution(
-    restitution: float | None, outcome: str
-) -> None:
+def test_measured_free_rocking_decides_about_restitution(restitution, outcome):
     ideal = THESIS_BODIES["T3"].momentum_restitution()
     e = restitution or ideal
     table = theory_table(THESIS_BODIES, [], seed=1, free_rocking={"T3": history("T3", e)})
@@ -197,9 +191,7 @@ def test_an_unusable_history_is_the_users_error() -> None:
     ],
     ids=["nothing", "one block", "no shaking"],
 )
-def test_what_the_data_cannot_say_is_open_with_the_reason(
-    specimens: dict[str, Block], motions: list[Motion], opened: set[int]
-) -> None:
+def test_what_the_data_cannot_say_is_open_with_the_reason(specimens, motions, opened):
     for row in theory_table(specimens, motions, seed=1).itertuples():
         assert (row.outcome == "undecided") == (row.number in opened), row
         if row.number in opened:

@@ -112,7 +112,7 @@ def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
     assert beside["ratio"].notna().sum() == 3
     hypotheses = pd.read_parquet(results / "measured" / "hypotheses.parquet")
     about_data = hypotheses[hypotheses["kind"] != "identity"]
-    assert (about_data["outcome"] == "open").all()
+    assert (about_data["outcome"] == "undecided").all()
 
     margins = pd.read_csv(results / "building_sensitivity" / "margins.csv")
     assert set(margins["label"]) == {"reference", "first period 0.5 s", "levels F3 3, F5 6"}

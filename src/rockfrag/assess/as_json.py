@@ -4,8 +4,6 @@ import json
 import math
 from typing import Any
 
-import numpy as np
-
 from rockfrag import __version__
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.risk import LEVEL, Estimate
@@ -91,7 +89,7 @@ def _two_measures(found: Assessment) -> dict[str, Any] | None:
     if about is None or found.level is None:
         return None
     known = about.known and {
-        "log_ratio": float(about.known.log_ratio(np.array([found.level.value]))[0]),
+        "log_ratio": about.site_log(found.level),
         "sd_between_earthquakes": about.known.spread,
     }
     return {

@@ -3,7 +3,7 @@
 from rockfrag.assess.answer import Assessment
 from rockfrag.fragility.identifiers import identifiers
 from rockfrag.fragility.model_error import MODEL_ERRORS
-from rockfrag.fragility.nrml import discrete_function, model_text
+from rockfrag.fragility.nrml import model_text
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 
 
@@ -16,12 +16,12 @@ def as_nrml(found: Assessment) -> str:
     name, outcomes = found.request.name, found.outcomes
     reached = {*outcomes.others, OVERTURNS}
     states = [state.name for state in limit_states() if state.name in reached]
-    function = discrete_function(
-        identifiers([name], "_:-")[name],
-        found.measure.imt,
-        outcomes.intensity_levels.levels,
-        {state: outcomes.fractions(state=state) for state in states},
-    )
+    function = {
+        "id": identifiers([name], "_:-")[name],
+        "imt": found.measure.imt,
+        "levels": outcomes.intensity_levels.levels.tolist(),
+        "chances": {state: outcomes.fractions(state=state).tolist() for state in states},
+    }
     kind = found.request.objects.kind
     error = MODEL_ERRORS[kind]
     words = (

@@ -357,11 +357,7 @@ def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:
 
 def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
     from rockfrag.assess.gallery import write_inventory
-    from rockfrag.assess.inventory import (
-        assess_inventory,
-        inventory_lines,
-        joint_lines,
-    )
+    from rockfrag.assess.inventory import assess_inventory, inventory_lines, joint_lines
 
     unfit = [key for key in ("name", "width", "height", "mesh") if key in shared]
     if unfit:

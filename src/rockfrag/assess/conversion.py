@@ -84,23 +84,30 @@ class Conversion:
     spread: float  # Standard deviation of the mean of ln ratio at the site [-]
     shift: float  # Standard deviation of ln level that follows, with the error of the weight [-]
     by_statics: bool  # Whether the level alone decides what rocks, as PGA does on the ground
-    words: str  # A sentence for the page
 
     def of(self, motions: MotionSet) -> "Conversion":
         """The same for other motions of the set."""
         return replace(self, logs=motions.log_ratios(self.measure))
 
-    def beyond(self, level: Level | None) -> str:
-        """What to say where the velocity of the site is unlike that of any motion; empty where it is not."""
-        if self.known is None or level is None:
-            return ""
-        mean = float(self.known.log_ratio(np.array([level.value]))[0])
-        if self.logs.min() <= mean <= self.logs.max():
-            return ""
-        ends = " to ".join(
-            f"{VELOCITY_PER_G * math.exp(x):.3g}" for x in (self.logs.min(), self.logs.max())
-        )
-        return f"A PGV of {_per_unit(mean, self.measure)} is that of no motion ({ends}); check both levels."
+    @property
+    def of_set(self) -> float:
+        """Median of PGV over the measure of the motions [cm/s per unit]."""
+        return VELOCITY_PER_G * math.exp(float(np.median(self.logs)))
+
+    @property
+    def ends(self) -> list[float]:
+        """Least and largest PGV over the measure of the motions [cm/s per unit]."""
+        return [VELOCITY_PER_G * math.exp(log) for log in (self.logs.min(), self.logs.max())]
+
+    def site_log(self, level: Level | None) -> float:
+        """Mean of ln (PGV over the measure [s]) at the site's level, where something is known of it."""
+        assert self.known is not None
+        at = 1.0 if level is None else level.value
+        return float(self.known.log_ratio(np.array([at]))[0])
+
+    def at_level(self, level: Level | None) -> float:
+        """The same as PGV over the measure [cm/s per unit]."""
+        return VELOCITY_PER_G * math.exp(self.site_log(level))
 
     def at_site(self, outcomes: ObjectOutcomes) -> ObjectOutcomes:
         """Outcomes under motions with the velocity of the site; as they are where nothing is known of it."""
@@ -189,7 +196,6 @@ def find_conversion(
         spread,
         math.hypot(weight * spread, error * away),
         by_statics,
-        _words(measure, weight, logs, known, spread, level),
     )
 
 
@@ -290,33 +296,17 @@ class OfTwoCurves(SiteVelocity):
 
 @dataclass(frozen=True)
 class VelocityRelation:
-    """How ln (PGV over a measure) follows magnitude, ln distance and ln Vs30 among the records of a set.
+    """How ln (PGV over a measure) follows magnitude, ln distance and ln Vs30 among the records of a set."""
 
-    Attributes
-    ----------
-    coefficients
-        Of 1 and the three; only the mean where fewer than ``FEWEST_RECORDS`` records are known so well.
-    middle
-        Mean of the three in the set.
-    scatter
-        Standard deviation about the relation [-].
-    """
-
+    # Of 1 and the three; only the mean where fewer than ``FEWEST_RECORDS`` records are known so
+    # well
     coefficients: tuple[float, ...]
-    middle: tuple[float, ...]
-    scatter: float
+    middle: tuple[float, ...]  # Mean of the three in the set
+    scatter: float  # Standard deviation about the relation [-]
 
     @classmethod
     def of(cls, about: Sequence[Mapping[str, object]], logs: Floats) -> "VelocityRelation":
-        """Fit it to records.
-
-        Parameters
-        ----------
-        about
-            What is known of the record of each motion.
-        logs
-            ln ratio of each motion, shape (motions,).
-        """
+        """Fit it to what is known of the record of each motion, and to its ln ratio, shape (motions,)."""
         table = pd.DataFrame(
             {
                 "record": [
@@ -363,43 +353,3 @@ def _number(about: Mapping[str, object], key: str) -> float:
     """A number that is known of a record and above 0, NaN where none is."""
     value = about.get(key)
     return float(value) if isinstance(value, int | float) and value > 0 else math.nan
-
-
-def _per_unit(log_ratio: float, measure: IntensityMeasure) -> str:
-    return f"{VELOCITY_PER_G * math.exp(log_ratio):.3g} cm/s per {measure.unit}"
-
-
-def _words(
-    measure: IntensityMeasure,
-    weight: float,
-    logs: Floats,
-    known: SiteVelocity | None,
-    spread: float,
-    level: Level | None,
-) -> str:
-    """A sentence for the page."""
-    governs = "velocity governs" if weight > 0.5 else "velocity matters less"
-    of_set = _per_unit(float(np.median(logs)), measure)
-    if known is None:
-        return (
-            f"The hazard is in {measure.imt}, while {governs} for this object (weight {weight:.2f}). The motions "
-            f"have a PGV of {of_set} on average; that of the site may differ by a factor of "
-            f"{math.exp(spread):.2f} (standard deviation), which widens the interval."
-        )
-    at = level.value if level is not None else 1.0
-    site = _per_unit(float(known.log_ratio(np.array([at]))[0]), measure)
-    counted = (
-        f"; that it differs from one earthquake to the next by a factor of {math.exp(known.spread):.2f} (standard "
-        "deviation) is counted in the result"
-        if known.spread > 0
-        else ""
-    )
-    rest = (
-        f". The mean at the site may differ by a factor of {math.exp(spread):.2f}, which widens the interval."
-        if spread > 0
-        else "."
-    )
-    return (
-        f"Toppling is counted in two measures, {measure.imt} and PGV over it; {governs} (weight {weight:.2f}). A "
-        f"PGV of {site} comes with that level at the site, {of_set} in the motions{counted}{rest}"
-    )

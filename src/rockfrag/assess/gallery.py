@@ -16,17 +16,19 @@ from rockfrag.assess.inventory import Inventory, best_change, inventory_table, j
 from rockfrag.assess.joint import JointRisk
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.risk import probability_in
-from rockfrag.assess.words import estimate_words, fraction_words, mitigation_words, range_words
-from rockfrag.figure_style import (
-    BLUE,
-    COLUMN_WIDTH,
-    PAGE_WIDTH,
-    one_panel,
-    plain_log,
-)
+from rockfrag.assess.words import estimate_words, mitigation_words, sentences
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, one_panel, plain_log
 from rockfrag.files import write_table, write_text
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.part import (
+    Answer,
+    FigureSpec,
+    Finding,
+    Section,
+    figure_of,
+    finding_of,
+    section_of,
+)
 from rockfrag.report.study_report import page_text
 
 MOST_DRAWN = 40
@@ -66,26 +68,9 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
     """Return the page as HTML, which loads nothing from outside."""
     first = inventory.found[0].request
     years, valued = first.years, math.isfinite(first.value)
-    numbers = FigureSpec(
-        "numbers",
-        "Probability that at least so many objects topple in one earthquake.",
-        f"Probability that at least so many objects topple in one earthquake of {years:g} years. Limits (90 %) "
-        "count few earthquakes, the model and both components.",
-        lambda: numbers_figure(joint, years),
-    )
-    losses = FigureSpec(
-        "losses",
-        "Probability that one earthquake costs more than a loss.",
-        f"Probability that the loss in one earthquake of {years:g} years is as large or larger.",
-        lambda: losses_figure(joint, years),
-    )
-    correlation = FigureSpec(
-        "correlation",
-        "Correlation of the toppling of each two objects, from 0 (white) to 1 (dark).",
-        "Correlation of the toppling of each two objects in time: the rate of earthquakes that topple both over "
-        "the geometric mean of both rates. Equal objects on one floor have 1.",
-        lambda: correlation_figure(joint),
-    )
+    says = sentences("gallery.j2")
+    numbers = figure_of(says.numbers_figure(years), "numbers", lambda: numbers_figure(joint, years))
+    losses = figure_of(says.losses_figure(years), "losses", lambda: losses_figure(joint, years))
     count = len(inventory.found)
     return page_text(
         title=f"What {count} objects risk together",
@@ -93,7 +78,7 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
         answer=Answer(
             "How many topple in one earthquake, what is lost, and what helps?",
             [
-                _how_many(joint, years),
+                finding_of(says.how_many(joint.numbers.iloc[0], joint.numbers.iloc[-1], years)),
                 *(Finding(words.rstrip(".")) for words in joint_lines(inventory)[1:]),
             ],
             numbers,
@@ -101,20 +86,9 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
         sections=[
             _ranking(inventory, joint, "loss" if valued else "number"),
             _numbers(joint, [losses] if valued and len(joint.losses) > 1 else []),
-            _correlation(joint, correlation),
+            _correlation(joint),
         ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
-    )
-
-
-def _how_many(joint: JointRisk, years: float) -> Finding:
-    """How probably one object or more topples, and so many together."""
-    row = joint.numbers.iloc[0]
-    limits = range_words(row["probability_lower"], row["probability_upper"])
-    last = joint.numbers.iloc[-1]
-    return Finding(
-        f"One or more topple in {years:g} years with {fraction_words(row['probability'])} ({limits})",
-        f"At least {last['at_least']:.0f} topple together with {fraction_words(last['probability'])}.",
     )
 
 
@@ -133,15 +107,12 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
                 "change": mitigation_words(found, best) if best else "–",
             }
         )
-    top = joint.objects.iloc[0]
-    message = f"{top['name']} adds most"
-    if math.isfinite(top["contribution"]):
-        message += f", {100 * top['contribution']:.0f} % of the mean {mean}"
     caption = (
         "The objects, the one that adds most first; each change is simulated as a body of its own."
     )
     table = table_html(pd.DataFrame(rows), RANKING, caption, "inventory.csv")
-    return Section("ranking", "Rank and what helps", f"{message}.", (), [table])
+    text = sentences("gallery.j2").ranking(joint.objects.iloc[0], mean)
+    return section_of(text, "ranking", [table])
 
 
 def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
@@ -157,28 +128,20 @@ def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
     )
     most = int(joint.numbers["at_least"].max())
     rate = joint.numbers["annual_rate"].iloc[-1]
-    return Section(
-        "numbers",
-        "How many topple",
-        f"At least {most} topple together every {float(f'{1 / rate:.2g}'):.0f} years."
-        if rate
-        else "None topples.",
-        (
-            "What is not known of each body itself is in the interval of that body, and not counted here.",
-        ),
-        [table_html(numbers, columns, "How many objects topple in one earthquake."), *figures],
-    )
+    years = float(f"{1 / rate:.2g}") if rate else 0.0
+    table = table_html(numbers, columns, "How many objects topple in one earthquake.")
+    text = sentences("gallery.j2").numbers(most, years)
+    return section_of(text, "numbers", [table, *figures])
 
 
-def _correlation(joint: JointRisk, figure: FigureSpec) -> Section:
+def _correlation(joint: JointRisk) -> Section:
     apart = joint.correlation.to_numpy()[np.triu_indices(len(joint.correlation), 1)]
     known = apart[np.isfinite(apart)]
-    message = (
-        f"Two objects of the gallery have a correlation of {np.median(known):.2f} (median)."
-        if known.size
-        else "No two objects topple under the motions tried."
-    )
-    return Section("correlation", "What belongs together", message, (), [figure])
+    says = sentences("gallery.j2")
+    text = says.correlation_figure()
+    figure = figure_of(text, "correlation", lambda: correlation_figure(joint))
+    text = says.correlation(np.median(known) if known.size else None)
+    return section_of(text, "correlation", [figure])
 
 
 def numbers_figure(joint: JointRisk, years: float) -> Figure:

@@ -10,28 +10,15 @@ from typing import Any
 
 import pandas as pd
 
-from rockfrag.assess.answer import (
-    RECORDS,
-    Assessment,
-    assessed,
-    plan_for,
-    shake_all,
-)
+from rockfrag.assess.answer import RECORDS, Assessment, assessed, plan_for, shake_all
 from rockfrag.assess.joint import JointRisk, joint_risk
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.request import Request, make_request
-from rockfrag.assess.scale import SCALE_WORDS, step_of
-from rockfrag.assess.words import (
-    does_not_move,
-    estimate_words,
-    fraction_words,
-    mitigation_words,
-    range_words,
-)
+from rockfrag.assess.words import mitigation_words, sentences
 from rockfrag.errors import InputError
 from rockfrag.files import check_name, file_name
-from rockfrag.report.wording import counted
+from rockfrag.report.wording import one_line, said
 from rockfrag.tabular import Row, read_rows
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
@@ -55,13 +42,7 @@ class Inventory:
 
 
 class FaultyRows(InputError):
-    """Rows of an inventory that cannot be used, all of them.
-
-    Parameters
-    ----------
-    faults
-        What is wrong with each, a sentence.
-    """
+    """Rows of an inventory that cannot be used, with what is wrong with each, a sentence."""
 
     def __init__(self, faults: Sequence[str]) -> None:
         more = f" ({len(faults)} rows are wrong in all)" if len(faults) > 1 else ""
@@ -266,24 +247,10 @@ def joint_lines(inventory: Inventory) -> list[str]:
     joint, first = inventory.joint, inventory.found[0]
     if joint is None:
         return []
-    columns = ["at_least", "probability", "probability_lower", "probability_upper"]
-    at_least = ", ".join(
-        f"{least:g}: {fraction_words(value)} ({range_words(lower, upper)})"
-        for least, value, lower, upper in joint.numbers[columns].to_numpy(dtype=float).tolist()
-    )
-    years = f"{first.request.years:g} years"
-    lines = [
-        f"At least so many topple in one earthquake, probability in {years}: {at_least}; of the bodies' own "
-        "uncertainties none is counted here."
-    ]
-    top = joint.objects.iloc[0]
-    if math.isfinite(first.request.value):
-        total = joint.objects["annual_loss"].sum()
-        lines.append(
-            f"The mean loss a year is {total:.3g} in the unit of the values, {100 * top['contribution']:.0f} % "
-            f"of it of "
-            f"{top['name']}."
-        )
+    says, valued = sentences("gallery.j2"), math.isfinite(first.request.value)
+    rows = joint.numbers.to_dict("records")
+    lines = said(says.together(rows, first.request.years))
+    lines += said(says.adds_most(joint, joint.objects.iloc[0], valued))
     best = best_change(first)
     if best is not None:
         lines.append(f"For {first.request.name}: {mitigation_words(first, best)}.")
@@ -294,36 +261,10 @@ def inventory_lines(inventory: Inventory) -> list[str]:
     """One line an object, the one most at risk first."""
     first = inventory.found[0]
     longest = max(len(found.request.name) for found in inventory.found)
-    head = f"{counted(len(inventory.found), 'object')}, the one most at risk first"
-    if first.probability:
-        head += (
-            f": probability of toppling in {first.request.years:g} years (90 % interval), and what that is on our "
-            f"scale ({SCALE_WORDS})"
-        )
-    elif first.level:
-        head += f": fraction of the motions that topple it at {first.level.words} (90 % interval)"
-    if inventory.faults:
-        head += f"; {counted(len(inventory.faults), 'row')} left out"
-    lines = [f"{head}."]
+    says = sentences("gallery.j2")
+    lines = [one_line(says.head(first, len(inventory.found), len(inventory.faults)))]
     for i, found in enumerate(inventory.found, start=1):
-        words = f"{_words(found):<34}"
-        lines.append(
-            f"{i:4d}  {found.request.name:<{longest}}  {words}  {_half(found)}, {found.request.place.words}"
-        )
+        name, place = found.request.name, found.request.place.words
+        fares, half = one_line(says.fares(found)), one_line(says.half(found))
+        lines.append(f"{i:4d}  {name:<{longest}}  {fares:<34}  {half}, {place}")
     return lines
-
-
-def _words(found: Assessment) -> str:
-    if found.probability:
-        step = step_of(found.probability.value, found.request.years)
-        return f"{estimate_words(found.probability)}, {step.name}"
-    if found.fraction is None:
-        return ""
-    return "does not move" if does_not_move(found) else estimate_words(found.fraction)
-
-
-def _half(found: Assessment) -> str:
-    half = found.amplitudes[0.5].value
-    if not math.isfinite(half):
-        return "no shaking tried topples it in half of the motions"
-    return f"half of the motions topple it at {half:.2g} {found.measure.unit}"

@@ -148,14 +148,3 @@ def _limits(
     ratios = np.log(pairs[:, 0] / pairs[:, 1])
     half = float(stats.t.ppf(0.5 + LEVEL / 2, groups - 1) * jackknife_error(ratios))
     return factor * math.exp(-half), factor * math.exp(half)
-
-
-def without_simulation() -> list[str]:
-    """What is named but not simulated, each in a sentence."""
-    return [
-        "Fixing everything to the floor ends rocking; its anchors then carry the whole inertia.",
-        "Base isolation helps against fast shaking and little against slow pulses; it needs a design of its own "
-        "and is not simulated here.",
-        "An object on a pad (--pad-friction) slides instead of rocking; how far is said, and that it may leave "
-        "what it stands on, or meet a wall, is not counted.",
-    ]

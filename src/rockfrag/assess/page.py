@@ -3,6 +3,7 @@
 import os
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -14,33 +15,21 @@ from rockfrag.assess.as_nrml import as_nrml
 from rockfrag.assess.figures import fractions_figure, sources_figure
 from rockfrag.assess.glossary import words_used
 from rockfrag.assess.live import live_of
-from rockfrag.assess.mitigations import without_simulation
-from rockfrag.assess.scale import SCALE_WORDS
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.words import (
-    MOST_ASSUMPTIONS,
     NAMES,
-    assumptions,
-    at_the_site,
-    estimate_words,
     fraction_words,
     headline,
-    helps,
     mitigation_words,
-    positions,
-    quality_flags,
-    risk,
-    short_assumptions,
-    uncertainty,
+    sentences,
     value_words,
-    worst_direction,
 )
 from rockfrag.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.report.page import Column, table_html, text_table
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.part import Answer, FigureSpec, Section, figure_of, finding_of, section_of
 from rockfrag.report.study_report import page_text
-from rockfrag.report.wording import sentence
+from rockfrag.report.wording import one_line, said, sentence
 
 MOTIONS_SHOWN = 15
 """Rows of the table of motions that topple the object first."""
@@ -63,9 +52,18 @@ def page_of(found: Assessment) -> str:
     """Return the page as HTML, which loads nothing from outside."""
     return page_text(
         _answer(found),
-        _sections(found),
+        [
+            _mitigations(found),
+            _arrangements(found),
+            _sure(found),
+            section_of(_says().assumed(found), "assumed", []),
+            *([_rules(found)] if found.rules else []),
+            _levels(found),
+            _motions(found),
+            _glossary(found),
+        ],
         title=headline(found),
-        lead=f"{sentence(found.request.name)} {found.request.place.words}, shaken by {found.motions.words}.",
+        lead=one_line(_says().lead(found)),
         provenance={
             "Program": f"rockfrag {version('rockfrag')}",
             "Motions": found.motions.words,
@@ -75,27 +73,19 @@ def page_of(found: Assessment) -> str:
     )
 
 
+def _says() -> Any:
+    """The macros of ``page.j2``."""
+    return sentences("page.j2")
+
+
 def _answer(found: Assessment) -> Answer:
-    doubtful = [*quality_flags(found), *uncertainty(found), worst_direction(found)]
+    figure = _says().fractions_figure(found)
     return Answer(
         asked="Does it topple, how probable is that, and what helps?",
-        sentences=[
-            Finding("At the site", at_the_site(found)),
-            Finding(f"In {found.request.years:g} years", risk(found)),
-            Finding("What helps", helps(found)),
-        ],
-        figure=FigureSpec(
-            "fractions",
-            f"Motions that topple the object by the level of shaking. {at_the_site(found)}",
-            "Motions that topple it when they are scaled to a level of shaking; the band is what another "
-            "choice of as many earthquakes could show (90 %).",
-            lambda: fractions_figure(found),
-        ),
-        rests_on=[
-            f"{found.motions.words}.",
-            *(line.words for line in short_assumptions(found)[:MOST_ASSUMPTIONS]),
-        ],
-        could_change=doubtful,
+        sentences=[finding_of(line) for line in said(_says().findings(found))],
+        figure=figure_of(figure, "fractions", lambda: fractions_figure(found)),
+        rests_on=said(_says().rests_on(found)),
+        could_change=said(_says().could_change(found)),
         questions=[
             ("What helps?", "mitigations"),
             ("How does it stand best?", "arrangements"),
@@ -104,19 +94,6 @@ def _answer(found: Assessment) -> Answer:
             *([("What if it were 5 cm wider?", "live")] if not found.request.objects.round else []),
         ],
     )
-
-
-def _sections(found: Assessment) -> list[Section]:
-    return [
-        _mitigations(found),
-        _arrangements(found),
-        _sure(found),
-        _assumed(found),
-        *([_rules(found)] if found.rules else []),
-        _levels(found),
-        _motions(found),
-        _glossary(found),
-    ]
 
 
 def _mitigations(found: Assessment) -> Section:
@@ -132,7 +109,7 @@ def _mitigations(found: Assessment) -> Section:
         "Each change is simulated with the same motions and compared with the object as it stands.",
         ["With it"],
     )
-    return Section("mitigations", "What helps", helps(found), without_simulation(), [table])
+    return section_of(_says().mitigations(found), "mitigations", [table])
 
 
 def _arrangements(found: Assessment) -> Section:
@@ -144,50 +121,15 @@ def _arrangements(found: Assessment) -> Section:
         "The same object under the same motions.",
         ["Estimate"],
     )
-    words = []
-    directions = found.directions
-    if directions and np.isfinite(directions.factor):
-        words.append(
-            f"{directions.records} records with two components were turned through all directions. If each came "
-            f"from its worst one, {100 * directions.factor:.0f} % of the shaking would topple the object"
-            + (
-                f", and {100 * directions.worst_fraction:.0f} % instead of "
-                f"{100 * directions.fraction:.0f} % of the records at the site's level."
-                if np.isfinite(directions.fraction)
-                else "."
-            )
-            + " The figures of this page are for directions at random; the worst one is not counted in them. Both "
-            "components at once are not simulated either."
-        )
-    if len(found.by_arrangement) > 1:
-        stand = found.request.objects.stand
-        words.append(f"On the floor is also what remains with the {stand} fixed to it.")
-    title = "How it stands best, and the worst direction"
-    return Section("arrangements", title, positions(found), words, [table])
+    return section_of(_says().arrangements(found), "arrangements", [table])
 
 
 def _sure(found: Assessment) -> Section:
     parts: list[Markup | FigureSpec] = [_sources(found), _effects(found)]
     if found.main.sources:
-        parts.insert(
-            0,
-            FigureSpec(
-                "sources",
-                "How much each source of uncertainty widens the interval.",
-                "What widens the interval.",
-                lambda: sources_figure(found),
-            ),
-        )
-    words = [
-        "The interval holds what is not known; the variances of all its sources are added. What differs from one "
-        "earthquake to the next is not ignorance and stands in the result itself."
-    ]
-    if found.probability or found.fraction:
-        words.insert(0, f"The result is {estimate_words(found.main)}.")
-    if found.probability:
-        words.append(f"Our scale of risk: {SCALE_WORDS}. The steps are ours.")
-    message = " ".join(uncertainty(found)) or "No interval can be given of sources that all agree."
-    return Section("sure", "How sure that is", message, words, parts)
+        text = _says().sources_figure()
+        parts.insert(0, figure_of(text, "sources", lambda: sources_figure(found)))
+    return section_of(_says().sure(found), "sure", parts)
 
 
 def _sources(found: Assessment) -> Markup:
@@ -223,15 +165,6 @@ def _effects(found: Assessment) -> Markup:
     )
 
 
-def _assumed(found: Assessment) -> Section:
-    return Section(
-        "assumed",
-        "What was assumed",
-        "What was not given, and what the model leaves out; that first which matters most.",
-        assumptions(found),
-    )
-
-
 def _rules(found: Assessment) -> Section:
     table = pd.DataFrame(
         {
@@ -247,16 +180,8 @@ def _rules(found: Assessment) -> Section:
         Column("scatter", "Scatter (ln)", 2),
         Column("unsafe", "Motions that topple it earlier", numeric=True),
     )
-    return Section(
-        "rules",
-        "What rules of thumb say",
-        "Checks of practice beside the simulation of this object.",
-        [
-            "A ratio below 1 is cautious, above 1 unsafe. An object on a pedestal is checked alone and as one "
-            "body with it, and the lower amplitude counts, as practice does with three models."
-        ],
-        [table_html(table, columns, "Rules held against every motion that topples the object.")],
-    )
+    caption = "Rules held against every motion that topples the object."
+    return section_of(_says().rules(), "rules", [table_html(table, columns, caption)])
 
 
 def _levels(found: Assessment) -> Section:
@@ -298,31 +223,8 @@ def _levels(found: Assessment) -> Section:
             for level in levels
         ]
         columns.append(Column("rate", "Return period [years]", numeric=True))
-    curve = found.curve
-    words = []
-    if curve is not None and np.isfinite(curve.fit.theta):
-        words = [
-            f"As a lognormal curve: median {curve.fit.theta:.3g} {found.measure.unit}, β {curve.fit.beta:.2f}.",
-            *curve.warnings,
-        ]
-    starts = (
-        f"It starts to rock at {found.measure.imt} {found.rocks_from:.2g} {found.measure.unit}."
-        if np.isfinite(found.rocks_from)
-        else "Nothing that was tried makes it rock."
-    )
-    return Section(
-        "levels",
-        "At other levels",
-        starts,
-        words,
-        [
-            table_html(
-                table,
-                columns,
-                "Motions that make it rock, and that topple it, by the level of shaking.",
-            )
-        ],
-    )
+    caption = "Motions that make it rock, and that topple it, by the level of shaking."
+    return section_of(_says().levels(found), "levels", [table_html(table, columns, caption)])
 
 
 def _years(period: float) -> str:
@@ -336,27 +238,19 @@ def _glossary(found: Assessment) -> Section:
     table = text_table(
         {"Word": words, "What it means here": meanings}, "Words and abbreviations of this page."
     )
-    message = "What the words of earthquake engineers mean."
-    return Section("glossary", "Words used here", message, (), [table])
+    return section_of(_says().glossary(), "glossary", [table])
 
 
 def _motions(found: Assessment) -> Section:
     first = found.counted.first_levels()
     order = np.argsort(first, kind="stable")[:MOTIONS_SHOWN]
+    shaking = [found.motions.ground[i] for i in order]
+    stations = [str(motion.metadata.get("station", "")) for motion in shaking]
+    places = zip(found.motions.earthquakes[order], stations, strict=True)
     table = pd.DataFrame(
         {
-            "name": [found.motions.ground[i].name for i in order],
-            "earthquake": [
-                ", ".join(
-                    dict.fromkeys(
-                        [
-                            str(found.motions.earthquakes[i]),
-                            str(found.motions.ground[i].metadata.get("station", "")),
-                        ]
-                    )
-                ).strip(", ")
-                for i in order
-            ],
+            "name": [motion.name for motion in shaking],
+            "earthquake": [", ".join(dict.fromkeys(place)).strip(", ") for place in places],
             "recorded": found.motions.values(found.measure)[order],
             "first": first[order],
         }
@@ -367,10 +261,5 @@ def _motions(found: Assessment) -> Section:
         Column("recorded", f"As recorded [{found.measure.unit}]", 2),
         Column("first", f"Topples it from [{found.measure.unit}]", 2),
     )
-    return Section(
-        "motions",
-        "Which motions topple it first",
-        found.motions.words + ".",
-        (),
-        [table_html(table, columns, "The motions that need the least shaking.")],
-    )
+    caption = "The motions that need the least shaking."
+    return section_of(_says().motions(found), "motions", [table_html(table, columns, caption)])

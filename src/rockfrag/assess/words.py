@@ -11,9 +11,9 @@ from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.narrowing import MEASUREMENTS, is_wide, narrowed
 from rockfrag.assess.outcomes import LARGEST_FACTOR
 from rockfrag.assess.risk import LEVEL, Estimate
-from rockfrag.assess.scale import SCALE_WORDS, classes
+from rockfrag.assess.scale import SCALE_WORDS, classes, step_of
 from rockfrag.assess.sources import SOURCES, parts_of
-from rockfrag.report.wording import macros, said
+from rockfrag.report.wording import macros, one_line, said
 
 NAMES: Mapping[str, str] = {name: source.words for name, source in SOURCES.items()}
 """Sources of uncertainty and assumptions as a reader may know them."""
@@ -147,89 +147,49 @@ def _largest_sources(found: Assessment) -> list[str]:
 
 
 @cache
-def _sentences() -> Any:
-    """The macros of ``words.j2``."""
+def sentences(template: str = "words.j2") -> Any:
+    """The macros of a template: ``words.j2`` of the answer, ``page.j2`` of its page, ``gallery.j2``."""
     words = (
+        *(estimate_words, mitigation_words, step_of),
         *(all_assumed, classes, does_not_move, fraction_words, narrowed, not_decidable),
         *(range_words, short_assumptions, value_words),
     )
     return macros(
         "rockfrag.assess",
-        "words.j2",
+        template,
         {function.__name__: function for function in words}
         | {"LEVEL": LEVEL, "MANY": MANY, "FEW": FEW, "SCALE_WORDS": SCALE_WORDS}
-        | {"LARGEST_FACTOR": LARGEST_FACTOR, "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS}
+        | {"LARGEST_FACTOR": LARGEST_FACTOR, "exp": math.exp, "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS}
         | {"MEASUREMENTS": MEASUREMENTS, "influential": _influential, "limits": _limits}
         | {"largest_sources": _largest_sources, "ranked": _ranked},
     )
 
 
-def _said(name: str, *about: Any) -> list[str]:
-    """What a macro says, line by line."""
-    return said(getattr(_sentences(), name)(*about))
-
-
-def _words(name: str, *about: Any) -> str:
-    """What a macro says, in one line."""
-    return " ".join(_said(name, *about))
-
-
 def headline(found: Assessment) -> str:
     """Say in a few words whether the object rocks and topples; the heading of the page."""
-    return _words("headline", found)
-
-
-def at_the_site(found: Assessment) -> str:
-    """What happens at the level asked about, or which levels topple the object."""
-    return _words("at_the_site", found)
-
-
-def risk(found: Assessment) -> str:
-    """The probability, whether that is much, and what to do."""
-    return _words("risk", found)
-
-
-def positions(found: Assessment) -> str:
-    """The ways in which it can stand, the best one, and the direction that it faces."""
-    return _words("positions", found)
-
-
-def worst_direction(found: Assessment) -> str:
-    """In which plane it rocks, and whether the worst direction is counted."""
-    return _words("worst_direction", found)
+    return one_line(sentences().headline(found))
 
 
 def helps(found: Assessment) -> str:
     """Changes that help, most helpful first."""
-    return _words("helps", found)
+    return one_line(sentences().helps(found))
 
 
 def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
     """A change and what it does to the risk, or to the shaking that the object bears."""
-    return _words("mitigation", found, mitigation)
-
-
-def uncertainty(found: Assessment) -> list[str]:
-    """Sentences of what makes the interval wide, and of what would narrow it."""
-    return _said("uncertainty", found)
+    return one_line(sentences().mitigation(found, mitigation))
 
 
 def assumptions(found: Assessment) -> list[str]:
     """Sentences of all that was assumed and of all that a reader must know."""
-    return _said("assumptions", found)
+    return said(sentences().assumptions(found))
 
 
 def quality_flags(found: Assessment) -> list[str]:
     """Sentences of what looks wrong."""
-    return _said("quality_flags", found)
+    return said(sentences().quality_flags(found))
 
 
 def five_lines(found: Assessment) -> list[str]:
     """Return the answer in five lines."""
-    return [
-        f"Result: {at_the_site(found)}",
-        f"Risk: {risk(found)}",
-        f"Position: {positions(found)}",
-        f"What helps: {helps(found)}",
-        f"How sure: {_words('sure', found)}",
-    ]
+    return said(sentences().five_lines(found))

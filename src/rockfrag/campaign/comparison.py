@@ -1,6 +1,7 @@
 """Simulation against measurement as a referee wants it: shares with intervals, both errors, rivals, regions."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,6 +13,9 @@ from rockfrag.fragility.batch_glm import fit_batch
 
 NEAR_CRITICAL = (0.1, 0.9)
 """A test is near-critical if plausible trials disagree: this fraction of votes or more says each outcome."""
+
+REPEATS = "majority of repeated tests (ceiling)"
+"""Who gave these outcomes, in the tables."""
 
 
 def agreement_row(
@@ -134,14 +138,18 @@ def by_region(
 
     A row per region: limits of both measures, ``tests``, ``overturned``, ``simulated`` and ``right``.
     """
-    thirds = {name: _thirds(tests[name].to_numpy()) for name in (first, second)}
+    ends, third = {}, {}
+    for name in (first, second):
+        values = tests[name].to_numpy()
+        ends[name] = np.quantile(values, [0, 1 / 3, 2 / 3, 1])
+        third[name] = np.clip(np.searchsorted(ends[name], values, side="right") - 1, 0, 2)
     rows = []
     for i in range(3):
         for j in range(3):
-            inside = (thirds[first][1] == i) & (thirds[second][1] == j)
+            inside = (third[first] == i) & (third[second] == j)
             row: dict[str, object] = {}
             for name, k in ((first, i), (second, j)):
-                row[f"{name}_from"], row[f"{name}_to"] = thirds[name][0][k : k + 2]
+                row[f"{name}_from"], row[f"{name}_to"] = ends[name][k : k + 2]
             row["tests"] = int(inside.sum())
             row["overturned"] = int(measured[inside].sum())
             row["simulated"] = int(outcome[inside].sum())
@@ -150,11 +158,6 @@ def by_region(
             )
             rows.append(row)
     return pd.DataFrame(rows)
-
-
-def _thirds(values: Floats) -> tuple[Floats, NDArray[np.int64]]:
-    limits = np.quantile(values, [0, 1 / 3, 2 / 3, 1])
-    return limits, np.clip(np.searchsorted(limits, values, side="right") - 1, 0, 2)
 
 
 def judged_tests(tests: pd.DataFrame, validated: Validated, measured: Bools) -> pd.DataFrame:
@@ -166,3 +169,17 @@ def judged_tests(tests: pd.DataFrame, validated: Validated, measured: Bools) -> 
         right=validated.outcome == measured,
         near_critical=(votes > NEAR_CRITICAL[0]) & (votes < NEAR_CRITICAL[1]),
     )
+
+
+def majority_of_repeats(settings: NDArray[Any], measured: Bools) -> Bools | None:
+    """Outcome that most tests at the same setting had, shape (tests,); None where no setting is repeated.
+
+    A model whose answer follows from the setting alone gives one outcome for all repeats, so it is right in no
+    more tests than the majority. Tests whose setting is not repeated count as right.
+    """
+    code = pd.factorize(settings)[0]
+    tests = np.bincount(code)
+    if tests.max() < 2:
+        return None
+    fell = np.bincount(code, measured)
+    return np.asarray(2 * fell[code] >= tests[code])

@@ -59,7 +59,11 @@ def sample_trials(
     points = qmc.Sobol(len(names), scramble=True, rng=np.random.default_rng(seed)).random(count)
     rows, systems, planar = [], [], []
     for point in points:
-        guess = {name: _value(name, ranges[name], u) for name, u in zip(names, point, strict=True)}
+        guess = {}
+        for name, u in zip(names, point, strict=True):
+            low, high = ranges[name]
+            logarithmic = name in _LOGARITHMIC
+            guess[name] = float(low * (high / low) ** u if logarithmic else low + (high - low) * u)
         try:
             body = body_of(thing, guess)
             systems.append(_standing(thing, body, guess))
@@ -145,13 +149,6 @@ def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block 
     if isinstance(thing, Shape):
         return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
     return thing.narrowed(retreat)
-
-
-def _value(name: str, limits: tuple[float, float], fraction: float) -> float:
-    low, high = limits
-    if name in _LOGARITHMIC:
-        return float(low * (high / low) ** fraction)
-    return float(low + (high - low) * fraction)
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:

@@ -31,24 +31,17 @@ class BatchFit:
     converged: NDArray[np.bool_]  # shape (batch,)
 
 
-@dataclass(frozen=True)
-class _Terms:
-    log_p: Floats
-    log_q: Floats
-    log_density: Floats
-    weight_slope: Floats  # d ln w / d eta, w the working weight of one test
-
-
-def _terms(eta: Floats, link: Link) -> _Terms:
+def log_terms(eta: Floats, link: Link) -> tuple[Floats, Floats, Floats, Floats]:
+    """Logarithms of p, 1 - p and the density, and d ln w / d eta, w the working weight of one test."""
     if link == "logit":
         log_p = -np.logaddexp(0.0, -eta)
         log_q = -np.logaddexp(0.0, eta)
-        return _Terms(log_p, log_q, log_p + log_q, 1.0 - 2.0 * np.exp(log_p))
+        return log_p, log_q, log_p + log_q, 1.0 - 2.0 * np.exp(log_p)
     log_p = special.log_ndtr(eta)
     log_q = special.log_ndtr(-eta)
     log_density = -0.5 * eta**2 - _LOG_ROOT_TWO_PI
     slope = -2.0 * eta - np.exp(log_density - log_p) + np.exp(log_density - log_q)
-    return _Terms(log_p, log_q, log_density, slope)
+    return log_p, log_q, log_density, slope
 
 
 def fit_batch(
@@ -86,9 +79,9 @@ def fit_batch(
         trial = coefficients[active] + step[active]
         y, m = failures[active], trials[active]
         eta = np.clip(trial @ design.T, -_LARGEST_PREDICTOR, _LARGEST_PREDICTOR)
-        terms = _terms(eta, link)
-        likelihood = (y * terms.log_p + (m - y) * terms.log_q).sum(axis=1)
-        weight = m * np.exp(2.0 * terms.log_density - terms.log_p - terms.log_q)
+        log_p, log_q, log_density, weight_slope = log_terms(eta, link)
+        likelihood = (y * log_p + (m - y) * log_q).sum(axis=1)
+        weight = m * np.exp(2.0 * log_density - log_p - log_q)
         fisher = (weight @ flat_outer).reshape(-1, columns, columns)
         goal = likelihood
         if penalised:
@@ -105,14 +98,11 @@ def fit_batch(
         objective[where] = goal[better]
         log_likelihood[where] = likelihood[better]
         information[where] = fisher[better]
-        score = (
-            y * np.exp(terms.log_density - terms.log_p)
-            - (m - y) * np.exp(terms.log_density - terms.log_q)
-        )[better]
+        score = (y * np.exp(log_density - log_p) - (m - y) * np.exp(log_density - log_q))[better]
         inverse = np.linalg.pinv(fisher[better], hermitian=True)
         if penalised:
             hat = weight[better] * np.einsum("ri,bij,rj->br", design, inverse, design)
-            score = score + 0.5 * hat * terms.weight_slope[better]
+            score = score + 0.5 * hat * weight_slope[better]
         step[where] = np.einsum("bij,bj->bi", inverse, score @ design)
         converged[active[settled]] = True
         active = active[~settled & ~stuck]

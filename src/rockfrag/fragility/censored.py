@@ -26,7 +26,7 @@ from rockfrag.fragility.lognormal import (
     LEAST_SLOPE,
     NO_COVARIANCE,
     NO_CURVE,
-    Curve,
+    SAY,
     FragilityFit,
     curve_parameters,
 )
@@ -101,59 +101,39 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
     overturned there is no curve, only a bound.
     """
     low, high = _logs(brackets)
-    n, fell = low.size, brackets.n_overturned
-    motions = brackets.n_motions
-    notes: tuple[str, ...] = ()
-
-    def result(curve: Curve, log_likelihood: float, method: str) -> FragilityFit:
-        return FragilityFit(
-            *curve,
-            log_likelihood,
-            n,
-            fell,
-            motions,
-            method,
-            brackets.name,
-            brackets.unit,
-            "probit",
-            notes,
-        )
-
-    if motions == 1:
-        notes = ("All tests share one motion: the curve describes this motion only.",)
-    if fell == 0:
-        top = brackets.lower.min()
-        notes = (
-            *notes,
-            f"None of {n} tests overturned; every one survived {top:g} {brackets.unit}: θ is "
-            "above and not estimated.",
-        )
-        return result(NO_CURVE, 0.0, "none: all tests survived")
-    if brackets.lower.max() == 0:
-        notes = (
-            *notes,
-            f"All {n} tests overturned at their first step, of {brackets.upper.min():g} "
-            f"{brackets.unit} or more: θ is below and not estimated.",
-        )
-        return result(NO_CURVE, 0.0, "none: all tests overturned at once")
-    weights = np.ones((1, n))
-    coefficients, information, log_likelihood = _fit_weighted(low, high, weights)
-    theta, beta, spread = curve_parameters(coefficients[0], _inverse(information[0]))
-    if _fraction_a_point(low, high, weights)[0]:
-        notes = (
-            *notes,
-            f"All brackets share the amplitudes from {brackets.lower.max():g} to "
-            f"{brackets.upper.min():g} {brackets.unit}: β is not resolved by the steps; θ is the "
-            "middle of that range and β its width / √12.",
-        )
-        return result(
-            (theta, beta, NO_COVARIANCE), float("nan"), "interval estimate (brackets overlap)"
-        )
-    if coefficients[0, 1] < LEAST_SLOPE:
-        notes = (*notes, "The brackets are too few or too wide to give a curve.")
-        return result(NO_CURVE, float(log_likelihood[0]), "none: no curve in the brackets")
-    method = "lognormal, interval- and right-censored maximum likelihood"
-    return result((theta, beta, spread), float(log_likelihood[0]), method)
+    curve, log_likelihood, case = NO_CURVE, 0.0, ""
+    if brackets.n_overturned == 0:
+        method, case = "none: all tests survived", "survived"
+    elif brackets.lower.max() == 0:
+        method, case = "none: all tests overturned at once", "at once"
+    else:
+        weights = np.ones((1, low.size))
+        found = _fit_weighted(low, high, weights)
+        coefficients, information, log_likelihood = found[0][0], found[1][0], float(found[2][0])
+        covariance = information * np.nan
+        if np.isfinite(information).all():
+            covariance = np.linalg.pinv(information, hermitian=True)
+        theta, beta, spread = curve_parameters(coefficients, covariance)
+        if _fraction_a_point(low, high, weights)[0]:
+            method, case = "interval estimate (brackets overlap)", "overlap"
+            curve, log_likelihood = (theta, beta, NO_COVARIANCE), float("nan")
+        elif coefficients[1] < LEAST_SLOPE:
+            method, case = "none: no curve in the brackets", "flat"
+        else:
+            method = "lognormal, interval- and right-censored maximum likelihood"
+            curve = theta, beta, spread
+    return FragilityFit(
+        *curve,
+        log_likelihood,
+        low.size,
+        brackets.n_overturned,
+        brackets.n_motions,
+        method,
+        brackets.name,
+        brackets.unit,
+        "probit",
+        tuple(SAY("brackets", brackets, case)),
+    )
 
 
 def bracket_fitter(brackets: Brackets, over: Over = "motion") -> tuple[WeightedFit, int]:
@@ -371,9 +351,3 @@ def _log_difference(z_low: Floats, z_high: Floats) -> Floats:
     same = lower == upper
     gap = np.where(same | np.isneginf(log_lower), -np.inf, log_lower - np.where(same, 0, log_upper))
     return np.asarray(np.where(same, 0.0, log_upper + np.log1p(-np.exp(gap))))
-
-
-def _inverse(information: Floats) -> Floats:
-    if not np.isfinite(information).all():
-        return np.full((2, 2), np.nan)
-    return np.asarray(np.linalg.pinv(information, hermitian=True))

@@ -16,6 +16,7 @@ from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Observations
+from rockfrag.sentences import sayer
 
 TAILS = (
     "The limits of β assume lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
@@ -27,6 +28,12 @@ REJECTION = re.compile(r"The lognormal curve is rejected \(p = .*?\.(?= [A-Z]|$)
 """Finds the sentence about a rejected curve among its warnings."""
 
 FEWEST_MOTIONS = 10  # below so many motions every table and export says how few they are
+
+_say = sayer(
+    "rockfrag.fragility",
+    "checks.j2",
+    {"REJECTED": REJECTED, "TAILS": TAILS, "FEWEST_MOTIONS": FEWEST_MOTIONS},
+)
 
 
 @dataclass(frozen=True)
@@ -104,40 +111,9 @@ def _checks(
     fractions: Fractions,
 ) -> Checks:
     p_fit, test, residual = judged
-    notes: list[str] = []
-    if p_fit < REJECTED:
-        notes.append(
-            f"The lognormal curve is rejected (p = {p_fit:.3f}): use the nonparametric monotone curve"
-            f"{_known_points(fractions, fit.unit, interval.level)}."
-        )
-    if interval.method == "jackknife" and np.isfinite(interval.beta).all():
-        notes.append(TAILS)
-    if fit.n_motions < FEWEST_MOTIONS and np.isfinite(fit.theta):
-        notes.append(
-            f"The curve is based on only {fit.n_motions} motion{'s' if fit.n_motions > 1 else ''} and describes "
-            "little else."
-        )
+    notes = tuple(_say("notes", fit, interval, p_fit, fractions))
     name, influence = _influence(interval, groups)
-    return Checks(p_fit, test, residual, name, influence, fractions, tuple(notes))
-
-
-def _known_points(fractions: Fractions, unit: str, level: float) -> str:
-    """Say the median and β of the fractions as far as these go from 16 to 84 %, with their limits."""
-    if not np.isfinite(fractions.theta):
-        return ", which does not reach a half"
-    median = f"{fractions.theta:.3g} {unit}{_limits_text(fractions.theta_limits, level)}"
-    if not np.isfinite(fractions.beta):
-        return f", whose median is {median} and which does not go from 16 to 84 %"
-    return f", whose median is {median} and β {fractions.beta:.2f}{_limits_text(fractions.beta_limits, level)}"
-
-
-def _limits_text(limits: tuple[float, float], level: float) -> str:
-    low, high = limits
-    if not low < high:
-        return ""
-    words = [f"from {low:.3g}"] if low > 0 else []
-    words += [f"to {high:.3g}"] if np.isfinite(high) else []
-    return f" ({' '.join(words)}, {100 * level:g} % limits)" if words else " (without limits)"
+    return Checks(p_fit, test, residual, name, influence, fractions, notes)
 
 
 def _influence(interval: Interval, groups: NDArray[np.object_]) -> tuple[str, float]:

@@ -20,6 +20,8 @@ from rockfrag.machine_code import cached_njit
 from rockfrag.shaketable.swept import Swept
 
 CELLS = 2000  # cells of equal width in the logarithm of a measure
+MOTION = ("configuration", "earthquake", "floor", "motion")
+"""Columns that tell motions apart."""
 
 
 @dataclass(frozen=True)
@@ -68,10 +70,7 @@ class CountedObservations(Observations):
     def by_value(self) -> Observations:
         """Cells of all blocks together."""
         values, cell = np.unique(self.im, return_inverse=True)
-        trials = np.bincount(cell, self.trials).astype(np.float64)
-        labels = np.full(values.size, "", dtype=object)
-        fell = np.bincount(cell, self.overturned).astype(np.float64)
-        return Observations(values, fell, trials, labels, labels, self.name, self.unit)
+        return self.pooled(cell, values)
 
     def group_weights(self, weights: Floats) -> Floats:
         """Weights of the blocks of motions, all of whose motions or earthquakes must weigh the same."""
@@ -158,75 +157,58 @@ def _count(
             total[cell] += log_im
 
 
+@dataclass(frozen=True)
 class CountedIda:
-    """IDA curves of one configuration, counted part by part.
+    """IDA curves of one configuration on one floor, or on all of them: see :class:`IdaData`."""
+
+    # a row a motion: its configuration, earthquake, floor and name, and its structural resurrections
+    windows: pd.DataFrame
+    counts: Mapping[str, "_Counts"]  # by measure
+
+    def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
+        """See :func:`rockfrag.fragility.empirical.find_resurrections`; ``amplitude`` is the one in g."""
+        others = [*(name for name in MOTION if name not in by), *by]
+        columns = [*by, *self.windows.columns.drop(others)]
+        return self.windows[columns].sort_values(by, ignore_index=True)
+
+    def outcomes(self, column: str) -> Observations:
+        """Outcomes with a measure."""
+        return self.counts[column].outcomes()
+
+    def motions(self) -> pd.DataFrame:
+        """One row per motion: ``configuration``, ``earthquake``, ``floor``, ``motion``."""
+        return self.windows[list(MOTION)]
+
+
+def count_ida(
+    parts: Iterable[Swept],
+    again: Iterable[Swept],
+    measures: pd.DataFrame,
+    columns: Mapping[str, Sequence[str]],
+) -> dict[str, CountedIda]:
+    """Count IDA curves of one configuration part by part, by floor.
 
     ``parts`` and ``again`` are the IDA curves, read twice: for their windows, and to be counted. ``measures`` has
     one row per motion as recorded, with ``name`` and ``pga_g``; ``columns`` are the measures that will be asked
     for, by floor, those under the empty name of all floors together.
     """
-
-    def __init__(
-        self,
-        parts: Iterable[Swept],
-        again: Iterable[Swept],
-        measures: pd.DataFrame,
-        columns: Mapping[str, Sequence[str]],
-    ) -> None:
-        self._resurrections = resurrections_of(parts)
-        self.motions = self._resurrections[["configuration", "earthquake", "floor", "motion"]]
-        known = measures.set_index("name").loc[self.motions["motion"]].reset_index()
-        self._counts: dict[tuple[str, str], _Counts] = {}
-        place = {name: row for row, name in enumerate(self.motions["motion"])}
-        for part in again:
-            rows = np.array([place[name] for name in part.about["motion"]])
-            if not self._counts:
-                self._counts = {
-                    (floor, column): _Counts(known, self.motions, floor, column, part.amplitude_g)
-                    for floor, some in columns.items()
-                    for column in some
-                }
-            for count in self._counts.values():
+    windows = resurrections_of(parts)
+    known = measures.set_index("name").loc[windows["motion"]].reset_index()
+    place = {name: row for row, name in enumerate(windows["motion"])}
+    counts: dict[str, dict[str, _Counts]] = {}
+    for part in again:
+        counts = counts or {
+            floor: {name: _Counts(known, windows, floor, name, part.amplitude_g) for name in some}
+            for floor, some in columns.items()
+        }
+        rows = np.array([place[name] for name in part.about["motion"]])
+        for of_floor in counts.values():
+            for count in of_floor.values():
                 count.add(rows, part.overturned)
-
-    def of_floor(self, floor: str) -> "FloorIda":
-        """IDA curves on one floor, or on all of them with the empty name."""
-        return FloorIda(self, floor)
-
-    def resurrections(self, floor: str) -> pd.DataFrame:
-        """Structural resurrections of the IDA curves on a floor, a row a motion."""
-        rows = self._resurrections
-        return rows if not floor else rows[rows["floor"] == floor]
-
-    def outcomes(self, floor: str, column: str) -> Observations:
-        """Outcomes on a floor with a measure."""
-        return self._counts[floor, column].outcomes()
-
-
-@dataclass(frozen=True)
-class FloorIda:
-    """IDA curves of one configuration on one floor, or on all of them where its name is empty."""
-
-    ida: CountedIda
-    floor: str
-
-    def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
-        """See :func:`rockfrag.fragility.empirical.find_resurrections`; ``amplitude`` is the one in g."""
-        found = self.ida.resurrections(self.floor)
-        others = [
-            name for name in ("configuration", "earthquake", "floor", "motion") if name not in by
-        ]
-        others += by
-        return found[[*by, *found.columns.drop(others)]].sort_values(by, ignore_index=True)
-
-    def outcomes(self, column: str) -> Observations:
-        """Outcomes with a measure."""
-        return self.ida.outcomes(self.floor, column)
-
-    def motions(self) -> pd.DataFrame:
-        """One row per motion: ``configuration``, ``earthquake``, ``floor``, ``motion``."""
-        rows = self.ida.motions
-        return rows if not self.floor else rows[rows["floor"] == self.floor]
+    return {
+        floor: CountedIda(windows[windows["floor"] == floor] if floor else windows, of_floor)
+        for floor, of_floor in counts.items()
+    }
 
 
 class _Counts:

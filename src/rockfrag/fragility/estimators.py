@@ -178,7 +178,10 @@ def fit_stripes(
         table, im, overturned=overturned, trials=trials, motion=motion, earthquake=earthquake
     )
     whole = fragility_of(outcomes, level=level)
-    return whole if trials is not None else replace(whole, fit=fit_lognormal(_pooled(outcomes)))
+    if trials is not None:
+        return whole
+    values, stripe = np.unique(outcomes.im, return_inverse=True)
+    return replace(whole, fit=fit_lognormal(outcomes.pooled(stripe, values)))
 
 
 @named_keywords
@@ -282,12 +285,3 @@ def fit_uplift(motions: pd.DataFrame, im: str, *, level: float = 0.90) -> Fragil
     names = labels(motions, "motion", "table")
     earthquakes = labels(motions, "earthquake", "table")
     return fragility_of_brackets(Brackets(at, at, names, earthquakes, *name_and_unit(im)), level)
-
-
-def _pooled(outcomes: Observations) -> Observations:
-    values, code = np.unique(outcomes.im, return_inverse=True)
-    overturned = np.bincount(code, outcomes.overturned).astype(np.float64)
-    trials = np.bincount(code, outcomes.trials).astype(np.float64)
-    # labels only feed notes on the number of motions, which a stripe no longer has one of
-    labels = np.array([f"stripe {k + 1}" for k in range(values.size)], dtype=object)
-    return Observations(values, overturned, trials, labels, labels, outcomes.name, outcomes.unit)

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.batch_glm import fit_batch
+from rockfrag.fragility.batch_glm import Link, fit_batch
+from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.empirical import bin_codes, wilson_interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Observations
@@ -110,21 +111,19 @@ def goodness_of_fit(
         # a cell reached over the end of a bin
         cell, values = apart, np.bincount(apart, shifted) / np.bincount(apart)
     home = np.asarray(np.rint(values / 1e3), dtype=np.intp)
-    pooled = _Pooled(
-        values - 1e3 * home, np.asarray(np.bincount(cell, outcomes.trials), dtype=np.float64), home
-    )
+    tests = np.asarray(np.bincount(cell, outcomes.trials), dtype=np.float64)
     if dependence == "tests":
-        fraction = np.bincount(cell, outcomes.trials * probability) / pooled.trials
+        fraction = np.bincount(cell, outcomes.trials * probability) / tests
         drawn = rng.binomial(
-            pooled.trials.astype(np.int64),
-            np.minimum(fraction, 1.0),
-            size=(replicates, fraction.size),
+            tests.astype(np.int64), np.minimum(fraction, 1.0), size=(replicates, fraction.size)
         ).astype(np.float64)
     else:
         size = (replicates, outcomes.n_motions)
         draw = rng.normal(size=size) if fit.link == "probit" else rng.logistic(size=size)
         drawn = outcomes.drawn(np.log(fit.theta) + fit.beta * draw, cell)
-    simulated = _refitted_deviance(pooled, fit, drawn)
+    design = np.column_stack([np.ones(values.size), values - 1e3 * home])
+    start = np.array(fit.coefficients)
+    simulated = refitted_deviance(design, drawn, tests, home, link=fit.link, start=start)
     p_value = float((1 + np.sum(simulated >= deviance - 1e-9)) / (1 + simulated.size))
     lower, upper = wilson_interval(observed, trials)
     calibration = pd.DataFrame(
@@ -139,6 +138,9 @@ def goodness_of_fit(
     ).sort_values("im", ignore_index=True)
     miss = outcomes.overturned * (1 - probability) ** 2
     miss += (outcomes.trials - outcomes.overturned) * probability**2
+    outcome = "not rejected"
+    if p_value < REJECTED:
+        outcome = "rejected; use the nonparametric monotone curve"
     return GoodnessOfFit(
         deviance,
         p_value,
@@ -146,7 +148,8 @@ def goodness_of_fit(
         int(simulated.size),
         float(miss.sum() / outcomes.n),
         calibration,
-        _words(deviance, p_value, len(calibration), dependence),
+        f"Deviance {deviance:.1f} in {len(calibration)} bins, p = {p_value:.3f} (parametric bootstrap of "
+        f"{dependence}): the curve is {outcome}.",
     )
 
 
@@ -160,43 +163,31 @@ def binned_deviance(observed: Floats, expected: Floats, trials: Floats) -> Float
     return np.asarray(2.0 * terms.sum(axis=-1))
 
 
-@dataclass(frozen=True)
-class _Pooled:
-    """Cells of tests: their value of ln IM, their trials, and the bin that each lies in."""
+def refitted_deviance(
+    design: Floats,
+    drawn: Floats,
+    trials: Floats,
+    bins: NDArray[np.intp],
+    *,
+    link: Link = "probit",
+    start: Floats | None = None,
+) -> Floats:
+    """Deviance in bins of numbers of overturned tests, (replicates, rows), from curves fitted to them anew.
 
-    log_im: Floats
-    trials: Floats
-    bin: NDArray[np.intp]
-
-
-def _refitted_deviance(pooled: _Pooled, fit: FragilityFit, drawn: Floats) -> Floats:
-    design = np.column_stack([np.ones(pooled.log_im.size), pooled.log_im])
-    trials = np.broadcast_to(pooled.trials, drawn.shape)
+    ``trials`` and ``bins`` are those of each row of the ``design``; replicates without a curve are left out.
+    """
     # the penalty keeps separated data sets finite and hardly moves the others
     batch = fit_batch(
         design,
         drawn,
-        trials,
-        link=fit.link,
+        np.broadcast_to(trials, drawn.shape),
+        link=link,
         penalised=True,
         tolerance=1e-4,
-        start=np.array(fit.coefficients),
+        start=start,
     )
     usable = np.isfinite(batch.coefficients).all(axis=1)
     eta = batch.coefficients[usable] @ design.T
-    probability = special.ndtr(eta) if fit.link == "probit" else special.expit(eta)
-    member = (pooled.bin[:, None] == np.arange(pooled.bin.max() + 1)).astype(np.float64)
-    expected = (pooled.trials * probability) @ member
-    return binned_deviance(drawn[usable] @ member, expected, pooled.trials @ member)
-
-
-def _words(deviance: float, p_value: float, bins: int, dependence: str) -> str:
-    outcome = (
-        "the curve is rejected; use the nonparametric monotone curve"
-        if p_value < 0.05
-        else "the curve is not rejected"
-    )
-    return (
-        f"Deviance {deviance:.1f} in {bins} bins, p = {p_value:.3f} (parametric bootstrap of "
-        f"{dependence}): {outcome}."
-    )
+    probability = special.ndtr(eta) if link == "probit" else special.expit(eta)
+    member = (bins[:, None] == np.arange(bins.max() + 1)).astype(np.float64)
+    return binned_deviance(drawn[usable] @ member, (trials * probability) @ member, trials @ member)

@@ -4,16 +4,18 @@ import hashlib
 import math
 from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.observations import Floats
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
 
-Row = Mapping[Hashable, Any]
-
 LONGEST = 75  # characters of an identifier that OpenQuake takes
+STEP = 0.01  # β with which an exact threshold, a step, is written [-]; the formats take no step
 
 
 def identifiers(names: Iterable[str], others: str = "") -> dict[str, str]:
@@ -26,44 +28,58 @@ def identifiers(names: Iterable[str], others: str = "") -> dict[str, str]:
         for name in dict.fromkeys(names)
     }
     count = Counter(plain.values())
-    return {
-        name: text if count[text] == 1 and len(text) <= LONGEST else _with_digest(text, name)
-        for name, text in plain.items()
-    }
+    for name, text in plain.items():
+        if count[text] > 1 or len(text) > LONGEST:
+            digest = hashlib.sha256(name.encode()).hexdigest()[:8]
+            plain[name] = f"{text[: LONGEST - 9]}_{digest}"
+    return plain
+
+
+@dataclass(frozen=True)
+class StateCurve:
+    """Curve of one limit state."""
+
+    row: Mapping[Hashable, Any]  # its row of the fragility table
+    theta: float
+    beta: float  # that of a step is ``STEP``
+    # points of the non-parametric fragility function; empty where the lognormal one stands
+    levels: Floats
+    fraction: Floats
 
 
 def curves_by_name(
-    export: str, table: pd.DataFrame, by: str, others: str, prefix: str = ""
-) -> dict[str, dict[str, Row]]:
-    """Return the rows of a fragility table by the identifier of ``by`` and by limit state, the milder first."""
+    export: str,
+    table: pd.DataFrame,
+    by: str,
+    others: str,
+    fractions: pd.DataFrame | None,
+    prefix: str = "",
+) -> dict[str, dict[str, StateCurve]]:
+    """Return the curves of a fragility table by the identifier of ``by`` and by limit state, the milder first."""
     if table.empty:
         raise InputError(f"{export}: there is no curve to write; give at least one row.")
     known = identifiers(map(str, table[by]), others)
-    rows: dict[str, dict[str, Row]] = {}
+    curves: dict[str, dict[str, StateCurve]] = {}
     for row in table.to_dict("records"):
         name = prefix + known[str(row[by])]
-        states = rows.setdefault(name, {})
+        states = curves.setdefault(name, {})
         state = limit_state_named(str(row.get("state", OVERTURNS))).name
         if state in states:
             raise InputError(
                 f"{export}: {name!r} has two curves; choose one estimator and one measure for each."
             )
-        states[state] = row
+        theta, beta = float(str(row["theta"])), float(str(row["beta"]))
+        if row.get("link", "probit") != "probit" or not (theta > 0 and 0 < beta < math.inf):
+            raise InputError(
+                f"{export}: {str(row[by])!r} has no lognormal curve; leave the row out."
+            )
+        points = np.empty((0, 2))
+        if fractions is not None:
+            own = (fractions[by].astype(str) == str(row[by])) & (fractions["state"] == state)
+            points = fractions.loc[own, ["x", "fraction"]].to_numpy(dtype=np.float64)
+        states[state] = StateCurve(row, theta, max(beta, STEP), points[:, 0], points[:, 1])
     order = [state.name for state in limit_states()]
     return {
         name: {state: states[state] for state in order if state in states}
-        for name, states in rows.items()
+        for name, states in curves.items()
     }
-
-
-def lognormal_of(export: str, row: Row, by: str) -> tuple[float, float]:
-    """Return median and β of the lognormal curve of a row."""
-    theta, beta = float(str(row["theta"])), float(str(row["beta"]))
-    if row.get("link", "probit") != "probit" or not (theta > 0 and 0 < beta < math.inf):
-        raise InputError(f"{export}: {str(row[by])!r} has no lognormal curve; leave the row out.")
-    return theta, beta
-
-
-def _with_digest(text: str, name: str) -> str:
-    digest = hashlib.sha256(name.encode()).hexdigest()[:8]
-    return f"{text[: LONGEST - 9]}_{digest}"

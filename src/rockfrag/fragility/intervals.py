@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import special, stats
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.batch_glm import Link, fit_batch, separated
+from rockfrag.fragility.batch_glm import fit_batch, separated
 from rockfrag.fragility.lognormal import LEAST_SLOPE
 from rockfrag.fragility.observations import Floats, Grouped, Observations, Over
 from rockfrag.fragility.pooling import cells, counts
@@ -52,8 +52,6 @@ class Interval:
         Intercept and slope of the fit that the interval belongs to.
     replicates
         Intercept and slope without each group (or block of groups), shape (replicates, 2).
-    link
-        ``probit`` or ``logit``.
     warnings
         What a reader must know before trusting the limits.
     """
@@ -66,7 +64,6 @@ class Interval:
     over: Over
     estimate: tuple[float, float]
     replicates: Floats
-    link: Link = "probit"
     warnings: tuple[str, ...] = ()
 
     __repr__ = short_repr
@@ -80,8 +77,7 @@ class Interval:
         centre = self.estimate[0] + self.estimate[1] * x
         half = student(self.level, len(self.replicates)) * jackknife_error(predictors)
         half = np.where(np.isfinite(half), half, np.inf)
-        function = special.ndtr if self.link == "probit" else special.expit
-        return np.asarray(function(centre - half)), np.asarray(function(centre + half))
+        return special.ndtr(centre - half), special.ndtr(centre + half)
 
 
 def population(tests: Grouped, over: Over | None) -> tuple[Over, tuple[str, ...]]:
@@ -97,9 +93,7 @@ def population(tests: Grouped, over: Over | None) -> tuple[Over, tuple[str, ...]
     return over, ()
 
 
-def outcome_fitter(
-    outcomes: Observations, over: Over, link: Link = "probit"
-) -> tuple[WeightedFit, int]:
+def outcome_fitter(outcomes: Observations, over: Over) -> tuple[WeightedFit, int]:
     """Make the function that refits a curve to reweighted groups of tests.
 
     Tests at the same or nearly the same value are pooled, so that neither stripes nor many tests cost
@@ -113,9 +107,7 @@ def outcome_fitter(
     total = counts(codes, column, outcomes.trials)
     design = np.column_stack([np.ones(values.size), values])
 
-    whole = fit_batch(
-        design, fell.sum(axis=0)[None], total.sum(axis=0)[None], link=link, penalised=True
-    )
+    whole = fit_batch(design, fell.sum(axis=0)[None], total.sum(axis=0)[None], penalised=True)
     start = whole.coefficients[0] if np.isfinite(whole.coefficients).all() else None
 
     def fit(weights: Floats) -> Floats:
@@ -125,9 +117,7 @@ def outcome_fitter(
         result = np.empty((len(weights), 2))
         for chosen, penalised in ((apart, True), (~apart, False)):
             if chosen.any():
-                batch = fit_batch(
-                    design, y[chosen], m[chosen], link=link, penalised=penalised, start=start
-                )
+                batch = fit_batch(design, y[chosen], m[chosen], penalised=penalised, start=start)
                 result[chosen] = batch.coefficients
         result[y.sum(axis=1) == 0, 0] = -np.inf
         result[y.sum(axis=1) == m.sum(axis=1), 0] = np.inf
@@ -137,7 +127,7 @@ def outcome_fitter(
 
 
 def interval_over_motions(
-    outcomes: Observations, *, over: Over | None = None, level: float = 0.90, link: Link = "probit"
+    outcomes: Observations, *, over: Over | None = None, level: float = 0.90
 ) -> Interval:
     """Confidence limits of a curve fitted to outcomes, by leaving out whole motions or earthquakes.
 
@@ -150,16 +140,14 @@ def interval_over_motions(
         takes earthquakes where they are known and some have several motions.
     level
         Of the confidence limits [-], 0 to 1.
-    link
-        ``probit`` (lognormal curve) or ``logit``.
 
     Returns
     -------
     The :class:`Interval`, with limits of median and dispersion.
     """
     over, notes = population(outcomes, over)
-    fit, groups = outcome_fitter(outcomes, over, link)
-    found = resampled_interval(fit, groups, over=over, notes=notes, level=level, link=link)
+    fit, groups = outcome_fitter(outcomes, over)
+    found = resampled_interval(fit, groups, over=over, notes=notes, level=level)
     apart = separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None] + 0.0)[0]
     if not apart:
         return found
@@ -204,7 +192,6 @@ def resampled_interval(
     over: Over = "motion",
     notes: tuple[str, ...] = (),
     level: float = 0.90,
-    link: Link = "probit",
 ) -> Interval:
     """Confidence limits of θ and β from a function that refits reweighted groups, see :func:`outcome_fitter`."""
     if not 0.0 < level < 1.0:
@@ -215,7 +202,7 @@ def resampled_interval(
     def without_limits(reason: str) -> Interval:
         nan = (float("nan"), float("nan"))
         said = (*notes, reason)
-        return Interval(nan, nan, level, "none", groups, over, centre, np.empty((0, 2)), link, said)
+        return Interval(nan, nan, level, "none", groups, over, centre, np.empty((0, 2)), said)
 
     if groups < 2:
         return without_limits(f"One {over} gives no interval for other {over}s.")
@@ -236,7 +223,7 @@ def resampled_interval(
     theta, beta = _jackknife_limits(estimate, deleted, level)
     # to more digits than two ways of fitting agree to
     beta = (min(beta[0], own * (1 - 1e-9)), max(beta[1], own * (1 + 1e-9)))
-    return Interval(theta, beta, level, "jackknife", groups, over, centre, deleted, link, notes)
+    return Interval(theta, beta, level, "jackknife", groups, over, centre, deleted, notes)
 
 
 def _log_theta(coefficients: Floats) -> Floats:

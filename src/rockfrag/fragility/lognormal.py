@@ -15,10 +15,11 @@ from statsmodels.tools.sm_exceptions import (
 )
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.batch_glm import Link, fit_batch, separated
+from rockfrag.fragility.batch_glm import Link, fit_batch, log_terms, separated
 from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.pooling import cells
 from rockfrag.keywords import named_keywords
+from rockfrag.sentences import sayer
 from rockfrag.short_repr import short_repr
 
 LEAST_SLOPE = 1e-3
@@ -32,6 +33,9 @@ Curve = tuple[float, float, Covariance]  # θ, β and the covariance of (ln θ, 
 _NAN = float("nan")
 NO_COVARIANCE: Covariance = ((_NAN, _NAN), (_NAN, _NAN))
 NO_CURVE: Curve = (_NAN, _NAN, NO_COVARIANCE)
+
+SAY = sayer("rockfrag.fragility", "fits.j2", {})
+"""What a reader must know of a fit, in sentences."""
 
 
 @dataclass(frozen=True)
@@ -137,9 +141,10 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
     -------
     The :class:`FragilityFit`.
     """
-    notes = _notes(outcomes)
+    notes = SAY("outcomes", outcomes)
     if outcomes.im.size > MOST_ROWS:
-        whole, outcomes = outcomes, _pooled(outcomes)
+        cell, values = cells(outcomes.log_im, 10_000)
+        whole, outcomes = outcomes, outcomes.pooled(cell, np.exp(values))
         found = fit_lognormal(outcomes, link=link)
         # cells are not tests: which of a cell's tests overturned is known
         likelihood = found.log_likelihood + float(whole.ways().sum() - outcomes.ways().sum())
@@ -149,55 +154,51 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
             log_likelihood=likelihood,
             warnings=(*notes, *found.warnings),
         )
+    curve, log_likelihood = NO_CURVE, 0.0
     if outcomes.n_overturned in (0, outcomes.n):
-        return _fit(outcomes, link, "none: all tests agree", (*notes, _all_agree(outcomes)))
+        method = "none: all tests agree"
+        notes += SAY("agreeing", outcomes)
+    else:
+        method, coefficients, information = _estimated(outcomes, link, notes)
+        log_p, log_q, *_ = log_terms(coefficients[0] + coefficients[1] * outcomes.log_im, link)
+        terms = outcomes.overturned * log_p + (outcomes.trials - outcomes.overturned) * log_q
+        log_likelihood = float((terms + outcomes.ways()).sum())
+        if coefficients[1] < LEAST_SLOPE:
+            method = "none: probability does not rise"
+            notes += SAY("falling", outcomes)
+        else:
+            curve = curve_parameters(coefficients, np.asarray(np.linalg.inv(information)))
+    return FragilityFit(
+        *curve,
+        log_likelihood,
+        outcomes.n,
+        outcomes.n_overturned,
+        outcomes.n_motions,
+        method,
+        outcomes.name,
+        outcomes.unit,
+        link,
+        tuple(notes),
+    )
+
+
+def _estimated(outcomes: Observations, link: Link, notes: list[str]) -> tuple[str, Floats, Floats]:
+    """How the coefficients were found, these and their information; ``notes`` grow by what is to be known."""
     if np.ptp(outcomes.log_im) == 0:
         raise InputError(
             f"all tests have the same {outcomes.name} of {outcomes.im[0]:g} {outcomes.unit}: a "
             "curve needs at least two values of the intensity measure."
         )
-    failures, trials = outcomes.overturned[None, :], outcomes.trials[None, :]
-    method = f"{link}, maximum likelihood (GLM)"
-    if separated(outcomes.log_im, failures, trials)[0]:
-        coefficients, information = _penalised(outcomes, link)
-        method = f"{link}, penalised likelihood (Firth)"
-        if coefficients[1] >= LEAST_SLOPE:
-            notes = (*notes, _separation_note(outcomes))
+    if separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None])[0]:
+        found = _penalised(outcomes, link)
+        notes += SAY("separated", outcomes) if found[0][1] >= LEAST_SLOPE else []
     else:
         try:
-            coefficients, information = _statsmodels(outcomes, link)
+            return f"{link}, maximum likelihood (GLM)", *_statsmodels(outcomes, link)
         except (PerfectSeparationError, PerfectSeparationWarning, ConvergenceWarning):
-            coefficients, information = _penalised(outcomes, link)
-            method = f"{link}, penalised likelihood (Firth)"
-            notes = (*notes, "The maximum of the likelihood is not finite; the fit is penalised.")
-    log_likelihood = _log_likelihood(outcomes, coefficients, link)
-    if coefficients[1] < LEAST_SLOPE:
-        falling = (
-            f"The probability of overturning does not rise with {outcomes.name}; there is no "
-            "fragility curve in this measure."
-        )
-        return _fit(
-            outcomes, link, "none: probability does not rise", (*notes, falling), log_likelihood
-        )
-    curve = curve_parameters(coefficients, np.asarray(np.linalg.inv(information)))
-    return _fit(outcomes, link, method, notes, log_likelihood, curve)
-
-
-def _pooled(outcomes: Observations) -> Observations:
-    """Tests in cells, each a motion of its own: only the likelihood is taken from them."""
-    cell, values = cells(outcomes.log_im, 10_000)
-    labels = np.arange(values.size).astype(object)
-    fell = np.bincount(cell, outcomes.overturned)
-    trials = np.bincount(cell, outcomes.trials)
-    return Observations(
-        np.exp(values),
-        np.asarray(fell, float),
-        np.asarray(trials, float),
-        labels,
-        labels,
-        outcomes.name,
-        outcomes.unit,
-    )
+            found = _penalised(outcomes, link)
+            notes += SAY("not_finite")
+    return f"{link}, penalised likelihood (Firth)", *found
 
 
 def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
@@ -221,77 +222,3 @@ def _penalised(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
         design, outcomes.overturned[None, :], outcomes.trials[None, :], link=link, penalised=True
     )
     return fit.coefficients[0], fit.information[0]
-
-
-def _log_likelihood(outcomes: Observations, coefficients: Floats, link: Link) -> float:
-    eta = coefficients[0] + coefficients[1] * outcomes.log_im
-    fell, stood = outcomes.overturned, outcomes.trials - outcomes.overturned
-    if link == "probit":
-        terms = fell * special.log_ndtr(eta) + stood * special.log_ndtr(-eta)
-    else:
-        terms = -fell * np.logaddexp(0.0, -eta) - stood * np.logaddexp(0.0, eta)
-    return float((terms + outcomes.ways()).sum())
-
-
-def _notes(outcomes: Observations) -> tuple[str, ...]:
-    notes = []
-    if outcomes.n_motions == 1:
-        notes.append(
-            "All tests share one motion: the curve describes this motion and gives no interval for others."
-        )
-    if outcomes.n_repeated:
-        notes.append(
-            f"{outcomes.n_repeated} of {outcomes.im.size} rows repeat the motion, value and "
-            "outcome of another row; they count as repetitions of the test."
-        )
-    return tuple(notes)
-
-
-def _separation_note(outcomes: Observations) -> str:
-    survived = outcomes.im[outcomes.trials > outcomes.overturned].max()
-    fell = outcomes.im[outcomes.overturned > 0].min()
-    return (
-        f"No test below {fell:g} {outcomes.unit} overturned and none above {survived:g} "
-        f"{outcomes.unit} survived: the data only place θ between these values and β may be any "
-        "small number; θ and β are penalised estimates."
-    )
-
-
-def _all_agree(outcomes: Observations) -> str:
-    # exact binomial bound when all of n independent motions agree (Clopper and Pearson, 1934)
-    bound = 1.0 - 0.1 ** (1.0 / outcomes.n_motions)
-    if outcomes.n_overturned == 0:
-        top = outcomes.im.max()
-        return (
-            f"None of {outcomes.n} tests overturned up to {outcomes.name} {top:g} {outcomes.unit}: "
-            f"with {outcomes.n_motions} independent motions P(overturn) there is below "
-            f"{bound:.3f} at 90 % confidence if all reached it; θ is above and not estimated."
-        )
-    least = outcomes.im.min()
-    return (
-        f"All {outcomes.n} tests overturned down to {outcomes.name} {least:g} {outcomes.unit}: with "
-        f"{outcomes.n_motions} independent motions P(overturn) there is above {1.0 - bound:.3f} at 90 % "
-        "confidence if all were tried there; θ is below and not estimated."
-    )
-
-
-def _fit(
-    outcomes: Observations,
-    link: Link,
-    method: str,
-    notes: tuple[str, ...],
-    log_likelihood: float = 0.0,
-    curve: Curve = NO_CURVE,
-) -> FragilityFit:
-    return FragilityFit(
-        *curve,
-        log_likelihood,
-        outcomes.n,
-        outcomes.n_overturned,
-        outcomes.n_motions,
-        method,
-        outcomes.name,
-        outcomes.unit,
-        link,
-        notes,
-    )

@@ -15,6 +15,7 @@ from rockfrag.fragility.held_out import fraction_best, outcome_scores, paired_p
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Floats, Observations, numbers, observations_from_table
+from rockfrag.sentences import sayer
 from rockfrag.short_repr import short_repr
 
 DIFFERENCE_P = 0.05  # two measures differ below this p value of their held-out scores
@@ -179,7 +180,7 @@ def recommend_measure(
     best = str(compared["measure"].iloc[0])
     pair, p_pair, gain = _best_pair(data, best, group)
     if pair:
-        words = f"{words} {_pair_words(data[pair].name, p_pair, gain)}"
+        words = " ".join([words, *_say("pair", data[pair].name, p_pair, gain)])
     return MeasureSelection(best, str(compared["im"].iloc[0]), compared, words)
 
 
@@ -255,80 +256,22 @@ def _best_pair(
     return found
 
 
-_WORDS = {"mean_period_s": "mean period", "d5_95_s": "significant duration"}
-
-
-def _column(name: str) -> str:
-    return _WORDS.get(name, name)
-
-
-def p_text(p: float) -> str:
-    """P value in words: never as zero."""
-    return f"p = {p:.3f}" if p >= 0.001 else "p < 0.001"
-
-
-def _pair_words(name: str, p: float, gain: float) -> str:
-    if gain > 0 and p < DIFFERENCE_P:
-        return f"Adding {name} improves the prediction of held-out tests ({p_text(p)}): use the surface in both."
-    if not np.isfinite(p):
-        return f"One group of motions cannot show whether {name} adds to it."
-    return (
-        f"Adding {name} does not improve the prediction of held-out tests: one measure is enough."
-    )
+_say = sayer(
+    "rockfrag.fragility",
+    "measure_selection.j2",
+    {"DIFFERENCE_P": DIFFERENCE_P, "SUFFICIENT_P": SUFFICIENT_P}
+    | {"FEWEST_GROUPS_TO_CHOOSE": FEWEST_GROUPS_TO_CHOOSE}
+    | {"COLUMNS": {"mean_period_s": "mean period", "d5_95_s": "significant duration"}},
+)
 
 
 def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> str:
     """Put a ranked table of measures into words that say what to use and how sure that is."""
-    if table["theta"].isna().all():
-        return "The probability of overturning rises in none of the measures."
-    if table["score"].isna().all():
-        return (
-            "The measures cannot be compared: this needs two motions or earthquakes, and brackets of the "
-            "overturning amplitude that do not all overlap."
-        )
-    best = table.iloc[0]
-    others = table.iloc[1:]
-    scored = others[others["score"].notna()]
-    equal = scored[~(scored["p_worse"] < DIFFERENCE_P)]
-    worse = scored[scored["p_worse"] < DIFFERENCE_P].sort_values("score", ascending=False)
-    parts = [
-        f"Use {best['im']}: β = {best['beta']:.2f}, AUC {best['auc']:.3f}, mean log score of held-out "
-        f"tests {best['score']:.3f}."
-    ]
-    if len(equal):
-        listed = ", ".join(
-            f"{row['im']} ({row['score']:.3f}, β = {row['beta']:.2f})"
-            for row in equal.to_dict("records")
-        )
-        enough = groups >= FEWEST_GROUPS_TO_CHOOSE
-        advice = "any of them will do" if enough else "the tests are too few to rule these out"
-        parts.append(
-            f"It is not distinguishable from {listed}: {advice}. It is preferred for its smaller β."
-        )
-    if len(worse):
-        row = worse.iloc[0]
-        parts.append(
-            f"{row['im']} is worse: {row['score']:.3f} ({p_text(float(row['p_worse']))}, t-test over {groups} "
-            "groups of dependent tests)."
-        )
-    if len(others):
-        parts.append(
-            f"It scores best in {100 * best['chosen_fraction']:.0f} % of bootstrap samples of these groups."
-        )
-    if groups < FEWEST_GROUPS_TO_CHOOSE:
-        parts.append(f"{groups} groups are few: other earthquakes may change the choice.")
-    for column in given:
-        p = float(best[f"p_{column}"])
-        if np.isnan(p):
-            parts.append(
-                f"These motions cannot test its sufficiency with respect to {_column(column)}."
-            )
-        elif p < SUFFICIENT_P:
-            parts.append(
-                f"It is not sufficient: its residuals depend on {_column(column)} ({p_text(p)})."
-            )
-        else:
-            parts.append(
-                f"No dependence of its residuals on {_column(column)} is shown (p = {p:.2f})."
-            )
-    return " ".join(parts)
+    scored = table[table["score"].notna()]
+    if scored.empty:
+        return " ".join(_say("no_choice", table["theta"].notna().any()))
+    differs = scored["p_worse"] < DIFFERENCE_P
+    equal = scored[~differs].iloc[1:].to_dict("records")
+    worse = scored[differs].sort_values("score", ascending=False).to_dict("records")
+    best = table.to_dict("records")[0]
+    return " ".join(_say("choice", best, len(table) > 1, equal, worse, groups, given))

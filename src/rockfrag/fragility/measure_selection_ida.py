@@ -9,7 +9,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.censored import (
@@ -21,7 +20,6 @@ from rockfrag.fragility.censored import (
 from rockfrag.fragility.held_out import capacity_scores
 from rockfrag.fragility.ida_curves import scale_power, with_measures
 from rockfrag.fragility.ida_data import IdaData, TableIda
-from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.measure_selection import (
     MeasureSelection,
     dependence_p_value,
@@ -29,7 +27,7 @@ from rockfrag.fragility.measure_selection import (
     ranked,
     recommendation,
 )
-from rockfrag.fragility.observations import Floats, numbers, positive
+from rockfrag.fragility.observations import numbers, positive
 
 
 def recommend_ida_measure(
@@ -113,7 +111,10 @@ def recommend_ida_measure(
         )
         fit = fit_brackets(scaled)
         interval = bracket_interval(scaled, level=level)
-        residual, seen = _residuals(scaled, fit)
+        # residual of ln capacity of the motions that overturned above a survived step
+        seen = np.isfinite(scaled.upper) & (scaled.lower > 0)
+        middle = 0.5 * np.log(scaled.lower[seen] * scaled.upper[seen])
+        residual = middle - np.log(fit.theta)
         row = measure_row(column, fit, interval, outcomes, beta_amplitude=fit.beta / power)
         for name, values in extra.items():
             row[f"p_{name}"] = dependence_p_value(residual, values[seen], scaled.earthquake[seen])
@@ -128,10 +129,3 @@ def recommend_ida_measure(
         return MeasureSelection("", "", table, words)
     best = table.iloc[0]
     return MeasureSelection(str(best["measure"]), str(best["im"]), table, words)
-
-
-def _residuals(brackets: Brackets, fit: FragilityFit) -> tuple[Floats, NDArray[np.bool_]]:
-    """Residual of ln capacity of the motions that overturned above a survived step, and which."""
-    seen = np.isfinite(brackets.upper) & (brackets.lower > 0)
-    middle = 0.5 * np.log(brackets.lower[seen] * brackets.upper[seen])
-    return np.asarray(middle - np.log(fit.theta)), seen

@@ -3,9 +3,9 @@
 import math
 import os
 import re
-from collections.abc import Hashable, Mapping, Sequence
-from typing import Any
-from xml.etree import ElementTree
+from collections.abc import Mapping, Sequence
+from itertools import starmap
+from xml.sax.saxutils import escape
 
 import numpy as np
 import pandas as pd
@@ -15,14 +15,12 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.fragility.checks import REJECTION
 from rockfrag.fragility.curve_facts import curve_facts
-from rockfrag.fragility.identifiers import curves_by_name, lognormal_of
+from rockfrag.fragility.identifiers import StateCurve, curves_by_name
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.declared import declared, measure_labelled
 from rockfrag.outcomes.limit_states import limit_states
+from rockfrag.sentences import environment
 
-NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
-
-STEP = 0.01  # β with which an exact threshold, a step, is written [-]; the formats take no step
 CROSSING = 1e-9
 """Levels are written where a state would be more probable than the state before it by more than rounding [-]."""
 
@@ -99,25 +97,24 @@ def write_nrml(
         ground; if a name comes twice, or lacks a limit state that another has.
     """
     # OpenQuake takes letters, digits, "_", "-" and ":" in a name
-    rows = curves_by_name("NRML", table, by, "_:-")
-    used = {state for states in rows.values() for state in states}
+    curves = curves_by_name("NRML", table, by, "_:-", fractions)
+    used = {state for states in curves.values() for state in states}
     known = [state.name for state in limit_states() if state.name in used]
-    functions: list[Any] = []
+    functions: list[dict[str, object]] = []
     warned: list[str] = []
-    for name in sorted(rows):
-        lacking = [state for state in known if state not in rows[name]]
+    for name in sorted(curves):
+        lacking = [state for state in known if state not in curves[name]]
         if lacking:
             raise InputError(
                 f"NRML: {name!r} has no curve for the limit state {lacking[0]}, which others have; leave "
                 "it or that state out."
             )
-        said = " ".join(
-            f"{state}: {curve_facts({**rows[name][state], 'warnings': ''})}" for state in known
-        )
+        rows = {state: curve.row for state, curve in curves[name].items()}
+        said = (f"{state}: {curve_facts({**row, 'warnings': ''})}" for state, row in rows.items())
         # two hyphens would end the comment
-        functions.append(ElementTree.Comment(f" {name}: {said} ".replace("--", "- -")))
-        warned += [str(rows[name][state].get("warnings") or "") for state in known]
-        functions.append(_function(name, rows[name], by, fractions))
+        comment = f"{name}: {' '.join(said)}".replace("--", "- -")
+        warned += [str(row.get("warnings") or "") for row in rows.values()]
+        functions.append({"id": name, "comment": comment, **_function(name, curves[name], by)})
     description = [
         "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
         "goodness of fit and the number of its motions.",
@@ -127,18 +124,20 @@ def write_nrml(
 
 
 def model_text(
-    description: str, states: Sequence[str], functions: Sequence[Any], identifier: str = "rockfrag"
+    description: str,
+    states: Sequence[str],
+    functions: Sequence[Mapping[str, object]],
+    identifier: str = "rockfrag",
 ) -> str:
-    """NRML 0.5 of a fragility model with some limit states and functions."""
-    root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})
-    about = {"id": identifier, "assetCategory": "contents", "lossCategory": "contents"}
-    model = ElementTree.SubElement(root, "fragilityModel", about)
-    ElementTree.SubElement(model, "description").text = description
-    ElementTree.SubElement(model, "limitStates").text = " ".join(states)
-    model.extend(functions)
-    ElementTree.indent(root, space="  ")
-    text = ElementTree.tostring(root, encoding="unicode")
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+    """NRML 0.5 of a fragility model with some limit states and functions.
+
+    A function has an ``id``, its ``imt`` and, by state, ``chances`` at its ``levels``, or the ``moments`` of
+    lognormal curves, mean and standard deviation, with the range of levels from ``low`` to ``high``.
+    """
+    loaded = environment("rockfrag.fragility")
+    loaded.filters["escaped"] = escape
+    about = {"description": description, "states": states, "identifier": identifier}
+    return str(loaded.get_template("nrml.j2").render(functions=functions, **about)) + "\n"
 
 
 def said_once(notes: Sequence[str]) -> list[str]:
@@ -151,92 +150,52 @@ def said_once(notes: Sequence[str]) -> list[str]:
     return [sentence for sentence in dict.fromkeys(sentences) if sentence]
 
 
-def _function(
-    taxonomy: str,
-    states: Mapping[str, Mapping[Hashable, Any]],
-    by: str,
-    fractions: pd.DataFrame | None,
-) -> ElementTree.Element:
-    curves: dict[str, tuple[float, float]] = {}
-    free: dict[str, tuple[Floats, Floats]] = {}
-    measures: set[str] = set()
-    for state, row in states.items():
-        name = str(row[by])
-        theta, beta = lognormal_of("NRML", row, by)
-        floor = str(row.get("floor", ""))
-        if floor:
+def _function(taxonomy: str, states: Mapping[str, StateCurve], by: str) -> dict[str, object]:
+    """Measure and curves of a function, in OpenQuake's units: lognormal ones, or levels."""
+    factors: dict[str, float] = {}
+    for curve in states.values():
+        if floor := str(curve.row.get("floor", "")):
             raise InputError(
-                f"NRML: {name!r} is keyed to the motion of floor {floor}, which OpenQuake does not "
+                f"NRML: {str(curve.row[by])!r} is keyed to the motion of floor {floor}, which OpenQuake does not "
                 "compute; export curves in a measure of the ground motion."
             )
-        imt, factor = intensity_measure_type(str(row["im"]), str(row["unit"]))
-        measures.add(imt)
-        curves[state] = theta * factor, max(beta, STEP)
-        levels, fraction = points_of(fractions, by, name, state)
-        if levels.size:
-            free[state] = levels * factor, fraction
-    if len(measures) > 1:
+        imt, factor = intensity_measure_type(str(curve.row["im"]), str(curve.row["unit"]))
+        factors[imt] = factor
+    if len(factors) > 1:
         raise InputError(
-            f"NRML: the limit states of {taxonomy!r} are in {' and '.join(sorted(measures))}; one "
+            f"NRML: the limit states of {taxonomy!r} are in {' and '.join(sorted(factors))}; one "
             "function has one measure."
         )
-    levels, chances, lowered = _nested(curves, free)
-    if free or lowered > CROSSING:
-        return discrete_function(taxonomy, measures.pop(), levels, chances)
-    function = ElementTree.Element(
-        "fragilityFunction", {"id": taxonomy, "format": "continuous", "shape": "logncdf"}
-    )
-    # the range in which OpenQuake may evaluate it: from a chance of 3e-5 to one of 1 - 3e-5
-    limits = {
-        "minIML": repr(min(theta * math.exp(-4.0 * beta) for theta, beta in curves.values())),
-        "maxIML": repr(max(theta * math.exp(4.0 * beta) for theta, beta in curves.values())),
+    ((imt, factor),) = factors.items()
+    levels, chances, lowered = _nested(states, factor)
+    if lowered > CROSSING or any(curve.levels.size for curve in states.values()):
+        by_state = {state: chance.tolist() for state, chance in chances.items()}
+        return {"imt": imt, "levels": levels.tolist(), "chances": by_state}
+    parameters = [(curve.theta * factor, curve.beta) for curve in states.values()]
+    return {
+        "imt": imt,
+        # the range in which OpenQuake may evaluate it: from a chance of 3e-5 to one of 1 - 3e-5
+        "low": min(theta * math.exp(-4.0 * beta) for theta, beta in parameters),
+        "high": max(theta * math.exp(4.0 * beta) for theta, beta in parameters),
+        "moments": dict(zip(states, starmap(lognormal_moments, parameters), strict=True)),
     }
-    ElementTree.SubElement(function, "imls", {"imt": measures.pop(), **limits})
-    for state, (theta, beta) in curves.items():
-        mean, deviation = lognormal_moments(theta, beta)
-        parameters = {"ls": state, "mean": repr(mean), "stddev": repr(deviation)}
-        ElementTree.SubElement(function, "params", parameters)
-    return function
-
-
-def points_of(
-    fractions: pd.DataFrame | None, by: str, name: str, state: str
-) -> tuple[Floats, Floats]:
-    """Levels and fractions of the non-parametric fragility function; empty where the lognormal one stands."""
-    if fractions is None:
-        return np.empty(0), np.empty(0)
-    own = fractions[(fractions[by].astype(str) == name) & (fractions["state"] == state)]
-    return own["x"].to_numpy(dtype=np.float64), own["fraction"].to_numpy(dtype=np.float64)
 
 
 def _nested(
-    curves: Mapping[str, tuple[float, float]], free: Mapping[str, tuple[Floats, Floats]]
+    states: Mapping[str, StateCurve], factor: float
 ) -> tuple[Floats, dict[str, Floats], float]:
     """Levels, the chance of each state there, never above that of the state before, and by how much it was."""
-    parts = [theta * np.exp(beta * _STEPS) for theta, beta in curves.values()]
-    levels = np.unique(np.concatenate([*parts, *(x for x, _ in free.values())]))
+    parts = [curve.theta * factor * np.exp(curve.beta * _STEPS) for curve in states.values()]
+    levels = np.unique(
+        np.concatenate([*parts, *(curve.levels * factor for curve in states.values())])
+    )
     found: dict[str, Floats] = {}
     before, lowered = np.ones(levels.size), 0.0
-    for state, (theta, beta) in curves.items():
-        chance = special.ndtr(np.log(levels / theta) / beta)
-        if state in free:
-            x, fraction = free[state]
-            chance = np.interp(np.log(levels), np.log(x), fraction)
+    for state, curve in states.items():
+        chance = special.ndtr(np.log(levels / (curve.theta * factor)) / curve.beta)
+        if curve.levels.size:
+            chance = np.interp(np.log(levels), np.log(curve.levels * factor), curve.fraction)
         lowered = max(lowered, float((chance - before).max()))
         before = np.minimum(chance, before)
         found[state] = before
     return levels, found, lowered
-
-
-def discrete_function(
-    taxonomy: str, imt: str, levels: Floats, chances: Mapping[str, Floats]
-) -> ElementTree.Element:
-    """Function of levels and probabilities."""
-    function = ElementTree.Element("fragilityFunction", {"id": taxonomy, "format": "discrete"})
-    attributes = {"imt": imt, "noDamageLimit": repr(float(levels[0]))}
-    text = " ".join(repr(float(level)) for level in levels)
-    ElementTree.SubElement(function, "imls", attributes).text = text
-    for state, chance in chances.items():
-        poes = ElementTree.SubElement(function, "poes", {"ls": state})
-        poes.text = " ".join(repr(float(value)) for value in chance)
-    return function

@@ -107,6 +107,14 @@ class Observations(Grouped):
         ways = special.gammaln(self.trials + 1) - special.gammaln(self.overturned + 1)
         return np.asarray(ways - special.gammaln(stood + 1))
 
+    def pooled(self, cell: NDArray[np.intp], im: Floats) -> "Observations":
+        """Tests of each cell as one row at a value of the measure, and one motion of its own."""
+        fell, trials = (
+            np.bincount(cell, part).astype(np.float64) for part in (self.overturned, self.trials)
+        )
+        labels = np.arange(im.size).astype(object)
+        return Observations(im, fell, trials, labels, labels, self.name, self.unit)
+
     def by_value(self) -> "Observations":
         """The same tests in no more rows than a kernel estimate needs."""
         return self

@@ -2,8 +2,7 @@
 
 import json
 import os
-from collections.abc import Hashable, Mapping
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
@@ -11,8 +10,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.files import write_table, write_text
 from rockfrag.fragility.curve_facts import curve_facts
-from rockfrag.fragility.identifiers import curves_by_name, lognormal_of
-from rockfrag.fragility.nrml import STEP, points_of
+from rockfrag.fragility.identifiers import StateCurve, curves_by_name
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.declared import declared
 from rockfrag.outcomes.limit_states import limit_state_named
@@ -73,27 +71,24 @@ def write_simcenter(
             "Version": "1.0",
         }
     }
-    for name, states in curves_by_name("SimCenter", table, by, "_", "ROCKFRAG.").items():
-        line, notes[name] = _component(name, states, by, fractions)
+    for name, states in curves_by_name("SimCenter", table, by, "_", fractions, "ROCKFRAG.").items():
+        line, notes[name] = _component(name, states, by)
         rows.append(line)
     write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
     write_text(json.dumps(notes, indent=2, ensure_ascii=False, sort_keys=True) + "\n", json_path)
 
 
 def _component(
-    identifier: str,
-    states: Mapping[str, Mapping[Hashable, Any]],
-    by: str,
-    fractions: pd.DataFrame | None,
+    identifier: str, states: Mapping[str, StateCurve], by: str
 ) -> tuple[dict[str, object], dict[str, object]]:
     demands: set[tuple[str, str]] = set()
     limit_states: dict[str, object] = {}
     line: dict[str, object] = {}
     said = []
     known = _demands()
-    for number, (state, row) in enumerate(states.items(), start=1):
+    for number, (state, curve) in enumerate(states.items(), start=1):
+        row, levels, fraction = curve.row, curve.levels, curve.fraction
         name, im, unit = str(row[by]), str(row["im"]), str(row["unit"])
-        theta, beta = lognormal_of("SimCenter", row, by)
         if im not in known or unit not in known[im][1]:
             raise InputError(
                 f"SimCenter: {im} in {unit or 'no unit'} is no demand of this export; choose PGA or PFA "
@@ -101,9 +96,8 @@ def _component(
             )
         demand, units = known[im]
         demands.add((demand, units[unit]))
-        levels, fraction = points_of(fractions, by, name, state)
         family: str = "lognormal"
-        parameters: tuple[float | str, float | str] = (theta, max(beta, STEP))
+        parameters: tuple[float | str, float | str] = (curve.theta, curve.beta)
         if levels.size:
             family, parameters = "multilinear_CDF", (_multilinear(levels, fraction), "")
         line |= {

@@ -41,12 +41,11 @@ def read_tests(
     motion: str | None = None,
     earthquake: str | None = None,
     given: Sequence[str] = (),
-    keep: Sequence[str] = (),
 ) -> pd.DataFrame:
     """Read a table of tests, one row per test.
 
-    The result has ``motion``, ``earthquake`` (text), ``overturned`` (0 or 1), the measures (above zero), numbers
-    ``given`` and texts to ``keep``. Without columns of motion and earthquake every row is a motion of its own.
+    The result has ``motion``, ``earthquake`` (text), ``overturned`` (0 or 1), the measures (above zero) and the
+    numbers ``given``. Without columns of motion and earthquake every row is a motion of its own.
     """
     source = Path(path).name
     recipes: dict[str, Sequence[str | float]] = (
@@ -63,7 +62,7 @@ def read_tests(
     factors = [
         factor for recipe in recipes.values() for factor in recipe if isinstance(factor, str)
     ]
-    labels = [name for name in (motion, earthquake, *keep) if name is not None]
+    labels = [name for name in (motion, earthquake) if name is not None]
     needed = list(dict.fromkeys([overturned, *labels, *factors, *given]))
 
     def columns(read: _Numbers) -> dict[str, object]:
@@ -73,7 +72,6 @@ def read_tests(
             "overturned": read.outcomes(overturned),
             **{name: read.product(recipe) for name, recipe in recipes.items()},
             **{name: read.numbers(name) for name in given},
-            **{name: read.labels(name) for name in keep},
         }
 
     table = _read(path, needed, columns)

@@ -26,8 +26,8 @@ class UserFragility:
     ----------
     tests
         The table as used: ``motion``, ``earthquake``, ``overturned`` and a column per measure.
-    outcomes, fits, goodness
-        By measure, in the order given; ``goodness`` only where there is a curve.
+    outcomes, fits
+        By measure, in the order given.
     choice
         Recommendation of a measure.
     two_measures
@@ -41,13 +41,18 @@ class UserFragility:
     tests: pd.DataFrame
     outcomes: Mapping[str, Observations]
     fits: Mapping[str, Fragility]
-    goodness: Mapping[str, GoodnessOfFit]
     choice: MeasureSelection
     two_measures: VectorTables | None
     table: pd.DataFrame
     bins: pd.DataFrame
 
     __repr__ = short_repr
+
+    @property
+    def goodness(self) -> dict[str, GoodnessOfFit]:
+        """Goodness of fit by measure, where there is a curve."""
+        found = {name: fit.checks.goodness for name, fit in self.fits.items()}
+        return {name: goodness for name, goodness in found.items() if goodness is not None}
 
 
 def fit_user_table(
@@ -94,15 +99,13 @@ def fit_user_table(
     )
     columns = list(measures)
     earthquake_column = "earthquake" if earthquake is not None else None
-    outcomes, fits, goodness, rows, bins = {}, {}, {}, [], []
+    outcomes, fits, rows, bins = {}, {}, [], []
     digest = table_hash(tests)
     for column in columns:
         data = observations_from_table(tests, column, earthquake=earthquake_column, source=source)
         # rows of one motion are tests at different scales, each with its own outcome
         result = fragility_of(data, level=level, dependence="tests", seed=seed)
         outcomes[column], fits[column] = data, result
-        if result.checks.goodness is not None:
-            goodness[column] = result.checks.goodness
         rows.append(fragility_row(result, {"source": source, "measure": column}, "cloud", digest))
         bins.append(fraction_in_bins(data, level=level).assign(measure=column))
     choice = recommend_measure(
@@ -129,7 +132,6 @@ def fit_user_table(
         tests,
         outcomes,
         fits,
-        goodness,
         choice,
         both,
         pd.DataFrame(rows),

@@ -1,10 +1,7 @@
 """Fragility in two intensity measures with what is known of it: interval, interaction, contours, one measure.
 
-Tests under motions of one earthquake depend on each other.  Every statement here therefore takes the earthquake as
-the unit: limits by a jackknife that leaves out an earthquake at a time (Tukey 1958), and a score test of the
-interaction whose contributions are summed by earthquake (Cameron and Miller 2015, sec. VI).  A likelihood-ratio
-test that counts tests as independent finds an interaction that is not there in 7 to 16 of 100 laboratories
-(``docs/fragility.md``).
+Every statement takes the earthquake as the unit: limits by a jackknife that leaves out an earthquake at a time
+(Tukey 1958), and a score test of the interaction summed by earthquake (Cameron and Miller 2015, sec. VI).
 """
 
 from dataclasses import dataclass
@@ -26,6 +23,7 @@ from rockfrag.fragility.observations import (
     positive,
     read_observations,
 )
+from rockfrag.sentences import sayer
 
 MOST_FOR_THE_PLANE = 20_000
 """Tests up to which separation is found exactly; a linear programme of more takes too long."""
@@ -35,6 +33,8 @@ INTERACTION_LEVEL = 0.05
 
 LARGEST_COEFFICIENT = 60.0
 """A replicate with a larger coefficient is separated; it is fitted with the penalised likelihood."""
+
+_say = sayer("rockfrag.fragility", "vector.j2", {"FEWEST_GROUPS": FEWEST_GROUPS})
 
 
 @dataclass(frozen=True)
@@ -226,6 +226,7 @@ def fit_vector(
             fit, design = full, product
     groups = int(group.max()) + 1
     replicates = _replicates(design, outcome, group, fit.coefficients)
+    names = [name_and_unit(column)[0] for column in measures]
     return VectorFragility(
         measures,
         tuple(fit.coefficients.tolist()),
@@ -238,7 +239,7 @@ def fit_vector(
         int(outcome.sum()),
         groups,
         level,
-        _notes(measures, fit, replicates, groups),
+        tuple(_say("notes", names, fit, replicates, groups)),
     )
 
 
@@ -336,32 +337,3 @@ def interaction_p(
     if spread == 0:
         return float("nan")
     return float(2.0 * stats.t.sf(abs(score.sum()) / spread, groups - 1))
-
-
-def _notes(
-    measures: tuple[str, str], fit: _Fit, replicates: Floats, groups: int
-) -> tuple[str, ...]:
-    notes = []
-    if "penalised" in fit.method:
-        notes.append(
-            "A line in the two measures separates all tests that overturned from those that survived: the fit is "
-            "penalised, and how steep it is remains open."
-        )
-    if groups < 2:
-        notes.append("All tests come from one earthquake: there are no limits for others.")
-    elif groups < FEWEST_GROUPS:
-        notes.append(
-            f"Limits from {groups} earthquakes were not validated ({FEWEST_GROUPS} are the fewest that were)."
-        )
-    for at, column in enumerate(measures):
-        slopes = replicates[:, 1 + at]
-        if fit.coefficients[1 + at] <= 0:
-            notes.append(
-                f"The probability does not rise with {name_and_unit(column)[0]} at given other measure; there "
-                "is no contour in it."
-            )
-        elif len(slopes) and (slopes <= 0).any():
-            notes.append(
-                f"Whether the probability rises with {name_and_unit(column)[0]} hangs on single earthquakes."
-            )
-    return tuple(notes)

@@ -4,12 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import optimize, special
 
-from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.curve_facts import REJECTED
-from rockfrag.fragility.goodness import binned_deviance
+from rockfrag.fragility.goodness import binned_deviance, refitted_deviance
 from rockfrag.fragility.observations import Floats, labels, positive, read_observations
 from rockfrag.fragility.pooling import cells
 from rockfrag.fragility.vector import VectorFragility, design_of
@@ -74,38 +72,20 @@ def check_vector(
     outcome = read_observations(table, overturned)
     design = design_of(logs, fit.interaction.kept)
     eta = design @ np.array(fit.coefficients)
-    bins = _bins(eta)
-    code = pd.factorize(pd.Series(labels(table, motion, "table")))[0]
-    p_fit = _p_fit(design, outcome, eta, bins, code, replicates, seed)
+    # bins with about equally many tests, in order of the fitted probability
+    bins, values = cells(eta, BINS)
+    bins = bins if values.size > 1 else np.zeros(eta.size, dtype=np.intp)
+    motions = pd.factorize(pd.Series(labels(table, motion, "table")))[0]
+    capacity = np.random.default_rng(seed).normal(size=(replicates, int(motions.max()) + 1))
+    drawn = (eta > capacity[:, motions]).astype(np.float64)
+    fell, expected, trials = (
+        np.asarray(np.bincount(bins, values), dtype=np.float64)
+        for values in (outcome, special.ndtr(eta), np.ones(eta.size))
+    )
+    own = binned_deviance(fell, expected, trials)
+    simulated = refitted_deviance(design, drawn, np.ones(eta.size), bins)
+    p_fit = float((1 + np.sum(simulated >= own - 1e-9)) / (1 + simulated.size))
     return VectorChecks(p_fit, _surface_table(fit, logs, outcome))
-
-
-def _bins(eta: Floats) -> NDArray[np.intp]:
-    """Bin of each test, with about equally many in each, in order of the fitted probability."""
-    cell, values = cells(eta, BINS)
-    return cell if values.size > 1 else np.zeros(eta.size, dtype=np.intp)
-
-
-def _p_fit(
-    design: Floats,
-    outcome: Floats,
-    eta: Floats,
-    bins: NDArray[np.intp],
-    motion: NDArray[np.intp],
-    replicates: int,
-    seed: int,
-) -> float:
-    trials = np.bincount(bins).astype(np.float64)
-    member = (bins[:, np.newaxis] == np.arange(trials.size)).astype(np.float64)
-    own = binned_deviance(outcome @ member, special.ndtr(eta) @ member, trials)
-    capacity = np.random.default_rng(seed).normal(size=(replicates, int(motion.max()) + 1))
-    drawn = (eta > capacity[:, motion]).astype(np.float64)
-    # the penalty keeps separated data sets finite and hardly moves the others
-    again = fit_batch(design, drawn, np.ones_like(drawn), penalised=True, tolerance=1e-4)
-    usable = np.isfinite(again.coefficients).all(axis=1)
-    fitted = special.ndtr(again.coefficients[usable] @ design.T)
-    simulated = binned_deviance(drawn[usable] @ member, fitted @ member, trials)
-    return float((1 + np.sum(simulated >= own - 1e-9)) / (1 + simulated.size))
 
 
 def _surface_table(fit: VectorFragility, logs: list[Floats], outcome: Floats) -> pd.DataFrame:

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.observations import Floats, name_and_unit
+from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector import VectorFragility, fit_vector
 from rockfrag.fragility.vector_checks import VectorChecks, check_vector
 
@@ -69,7 +69,9 @@ def vector_tables(
             checks = check_vector(fit, used, motion=motion, seed=seed)
             fits.append({**about, **_fit_row(fit, checks)})
             contours.append(_contours(fit, used).assign(**about))
-            cells.append(_cells(checks, pair).assign(**about))
+            # measures are named alike for every pair, whose tables are joined
+            surface = checks.surface.rename(columns=dict(zip(pair, CELLS[2:4], strict=True)))
+            cells.append(surface.assign(**about))
     return VectorTables(
         pd.DataFrame(fits, columns=[label, *FITS]),
         _joined(contours, [label, *CONTOURS]),
@@ -106,17 +108,9 @@ def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:
     parts = []
     for probability in PROBABILITIES:
         value, lower, upper = fit.contour(probability, other, of)
-        columns: dict[str, Floats | float | str] = {
-            "probability": probability, "of": fit.measures[of], "at": other, "value": value, "lower": lower,
-            "upper": upper,
-        }  # fmt: skip
-        parts.append(pd.DataFrame(columns))
+        limits = pd.DataFrame({"at": other, "value": value, "lower": lower, "upper": upper})
+        parts.append(limits.assign(probability=probability, of=fit.measures[of]))
     return pd.concat(parts, ignore_index=True)
-
-
-def _cells(checks: VectorChecks, pair: tuple[str, str]) -> pd.DataFrame:
-    """Name the measures of the non-parametric surface alike for every pair, whose tables are joined."""
-    return checks.surface.rename(columns={pair[0]: "at_first", pair[1]: "at_second"})
 
 
 def describe_pair(first: str, second: str) -> str:

@@ -173,13 +173,12 @@ def predominant_period(motion: Motion) -> float:
 
     Rathje, Abrahamson & Bray (1998); searched from 0.02 to 10 s, periods 1.2 % apart.
     """
-    from rockfrag.motions.side_by_side import largest_pseudo_acceleration
+    from rockfrag.motions.side_by_side import peak_displacements
 
     if motion.pga == 0:
         return math.nan
-    return float(
-        PREDOMINANT_PERIODS[largest_pseudo_acceleration(motion, PREDOMINANT_PERIODS, 0.05)]
-    )
+    psa = peak_displacements(motion, PREDOMINANT_PERIODS) * (2 * math.pi / PREDOMINANT_PERIODS) ** 2
+    return float(PREDOMINANT_PERIODS[psa.argmax()])
 
 
 def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) -> float:

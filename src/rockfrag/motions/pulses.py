@@ -7,8 +7,7 @@ behind is exact.
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,16 +46,10 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
         If a parameter is not such a number.
     """
     cycles = whole("sine", "cycles", cycles, 1, 1000)
-    return _pulse(
-        "sine",
-        "steady harmonic motion from rest",
-        lambda t: np.sin(2 * np.pi * t / period),
-        cycles * positive_number("sine: period", period, "seconds"),
-        dt,
-        amplitude=amplitude,
-        period=period,
-        cycles=cycles,
-    )
+    length = cycles * _seconds("sine: period", period)
+    given = {"amplitude": amplitude, "period": period, "cycles": cycles}
+    source = "steady harmonic motion from rest"
+    return _pulse("sine", source, lambda t: np.sin(2 * np.pi * t / period), length, dt, given)
 
 
 def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
@@ -82,15 +75,9 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
     InputError
         If a parameter is not such a number.
     """
-    return _pulse(
-        "one_sine",
-        "Makris & Roussos (2000)",
-        lambda t: np.sin(2 * np.pi * t / period),
-        positive_number("one_sine: period", period, "seconds"),
-        dt,
-        amplitude=amplitude,
-        period=period,
-    )
+    name, source = "one_sine", "Makris & Roussos (2000)"
+    length, given = _seconds(f"{name}: period", period), {"amplitude": amplitude, "period": period}
+    return _pulse(name, source, lambda t: np.sin(2 * np.pi * t / period), length, dt, given)
 
 
 def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
@@ -117,16 +104,9 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
     InputError
         If a parameter is not such a number.
     """
-    return _pulse(
-        "one_cosine",
-        "Makris & Roussos (2000)",
-        lambda t: np.cos(2 * np.pi * t / period),
-        positive_number("one_cosine: period", period, "seconds"),
-        dt,
-        jumps=True,
-        amplitude=amplitude,
-        period=period,
-    )
+    name, source = "one_cosine", "Makris & Roussos (2000)"
+    length, given = _seconds(f"{name}: period", period), {"amplitude": amplitude, "period": period}
+    return _pulse(name, source, lambda t: np.cos(2 * np.pi * t / period), length, dt, given, True)
 
 
 def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion:
@@ -137,19 +117,12 @@ def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion
     """
     name = "commanded_cosine"
     positive_number(f"{name}: pga", pga, "m/s²")
-    period = 2 * np.pi * positive_number(f"{name}: pgv_over_pga", pgv_over_pga, "seconds")
+    period = 2 * np.pi * _seconds(f"{name}: pgv_over_pga", pgv_over_pga)
     cycles = whole(name, "cycles", cycles, 1, 1000)
-    return _pulse(
-        name,
-        "motion of a shake table commanded by PGA and PGV/PGA",
-        lambda t: np.cos(2 * np.pi * t / period),
-        cycles * period,
-        min(DT, period / 400),
-        jumps=True,
-        amplitude=pga,
-        period=period,
-        cycles=cycles,
-    )
+    source = "motion of a shake table commanded by PGA and PGV/PGA"
+    length, step = cycles * period, min(DT, period / 400)
+    given = {"amplitude": pga, "period": period, "cycles": cycles}
+    return _pulse(name, source, lambda t: np.cos(2 * np.pi * t / period), length, step, given, True)
 
 
 def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
@@ -175,14 +148,10 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
     InputError
         If a parameter is not such a number.
     """
+    length = _seconds("half_sine: duration", duration)
+    given = {"amplitude": amplitude, "duration": duration}
     return _pulse(
-        "half_sine",
-        "Housner (1963)",
-        lambda t: np.sin(np.pi * t / duration),
-        positive_number("half_sine: duration", duration, "seconds"),
-        dt,
-        amplitude=amplitude,
-        duration=duration,
+        "half_sine", "Housner (1963)", lambda t: np.sin(np.pi * t / duration), length, dt, given
     )
 
 
@@ -209,16 +178,9 @@ def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
     InputError
         If a parameter is not such a number.
     """
-    return _pulse(
-        "rectangular",
-        "Housner (1963)",
-        np.ones_like,
-        positive_number("rectangular: duration", duration, "seconds"),
-        dt,
-        jumps=True,
-        amplitude=amplitude,
-        duration=duration,
-    )
+    length = _seconds("rectangular: duration", duration)
+    given = {"amplitude": amplitude, "duration": duration}
+    return _pulse("rectangular", "Housner (1963)", np.ones_like, length, dt, given, True)
 
 
 def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
@@ -246,25 +208,14 @@ def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
     InputError
         If a parameter is not such a number.
     """
-    centre = (
-        7.1
-        * positive_number("ricker_symmetric: period", period, "seconds")
-        / (math.sqrt(2) * np.pi)
-    )
+    centre = 7.1 * _seconds("ricker_symmetric: period", period) / (math.sqrt(2) * np.pi)
 
     def shape(t: Floats) -> Floats:
         x2 = 2 * (np.pi * (t - centre) / period) ** 2
         return (1 - x2) * np.exp(-x2 / 2)
 
-    return _pulse(
-        "ricker_symmetric",
-        "Ricker (1943)",
-        shape,
-        2 * centre,
-        dt,
-        amplitude=amplitude,
-        period=period,
-    )
+    given = {"amplitude": amplitude, "period": period}
+    return _pulse("ricker_symmetric", "Ricker (1943)", shape, 2 * centre, dt, given)
 
 
 def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
@@ -292,11 +243,7 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
     InputError
         If a parameter is not such a number.
     """
-    unit = (
-        math.sqrt(3)
-        * positive_number("ricker_antisymmetric: period", period, "seconds")
-        / (2 * np.pi)
-    )
+    unit = math.sqrt(3) * _seconds("ricker_antisymmetric: period", period) / (2 * np.pi)
     centre = 7.5 * unit
     # the derivative of the shape vanishes at x² = 3 ± √6; the smaller one is the peak
     peak = math.sqrt(3 - math.sqrt(6))
@@ -306,15 +253,8 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
         x = (t - centre) / unit
         return x * (x**2 - 3) * np.exp(-(x**2) / 2) / largest
 
-    return _pulse(
-        "ricker_antisymmetric",
-        "Vassiliou & Makris (2011)",
-        shape,
-        2 * centre,
-        dt,
-        amplitude=amplitude,
-        period=period,
-    )
+    given = {"amplitude": amplitude, "period": period}
+    return _pulse("ricker_antisymmetric", "Vassiliou & Makris (2011)", shape, 2 * centre, dt, given)
 
 
 def mavroeidis_papageorgiou(
@@ -350,11 +290,9 @@ def mavroeidis_papageorgiou(
     who = "mavroeidis_papageorgiou"
     if real_number(f"{who}: cycles", cycles) < 1:
         raise InputError(f"{who}: cycles must be one or more, got {cycles!r}.")
-    length = cycles * positive_number(f"{who}: period", period, "seconds")
-    omega, phase = (
-        2 * np.pi / period,
-        math.radians(real_number(f"{who}: phase_deg", phase_deg, "degrees")),
-    )
+    length = cycles * _seconds(f"{who}: period", period)
+    phase = math.radians(real_number(f"{who}: phase_deg", phase_deg, "degrees"))
+    omega = 2 * np.pi / period
 
     def shape(t: Floats) -> Floats:
         s = t - length / 2
@@ -363,17 +301,8 @@ def mavroeidis_papageorgiou(
             -omega / 2 * (np.sin(slow) * np.cos(fast) / cycles + (1 + np.cos(slow)) * np.sin(fast))
         )
 
-    return _pulse(
-        who,
-        "Mavroeidis & Papageorgiou (2003)",
-        shape,
-        length,
-        dt,
-        amplitude=velocity,
-        period=period,
-        cycles=cycles,
-        phase_deg=phase_deg,
-    )
+    given = {"amplitude": velocity, "period": period, "cycles": cycles, "phase_deg": phase_deg}
+    return _pulse(who, "Mavroeidis & Papageorgiou (2003)", shape, length, dt, given)
 
 
 def sine_sweep(
@@ -407,7 +336,7 @@ def sine_sweep(
     who = "sine_sweep"
     start = positive_number(f"{who}: start_hz", start_hz, "hertz")
     end = positive_number(f"{who}: end_hz", end_hz, "hertz")
-    step = positive_number(f"{who}: dt", dt, "seconds")
+    step = _seconds(f"{who}: dt", dt)
     rate = positive_number(f"{who}: octaves_per_minute", octaves_per_minute) / 60
     octaves = math.log2(end / start)
     if octaves == 0:
@@ -418,17 +347,17 @@ def sine_sweep(
             f"{0.25 / step:g} Hz; give a smaller dt."
         )
     growth = math.copysign(rate, octaves) * math.log(2)
-    return _pulse(
-        who,
-        "IEC 60068-2-6, logarithmic sweep",
-        lambda t: np.sin(2 * np.pi * start * np.expm1(growth * t) / growth),
-        abs(octaves) / rate,
-        dt,
-        amplitude=amplitude,
-        start_hz=start_hz,
-        end_hz=end_hz,
-        octaves_per_minute=octaves_per_minute,
-    )
+
+    def shape(t: Floats) -> Floats:
+        return np.asarray(np.sin(2 * np.pi * start * np.expm1(growth * t) / growth))
+
+    given = {"amplitude": amplitude, "start_hz": start_hz, "end_hz": end_hz}
+    given["octaves_per_minute"] = octaves_per_minute
+    return _pulse(who, "IEC 60068-2-6, logarithmic sweep", shape, abs(octaves) / rate, dt, given)
+
+
+def _seconds(name: str, value: float) -> float:
+    return positive_number(name, value, "seconds")
 
 
 def _pulse(
@@ -437,14 +366,12 @@ def _pulse(
     shape: Callable[[Floats], Floats],
     length: float,
     dt: float,
-    *,
+    given: Mapping[str, float],
     jumps: bool = False,
-    amplitude: float,
-    **parameters: Any,
 ) -> Motion:
-    """Sample ``amplitude`` × ``shape`` between zeros; see the module's first lines."""
-    real_number(f"{name}: amplitude", amplitude)
-    samples = length / positive_number(f"{name}: dt", dt, "seconds")
+    """Sample the amplitude × ``shape`` between zeros; see the module's first lines."""
+    real_number(f"{name}: amplitude", given["amplitude"])
+    samples = length / _seconds(f"{name}: dt", dt)
     if not 1 < samples <= MOST_SAMPLES:
         raise InputError(
             f"{name}: {length:g} s make {samples:.3g} samples of dt {dt:g} s, which is not between "
@@ -452,13 +379,7 @@ def _pulse(
         )
     count = math.ceil(samples - 1e-9)
     step = length / count
-    first = 0.5 if jumps else 1.0
-    instants: Floats = np.arange(first, count) * step
-    acceleration = np.concatenate([[0.0], amplitude * np.asarray(shape(instants)), [0.0]])
-    return Motion(
-        acceleration,
-        step,
-        name=name,
-        metadata={"synthetic": True, "kind": name, "source": source},
-        provenance=({"step": name, **plain({"amplitude": amplitude, **parameters})},),
-    )
+    instants: Floats = np.arange(0.5 if jumps else 1.0, count) * step
+    acceleration = np.pad(given["amplitude"] * np.asarray(shape(instants)), 1)
+    facts = {"synthetic": True, "kind": name, "source": source}
+    return Motion(acceleration, step, name, facts, ({"step": name, **plain(given)},))

@@ -27,7 +27,6 @@ from rockfrag.motions.spectra import (
     steps_within,
     turning_time,
 )
-from rockfrag.records.integration import integrate, peak_velocity
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
@@ -35,16 +34,14 @@ Floats = NDArray[np.float64]
 LANES = 16
 
 # Rows of a group's table, each of LANES numbers, in one flat array so that the compiler sees that they do not
-# overlap: the propagator over a step, the state, and the largest displacement so far; ζω, 1/ωd and the most that
-# a ground acceleration of one can do, for the free vibration and what may still come;
+# overlap: the propagator over a step, the state before and after it, and the largest displacement so far; ζω,
+# 1/ωd and the most that a ground acceleration of one can do, for the free vibration and what may still come; what
+# a peak within a step can add, c = 2ζω and k = ω²; and the largest displacement of a stretch of steps
 _UU, _UV, _UA, _US, _VU, _VV, _VA, _VS = range(0, 8 * LANES, LANES)
-_U, _V, _LARGEST, _RATE, _PER_TURN, _GAIN = range(8 * LANES, 14 * LANES, LANES)
-# for exact peaks the state before the step, what a peak within it can add, c = 2ζω and k = ω²;
-_U0, _V0, _KEPT, _ADDED, _C, _K = range(14 * LANES, 20 * LANES, LANES)
-# the largest displacement of a stretch of steps;
+_U, _V, _U0, _V0, _LARGEST = range(8 * LANES, 13 * LANES, LANES)
+_RATE, _PER_TURN, _GAIN = range(13 * LANES, 16 * LANES, LANES)
+_KEPT, _ADDED, _C, _K = range(16 * LANES, 20 * LANES, LANES)
 _HIGHEST = 20 * LANES
-# for bounds the largest squared amplitude of free vibration, 1/k and c/k² in their place
-_FREE, _PER_A, _PER_S = range(14 * LANES, 17 * LANES, LANES)
 _ROWS = 21
 
 LOOK_EVERY = 32  # samples of a stretch, after which is asked whether anything larger can still come
@@ -67,166 +64,54 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
     """
     damping = checked_damping(damping)
     peaks = np.empty(periods.size)
-    to_come = _still_to_come(motion.acceleration)
-    for group in _groups(periods.tobytes(), damping, motion.dt, True):
-        integration = _integrated(group, motion.acceleration, to_come)
-        peaks[group.which] = _looked_between(integration, motion.acceleration)
+    # largest |a| from each sample on
+    to_come = np.maximum.accumulate(np.abs(motion.acceleration[::-1]))[::-1]
+    for which, parts, step, quiet, table in _groups(periods.tobytes(), damping, motion.dt):
+        x = table.copy()
+        x[_ADDED : _ADDED + LANES] *= to_come[0]
+        stretches = np.empty((-(-(motion.acceleration.size - 1 + quiet) // LOOK_EVERY), 3 * LANES))
+        ground = np.empty((2, LOOK_EVERY * parts))
+        steps = (quiet, step, parts, x, ground)
+        count = _integrate(motion.acceleration, to_come, *steps, stretches)
+        _look(motion.acceleration, *steps, stretches[:count])
+        peaks[which] = x[_LARGEST : _LARGEST + which.size]
     return peaks
 
 
-def largest_pseudo_acceleration(motion: Motion, periods: Floats, damping: float) -> int:
-    """Index of the period of the largest PSA = ω² Sd; periods that cannot have it are left out."""
-    acceleration, to_come = motion.acceleration, _still_to_come(motion.acceleration)
-    slope = float(np.abs(np.diff(acceleration, append=0.0)).max()) / motion.dt
-    square = (2 * math.pi / periods) ** 2
-    psa = np.zeros(periods.size)
-    groups = _groups(periods.tobytes(), damping, motion.dt, True)
-    # |u| is PGV times the total variation of the impulse response at most, 2/(ω (1 - r)), and by Cauchy and
-    # Schwarz √∫v² times that of its derivative, 1/√(4ζω)
-    ended = np.append(acceleration, 0.0)
-    bound = np.minimum(
-        np.sqrt(square) * peak_velocity(ended, motion.dt) * 2 / (1 - _decay(damping)),
-        square**0.75 * np.sqrt(_squared_velocity(ended, motion.dt, periods) / (4 * damping)),
-    ) * (1 + 1e-9)
-    for group in _groups(periods.tobytes(), damping, motion.dt, False):
-        psa[group.which], bound[group.which] = _bounds(
-            group, acceleration, square[group.which], to_come, slope
-        )
-    integrated = []
-    # from the highest bound on
-    for i in np.argsort([float(bound[group.which].max()) for group in groups])[::-1]:
-        which = groups[i].which
-        if bound[which].max() >= psa.max():
-            integration = _integrated(groups[i], acceleration, to_come)
-            psa[which], bound[which] = (
-                square[which] * bound for bound in integration.peaks_and_bounds()
-            )
-            integrated.append(integration)
-    for integration in integrated:
-        which = integration.group.which
-        if bound[which].max() >= psa.max():
-            psa[which] = square[which] * _looked_between(integration, acceleration)
-    return int(np.argmax(psa))
-
-
-def _squared_velocity(acceleration: Floats, dt: float, periods: Floats) -> Floats:
-    """Bound of ∫v² over a motion and one period, for which its last velocity stays, after it [m²/s]."""
-    velocity, _ = integrate(acceleration, dt)
-    square = velocity**2
-    # straight between samples, and an arc of height dt |Δa|/8 above or below
-    straight = dt * (square.sum() - (square[0] + square[-1]) / 2)
-    arcs = dt**3 / 64 * (np.diff(acceleration) ** 2).sum()
-    return np.asarray(
-        (math.sqrt(straight) + math.sqrt(arcs)) ** 2 + square[-1] * (periods + 3 * dt)
-    )
-
-
-class _Integrated(NamedTuple):
-    """A group after its integration: its table, and of each stretch the state before it and its peaks."""
-
-    group: _Group
-    table: Floats
-    stretches: Floats
-    number: int
-    ground: Floats
-
-    def peaks_and_bounds(self) -> tuple[Floats, Floats]:
-        """Largest displacement of each oscillator at its steps, and what a peak between them has at most [m]."""
-        peaks, added, kept = (
-            self.table[row : row + self.group.which.size] for row in (_LARGEST, _ADDED, _KEPT)
-        )
-        return peaks, (peaks + added) / kept * (1 + 1e-9)
-
-
-def _integrated(group: _Group, acceleration: Floats, to_come: Floats) -> _Integrated:
-    table = group.table.copy()
-    table[_ADDED : _ADDED + LANES] *= to_come[0]
-    stretches = np.empty((-(-(acceleration.size - 1 + group.quiet) // LOOK_EVERY), 3 * LANES))
-    ground = np.empty((2, LOOK_EVERY * group.parts))
-    steps = (group.quiet, group.step, group.parts)
-    count = _integrate(acceleration, to_come, *steps, table, stretches, ground)
-    return _Integrated(group, table, stretches, count, ground)
-
-
-def _looked_between(integration: _Integrated, acceleration: Floats) -> Floats:
-    """Sd of a group [m]."""
-    group, table = integration.group, integration.table
-    steps = (group.quiet, group.step, group.parts)
-    _look(
-        acceleration, *steps, table, integration.stretches[: integration.number], integration.ground
-    )
-    return table[_LARGEST : _LARGEST + group.which.size]
-
-
-def _bounds(
-    group: _Group, acceleration: Floats, square: Floats, to_come: Floats, slope: float
-) -> tuple[Floats, Floats]:
-    """PSA at the samples of a group and a bound of it between them [m/s²].
-
-    Within a step the displacement is -a/k + c s/k², which the ground acceleration a and its slope s set, and a
-    free vibration that only decays.
-    """
-    table = group.table.copy()
-    _integrate_free(acceleration, to_come, group.quiet, group.step, table)
-    size = group.which.size
-    forced = to_come[0] + square * table[_PER_S : _PER_S + size] * slope
-    free = square * np.sqrt(table[_FREE : _FREE + size])
-    return square * table[_LARGEST : _LARGEST + size], (forced + free) * (1 + 1e-9)
-
-
 @lru_cache(maxsize=64)
-def _groups(periods: bytes, damping: float, dt: float, exact: bool) -> tuple[_Group, ...]:
-    """Oscillators grouped by their steps; for bounds one step a sample of those that need more than two."""
+def _groups(periods: bytes, damping: float, dt: float) -> tuple[_Group, ...]:
+    """Oscillators grouped by their steps."""
     each = np.frombuffer(periods)
     parts = np.array([steps_within(dt, float(period), damping) for period in each])
     # undamped vibration does not get smaller, and so each such oscillator must end at its own time
     lanes = LANES if damping > 0 else 1
     groups = []
-    for count in np.unique(parts) if exact else (1,):
-        (which,) = np.nonzero(parts == count if exact else parts > 2)
+    for count in np.unique(parts):
+        (which,) = np.nonzero(parts == count)
         for i in range(0, which.size, lanes):
             some = which[i : i + lanes]
             quiet = math.ceil(each[some].max() / dt) + 1
             table = np.zeros((_ROWS, LANES))
             for lane, period in enumerate(each[some]):
-                table[:, lane] = _column(float(period), damping, dt / count, exact)
+                table[:, lane] = _column(float(period), damping, dt / count)
             groups.append(_Group(some, int(count), float(dt / count), quiet, table.ravel()))
     return tuple(groups)
 
 
-def _column(period: float, damping: float, step: float, exact: bool) -> Floats:
+def _column(period: float, damping: float, step: float) -> Floats:
     """One lane of a table, at rest; the ground's part of what a peak can add is still without PGA/k."""
     omega = 2 * math.pi / period
     c, k = 2 * damping * omega, omega * omega
-    values = dict.fromkeys(range(0, _ROWS * LANES, LANES), 0.0)
-    values.update(
-        zip(
-            range(0, 8 * LANES, LANES), oscillator_matrix(omega, damping, step).ravel(), strict=True
-        )
-    )
-    r = _decay(damping)
-    turn = omega * math.sqrt(max(1 - damping**2, 0.0))
+    # ratio of one peak of free vibration to the one before; zero from critical damping on
+    r = math.exp(-math.pi * damping / math.sqrt(1 - damping**2)) if damping < 1 else 0.0
+    ahead = [0.0, 0.0, math.inf]
     # without free vibration, or with one that does not decay, nothing is foreseen
     if 0 < r < 1:
-        values |= {_RATE: damping * omega, _PER_TURN: 1 / turn, _GAIN: (1 + r) / (1 - r) / k}
-    else:
-        values[_GAIN] = math.inf
-    if exact:
-        q = k * (step / 2) ** 2 / 2 / (1 - c * step)
-        values |= {_KEPT: 1 - q, _ADDED: q / k, _C: c, _K: k}
-    else:
-        values |= {_PER_A: 1 / k, _PER_S: c / k**2}
-    return np.array(list(values.values()))
-
-
-def _decay(damping: float) -> float:
-    """Ratio of one peak of free vibration to the one before; zero from critical damping on."""
-    return math.exp(-math.pi * damping / math.sqrt(1 - damping**2)) if damping < 1 else 0.0
-
-
-def _still_to_come(acceleration: Floats) -> Floats:
-    """Largest |a| from each sample on [m/s²], shape (n,)."""
-    return np.maximum.accumulate(np.abs(acceleration[::-1]))[::-1]
+        turn = omega * math.sqrt(1 - damping**2)
+        ahead = [damping * omega, 1 / turn, (1 + r) / (1 - r) / k]
+    q = k * (step / 2) ** 2 / 2 / (1 - c * step)
+    matrix = oscillator_matrix(omega, damping, step).ravel()
+    return np.array([*matrix, *[0.0] * 5, *ahead, 1 - q, q / k, c, k, 0.0])
 
 
 @cached_njit(error_model="numpy", inline="always")
@@ -242,8 +127,8 @@ def _integrate(
     step: float,
     parts: int,
     x: Floats,
-    stretches: Floats,
     ground: Floats,
+    stretches: Floats,
 ) -> int:
     """Take all lanes through a motion and ``quiet`` samples after it; return the number of stretches.
 
@@ -277,8 +162,8 @@ def _look(
     step: float,
     parts: int,
     x: Floats,
-    stretches: Floats,
     ground: Floats,
+    stretches: Floats,
 ) -> None:
     """Go through those stretches again that may hold a peak between steps; the peaks are in the table then."""
     end = acceleration.size - 1 + quiet
@@ -387,44 +272,3 @@ def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
         t = turning_time(u, v, u1, v1, step)
         peak = abs(state_after(u, v, a, s, x[_C + i], x[_K + i], t)[0])
         x[_LARGEST + i] = max(x[_LARGEST + i], peak)
-
-
-@cached_njit(error_model="numpy")
-def _integrate_free(
-    acceleration: Floats, to_come: Floats, quiet: int, step: float, x: Floats
-) -> None:
-    """Take all lanes through a motion and find the largest amplitudes of their free vibration."""
-    end = acceleration.size - 1 + quiet
-    ground = np.empty((2, LOOK_EVERY))
-    for first in range(0, end, LOOK_EVERY):
-        if _settled(x, _sample(to_come, first)):
-            return
-        steps = _fill_ground(acceleration, first, min(first + LOOK_EVERY, end), step, 1, ground)
-        for j in range(0, steps - 1, 2):
-            _advance_free_two(x, ground, j)
-        if steps % 2:
-            ground[:, steps] = 0.0
-            _advance_free_two(x, ground, steps - 1)
-
-
-@cached_njit(error_model="numpy")
-def _advance_free_two(x: Floats, ground: Floats, j: int) -> None:
-    """Two steps of all lanes from step j on, whose table is read and written once."""
-    a0, a1, s0, s1 = ground[0, j], ground[0, j + 1], ground[1, j], ground[1, j + 1]
-    for i in range(LANES):
-        u0, v0 = x[_U + i], x[_V + i]
-        u1, v1 = _stepped(x, i, u0, v0, a0, s0)
-        u2, v2 = _stepped(x, i, u1, v1, a1, s1)
-        free = max(_free(x, i, u0, v0, a0, s0), _free(x, i, u1, v1, a1, s1))
-        x[_FREE + i] = max(x[_FREE + i], free) + 0.0
-        x[_LARGEST + i] = max(x[_LARGEST + i], max(abs(u1), abs(u2))) + 0.0
-        x[_U + i], x[_V + i] = u2, v2
-
-
-@cached_njit(error_model="numpy", inline="always")
-def _free(x: Floats, i: int, u: float, v: float, a: float, s: float) -> float:
-    """Squared amplitude of the free vibration of lane i."""
-    free = u + a * x[_PER_A + i] - s * x[_PER_S + i]
-    speed = (v + s * x[_PER_A + i] + x[_RATE + i] * free) * x[_PER_TURN + i]
-    amplitude: float = free * free + speed * speed
-    return amplitude

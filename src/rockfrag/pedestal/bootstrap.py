@@ -1,7 +1,5 @@
 """How often each level is the largest when motions or earthquakes are drawn again."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
@@ -28,17 +26,12 @@ def rank_probabilities(
     if len(levels) == 1:
         drawn = np.zeros((1, 1))
     elif within:
-        drawn = np.column_stack(
-            [
-                _resampled(rows.groupby(cluster)["d"].mean().to_numpy(), rng)
-                for _, rows in table.groupby(factor)
-            ]
-        )
+        means = [rows.groupby(cluster)["d"].mean().to_numpy() for _, rows in table.groupby(factor)]
+        drawn = np.column_stack([_resampled(item, rng) for item in means])
     else:
         cells = table.pivot_table(index=cluster, columns=factor, values="d", aggfunc="mean")
         grid = cells[levels].dropna().to_numpy()
-        samples = _samples(rng, len(grid))
-        drawn = np.concatenate([grid[chosen].mean(axis=1) for chosen in samples])
+        drawn = _resampled(grid, rng)
     return pd.DataFrame(
         {
             "level": levels,
@@ -50,15 +43,13 @@ def rank_probabilities(
 
 
 def _resampled(means: Array, rng: np.random.Generator) -> Array:
-    samples = _samples(rng, len(means))
-    return np.concatenate([means[chosen].mean(axis=1) for chosen in samples])
-
-
-def _samples(rng: np.random.Generator, n: int) -> Iterator[npt.NDArray[np.int64]]:
-    """Draw ``DRAWS`` samples of n out of n with replacement, some at a time so that memory stays small."""
+    """Means of ``DRAWS`` samples of n out of n with replacement, some at a time so that memory stays small."""
+    n = len(means)
     at_once = max(1, DRAWN_AT_ONCE // max(n, 1))
-    for begin in range(0, DRAWS, at_once):
-        yield rng.integers(0, n, size=(min(at_once, DRAWS - begin), n))
+    sizes = (min(at_once, DRAWS - begin) for begin in range(0, DRAWS, at_once))
+    return np.concatenate(
+        [means[rng.integers(0, n, size=(size, n))].mean(axis=1) for size in sizes]
+    )
 
 
 def _fraction_of(extreme: npt.NDArray[np.bool_]) -> Array:

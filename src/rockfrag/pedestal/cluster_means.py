@@ -1,18 +1,8 @@
-"""The test that holds its level: t on the means of the units that were sampled.
+"""The test that holds its level: t on the means of the units that were sampled, see ``docs/pedestal.md``.
 
-Pairs are not independent: pairs under one motion share it, motions of one earthquake share the
-earthquake.  With objects and floors fixed and earthquakes sampled, the mean of d over one earthquake
-is one observation, independent of the others whatever the variances of earthquake, motion and pair are.
-A t test on the k earthquake means, with k - 1 degrees of freedom, is therefore exact for normal data in a
-balanced design.  Any contrast, a difference of floors or a slope on slenderness, is computed inside
-each earthquake first and then tested in the same way.
-
-Amplitudes from a series of steps are known to a step only, so d = ln a_P - ln a_NP is known to its
-``resolution``, d ± ln(1 + step).  Where pairs differ among themselves the series of levels's rounding is part of
-their scatter and averages out; where they agree it does not show, and a shift of up to the resolution
-may hide in each of them.  The resolution of a mean is therefore that of the pairs that share the most
-frequent value, times their share; no interval is narrower than it, and no difference within it is
-called one.
+Pairs share motion and earthquake, so the mean of d over one earthquake is one observation; contrasts are computed
+inside each earthquake first.  Where pairs agree to the step of the series of levels a shift may hide in all of
+them: the resolution of a mean is that of the pairs that share the most frequent value, times their fraction.
 """
 
 import math
@@ -28,6 +18,7 @@ from scipy import special
 Array = npt.NDArray[np.float64]
 
 CONFIDENCE = 0.95
+MARGIN = 0.10  # largest change of the overturning amplitude that counts as none, ±10 % [-]
 ROUNDING = 1e-12  # differences of logarithms below this are rounding, not scatter [-]
 
 
@@ -260,3 +251,13 @@ def contrast(
     hidden = pd.Series(tied_resolution(difference, known), index=difference.index)
     resolution = float(hidden.groupby(level=block).mean().mean())
     return t_estimate(difference.groupby(level=block).mean(), resolution=resolution)
+
+
+def equivalence(effect: Estimate, margin: float = MARGIN) -> float:
+    """Test that a mean log ratio lies within ±ln(1 + margin), by two one-sided tests (Schuirmann 1987).
+
+    It is never shown where the estimate's resolution reaches beyond a bound: a series of 5 % cannot
+    show equivalence to ±1 %. Returned is the larger of the two one-sided p values [-], NaN for a single unit.
+    """
+    bound = math.log1p(margin)
+    return max(effect.p_above(-bound), effect.p_below(bound))

@@ -7,7 +7,7 @@ side.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,9 +15,17 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.renamed_keys import check_names
+from rockfrag.sentences import sayer
 from rockfrag.short_repr import short_repr
 
 MOST_NAMED = 100  # pairs and tests that notes call by their names; of more the number
+SAY = sayer(
+    "rockfrag.pedestal",
+    "words.j2",
+    {"MOST_NAMED": MOST_NAMED, "exp": math.exp, "expm1": math.expm1},
+)
+"""What the pairs can say and what not, in notes."""
+
 KEY = ["object", "earthquake", "floor", "motion"]
 _NEEDED = ("object", "pedestal", "earthquake", "floor", "amplitude_g")
 
@@ -49,52 +57,15 @@ class Pairs:
 
     def notes(self) -> list[str]:
         """Say in words what is not among the complete pairs."""
-        notes = []
         bounded = self.table[self.table["bound"] != ""]
-        if len(bounded):
-            names = _some(
-                f"{name}/{motion} {bound} {math.exp(d):.3g}"
-                for name, motion, bound, d in zip(
-                    bounded["object"],
-                    bounded["motion"],
-                    bounded["bound"],
-                    bounded["d"],
-                    strict=True,
-                )
-            )
-            notes.append(
-                f"{_counted(len(bounded), 'pair')} in the means with the bound of P/NP, because one of the two "
-                f"tests never overturned, or did so at its first step ({names}): the true means lie further on "
-                "that side"
-            )
-        lost = self.censored[
-            np.isneginf(self.censored["d_lower"]) & np.isposinf(self.censored["d_upper"])
-        ]
-        if len(lost):
-            names = _some("/".join(row) for row in lost[["object", "motion"]].to_numpy())
-            notes.append(
-                f"{_counted(len(lost), 'pair')} left out because both tests are unfinished ({names})"
-            )
-        if len(self.unpaired):
-            names = _some(
-                f"{row.object}/{row.motion} without {row.missing}"
-                for row in self.unpaired.itertuples()
-            )
-            notes.append(
-                f"{_counted(len(self.unpaired), 'test')} without a partner left out ({names})"
-            )
-        return notes
-
-
-def _some(names: Iterable[str]) -> str:
-    """List names, of very many the first ones."""
-    listed = list(names)
-    rest = len(listed) - MOST_NAMED
-    return ", ".join(listed) if rest <= 0 else f"{', '.join(listed[:MOST_NAMED])} and {rest} more"
-
-
-def _counted(n: int, noun: str) -> str:
-    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+        below, above = self.censored["d_lower"], self.censored["d_upper"]
+        lost = self.censored[np.isneginf(below) & np.isposinf(above)]
+        return SAY(
+            "left_out",
+            bounded.to_dict("records"),
+            lost.to_dict("records"),
+            self.unpaired.to_dict("records"),
+        )
 
 
 def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
@@ -139,9 +110,17 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
             f"({', '.join(sorted(clean['definition'].astype(str).unique()))}); keep one of them."
         )
     _check_amplitudes(clean)
-    _check_duplicates(clean)
-    order = ["object", "earthquake", "floor", "motion", "pedestal", "repetition"]
-    return clean.sort_values(order, kind="stable", ignore_index=True)
+    test = [*KEY, "pedestal", "repetition"]
+    twice = np.flatnonzero(clean.duplicated(test))
+    if len(twice):
+        row = clean.loc[twice[0], test]
+        first = int(np.flatnonzero((clean[test] == row).all(axis=1))[0])
+        raise InputError(
+            f"Table of tests, row {twice[0] + 1}: the same test as row {first + 1} "
+            f"({', '.join(row[['object', 'motion', 'pedestal']])}); remove one or number them in the column "
+            "repetition."
+        )
+    return clean.sort_values(test, kind="stable", ignore_index=True)
 
 
 def _check_amplitudes(clean: pd.DataFrame) -> None:
@@ -173,20 +152,6 @@ def _check_amplitudes(clean: pd.DataFrame) -> None:
         raise InputError(
             f"Table of tests, row {row + 1}: lower_g {clean['lower_g'].iloc[row]} exceeds "
             f"upper_g {clean['upper_g'].iloc[row]}; exchange them."
-        )
-
-
-def _check_duplicates(clean: pd.DataFrame) -> None:
-    key = [*KEY, "pedestal", "repetition"]
-    twice = clean.index[clean.duplicated(key)]
-    if len(twice):
-        row = twice[0]
-        same = (clean[key] == clean.loc[row, key]).all(axis=1)
-        first = int(np.flatnonzero(same)[0])
-        raise InputError(
-            f"Table of tests, row {row + 1}: the same test as row {first + 1} "
-            f"({', '.join(clean.loc[row, ['object', 'motion', 'pedestal']].tolist())}); "
-            "remove one or number them in the column repetition."
         )
 
 

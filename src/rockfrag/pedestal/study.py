@@ -11,14 +11,14 @@ from rockfrag.pedestal.bootstrap import rank_probabilities
 from rockfrag.pedestal.cluster_means import (
     ROUNDING,
     effect_of,
+    equivalence,
     mean_effect,
     sampled_unit,
     sampled_units,
     unit_means,
 )
-from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
-from rockfrag.pedestal.paired_tests import Pairs, pair_tests
+from rockfrag.pedestal.paired_tests import SAY, Pairs, pair_tests
 from rockfrag.pedestal.permutation import WITHOUT_COLUMNS, leave_one_earthquake_out, sign_flip_test
 from rockfrag.pedestal.power import detectable_ratio
 from rockfrag.short_repr import short_repr
@@ -75,21 +75,6 @@ class PedestalStudy:
     notes: tuple[str, ...]
 
     __repr__ = short_repr
-
-
-def population(table: pd.DataFrame) -> str:
-    """Say in words to what the inference applies."""
-    earthquakes = int(table["earthquake"].nunique())
-    if earthquakes == 1:
-        return (
-            "the inference is about further motions of this one earthquake on the tested floors, "
-            "not about other earthquakes"
-        )
-    smallest = 2.0 ** (1 - earthquakes)
-    return (
-        f"the inference is about earthquakes of which these {earthquakes} are a sample, for the objects and "
-        f"floors tested; sign flips over {earthquakes} earthquakes cannot give a p value below {smallest:.3g}"
-    )
 
 
 def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFrame:
@@ -199,50 +184,6 @@ def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True).rename(columns={"mean": "ratio"})
 
 
-def _tied_of(tied: int, pairs: int) -> str:
-    return "the two tests of the only pair" if pairs == 1 else f"{tied} of {pairs} pairs"
-
-
-def ties_note(table: pd.DataFrame) -> list[str]:
-    """Say in words how many pairs agree within their steps, and what that can mean."""
-    tied = table["d"].abs() < ROUNDING
-    if not tied.any():
-        return []
-    widest = float(table.loc[tied, "resolution"].max())
-    if widest == 0:
-        return [
-            f"{_tied_of(int(tied.sum()), len(table))} agree in their amplitudes; the table does not give the "
-            "steps (lower_g, upper_g), so the difference that they exclude is not known"
-        ]
-    notes = [
-        f"{_tied_of(int(tied.sum()), len(table))} overturned in the same step, which excludes a "
-        f"change of {100 * math.expm1(widest):.1f} % or more and no smaller one; no interval is "
-        "narrower than the steps of the pairs that agree"
-    ]
-    if tied.mean() > 0.5:
-        notes.append(
-            "most pairs agree, so the intervals are wider than their level says: in simulations nominal 90 % "
-            "intervals contained the truth in 99 to 100 %, and less than 1 % of tables without effect had "
-            "p < 0.05; a few pairs that differ do not allow sharper statements"
-        )
-    return notes
-
-
-def _no_ratio(pairs: Pairs) -> PedestalStudy:
-    """Return the study of tests none of whose pairs has a known ratio: empty tables and a note."""
-    note = (
-        "no pair has a known ratio, not even a bound: raise or lower the amplitudes of the protocol"
-    )
-    return PedestalStudy(
-        pairs=pairs,
-        effects=pd.DataFrame(columns=EFFECT_COLUMNS),
-        whole=pd.DataFrame(columns=WHOLE_COLUMNS),
-        without_earthquake=pd.DataFrame(columns=WITHOUT_COLUMNS),
-        ranks=pd.DataFrame(columns=RANK_COLUMNS),
-        notes=(*pairs.notes(), note),
-    )
-
-
 def study_pedestal(
     tests: pd.DataFrame, *, seed: int, slenderness: Mapping[str, float] | None = None
 ) -> PedestalStudy:
@@ -269,12 +210,21 @@ def study_pedestal(
     pairs = pair_tests(tests, slenderness)
     table = pairs.table
     if table.empty:
-        return _no_ratio(pairs)
+        columns = (EFFECT_COLUMNS, WHOLE_COLUMNS, WITHOUT_COLUMNS, RANK_COLUMNS)
+        effects, whole, without, ranks = (pd.DataFrame(columns=names) for names in columns)
+        notes = (*pairs.notes(), *SAY("no_ratio"))
+        return PedestalStudy(pairs, effects, whole, without, ranks, notes)
+    tied = table["d"].abs() < ROUNDING
+    widest = float(table.loc[tied, "resolution"].max())
     return PedestalStudy(
         pairs=pairs,
         effects=effects_table(table, list(tests["floor"].astype(str).unique())),
         whole=_whole_tests(table, seed),
         without_earthquake=leave_one_earthquake_out(table),
         ranks=_ranks(table, seed),
-        notes=(population(table), *pairs.notes(), *ties_note(table)),
+        notes=(
+            *SAY("population", table["earthquake"].nunique()),
+            *pairs.notes(),
+            *SAY("ties", int(tied.sum()), len(table), widest),
+        ),
     )

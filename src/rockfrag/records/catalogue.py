@@ -4,6 +4,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -44,6 +45,7 @@ _FACTS = (
     *("earthquake", "date", "station", "component", "magnitude", "distance_km"),
     *("second", "vertical", "direction", "licence"),
 )
+_ARCHIVE = re.compile(r"\.(?:zip|tar|tgz|tar\.\w+)$", re.IGNORECASE)
 _MOST_SHOWN = 400  # characters of the list of wrong cells in a message
 
 
@@ -120,11 +122,11 @@ def _cells(path: str | os.PathLike[str]) -> tuple[list[dict[str, str]], list[int
     ragged = [f"line {n} has {len(c)} cells" for n, c in filled[1:] if len(c) != len(header)]
     if ragged:
         raise InputError(f"{path}: the titles are {len(header)}, but {_listed(ragged)}.")
-    rows = []
-    for _, cells in filled[1:]:
-        row = dict.fromkeys(COLUMNS, "") | _DEFAULTS
-        stated = dict(zip(header, cells, strict=True))
-        rows.append(row | {column: cell for column, cell in stated.items() if cell})
+    empty = dict.fromkeys(COLUMNS, "") | _DEFAULTS
+    rows = [
+        empty | {title: cell for title, cell in zip(header, cells, strict=True) if cell}
+        for _, cells in filled[1:]
+    ]
     return rows, [number for number, _ in filled[1:]]
 
 
@@ -160,16 +162,12 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
             except InputError as error:
                 wrong.append((column, str(error).rstrip(".")))
     for column, (least, most) in _NUMBERS.items():
-        if row[column] and not _inside(row[column], least, most):
+        number = math.nan
+        with suppress(ValueError):
+            number = float(row[column])
+        if row[column] and not least <= number <= most:
             wrong.append((column, f"{row[column]!r} is not a number from {least:g} to {most:g}"))
     return wrong
-
-
-def _inside(words: str, least: float, most: float) -> bool:
-    try:
-        return least <= float(words) <= most
-    except ValueError:
-        return False
 
 
 def load_motions(
@@ -222,7 +220,10 @@ def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) 
     All are of the row's source, unit and interval; the SHA-256 is that of ``file`` alone.
     """
     source = row["source"]
-    name, channel = _file_and_channel(file)
+    name, _, channel = file.rpartition("#")
+    # what stands behind the only mark of an archive is a member
+    if not name or ("#" not in name and _ARCHIVE.search(name)):
+        name, channel = file, ""
     digest = row["sha256"] if file == row["file"] else ""
     dt = row.get("dt", math.nan)
     # readers load ObsPy, which those who only look into a catalogue need not wait for
@@ -253,19 +254,6 @@ def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) 
         )
     except InputError as error:
         raise InputError(for_catalogue(error)) from None
-
-
-def _file_and_channel(file: str) -> tuple[str, str]:
-    """Split ``file#channel`` and ``archive.zip#member#channel`` at the last mark of a channel.
-
-    What stands behind the only mark of an archive is a member.
-    """
-    name, _, channel = file.rpartition("#")
-    if not name:
-        return channel, ""
-    if "#" not in name and re.search(r"\.(?:zip|tar|tgz|tar\.\w+)$", name, re.IGNORECASE):
-        return file, ""
-    return name, channel
 
 
 def _check_digest(path: Path, digest: str) -> None:

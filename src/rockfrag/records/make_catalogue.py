@@ -74,71 +74,68 @@ class Component:
     @property
     def suffix(self) -> str:
         """Component that ends the name of its file, as in ``A-TMZ000``; empty if none does."""
-        match = self._named()
-        return match["name"] if match else ""
+        return self._parts[1]
 
     @property
     def stem(self) -> str:
         """Name of the file without what names the component."""
-        match = self._named()
-        return match["stem"] + match["rest"] if match else self.name
+        return self._parts[0]
 
-    def _named(self) -> re.Match[str] | None:
-        matches = (pattern.match(self.name) for pattern in _SUFFIXES)
-        return None if self.several else next((match for match in matches if match), None)
+    @property
+    def _parts(self) -> tuple[str, str]:
+        found = next(filter(None, (pattern.match(self.name) for pattern in _SUFFIXES)), None)
+        if found is None or self.several:
+            return self.name, ""
+        return found["stem"] + found["rest"], found["name"]
 
     @property
     def is_vertical(self) -> bool:
         """Whether it is named as a vertical one."""
         return is_vertical(self.orientation)
 
-
-@dataclass(frozen=True)
-class Note:
-    """What looks wrong in a file."""
-
-    file: str
-    what: str
-
     @property
-    def kind(self) -> str:
-        """The same for all files in which the same looks wrong: without numbers and names."""
-        return re.sub(r"\d[\d.]*|'[^']*'|\S+\.\w+(?:#\S*)?", "…", self.what)
-
-    def __str__(self) -> str:
-        """The file and what looks wrong in it."""
-        return f"{self.file}: {self.what}"
+    def shared_by_a_record(self) -> tuple[tuple[object, ...] | None, ...]:
+        """What the components of one record share: file, name, or station and time; None where it has none."""
+        time = self.facts.get("network"), self.facts.get("station"), self.facts.get("start_time")
+        folder = str(Path(self.path).parent)
+        return (
+            (self.container, self.path, self.sha256) if self.several else None,
+            (self.container, folder, self.stem) if self.suffix else None,
+            time if all(time[1:]) else None,
+        )
 
 
 @dataclass
 class CatalogueDraft:
-    """A catalogue made: its table, and what a person should look at."""
+    """A catalogue made: its table, and what a person should look at: files and what looks wrong in each."""
 
     table: pd.DataFrame
-    notes: list[Note] = field(default_factory=list)
+    notes: list[tuple[str, str]] = field(default_factory=list)
     errors: list[str] = field(default_factory=list)
 
     @property
     def warnings(self) -> list[str]:
         """What looks wrong, a line each."""
-        return [str(note) for note in self.notes]
+        return [f"{file}: {what}" for file, what in self.notes]
 
     def summary(self, shown: int = 3) -> list[str]:
         """Return the warnings, those of one kind as one line with an example where they are many."""
-        kinds: dict[str, list[Note]] = {}
-        for note in self.notes:
-            kinds.setdefault(note.kind, []).append(note)
+        kinds: dict[str, list[tuple[str, str]]] = {}
+        for file, what in self.notes:
+            # the same for all files in which the same looks wrong: without numbers and names
+            kind = re.sub(r"\d[\d.]*|'[^']*'|\S+\.\w+(?:#\S*)?", "…", what)
+            kinds.setdefault(kind, []).append((file, what))
         lines: list[str] = []
         for kind, notes in kinds.items():
             if len(notes) <= shown:
-                lines += map(str, notes)
+                lines += [f"{file}: {what}" for file, what in notes]
             else:
-                lines.append(f"{len(notes)} times: {kind}; the first is {notes[0].file}")
+                lines.append(f"{len(notes)} times: {kind}; the first is {notes[0][0]}")
         return lines
 
     def note(self, file: str, what: str) -> None:
         """Note what looks wrong in a file."""
-        self.notes.append(Note(file, what))
+        self.notes.append((file, what))
 
 
 def make_catalogue(
@@ -211,10 +208,9 @@ def _note_names_of_one_day(rows: Sequence[dict[str, Any]], draft: CatalogueDraft
     """Note days of which several earthquakes are named: they may be one under two names."""
     by_day: dict[str, dict[str, str]] = {}
     for row in rows:
-        if len(str(row["date"])) == len("1976-05-06"):
-            by_day.setdefault(str(row["date"]), {}).setdefault(
-                str(row["earthquake"]), str(row["file"])
-            )
+        day, earthquake = str(row["date"]), str(row["earthquake"])
+        if len(day) == len("1976-05-06"):
+            by_day.setdefault(day, {}).setdefault(earthquake, str(row["file"]))
     for day, earthquakes in by_day.items():
         if len(earthquakes) > 1:
             first, other = list(earthquakes)[:2]
@@ -255,8 +251,12 @@ def _components(
     file: Path, unit: str | None, dt: float | None, folder: Path, draft: CatalogueDraft
 ) -> list[Component]:
     """Read every component of a file; what is wrong with it goes into the errors of ``draft``."""
-    record, dt_given = _read(file, dt, draft)
-    if record is None:
+    try:
+        record, dt_given = _read(file, dt)
+    except NotAcceleration:
+        return []
+    except InputError as error:
+        draft.errors.append(str(error))
         return []
     draft.errors += [str(e) for _, e in record.left_out if not isinstance(e, NotAcceleration)]
     relative = Path(os.path.relpath(file, folder)).as_posix()
@@ -298,22 +298,14 @@ def _components(
     return found
 
 
-def _read(
-    file: Path, dt: float | None, draft: CatalogueDraft
-) -> tuple[Record | None, float | None]:
+def _read(file: Path, dt: float | None) -> tuple[Record, float | None]:
     """Read a file, with the user's interval where it does not state its own."""
-    problem: InputError | None = None
-    for given in (None, dt):
-        if given is None and problem is not None:
-            break
-        try:
-            return read_record(file, given), given
-        except NotAcceleration:
-            return None, None
-        except InputError as error:
-            problem = error
-    draft.errors.append(str(problem))
-    return None, None
+    try:
+        return read_record(file), None
+    except InputError as error:
+        if dt is None or isinstance(error, NotAcceleration):
+            raise
+    return read_record(file, dt), dt
 
 
 def _stem(name: str) -> str:
@@ -350,7 +342,7 @@ def _peer_rows(
     there = [component for component in horizontal if component is not None]
     used.update(component.file for component in (*there, *([vertical] if vertical else [])))
     return [
-        _row(component, next((o for o in there if o is not component), None), vertical, draft)
+        _row(component, there, vertical, draft)
         | {key: value for key, value in facts.items() if value not in ("", None)}
         for component in there
     ]
@@ -363,7 +355,7 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
     for way in range(3):
         by_key: dict[object, list[Component]] = {}
         for component in left:
-            key = _shared_by_a_record(component)[way]
+            key = component.shared_by_a_record[way]
             if key is not None:
                 by_key.setdefault(key, []).append(component)
         for several in by_key.values():
@@ -376,17 +368,6 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
     groups += [[component] for component in left]
     order = {component.file: number for number, component in enumerate(components)}
     return sorted(groups, key=lambda group: order[group[0].file])
-
-
-def _shared_by_a_record(component: Component) -> tuple[tuple[object, ...] | None, ...]:
-    """Return what the components of one record share: file, name, or station and time; None where it has none."""
-    facts, folder = component.facts, str(Path(component.path).parent)
-    time = facts.get("network"), facts.get("station"), facts.get("start_time")
-    return (
-        (component.container, component.path, component.sha256) if component.several else None,
-        (component.container, folder, component.stem) if component.suffix else None,
-        time if all(time[1:]) else None,
-    )
 
 
 def _is_record(group: Sequence[Component]) -> bool:
@@ -410,15 +391,17 @@ def _rows_of(group: Sequence[Component], draft: CatalogueDraft) -> list[dict[str
         draft.note(upright.file, "a vertical component of no record here; left out")
     if len(flat) == 1:
         draft.note(flat[0].file, "its other horizontal component was not found")
-    return [
-        _row(component, next((o for o in flat if o is not component), None), upright, draft)
-        for component in flat
-    ]
+    return [_row(component, flat, upright, draft) for component in flat]
 
 
 def _row(
-    component: Component, other: Component | None, vertical: Component | None, draft: CatalogueDraft
+    component: Component,
+    pair: Sequence[Component],
+    vertical: Component | None,
+    draft: CatalogueDraft,
 ) -> dict[str, Any]:
+    """Return the row of one component of a pair, and note what looks wrong in it."""
+    other = next((other for other in pair if other is not component), None)
     for quality_flag in component.quality_flags:
         draft.note(component.file, quality_flag)
     if (
@@ -437,10 +420,9 @@ def _row(
             component.file,
             f"its earthquake is not stated; the column earthquake has {earthquake!r}",
         )
+    channel = component.facts.get("channel", "") if component.several else ""
     return {
-        "name": f"{component.name} {component.facts.get('channel', '')}".strip()
-        if component.several
-        else component.name,
+        "name": f"{component.name} {channel}".strip() if component.several else component.name,
         "earthquake": earthquake,
         "date": _date(component.facts),
         "station": component.facts.get("station", ""),

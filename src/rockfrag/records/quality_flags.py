@@ -37,7 +37,9 @@ def quality_flags(motion: Motion) -> list[str]:
         found.append(f"a sampling interval of {motion.dt:g} s, too long for short impacts")
     if a.size < 10:
         return [*found, f"only {a.size} samples"]
-    left = _velocity_left(a)
+    velocity = np.cumsum(0.5 * (a[1:] + a[:-1]))
+    left, fastest = abs(float(velocity[-1])), float(np.abs(velocity).max())
+    left = left / fastest if fastest else 0.0
     if left > _DRIFT:
         found.append(f"a drift: {100 * left:.0f} % of the peak velocity is left at the end")
     if _longest_run(np.abs(a) >= peak * (1 - 1e-9)) >= _CLIPPED_RUN:
@@ -45,30 +47,18 @@ def quality_flags(motion: Motion) -> list[str]:
     first = a[: max(2, round(0.1 / motion.dt))]
     if first.size < a.size / 4 and np.abs(first).max() > _LATE * peak:
         found.append("strong from its first samples, as if triggered late")
-    if _has_spike(a, peak):
+    off = np.abs(a[1:-1] - 0.5 * (a[:-2] + a[2:]))
+    if off.max() > max(_SPIKE * peak, _SPIKE_RATIO * float(np.quantile(off, 0.9))):
         found.append("a lone spike")
     if _is_doubled(a):
         found.append("every second sample repeats the one before it")
     return found
 
 
-def _velocity_left(a: NDArray[np.float64]) -> float:
-    """Return the fraction of the peak velocity that is left at the end."""
-    velocity = np.cumsum(0.5 * (a[1:] + a[:-1]))
-    peak = float(np.abs(velocity).max())
-    return abs(float(velocity[-1])) / peak if peak else 0.0
-
-
 def _longest_run(mask: NDArray[np.bool_]) -> int:
     """Return the length of the longest run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(np.int8), [0]))))
     return int((edges[1::2] - edges[::2]).max()) if edges.size else 0
-
-
-def _has_spike(a: NDArray[np.float64], peak: float) -> bool:
-    off = np.abs(a[1:-1] - 0.5 * (a[:-2] + a[2:]))
-    usual = float(np.quantile(off, 0.9))
-    return bool(off.max() > _SPIKE * peak and off.max() > _SPIKE_RATIO * usual)
 
 
 def _is_doubled(a: NDArray[np.float64]) -> bool:

@@ -27,8 +27,7 @@ from rockfrag.short_repr import short_repr
 from rockfrag.units import GRAVITY
 
 FORMATS = (*HEADED, plain.FORMAT)  # those read here; ObsPy reads some others
-_GRAVITY_FRACTION = 0.05
-"""A mean within this fraction of g is the weight of the sensor's mass, not motion."""
+_GRAVITY_FRACTION = 0.05  # a mean within this fraction of g is the weight of the sensor's mass
 
 _SAME_STEP = 1e-9  # fraction of an interval by which the user's may differ from the stated one
 
@@ -50,12 +49,15 @@ def read_record(
     path: str | os.PathLike[str], dt: float | None = None, cut_short: bool = False
 ) -> Record:
     """Return what is in a file, before units are settled."""
-    file, member = _file_and_member(path)
+    name, (file, mark, member) = str(path), str(path).partition("#")
+    # a file whose own name has a # is that file
+    if not (mark and not os.path.lexists(name) and os.path.isfile(file) and is_archive(file)):
+        file, member = name, ""
     check_file(file)
     if is_archive(file):
         return _archived(file, member, dt, cut_short)
-    name, channels = _channels(Path(file), dt, cut_short)
-    return Record(str(path), name, sha256_of(Path(file)), tuple(channels))
+    form, channels = _channels(Path(file), dt, cut_short)
+    return Record(name, form, sha256_of(Path(file)), tuple(channels))
 
 
 def _channels(path: Path, dt: float | None, cut_short: bool) -> tuple[str, list[Channel]]:
@@ -69,15 +71,6 @@ def _channels(path: Path, dt: float | None, cut_short: bool) -> tuple[str, list[
             f"{path}: the file states dt = {channels[0].dt:g} s, not {dt:g} s; leave dt= out."
         )
     return name, channels
-
-
-def _file_and_member(path: str | os.PathLike[str]) -> tuple[str, str]:
-    """Split ``archive.zip#member``; a file whose own name has a ``#`` is that file."""
-    name = str(path)
-    file, mark, member = name.partition("#")
-    if mark and not os.path.lexists(name) and os.path.isfile(file) and is_archive(file):
-        return file, member
-    return name, ""
 
 
 def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Record:
@@ -178,8 +171,18 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
         raise InputError(
             f"{record.name}: the file has several channels, {_listed(record)}; choose one with channel=."
         )
-    for answers in (_same_name, _same_orientation, _same_ending):
-        found = [channel for channel in channels if answers(channel, wanted)]
+    azimuth, letter = azimuth_of(wanted), len(wanted) == 1 and wanted.isalpha()
+    for answers in (
+        lambda channel: plain_name(wanted) in _names_of(channel),
+        # a SEED code names its sensor, not always its direction
+        lambda channel: (
+            azimuth is not None
+            and channel.component != channel.code
+            and azimuth_of(channel.component) == azimuth
+        ),
+        lambda channel: letter and channel.code.upper().endswith(wanted.upper()),
+    ):
+        found = [channel for channel in channels if answers(channel)]
         if len(found) == 1:
             return found[0]
         if len(found) > 1:
@@ -198,6 +201,9 @@ def motion_of(
     stored = _settled_unit(record, channel, samples, unit)
     factor = TO_SI[stored]
     acceleration = _in_si(record, samples, factor)
+    archived: dict[str, Any] = {"member": channel.member} if channel.member else {}
+    if record.left_out:
+        archived["left_out"] = [name for name, _ in record.left_out]
     steps: list[dict[str, Any]] = [
         {
             "step": "read",
@@ -208,24 +214,25 @@ def motion_of(
             "unit": stored,
             "unit_stated": bool(channel.unit),
             "factor_to_m_s2": factor,
-            **_archive_facts(record, channel),
+            **archived,
         },
         *channel.details.get("steps", ()),
     ]
-    offset = _zero_level(channel, acceleration)
-    if offset:
-        acceleration = acceleration - offset
-        steps.append({"step": "remove zero level", "offset_m_s2": offset})
+    mean = float(acceleration.mean())
+    # the sensor's zero, or the weight of its mass, which is not motion
+    if mean and (channel.raw or abs(abs(mean) - GRAVITY) < _GRAVITY_FRACTION * GRAVITY):
+        acceleration = acceleration - mean
+        steps.append({"step": "remove zero level", "offset_m_s2": mean})
     if not channel.unit and not force:
         _check_peak(record, acceleration, stored)
     own = channel.member or record.name.rpartition("#")[2]
-    stem = Path(own).name.removesuffix(".gz").rsplit(".", 1)[0]
-    stem = printable(stem)
-    several = len(record.channels) > 1
+    name = printable(Path(own).name.removesuffix(".gz").rsplit(".", 1)[0])
+    if len(record.channels) > 1:
+        name = f"{name} {channel.code or channel.component}".strip()
     return Motion(
         acceleration=acceleration,
         dt=channel.dt,
-        name=f"{stem} {channel.code or channel.component}".strip() if several else stem,
+        name=name,
         metadata=_metadata(record, channel, stored),
         provenance=tuple(steps),
     )
@@ -253,14 +260,6 @@ def _check_peak(record: Record, acceleration: NDArray[np.float64], unit: str) ->
             f"{record.name}: in {unit} its peak would be {peak / GRAVITY:.3g} g, above {STRONGEST_G:g} g; give "
             f"the unit of the numbers, or, if it is {unit}, say so with force=True or in the file."
         )
-
-
-def _archive_facts(record: Record, channel: Channel) -> dict[str, Any]:
-    """Return the member that a channel is of, and what else the archive has that was left out."""
-    facts: dict[str, Any] = {"member": channel.member} if channel.member else {}
-    if record.left_out:
-        facts["left_out"] = [name for name, _ in record.left_out]
-    return facts
 
 
 def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
@@ -306,15 +305,6 @@ def _settled_unit(
     )
 
 
-def _zero_level(channel: Channel, acceleration: NDArray[np.float64]) -> float:
-    """Return the constant [m/s²] that is the sensor's zero or gravity, not motion; 0 if none."""
-    mean = float(acceleration.mean())
-    if channel.raw:
-        return mean
-    weight = abs(abs(mean) - GRAVITY) < _GRAVITY_FRACTION * GRAVITY
-    return mean if weight else 0.0
-
-
 def _listed(record: Record) -> str:
     names = []
     for number, channel in enumerate(record.channels, start=1):
@@ -324,7 +314,8 @@ def _listed(record: Record) -> str:
     return "; ".join(names)
 
 
-def _same_name(channel: Channel, wanted: str) -> bool:
+def _names_of(channel: Channel) -> set[str]:
+    """Return all names of a channel, plain ones."""
     bare = {channel.code, channel.component, f"{channel.code} {channel.component}"}
     names = {name.strip() for name in bare if name.strip()} | {
         str(channel.details.get("title", ""))
@@ -333,18 +324,4 @@ def _same_name(channel: Channel, wanted: str) -> bool:
         files = {channel.member, Path(channel.member).name}
         names |= files | {f"{file} {name}" for file in files for name in names}
         names |= {f"{file}#{name}" for file in files for name in names}
-    return plain_name(wanted) in {plain_name(name) for name in names if name}
-
-
-def _same_orientation(channel: Channel, wanted: str) -> bool:
-    azimuths = [_azimuth_of(channel), azimuth_of(wanted)]
-    return None not in azimuths and azimuths[0] == azimuths[1]
-
-
-def _same_ending(channel: Channel, wanted: str) -> bool:
-    return len(wanted) == 1 and wanted.isalpha() and channel.code.upper().endswith(wanted.upper())
-
-
-def _azimuth_of(channel: Channel) -> float | None:
-    """Return the azimuth that a name states; a SEED code names its sensor, not always its direction."""
-    return azimuth_of(channel.component) if channel.component != channel.code else None
+    return {plain_name(name) for name in names if name}

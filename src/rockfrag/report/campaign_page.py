@@ -2,14 +2,14 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.campaign.repeats import REPEATS
+from rockfrag.campaign.comparison import REPEATS
 from rockfrag.campaign.trials import preferred_edges
 from rockfrag.campaign.validation import FEWEST_VOTERS
 from rockfrag.fragility.observations import name_and_unit
@@ -20,21 +20,20 @@ from rockfrag.report.figures.campaign import (
     footprint_figure,
     tests_figure,
 )
-from rockfrag.report.findings import finding_of
 from rockfrag.report.page import Column, table_html, text_table
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section, opened
+from rockfrag.report.part import (
+    Answer,
+    FigureSpec,
+    Finding,
+    Section,
+    figure_of,
+    finding_of,
+    section_of,
+)
 from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.two_measures import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import (
-    estimate,
-    listed,
-    macros,
-    number,
-    probability,
-    said,
-    sentence,
-)
+from rockfrag.report.wording import estimate, macros, number, one_line, probability, said
 from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
 from rockfrag.study.campaign import CampaignStudy
 
@@ -56,7 +55,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         _answer(study, tables, sections),
         sections,
         title=study.title,
-        lead=" ".join(said(_sentences().lead(tests, _motion(study)))),
+        lead=one_line(_sentences().lead(tests, _motion(study))),
         provenance=provenance(study, {"Tests": study.tests.name}),
         basis="measured",
     )
@@ -215,28 +214,16 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         Column("judged", "Judged"),
     )
     best = max(agreement.to_dict("records"), key=lambda row: float(row["right"]))
-    figure = FigureSpec(
-        "agreement",
-        f"{sentence(_who(best['who']))} is right most often, in {_percent(best)} of the tests.",
-        f"Outcomes predicted right, with {100 * study.confidence:g} % intervals over motions. Filled dots are "
-        "judged on motions that were not used for fitting, open ones are as given.",
-        lambda: agreement_figure(agreement.assign(who=shown["who"])),
-    )
-    return Section(
-        "agreement",
-        "How often each prediction is right",
-        f"{_findings(tables)[0].headline}.",
-        [
-            *opened(_findings(tables)[0]),
-            "Unmeasured properties, and thresholds, are fitted on some motions and judged on the others. Other "
-            "programs are as their authors tuned them, on these tests.",
-        ],
-        [
-            figure,
-            table_html(shown, columns, "Outcomes predicted, and the difference on the same tests."),
-            *_rocking(tables["rocking"]),
-        ],
-    )
+    text = _sentences().agreement_figure(best, _who(best["who"]), _level(study))
+    drawn = agreement.assign(who=shown["who"])
+    figure = figure_of(text, "agreement", lambda: agreement_figure(drawn))
+    table = table_html(shown, columns, "Outcomes predicted, and the difference on the same tests.")
+    text = _sentences().agreement(_findings(tables)[0])
+    return section_of(text, "agreement", [figure, table, *_rocking(tables["rocking"])])
+
+
+def _level(study: CampaignStudy) -> str:
+    return f"{100 * study.confidence:g} %"
 
 
 def _rocking(rocking: pd.DataFrame) -> list[Markup]:
@@ -261,24 +248,18 @@ _OUTCOMES = {
 
 def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     fragility, tests = tables["fragility"], tables["tests"]
-    rows = []
-    for row in fragility.to_dict("records"):
-        name, unit = name_and_unit(row["measure"])
-        rows.append(
-            {
-                "measure": f"{name} [{unit}]",
-                "who": _OUTCOMES[row["who"]],
-                **{
-                    key: estimate(row[key], row[f"{key}_lower"], row[f"{key}_upper"], digits)
-                    for key, digits in (
-                        ("theta", 3),
-                        ("beta", 2),
-                        ("theta_ratio", 2),
-                        ("beta_ratio", 2),
-                    )
-                },
-            }
-        )
+    digits = {"theta": 3, "beta": 2, "theta_ratio": 2, "beta_ratio": 2}
+    rows = [
+        {
+            "measure": "{} [{}]".format(*name_and_unit(row["measure"])),
+            "who": _OUTCOMES[row["who"]],
+            **{
+                key: estimate(row[key], row[f"{key}_lower"], row[f"{key}_upper"], decimals)
+                for key, decimals in digits.items()
+            },
+        }
+        for row in fragility.to_dict("records")
+    ]
     columns = (
         Column("measure", "Measure"),
         Column("who", "Outcomes"),
@@ -290,31 +271,15 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
     measure = _ordering(fragility)
     name, unit = name_and_unit(measure)
     found = _fragility_found(fragility)
-    figure = FigureSpec(
+    own = fragility[fragility["measure"] == measure]
+    figure = figure_of(
+        _sentences().beside_figure(found, name),
         "fragility_beside",
-        found[0].headline + "." if found else "No curve rises.",
-        f"Measured (dots, line) and simulated (squares, dashes) fragility in {name}; points are fractions in "
-        "bins of equally many tests.",
-        lambda: beside_figure(
-            tests, fragility[fragility["measure"] == measure], measure, f"{name} [{unit}]"
-        ),
+        lambda: beside_figure(tests, own, measure, f"{name} [{unit}]"),
     )
-    return Section(
-        "fragility",
-        "Fragility, measured and simulated",
-        f"{found[0].headline}." if found else "No curve rises.",
-        [
-            *(opened(found[0]) if found else []),
-            f"Lognormal curves with {100 * study.confidence:g} % intervals from resampled motions; the ratio is "
-            "taken in each resample.",
-        ],
-        [
-            figure,
-            table_html(
-                pd.DataFrame(rows), columns, "Curves of measured and of simulated outcomes."
-            ),
-        ],
-    )
+    caption = "Curves of measured and of simulated outcomes."
+    table = table_html(pd.DataFrame(rows), columns, caption)
+    return section_of(_sentences().curves(found, _level(study)), "fragility", [figure, table])
 
 
 def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
@@ -349,28 +314,16 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
         Column("votes", "Votes to overturn [%]", 0),
         Column("near_critical", "Near-critical"),
     )
-    parts = []
+    parts: list[Markup | FigureSpec] = []
     if len(names) == 2:
-        where = (names[0], names[1])
-        parts.append(
-            FigureSpec(
-                "tests",
-                f"{int(tests['right'].sum())} of {len(tests)} tests are predicted as they happened.",
-                "Every test by the intensity of its motion; crosses are wrong predictions.",
-                lambda: tests_figure(tests, *where, (labels[where[0]], labels[where[1]])),
-            )
-        )
-    return Section(
-        "tests",
-        "Where the simulation is right",
-        f"{int(tests['right'].sum())} of {len(tests)} tests are predicted as they happened.",
-        ["Votes are the fraction of plausible ways to set up the object under which it overturns."],
-        [
-            *parts,
-            table_html(shown, columns, "Tests by thirds of two measures."),
-            table_html(wrong, wrong_columns, "Tests predicted wrong."),
-        ],
-    )
+        x, y = names
+        draw = partial(tests_figure, tests, x, y, (labels[x], labels[y]))
+        parts.append(figure_of(_sentences().tests_figure(tests), "tests", draw))
+    parts += [
+        table_html(shown, columns, "Tests by thirds of two measures."),
+        table_html(wrong, wrong_columns, "Tests predicted wrong."),
+    ]
+    return section_of(_sentences().tests(tests), "tests", parts)
 
 
 def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
@@ -389,18 +342,10 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     tried, plausible = (
         {name: part[name] for name in titles if name in trials} for part in (trials, likely)
     )
-    parts: list[object] = []
+    parts: list[Markup | FigureSpec] = []
     if not footprint.empty:
-        width = 100 * (likely["left_m"] + likely["right_m"])
-        parts.append(
-            FigureSpec(
-                "footprint",
-                f"Plausible bases are {width.min():.1f} to {width.max():.1f} cm wide.",
-                "The object from above: outline, contact polygons for plausible tolerances, centre of "
-                "gravity, and plausible directions of shaking.",
-                lambda: footprint_figure(footprint, trials),
-            )
-        )
+        text = _sentences().footprint_figure(100 * (likely["left_m"] + likely["right_m"]))
+        parts.append(figure_of(text, "footprint", lambda: footprint_figure(footprint, trials)))
     parts.append(
         text_table(
             {
@@ -435,27 +380,14 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
             "Smallest critical angle by contact tolerance; the object cannot stand where it is negative.",
         )
     )
-    return Section(
-        "object",
-        "How the object stood",
-        f"{len(likely)} of {len(trials)} trials are plausible.",
-        said(
-            _sentences().how_it_stood(
-                len(study.object.get("pedestal", ())),
-                len(likely),
-                _edges(study, trials, likely, titles),
-            )
-        ),
-        parts,  # type: ignore[arg-type]
-    )
-
-
-def _edges(
-    study: CampaignStudy, trials: pd.DataFrame, likely: pd.DataFrame, titles: Mapping[str, str]
-) -> list[str]:
-    """Ranges that end where the tests would have them go on."""
-    edges = preferred_edges(trials, likely.index, study.unknowns)
-    return [f"{titles[name].split(' [')[0].lower()} ({edge})" for name, edge in edges.items()]
+    # ranges that end where the tests would have them go on
+    edges = [
+        f"{titles[name].split(' [')[0].lower()} ({edge})"
+        for name, edge in preferred_edges(trials, likely.index, study.unknowns).items()
+    ]
+    blocks = len(study.object.get("pedestal", ()))
+    text = _sentences().how_it_stood(blocks, len(likely), len(trials), edges)
+    return section_of(text, "object", parts)
 
 
 def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
@@ -468,11 +400,6 @@ def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Sect
         Column("false_alarms", "False alarms", 1),
         Column("missed", "Missed", 1),
     )
-    steps = listed([" ".join(str(value) for value in step.values()) for step in study.conditioning])
-    return Section(
-        "conditioning",
-        "Effect of conditioning the motions",
-        f"Conditioning of the motions: {steps or 'none'}.",
-        ["Alternatives were tried with a part of the trials."],
-        [table_html(shown, columns, "Outcomes predicted right, by conditioning.")],
-    )
+    steps = [" ".join(str(value) for value in step.values()) for step in study.conditioning]
+    table = table_html(shown, columns, "Outcomes predicted right, by conditioning.")
+    return section_of(_sentences().conditioning(steps), "conditioning", [table])

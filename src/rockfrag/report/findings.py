@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.fragility.compared import Compared, compared_curves
-from rockfrag.report.part import Finding
+from rockfrag.fragility.curve_facts import Compared, compared_curves
+from rockfrag.report.part import Finding, finding_of
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import (
-    PART,
     decimals_of,
     estimate,
     estimates,
@@ -20,7 +19,7 @@ from rockfrag.report.wording import (
     macros,
     number,
     of_all,
-    said,
+    one_line,
 )
 from rockfrag.shaketable.definitions import DEFINITION
 
@@ -50,11 +49,6 @@ def _sentences() -> Any:
 def _finding(name: str, **about: Any) -> Finding:
     """What a macro says."""
     return finding_of(getattr(_sentences(), name)(**about))
-
-
-def finding_of(text: str) -> Finding:
-    """What a macro says, parted into headline, text and numbers."""
-    return Finding(*(" ".join(said(part)) for part in text.split(PART)))
 
 
 def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
@@ -166,7 +160,7 @@ def mean_sentence(means: pd.DataFrame) -> str:
     """Say over which motions means are taken, and which had to be left out."""
     rows = means[means["by"] == "configuration"]
     most, of = int(rows["motions"].max()), int(rows["of"].max())
-    return " ".join(said(_sentences().means(most, of)))
+    return one_line(_sentences().means(most, of))
 
 
 def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Finding:
@@ -255,7 +249,7 @@ def friction_sentence(validity: pd.DataFrame) -> str:
         (int((~(part["friction_demand"].astype(float) <= FRICTION)).sum()), len(part), where)
         for where, part in _sides(validity).items()
     ]
-    return " ".join(said(_sentences().friction(beyond)))
+    return one_line(_sentences().friction(beyond))
 
 
 def _demands(validity: pd.DataFrame) -> list[str]:

@@ -1,22 +1,24 @@
 """The report of a measured table: its curves, the intensity-measure selection, and how well they fit."""
 
 from collections.abc import Callable, Mapping
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from rockfrag.figure_style import note_figure
 from rockfrag.fragility.user_table import UserFragility
 from rockfrag.report.figures.fragility import calibration_figure, measures_figure
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.part import Answer, FigureSpec, Finding, Section, finding_of, section_of
 from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.two_measures import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import counted, estimates, listed, probability
+from rockfrag.report.wording import estimates, macros, one_line, probability, said
 from rockfrag.study.measured_table import MeasuredTable
 
 _CAPTIONS = {
@@ -24,6 +26,12 @@ _CAPTIONS = {
     "average (dashed), and the lognormal curve with its band.",
     "calibration": "Observed against fitted fractions of overturned tests; the diagonal is a perfect fit.",
 }
+
+
+@cache
+def _sentences() -> Any:
+    """The macros of ``measured_page.j2``."""
+    return macros("rockfrag.report", "measured_page.j2", {})
 
 
 def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
@@ -75,11 +83,9 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
     """Draw the figures and write the page, ``report.html``."""
     tables = result_tables(found)
     specs = figure_specs(study, found)
-    tests = found.tests
-    motions, fell = tests["motion"].nunique(), int(tests["overturned"].sum())
     answer = _answer(study, found, specs)
     sections = [
-        _choice(tables["recommendation"], f"{answer.sentences[0].headline}.", found.choice.words),
+        _choice(tables["recommendation"], answer.sentences[0]),
         _curves(study, tables, specs),
     ]
     both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
@@ -92,8 +98,7 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
         answer,
         sections,
         title=study.title,
-        lead=f"{counted(len(tests), 'measured test')} with {counted(motions, 'motion')}, "
-        f"{fell} of them overturned.",
+        lead=one_line(_sentences().lead(found.tests)),
         provenance=provenance(study, {"Table": values}),
         basis="measured",
     )
@@ -102,50 +107,34 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
 def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, FigureSpec]) -> Answer:
     """What stands first: which measure, how strong it must be, and whether the curve fits."""
     name = found.choice.name
-    headline = f"{name} predicts overturning best" if name else "No measure has a rising curve"
-    sentences = [Finding(headline, "", found.choice.words)]
+    sentences = [finding_of(_sentences().choice(found.choice))]
     best = found.table[found.table["theta"].notna()]
     best = best[best["im"] == name] if name in set(best["im"]) else best
     if len(best):
-        row = best.to_dict("records")[0]
-        (theta,) = estimates(best.head(1), "theta")
-        (beta,) = estimates(best.head(1), "beta")
-        unit = f" {row['unit']}" if row["unit"] else ""
-        sentences.append(
-            Finding(
-                f"The probability of overturning reaches 50 % at a {row['im']} of {theta}{unit}",
-                "",
-                f"Dispersion β {beta}; {100 * study.confidence:g} % intervals from resampled motions.",
-            )
-        )
+        (theta,), (beta,) = (estimates(best.head(1), key) for key in ("theta", "beta"))
+        median = _sentences().median(best.iloc[0], theta, beta, _level(study))
+        sentences.append(finding_of(median))
     doubtful = [
         found.fits[measure].fit.im
         for measure, goodness in found.goodness.items()
         if goodness.p_value < 0.05
     ]
     if found.goodness:
-        sentences.append(
-            Finding(
-                f"The lognormal curve is rejected for {listed(doubtful)}"
-                if doubtful
-                else "The lognormal curves are not rejected",
-                "",
-                f"Tested for {counted(len(found.goodness), 'measure')}; the deviances are with the curves.",
-            )
-        )
-    motions = found.tests["motion"].nunique()
+        sentences.append(finding_of(_sentences().shape(doubtful, len(found.goodness))))
     return Answer(
         asked="How strong must shaking be to overturn the tested object, and which measure predicts it best?",
         sentences=sentences,
         figure=specs["measures"],
-        rests_on=[
-            f"{counted(len(found.tests), 'measured test')} under {counted(motions, 'motion')}."
-        ],
+        rests_on=said(_sentences().rests_on(found.tests)),
         could_change=list(dict.fromkeys(note for note in found.table["warnings"] if note)),
     )
 
 
-def _choice(choice: pd.DataFrame, best: str, message: str) -> Section:
+def _level(study: MeasuredTable) -> str:
+    return f"{100 * study.confidence:g} %"
+
+
+def _choice(choice: pd.DataFrame, best: Finding) -> Section:
     columns = [
         Column("im", "Measure"),
         Column("unit", "Unit"),
@@ -158,23 +147,13 @@ def _choice(choice: pd.DataFrame, best: str, message: str) -> Section:
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
     columns += [Column(name, f"p, {name.removeprefix('p_')}", numeric=True) for name in given]
     choice = choice.assign(**{name: [probability(p) for p in choice[name]] for name in given})
-    return Section(
-        "measure",
-        "Choice of the intensity measure",
-        best,
-        [
-            message,
-            "β is the efficiency, AUC the probability that an overturned test had the larger measure. A small "
-            "p says that the residuals depend on that column.",
-        ],
-        [table_html(choice, columns, "Measures compared on the same tests, best first.")],
-    )
+    table = table_html(choice, columns, "Measures compared on the same tests, best first.")
+    return section_of(_sentences().measures(best), "measure", [table])
 
 
 def _curves(
     study: MeasuredTable, tables: Mapping[str, pd.DataFrame], figures: Mapping[str, FigureSpec]
 ) -> Section:
-    level = f"{100 * study.confidence:g} %"
     curves = (
         Column("im", "Measure"),
         Column("unit", "Unit"),
@@ -193,21 +172,13 @@ def _curves(
     warnings = list(dict.fromkeys(note for note in fitted["warnings"] if note))
     goodness = goodness.assign(p_text=[probability(p) for p in goodness["p_value"]])
     fitted = fitted.assign(
-        theta_text=estimates(fitted, "theta"),
-        beta_text=estimates(fitted, "beta"),
+        theta_text=estimates(fitted, "theta"), beta_text=estimates(fitted, "beta")
     )
-    return Section(
-        "fragility",
-        "Fragility curves",
-        "Lognormal curves of the tests." if len(goodness) else "No measure has a rising curve.",
-        [
-            f"The {level} intervals resample motions.",
-            *goodness["finding"],
-            *warnings,
-        ],
-        [
-            table_html(fitted, curves, f"Medians and dispersions, {level} intervals."),
-            table_html(goodness, fits, "Goodness of fit."),
-            figures["calibration"],
-        ],
-    )
+    level, notes = _level(study), [*goodness["finding"], *warnings]
+    parts: list[Markup | FigureSpec] = [
+        table_html(fitted, curves, f"Medians and dispersions, {level} intervals."),
+        table_html(goodness, fits, "Goodness of fit."),
+        figures["calibration"],
+    ]
+    text = _sentences().curves(len(goodness), level, notes)
+    return section_of(text, "fragility", parts)

@@ -39,23 +39,12 @@ _SCHEME = {
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table on the page.
+    """A column of a table on the page."""
 
-    Attributes
-    ----------
-    name
-        Column of the data.
-    title
-        What its head says, with the unit.
-    digits
-        Decimals of numbers, or None for text.
-    numeric
-        Whether text is of numbers, such as an estimate with its limits, and stands to the right.
-    """
-
-    name: str
-    title: str
-    digits: int | None = None
+    name: str  # Column of the data
+    title: str  # What its head says, with the unit
+    digits: int | None = None  # Decimals of numbers, or None for text
+    # Whether text is of numbers, such as an estimate with its limits, and stands to the right
     numeric: bool = False
 
 

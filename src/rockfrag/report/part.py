@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
+from rockfrag.report.wording import PART, one_line, said
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.shaketable.swept import read_swept
 from rockfrag.study.study import Study
@@ -34,6 +35,12 @@ class FigureSpec:
     alt: str  # What it shows, for readers who do not see it
     caption: str  # What stands below it
     draw: Callable[[], Figure]  # Draws it
+
+
+def figure_of(text: str, name: str, draw: Callable[[], Figure]) -> FigureSpec:
+    """A figure of which a macro says what it shows, and what stands below it."""
+    alt, caption = _parted(text)
+    return FigureSpec(name, alt, caption, draw)
 
 
 @dataclass(frozen=True)
@@ -55,9 +62,13 @@ class Finding:
         return f"{self.shown} {self.numbers}".strip()
 
 
-def opened(finding: Finding) -> list[str]:
-    """What a chapter says of its finding once it is open: the sentences behind the headline."""
-    return [words for words in (finding.text, finding.numbers) if words]
+def finding_of(text: str) -> Finding:
+    """What a macro says, parted into headline, text and numbers."""
+    return Finding(*_parted(text))
+
+
+def _parted(text: str) -> list[str]:
+    return [one_line(words) for words in text.split(PART)]
 
 
 @dataclass(frozen=True)
@@ -87,16 +98,14 @@ class Section:
     parts: Sequence[Markup | FigureSpec] = ()  # Its figures, and the tables behind them
 
 
-class Results:
-    """The results of a study, read when asked for.
+def section_of(text: str, anchor: str, parts: Sequence[Markup | FigureSpec]) -> Section:
+    """A chapter of which a macro says title, message and paragraphs, of these each in a line."""
+    title, message, paragraphs = text.split(PART)
+    return Section(anchor, one_line(title), one_line(message), said(paragraphs), parts)
 
-    Parameters
-    ----------
-    study
-        The study.
-    folder
-        Folder of its results.
-    """
+
+class Results:
+    """The results of a study in a folder, read when asked for."""
 
     def __init__(self, study: Study, folder: Path) -> None:
         self.study = study

@@ -5,7 +5,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, PackageLoader
+
+from rockfrag import sentences
+from rockfrag.sentences import one_line as one_line
+from rockfrag.sentences import said as said
 
 MOST_LISTED = 8
 """More names than this are not listed in a sentence, but counted."""
@@ -152,20 +156,10 @@ def sentence(words: str) -> str:
 
 def macros(package: str, template: str, words: Mapping[str, Any]) -> Any:
     """Return the macros of a template of sentences, which use the words given and those of this module."""
-    environment = Environment(
-        loader=PackageLoader(package, ""),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.tests |= {"finite": math.isfinite, "nan": math.isnan}
+    environment = sentences.environment(package)
+    environment.loader = ChoiceLoader([environment.loader, PackageLoader("rockfrag.report")])
     environment.filters |= {"listed": listed, "sentence": sentence}
     environment.globals |= {"agree": agree, "counted": counted, "number": number, "of_all": of_all}
     environment.globals |= words
     environment.globals["part"] = PART
     return environment.get_template(template).module
-
-
-def said(text: str) -> list[str]:
-    """Lines of what a macro says that are not empty, each a part of a sentence or more."""
-    return [line.strip() for line in text.split("\n") if line.strip()]

@@ -1,13 +1,6 @@
 """Measured tables: tests of a laboratory, read into the same table as simulated ones.
 
-A CSV file with a header, one row a test; lines that start with ``#`` are comments. Columns:
-
-``test, object, pedestal, earthquake, floor, lower_g, upper_g, censored, overturned_body, repetition, remark``
-
-``lower_m_s2, upper_m_s2`` may stand for ``lower_g, upper_g``. ``lower`` is the largest amplitude
-survived, ``upper`` the one that overturned; a test that did not overturn has ``censored`` ``right`` and no
-``upper``. A column ``amplitude_g`` or ``amplitude_m_s2`` may hold the figure the laboratory reports
-where it is not ``lower``, and ``motion`` the input motion where it is not ``<earthquake>_<floor>``.
+A CSV file with a header, one row a test; ``config/experiment/tests-template.csv`` explains its columns.
 """
 
 import math

@@ -8,15 +8,16 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.campaign.comparison import (
+    REPEATS,
     agreement_row,
     by_region,
     fragility_beside,
     judged_tests,
+    majority_of_repeats,
     paired_row,
 )
 from rockfrag.campaign.outcomes import simulate_tests
 from rockfrag.campaign.peaks import check_peaks, measured_peaks
-from rockfrag.campaign.repeats import REPEATS, majority_of_repeats
 from rockfrag.campaign.table_motions import missing_motions, table_motions
 from rockfrag.campaign.tests import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.thresholds import cross_validated_threshold
@@ -228,11 +229,7 @@ def _rocking(
     if "rocked" not in campaign.tests:
         return pd.DataFrame(columns=columns)
     found = cross_validate(
-        outcomes,
-        campaign.tests[MEASURED].to_numpy(),
-        groups,
-        asked=rocked,
-        **study.division,
+        outcomes, campaign.tests[MEASURED].to_numpy(), groups, asked=rocked, **study.division
     )
     noted = campaign.tests["rocked"].to_numpy()
     return pd.DataFrame([agreement_row(OURS, found.outcomes, noted, groups, study.confidence)])

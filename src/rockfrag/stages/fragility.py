@@ -135,16 +135,16 @@ def _rows(job: Job[Study], measures: pd.DataFrame) -> _IdaCurves:
 
 def _counted(job: Job[Study], measures: pd.DataFrame) -> _IdaCurves:
     """IDA curves as counts, read part by part."""
-    from rockfrag.fragility.counted import CountedIda
+    from rockfrag.fragility.counted import CountedIda, count_ida
 
     wanted = list(dict.fromkeys([*job.study.fragility.measures, *candidates()]))
     floors = {name: floor_measures(level) for name, level in job.study.floors.items()}
 
     def counted(
         system: System, columns: Mapping[str, Sequence[str]], state: str = OVERTURNS
-    ) -> CountedIda:
+    ) -> dict[str, CountedIda]:
         first, again = (ida_curves_of(job, system, state=state) for _ in range(2))
-        return CountedIda(first, again, measures, columns)
+        return count_ida(first, again, measures, columns)
 
     of_all: dict[str, IdaData] = {}
     of_floors: StateIdaCurves = defaultdict(dict)
@@ -152,14 +152,14 @@ def _counted(job: Job[Study], measures: pd.DataFrame) -> _IdaCurves:
     states = _states(job.study)
     for configuration in job.study.configurations:
         found = counted(configuration, {"": wanted, **floors})
-        of_all[configuration.name] = found.of_floor("")
-        resurrections.append(found.resurrections(""))
+        of_all[configuration.name] = found[""]
+        resurrections.append(found[""].windows)
         for state in states[configuration.name]:
             of_state = (
                 found if state.name == OVERTURNS else counted(configuration, floors, state.name)
             )
             for floor in floors:
-                of_floors[state.name][configuration.name, floor] = of_state.of_floor(floor)
+                of_floors[state.name][configuration.name, floor] = of_state[floor]
     table = pd.concat(resurrections, ignore_index=True).sort_values(BY, ignore_index=True)
     return _IdaCurves(of_all, of_floors, table)
 

@@ -88,9 +88,11 @@ def constrain(site: Site) -> Constrained:
     """
     result = _reweighted(site, site.objects)
     if float(result.log_survival.max()) < np.log(LEAST_SURVIVAL):
+        alone = {body.name: _reweighted(site, [body]).log_survival.max() for body in site.objects}
+        worst = min(alone, key=alone.__getitem__)
         raise InputError(
             "objects: in no branch of the hazard do all of them stand with a probability above "
-            f"{LEAST_SURVIVAL:g}; {_most_at_odds(site)} is most at odds with the branches: check its fragility, "
+            f"{LEAST_SURVIVAL:g}; {worst} is most at odds with the branches: check its fragility, "
             "its age and the units of the hazard."
         )
     return Constrained(site, result, _by_object(site), _sensitivity(site))
@@ -106,11 +108,6 @@ def _reweighted(
         same_earthquakes=site.same_earthquakes,
         velocity=site.velocity,
     )
-
-
-def _most_at_odds(site: Site) -> str:
-    best = {body.name: _reweighted(site, [body]).log_survival.max() for body in site.objects}
-    return min(best, key=lambda name: best[name])
 
 
 def _level_ratio(site: Site, result: Reweighted) -> float:

@@ -2,10 +2,8 @@
 
 import json
 import os
-from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,7 +13,7 @@ from rockfrag.files import file_name, write_table, write_text
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import page_text
-from rockfrag.report.wording import macros, said
+from rockfrag.sentences import sayer
 from rockfrag.survival.answer import DECISION_RATE, LIMITS, RULED_OUT, Constrained
 from rockfrag.survival.figures import curves_figure, weights_figure
 
@@ -88,9 +86,7 @@ def json_of(found: Constrained) -> str:
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
-@cache
-def _macros() -> Any:
-    return macros("rockfrag.survival", "page.j2", {"RULED_OUT": RULED_OUT, "LIMITS": LIMITS})
+_say = sayer("rockfrag.survival", "page.j2", {"RULED_OUT": RULED_OUT, "LIMITS": LIMITS})
 
 
 def _sentences(found: Constrained) -> list[str]:
@@ -102,19 +98,19 @@ def _sentences(found: Constrained) -> list[str]:
     if len(moved) and found.level_ratio > 0:
         away = np.log(moved["level_ratio"] / found.level_ratio).abs()
         worst = moved.iloc[int(away.to_numpy().argmax())].to_dict()
-    return said(_macros().sentences(found, hazard.loc[DECISION_RATE].to_dict(), worst))
+    return _say("sentences", found, hazard.loc[DECISION_RATE].to_dict(), worst)
 
 
 def lines_of(found: Constrained) -> list[str]:
     """The answer in lines for a screen."""
-    return said(_macros().lines(found, *_sentences(found)))
+    return _say("lines", found, *_sentences(found))
 
 
 def page_of(found: Constrained) -> str:
     """Return the page as HTML, which loads nothing from outside."""
     hazard, branches, evidence, hangs_on = _sentences(found)
     names = ", ".join(body.name for body in found.site.objects)
-    title, lead = said(_macros().head(found, names))
+    title, lead = _say("head", found, names)
     curves = FigureSpec(
         "curves",
         f"Mean hazard before and after survival. {hazard}",

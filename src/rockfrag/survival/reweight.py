@@ -86,7 +86,8 @@ class Reweighted:
 
         Columns such as ``mean_before`` and ``fractile_0.84_after``.
         """
-        levels = common_levels(self.branches, measure)
+        stated = [branch.curves[measure].levels for branch in self.branches]
+        levels = np.unique(np.concatenate(stated))
         rates = np.array([branch.curves[measure].rate(levels) for branch in self.branches])
         columns = {"level": levels}
         for when, weights in (("before", self.prior), ("after", self.weights)):
@@ -121,11 +122,6 @@ class Reweighted:
         )
 
 
-def common_levels(branches: Sequence[Branch], measure: IntensityMeasure) -> Floats:
-    """Levels of a measure that any branch states."""
-    return np.unique(np.concatenate([branch.curves[measure].levels for branch in branches]))
-
-
 def reweight(
     branches: Sequence[Branch],
     objects: Sequence[StandingObject],
@@ -158,13 +154,9 @@ def reweight(
     shaking = shaking_rates([branch.curves for branch in branches], wanted, velocity, reach)
     expected = _expected_topplings(objects, shaking, errors, years, same_earthquakes)
     log_survival = special.logsumexp(-expected, axis=0) - np.log(samples)
-    return _weighted(tuple(branches), np.asarray(log_survival))
-
-
-def _weighted(branches: tuple[Branch, ...], log_survival: Floats) -> Reweighted:
-    with np.errstate(divide="ignore"):
-        logs = np.log([branch.weight for branch in branches]) + log_survival
-    return Reweighted(branches, log_survival, np.exp(logs - special.logsumexp(logs)))
+    logs = np.log([branch.weight for branch in branches]) + log_survival
+    weights = np.exp(logs - special.logsumexp(logs))
+    return Reweighted(tuple(branches), np.asarray(log_survival), weights)
 
 
 def _expected_topplings(

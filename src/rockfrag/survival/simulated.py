@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.answer import Assessment, assess_with
+from rockfrag.assess.answer import assess_with
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import Level, make_request
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import fragility_of
 from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.survival.evidence import lognormal_coefficients
 from rockfrag.yaml_file import read_yaml
 
 ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}
@@ -57,8 +58,12 @@ def simulate_object(
     request = replace(request, level=Level(measure, ANY_LEVEL[measure.openquake]))
     motions = motion_set(request.records, request.place, records)
     found = assess_with(request, motions, brief=True)
-    coefficients = None if with_velocity else _in_one(found)
-    if with_velocity and found.conversion:
+    coefficients: tuple[float, ...] | None = None
+    if not with_velocity:
+        curve = fragility_of(found.counted.outcomes()).fit
+        if math.isfinite(curve.theta) and curve.beta > 0:
+            coefficients = lognormal_coefficients(curve.theta, curve.beta)
+    elif found.conversion:
         coefficients = found.conversion.fragility.coefficients
     sources = dict(found.amplitudes[0.5].sources)
     if with_velocity:
@@ -70,10 +75,3 @@ def simulate_object(
             "every level."
         )
     return Simulated(coefficients, spread)
-
-
-def _in_one(found: Assessment) -> tuple[float, ...] | None:
-    curve = fragility_of(found.counted.outcomes()).fit
-    if not (math.isfinite(curve.theta) and curve.beta > 0):
-        return None
-    return -math.log(curve.theta) / curve.beta, 1.0 / curve.beta

@@ -33,27 +33,14 @@ labelled floor."""
 
 @dataclass(frozen=True)
 class Variant:
-    """One building of a sensitivity study.
+    """One building of a sensitivity study."""
 
-    Attributes
-    ----------
-    axis
-        Assumption that differs from the reference, one of ``AXES``, or ``reference``.
-    value
-        Its value; for ``floors`` the level of the highest floor.
-    label
-        The same for a reader.
-    building
-        The building.
-    ground_scale
-        Factor on the ground motions that it feels; its floors' motions are scaled to the amplitudes
-        of the tests in any case, so this matters for a hysteretic building alone.
-    """
-
-    axis: str
-    value: float
-    label: str
-    building: ShearBuilding
+    axis: str  # Assumption that differs from the reference, one of ``AXES``, or ``reference``
+    value: float  # Its value; for ``floors`` the level of the highest floor
+    label: str  # The same for a reader
+    building: ShearBuilding  # The building
+    # Factor on the ground motions that it feels; its floors' motions are scaled to the amplitudes
+    # of the tests in any case, so this matters for a hysteretic building alone
     ground_scale: float = 1.0
 
 
@@ -62,20 +49,9 @@ def building_variants(
 ) -> list[Variant]:
     """Buildings that differ from one in a single assumption each, after the one itself.
 
-    Parameters
-    ----------
-    settings
-        Mapping of the reference building, as :func:`rockfrag.building.settings.make_building` takes.
-    axes
-        Values for any of ``AXES``; each of ``floors`` is a mapping from labels of the building to
-        levels, in place of those that the building gives them.
-    source
-        Where the mapping comes from, for messages.
-
-    Raises
-    ------
-    InputError
-        If an axis is unknown or a building makes no sense.
+    ``settings`` are those of the reference building, as :func:`rockfrag.building.settings.make_building` takes
+    them, and ``axes`` values for any of ``AXES``; each of ``floors`` maps labels of the building to levels.
+    ``source`` says in messages where the settings come from.
     """
     for axis in axes:
         if axis not in AXES:
@@ -119,28 +95,12 @@ def building_sensitivity(
     threads: int = 1,
     progress: Callable[[int], None] = lambda done: None,
 ) -> pd.DataFrame:
-    """Overturning amplitudes for every variant.
+    """Overturning amplitudes for every variant of a building, each with the floors that are to be shaken.
 
-    Parameters
-    ----------
-    variants
-        Buildings, each with the floors that are to be shaken.
-    motions
-        Ground motions, with ``earthquake`` in their metadata.
-    specimens
-        What stands on the table: each object with and without its pedestal, named as tables call it.
-    amplitudes_g
-        Amplitudes of the IDA curves [g], rising.
-    protocol
-        Protocol of the laboratory.
-    threads
-        Threads to use; the results do not depend on it.
-    progress
-        Called with the number of variants done, after each.
+    Motions are of the ground, ``amplitudes_g`` those of the IDA curves [g], rising; ``specimens`` are each object
+    with and without its pedestal. ``progress`` is called with the number of variants done.
 
-    Returns
-    -------
-    Table of tests of all variants and definitions, with the variant's ``axis``, ``value`` and ``label``,
+    Returns a table of tests of all variants and definitions, with the variant's ``axis``, ``value`` and ``label``,
     and ``credible``, whether the building's model is to be believed under all motions.
     """
     tables: list[pd.DataFrame] = []

@@ -10,19 +10,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.report.part import Finding
-from rockfrag.report.wording import agree, counted, estimate, listed, of_all, sentence
+from rockfrag.report.part import Finding, finding_of
+from rockfrag.report.wording import estimate, listed, one_line
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag_thesis.hypotheses.floors import FIFTH, FLOORS, GROUND, THIRD
 from rockfrag_thesis.hypotheses.hypothesis import Finding as Evidence
 from rockfrag_thesis.pattern import perturbations_by_floor
 from rockfrag_thesis.sections.inverse_problem import mechanism_name
-
-REPORTED = (
-    "The thesis reports that its towers overturn later with the pedestal than without it on the ground floor, "
-    "significantly so, and slightly earlier on the 3rd and 5th floors; it prints no ratios."
-)
-"""Sections 4.3, 4.4 and 5 of the thesis."""
+from rockfrag_thesis.sections.words import sentences
 
 DISCOVERY_RATE = 0.05
 """Level of the false discovery rate at which a perturbation counts as changing the ratio [-]."""
@@ -30,13 +25,6 @@ DISCOVERY_RATE = 0.05
 MOST_NAMED = 3
 """So many perturbations are named with their ratios; the table has all."""
 
-_REPORTS = "The thesis reports a gain on the ground floor"
-_HEADLINES = {
-    Evidence.FOR: f"{_REPORTS}; pure rocking reproduces it",
-    Evidence.AGAINST: f"{_REPORTS}; pure rocking gives the opposite",
-    Evidence.OPEN: f"{_REPORTS}; for pure rocking it is undecided",
-    Evidence.BOUNDED: f"{_REPORTS}; for pure rocking a gain of 10 % or more is excluded, a smaller one is not",
-}
 _ON_FLOOR = {
     Evidence.FOR: "reproduced",
     Evidence.AGAINST: "not reproduced",
@@ -54,21 +42,9 @@ def first_page(
 ) -> list[Finding]:
     """Say what the thesis reports, what the simulations of a study give, and what would give an effect.
 
-    Parameters
-    ----------
-    effects
-        Effects of the pedestal in the study's simulations, as
-        :func:`rockfrag.stages.pedestal.pedestal_tables` returns them.
-    hypotheses
-        The table of hypotheses of the study, columns of `rockfrag_thesis.hypotheses.COLUMNS`.
-    sensitivity_analysis
-        Effects of perturbed parameters of the ideal model, see
-        `rockfrag_thesis.sensitivity_analysis.explain.explain`.
-    inverse_problem
-        Perturbed parameters that come closest to an effect that was asked for, see
-        `rockfrag_thesis.sensitivity_analysis.inverse_problem.invert`.
-    wanted_percent
-        That effect, change of P/NP on the ``ground`` and ``above`` it [%].
+    ``effects`` are of the study's simulations, ``hypotheses`` the table of all, ``sensitivity_analysis`` the
+    effects of perturbed parameters, ``inverse_problem`` those that come closest to ``wanted_percent``, the change
+    of P/NP on the ``ground`` and ``above`` it [%].
     """
     here = effects[effects["definition"] == DEFINITION]
     found = [_reported(here, hypotheses.set_index("number"))]
@@ -86,37 +62,20 @@ def _reported(effects: pd.DataFrame, hypotheses: pd.DataFrame) -> Finding:
     """Say what the thesis reports beside what the model gives, and the table of hypotheses's words for it."""
     on_floors = {row["level"]: row for row in _rows(effects, "floor")}
     found = {number: Evidence(value) for number, value in hypotheses["finding"].items()}
+    whole = _whole(effects)
     if not set(FLOORS) <= set(on_floors):
-        return Finding(
-            "The thesis reports an effect of the pedestal that depends on the floor",
-            "",
-            f"{REPORTED} For rigid blocks that only rock, the amplitude with pedestal divided by that without is "
-            f"{_whole(effects)} (95 % interval over earthquakes); this study does not have the thesis’s floors.",
-        )
-    ratios = listed([f"{floor} {_ratio(on_floors[floor])}" for floor in FLOORS])
-    pairs = counted(sum(int(on_floors[floor]["pairs"]) for floor in FLOORS), "pair")
+        return finding_of(sentences().other_floors(whole))
+    ratios = [f"{floor} {_ratio(on_floors[floor])}" for floor in FLOORS]
+    pairs = sum(int(on_floors[floor]["pairs"]) for floor in FLOORS)
     stated = {GROUND: (35, "a gain"), THIRD: (36, "a decrease"), FIFTH: (37, "a decrease")}
-    outcomes = "; ".join(
+    outcomes = [
         f"{floor}: {_ON_FLOOR[found[number]].format(change)}"
         for floor, (number, change) in stated.items()
-    )
-    return Finding(
-        _HEADLINES[found[35]],
-        "",
-        f"{REPORTED} For rigid blocks that only rock, the amplitude with pedestal divided by that without is "
-        f"{ratios}, and {_whole(effects)} over all {pairs} (95 % intervals over earthquakes). {outcomes}. A "
-        f"difference between thesis and model implies an effect that the model omits.{_why(hypotheses)}",
-    )
-
-
-def _why(hypotheses: pd.DataFrame) -> str:
-    """Why the pedestal matters so little in the model, where the simulations show it (C12)."""
-    if hypotheses["estimate"].to_dict().get(12) != 1:
-        return ""
-    return (
-        " In the model a landing of the statue lifts the pedestal so briefly that it stands still before "
-        "the next one."
-    )
+    ]
+    # the pedestal matters so little where C12 is true of all landings
+    lifts_briefly = hypotheses["estimate"].to_dict().get(12) == 1
+    about = (found[35].name, ratios, whole, pairs, outcomes, lifts_briefly)
+    return finding_of(sentences().reported(*about))
 
 
 def _what_would(sensitivity_analysis: pd.DataFrame) -> Finding:
@@ -124,54 +83,23 @@ def _what_would(sensitivity_analysis: pd.DataFrame) -> Finding:
     table = perturbations_by_floor(sensitivity_analysis)
     simulated, computed = table[~table["arithmetic"]], table[table["arithmetic"]]
     patterned = list(table.loc[table["beyond_chance"], "name"])
-    who = of_all(len(patterned), len(table), "perturbation")
-    verb = agree(len(patterned), len(table), "produces", "produce")
-    headline = f"{sentence(who)} of the model {verb} its pattern"
-    words = []
-    if patterned:
-        words.append(
-            "Ratios above 1 on the ground floor and below 1 on both floors above, intervals included: "
-            f"{listed(patterned)}."
-        )
-    else:
-        words.append(
-            "No perturbation has intervals above 1 on the ground floor and below 1 on both floors above."
-        )
-    if len(simulated):
-        words.append(_simulated_words(simulated))
-    if len(computed):
-        words.append(
-            f"{sentence(counted(len(computed), 'other'))} {'is' if len(computed) == 1 else 'are'} arithmetic, not "
-            f"simulation: a mass that is moved but not counted gives "
-            f"{computed['ratio'].min():.3f} to {computed['ratio'].max():.3f} on all floors alike."
-        )
-    return Finding(headline, "", " ".join(words))
-
-
-def _simulated_words(simulated: pd.DataFrame) -> str:
-    """Which simulated perturbations change the ratio, by a rule that counts all of them."""
     changing = simulated[simulated["p_adjusted"] < DISCOVERY_RATE]
-    rule = (
-        f"Benjamini–Hochberg at {100 * DISCOVERY_RATE:g} % over {counted(len(simulated), 'test')}"
-    )
-    who = sentence(of_all(len(changing), len(simulated), "simulated perturbation"))
-    verb = agree(len(changing), len(simulated), "changes", "change")
-    words = f"{who} {verb} the ratio over all floors ({rule})"
     size = np.log(simulated["ratio"]).abs()
     largest = simulated.loc[size.nlargest(MOST_NAMED).index].to_dict("records")
     strong = [f"{row['name']} ({_ratio(row)})" for row in largest]
-    return f"{words}; the largest {'is' if len(strong) == 1 else 'are'} {listed(strong)}."
+    counts = (len(table), len(changing), len(simulated))
+    return finding_of(
+        sentences().what_would(patterned, *counts, DISCOVERY_RATE, strong, computed["ratio"])
+    )
 
 
 def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]) -> str:
     """Say which perturbation, or which two, come closest to the effect asked for, and how close."""
     places = {"ground": "on the ground", "above": "above it"}
-    goal = listed(
-        [
-            f"{percent:+g} % {places[name]}".replace("-", "−")
-            for name, percent in wanted_percent.items()
-        ]
-    )
+    goal = [
+        f"{percent:+g} % {places[name]}".replace("-", "−")
+        for name, percent in wanted_percent.items()
+    ]
     everywhere = inverse_problem[inverse_problem["acts_on"] == "all floors"]
     pairs = everywhere["factor_2"] != ""
     local = inverse_problem[inverse_problem["acts_on"] != "all floors"]
@@ -185,9 +113,7 @@ def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]
         for row in rows.head(1).to_dict("records")
     ]
     reached = int(inverse_problem["reaches"].sum())
-    who = sentence(of_all(reached, len(inverse_problem), "mechanism"))
-    verb = agree(reached, len(inverse_problem), "produces", "produce")
-    return f"{who} (one perturbation, or two together) {verb} {goal}; {listed(nearest)}."
+    return one_line(sentences().inverted(reached, len(inverse_problem), goal, nearest))
 
 
 _ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above the ground alone"}

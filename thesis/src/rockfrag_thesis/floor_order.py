@@ -28,26 +28,13 @@ HYPOTHESES: Mapping[str, str] = {
 def floor_margins(
     tests: pd.DataFrame, bodies: Mapping[str, Block] | None = None
 ) -> dict[str, float]:
-    """Margins of the hypotheses about floors in one table of tests.
+    """Margins of the hypotheses about floors in tests of one definition, on ``GF``, ``F3`` and ``F5``.
 
-    Parameters
-    ----------
-    tests
-        Table of tests of one definition, with floors ``GF``, ``F3``, ``F5`` and each object ``P`` and
-        ``NP``.
-    bodies
-        Specimens by name; without them those of the thesis.
+    Bodies are specimens by name; without them those of the thesis.
 
-    Returns
-    -------
-    Margin [-] by number of hypothesis; NaN where the tests cannot speak about it, such as of a tower that
-    is not among them. ``order`` is that of the thesis's order of the floors for lone towers, ground
-    highest and 3rd lowest: the smaller of the steps from F3 to F5 and from F5 to GF.
-
-    Raises
-    ------
-    InputError
-        If a floor is missing, or no object was tested with and without pedestal.
+    Returns a margin [-] by number of hypothesis; NaN where the tests cannot speak about it. ``order`` is that of
+    the thesis's order of the floors for lone towers, ground highest and 3rd lowest: the smaller of the steps from
+    F3 to F5 and from F5 to GF. A floor that is missing, or tests without pairs, are an InputError.
     """
     evidence = Evidence(tests, "simulated", bodies=bodies)
     try:
@@ -74,14 +61,7 @@ TIE = 1e-9
 def margins_table(tests: pd.DataFrame) -> pd.DataFrame:
     """Margins of the hypotheses about floors for every building of a sensitivity study.
 
-    Parameters
-    ----------
-    tests
-        As :func:`rockfrag_thesis.building_sensitivity.building_sensitivity` returns them.
-
-    Returns
-    -------
-    One row per building, reading and hypothesis: ``axis``, ``value``, ``label``, ``definition``,
+    Returns a row per building, reading and hypothesis: ``axis``, ``value``, ``label``, ``definition``,
     ``hypothesis``, ``margin``, ``holds`` and ``credible``.
     """
     keys = ["axis", "value", "label", "credible", "definition"]

@@ -18,13 +18,7 @@ _HYPOTHESIS = Markup(
 
 
 def hypotheses_html(hypotheses: pd.DataFrame) -> Markup:
-    """Render the table of hypotheses, a box a hypothesis, coloured by the finding.
-
-    Parameters
-    ----------
-    hypotheses
-        Columns of `rockfrag_thesis.hypotheses.COLUMNS`.
-    """
+    """Render the table of hypotheses, a box a hypothesis, coloured by the finding."""
     boxes = [
         _HYPOTHESIS.format(
             **{
@@ -53,13 +47,7 @@ def _rule(row: Mapping[Any, Any]) -> list[str]:
 
 
 def outcomes_by_kind(hypotheses: pd.DataFrame) -> pd.DataFrame:
-    """How many hypotheses of each kind have each outcome.
-
-    Returns
-    -------
-    pandas.DataFrame
-        kind, hypotheses, outcomes (in words, such as "3 reproduced, 2 undecided").
-    """
+    """How many hypotheses of each kind have each outcome: kind, hypotheses, outcomes (in words)."""
     rows = []
     for kind, part in hypotheses.groupby("kind", sort=False):
         counts = Counter(part["outcome"]).most_common()

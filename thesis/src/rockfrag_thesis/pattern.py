@@ -10,17 +10,9 @@ _UPPER = [floor for floor in FLOORS if floor != GROUND]
 def perturbations_by_floor(effects: pd.DataFrame) -> pd.DataFrame:
     """Perturbed parameters with the ratio P/NP on each floor, and whether it has the signs of the thesis.
 
-    Parameters
-    ----------
-    effects
-        As `rockfrag_thesis.sensitivity_analysis.explain.explain` returns them.
-
-    Returns
-    -------
-    pandas.DataFrame
-        The columns of :func:`rockfrag_thesis.sections.sensitivity_analysis.perturbations`, a column per floor of
-        the thesis, ``signs`` (the mean is above one on the ground floor and below one on the others) and
-        ``beyond_chance`` (so are the 95 % intervals).
+    Returns the columns of :func:`rockfrag_thesis.sections.sensitivity_analysis.perturbations`, a column per floor
+    of the thesis, ``signs`` (the mean is above one on the ground floor and below one on the others) and
+    ``beyond_chance`` (so are the 95 % intervals).
     """
     # sections draw on this module
     from rockfrag_thesis.sections.sensitivity_analysis import perturbations

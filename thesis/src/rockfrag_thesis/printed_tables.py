@@ -83,22 +83,13 @@ def uplift_table(configurations: Sequence[System]) -> pd.DataFrame:
 def compare(
     computed: pd.DataFrame, quantities: Sequence[Quantity], printed: str | os.PathLike[str] | None
 ) -> pd.DataFrame:
-    """Put computed values beside printed ones, a row per name and quantity.
+    """Put computed values, a row per ``name`` and a column per quantity, beside printed ones.
 
-    Parameters
-    ----------
-    computed
-        Table with ``name`` and a column per quantity.
-    quantities
-        What to compare, in the order wanted.
-    printed
-        CSV file whose first column has the names and whose numbers have the printed decimals, or
-        None where nothing is printed.
+    ``printed`` is a CSV file whose first column has the names and whose numbers have the printed decimals, or
+    None.
 
-    Returns
-    -------
-    Table with the columns of ``COLUMNS``. Where nothing is printed, ``printed`` is empty and
-    ``agrees`` is missing; ``printed`` is text, so that its decimals are kept.
+    Returns ``COLUMNS``. Where nothing is printed, ``printed`` is empty and ``agrees`` is missing; ``printed`` is
+    text, so that its decimals are kept.
     """
     wanted = {} if printed is None else _printed(printed, quantities)
     rows = []

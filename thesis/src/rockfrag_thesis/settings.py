@@ -13,65 +13,45 @@ NAME = "thesis"
 
 @dataclass(frozen=True)
 class SensitivityAnalysis:
-    """Levels of the factors that could produce a pedestal effect.
+    """Levels of the factors that could produce a pedestal effect."""
 
-    Attributes
-    ----------
-    statue_restitution, interface_restitution, ground_restitution
-        Factors on the restitution that conserves momentum: of the object wherever it stands, of the
-        object on the pedestal only, of the pedestal on the ground [-].
-    pedestal_lean_deg, statue_offset_mm, statue_cg_offset_mm
-        Imperfections: lean of the pedestal, object off its middle, centre of gravity of the object
-        off its middle, on the pedestal and on the ground alike.
-    pedestal_width_cm
-        Widths of the pedestal.
-    table_mass_kg
-        Moved masses of the table that enter the two ways of miscounting mass.
-    step_percent
-        Steps of the protocol [%].
-    tolerance_percent, tolerance_restitution
-        Standard deviations of every length and restitution in perturbed copies.
-    replicates
-        Number of perturbed copies.
-    wanted_percent
-        Effect that is asked for, changes of P/NP on the ``ground`` and ``above`` it [%]; empty where none is.
-    friction
-        Coefficients of friction at the ``ground`` and at the ``interface``, all pairs of which are tried beside
-        infinite ones [-]; empty where surfaces are taken as rough enough.
-    """
-
+    # Factors on the restitution that conserves momentum: of the object wherever it stands, of the
+    # object on the pedestal only, of the pedestal on the ground [-]
     statue_restitution: tuple[float, ...]
     interface_restitution: tuple[float, ...]
     ground_restitution: tuple[float, ...]
+    # Imperfections: lean of the pedestal, object off its middle, centre of gravity of the object
+    # off its middle, on the pedestal and on the ground alike
     pedestal_lean_deg: tuple[float, ...]
     statue_offset_mm: tuple[float, ...]
     statue_cg_offset_mm: tuple[float, ...]
-    pedestal_width_cm: tuple[float, ...]
+    pedestal_width_cm: tuple[float, ...]  # Widths of the pedestal
+    # Moved masses of the table that enter the two ways of miscounting mass
     table_mass_kg: tuple[float, ...]
-    step_percent: tuple[float, ...]
+    step_percent: tuple[float, ...]  # Steps of the protocol [%]
+    # Standard deviations of every length and restitution in perturbed copies
     tolerance_percent: float
     tolerance_restitution: float
-    replicates: int
+    replicates: int  # Number of perturbed copies
+    # Effect that is asked for, changes of P/NP on the ``ground`` and ``above`` it [%]; empty where
+    # none is
     wanted_percent: Mapping[str, float] = field(default_factory=dict)
+    # Coefficients of friction at the ``ground`` and at the ``interface``, all pairs of which are
+    # tried beside infinite ones [-]; empty where surfaces are taken as rough enough
     friction: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What a study asks for; each is empty where the configuration does not ask for it.
+    """What a study asks for; each is empty where the configuration does not ask for it."""
 
-    Attributes
-    ----------
-    compares
-        Whether the study is compared with the thesis: printed tables, hypotheses, their order of floors.
-    sensitivity
-        Values of the building's assumptions by name, see :data:`rockfrag_thesis.building_sensitivity.AXES`.
-    sensitivity_analysis
-        Factors that could produce a pedestal effect.
-    """
-
+    # Whether the study is compared with the thesis: printed tables, hypotheses, their order of
+    # floors
     compares: bool = False
+    # Values of the building's assumptions by name, see
+    # :data:`rockfrag_thesis.building_sensitivity.AXES`
     sensitivity: Mapping[str, Sequence[Any]] | None = None
+    # Factors that could produce a pedestal effect
     sensitivity_analysis: SensitivityAnalysis | None = None
 
 
@@ -82,13 +62,7 @@ def settings_of(study: Study) -> Settings:
 
 
 def read_settings(content: Mapping[str, Any], study: Study) -> Settings:
-    """Take the settings out of a study's configuration, which has passed its schema.
-
-    Raises
-    ------
-    InputError
-        If the study cannot give what they ask for.
-    """
+    """Take the settings out of a study's checked configuration; refuse what the study cannot give."""
     sensitivity_analysis = content.get("sensitivity_analysis")
     if sensitivity_analysis is not None:
         lists = {k: tuple(v) for k, v in sensitivity_analysis.items() if isinstance(v, list)}

@@ -40,24 +40,11 @@ def standing_definitions(
     seed: int,
     threads: int = 1,
 ) -> pd.DataFrame:
-    """Read every IDA curve again with perturbed copies of motion and body.
+    """Read every IDA curve again with perturbed copies of motion and body, drawn by ``seed``.
 
-    Parameters
-    ----------
-    configurations, motions
-        What was tested, and with what.
-    amplitudes_g
-        Peaks of the IDA curve [g], rising.
-    protocol
-        Protocol of the laboratory.
-    seed
-        Seed of the perturbations.
-    threads
-        Threads to use; the result does not depend on it.
+    ``amplitudes_g`` are the peaks of the IDA curve [g], rising.
 
-    Returns
-    -------
-    One row per test and reading: ``test``, ``configuration``, ``motion``, ``definition``, ``lower_g``,
+    Returns one row per test and reading: ``test``, ``configuration``, ``motion``, ``definition``, ``lower_g``,
     ``upper_g`` (bounds of the amplitude [g]; NaN above if it never overturned), and for each of `SIZES`
     ``stands_1e-09`` and so on: whether every copy has the same bounds.
     """
@@ -66,12 +53,7 @@ def standing_definitions(
     rows = []
     for configuration in configurations:
         copies = [[_copy(configuration, size, rng) for _ in range(COPIES)] for size in SIZES]
-        fell = overturns(
-            configuration,
-            motions,
-            scales=scales,
-            threads=threads,
-        ).overturned[0]
+        fell = overturns(configuration, motions, scales=scales, threads=threads).overturned[0]
         found = [_definitions(amplitudes_g, flags, protocol) for flags in fell]
         stands = {
             (k, i, name): True
@@ -142,11 +124,7 @@ def _asked(
 
 
 def _outcomes(
-    copies: Sequence[Copy],
-    motions: Sequence[Motion],
-    scales: Floats,
-    wanted: Flags,
-    threads: int,
+    copies: Sequence[Copy], motions: Sequence[Motion], scales: Floats, wanted: Flags, threads: int
 ) -> Flags:
     """Whether each copy overturns in the wanted cases, shape (copies, motions, amplitudes); False elsewhere."""
     copy, motion, amplitude = np.nonzero(wanted)

@@ -42,25 +42,11 @@ def write_app(
     request: Request | None = None,
     made: bool = False,
 ) -> None:
-    """Write the page.
+    """Write the page of motions of the ground; too many for a page are an InputError.
 
-    Parameters
-    ----------
-    motions
-        The motions of the ground.
-    form
-        What stands in the form at first, by the names of its fields.
-    path
-        Where to write it.
-    request
-        Where the motions were recorded, and the building and hazard that the form does not tell; nothing if None.
-    made
-        Whether they were made by formulas, which the page then says.
-
-    Raises
-    ------
-    InputError
-        If the motions are too many for a page.
+    ``form`` has what stands in the form at first by the names of its fields, ``request`` where the motions were
+    recorded, and the building and hazard that the form does not tell. The page says so if motions were ``made`` by
+    formulas.
     """
     page = page_of(motions, form, request, made=made)
     size = len(page.encode())

@@ -62,26 +62,14 @@ class HazardCurve:
     __repr__ = short_repr
 
     def rate(self, level: ArrayLike) -> Floats:
-        """Annual rate with which levels are exceeded [1/year]; the ends are continued as they slope.
-
-        Parameters
-        ----------
-        level
-            Levels in the measure's unit, above 0.
-        """
+        """Annual rate with which levels above 0 are exceeded [1/year]; the ends are continued as they slope."""
         given = np.asarray(level, dtype=np.float64)
         start = np.clip(np.searchsorted(self.levels, given) - 1, 0, self.levels.size - 2)
         away = np.log(given) - np.log(self.levels[start])
         return np.asarray(np.exp(np.log(self.rates[start]) + self._slopes[start] * away))
 
     def level(self, rate: float) -> float:
-        """Level that is exceeded with an annual rate, in the measure's unit.
-
-        Parameters
-        ----------
-        rate
-            Annual rate [1/year].
-        """
+        """Level that is exceeded with an annual rate [1/year], in the measure's unit."""
         logs, x = np.log(self.rates), np.log(self.levels)
         start = int(np.clip(np.searchsorted(-logs, -math.log(rate)) - 1, 0, x.size - 2))
         return float(np.exp(x[start] + (math.log(rate) - logs[start]) / self._slopes[start]))
@@ -109,10 +97,7 @@ def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
 
 
 def make_curve(
-    measure: IntensityMeasure,
-    levels: Sequence[float],
-    rates: Sequence[float],
-    where: str,
+    measure: IntensityMeasure, levels: Sequence[float], rates: Sequence[float], where: str
 ) -> HazardCurve:
     """Make a curve of levels and rates [1/year] of a file, or say in one sentence what is wrong with it.
 

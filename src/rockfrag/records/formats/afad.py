@@ -73,4 +73,3 @@ def _start(words: str) -> UTCDateTime | None:
 
 
 FORMAT = Format("AFAD", _recognise, _parse, encoding="iso8859-9")
-is_format, read = FORMAT.is_format, FORMAT.read

@@ -89,4 +89,3 @@ def _described(values: Channel, words: list[str]) -> Channel:
 
 
 FORMAT = Format("AGRAM", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

@@ -17,7 +17,7 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import positive_step
+from rockfrag.records.parsing.fortran_sections import QUANTITIES, positive_step
 from rockfrag.records.parsing.header_keys import first_match
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile, last_row
@@ -48,7 +48,6 @@ _IN_UNIT = re.compile(
 _QUANTITY = re.compile(r"\b(?P<quantity>ACCEL|VELOC|DISPL)\w*", re.IGNORECASE)
 _HISTORY = re.compile(r"\b(?P<quantity>ACCEL|VELOC|DISPL)\w*\s+TIME\b", re.IGNORECASE)
 _ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
-_QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
 _MAX_HEADER = 30
 _WIDTH = 15
 _COMPONENT = re.compile(
@@ -61,10 +60,8 @@ _AZIMUTH = re.compile(r"\bazimuth\s*=\s*(?P<azimuth>\d{1,3})", re.IGNORECASE)
 
 def _size_line(lines: list[str]) -> int:
     """Return the line that has the number of points and the interval, or -1."""
-    for number, line in enumerate(lines[:_MAX_HEADER]):
-        if _named_pair(line) or (_COUNT.search(line) and _STEP.search(line)):
-            return number
-    return -1
+    sizes = (_named_pair(x) or (_COUNT.search(x) and _STEP.search(x)) for x in lines[:_MAX_HEADER])
+    return next((number for number, size in enumerate(sizes) if size), -1)
 
 
 def _recognise(lines: list[str], name: str) -> bool:
@@ -116,10 +113,10 @@ def _quantity_and_unit(header: list[str]) -> tuple[str, str]:
         if found and not unit:
             unit = canonical_unit(found["unit"])
             if named:
-                quantity = _QUANTITIES[named["quantity"].upper()]
+                quantity = QUANTITIES[named["quantity"].upper()]
     if not quantity:
         history = first_match(_HISTORY, header)
-        quantity = _QUANTITIES[history["quantity"].upper()] if history else quantity_of(unit)
+        quantity = QUANTITIES[history["quantity"].upper()] if history else quantity_of(unit)
     return quantity, unit
 
 
@@ -199,7 +196,6 @@ def _facts(header: list[str]) -> dict[str, str]:
 
 
 FORMAT = Format("AT2", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:

@@ -106,4 +106,3 @@ def _details(words: str, station: re.Match[str] | None, component: str) -> dict[
 
 
 FORMAT = Format("BHRC", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

@@ -7,7 +7,8 @@ have several channels, and several quantities of one channel.
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Any
 
 from obspy import UTCDateTime
 
@@ -75,15 +76,6 @@ _NAMED_AZIMUTHS = {400: "UP", 401: "DOWN", 402: "VERT", 500: "RADL", 501: "TRAN"
 _NAMED_AZIMUTHS |= {601: "TRAN", 700: "H1", 701: "H2", 800: "OTHER"}
 
 
-@dataclass(frozen=True)
-class _Header:
-    words: list[str]
-    dt: float
-    start_time: UTCDateTime | None
-    azimuth: int
-    place: tuple[float | None, ...]
-
-
 def _recognise(lines: list[str], name: str) -> bool:
     return bool(_FIRST.match(lines[0])) and any(
         "integer-header values" in line.lower() for line in lines[1:60]
@@ -99,16 +91,16 @@ def _parse(text: TextFile) -> list[Channel]:
 def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
     line = text.find(_HEAD)
     while 0 <= line < len(text):
-        at_values, header = _header(text, line)
+        at_values, dt, facts = _header(text, line)
         while at_values >= 0:
-            section = _section(text, at_values, header.dt)
-            yield section.quantity, _described(section.channel(text), header)
+            section = _section(text, at_values, dt)
+            yield section.quantity, replace(section.channel(text), **facts)
             line = text.find(_HEAD, section.stop)
             at_values = text.find(_VALUES, section.stop, None if line < 0 else line)
 
 
-def _header(text: TextFile, first: int) -> tuple[int, _Header]:
-    """Return the line above the samples, and the header above it."""
+def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
+    """Return the line above the samples, the interval [s], and what the header says of the channel."""
     at_integers = text.find(_INTEGERS, first)
     if at_integers < 0:
         text.fail("no integer header below this line; the file is cut short", first)
@@ -120,19 +112,17 @@ def _header(text: TextFile, first: int) -> tuple[int, _Header]:
     at_samples = _above_samples(text, at_reals)
     words = text.lines(first, at_integers)
     comments = [line for line in text.lines(at_reals, at_samples) if line.lstrip().startswith("|")]
-    unknown = _unknown(words)
+    matches = (re.search(r"unknown/unspecified:\s*(-?[\d.]+)", line) for line in words)
+    unknown = next((float(match[1]) for match in matches if match), -999.0)
     whole += [int(unknown)] * max(0, _AZIMUTH + 1 - len(whole))
     numbers += [unknown] * max(0, _STEP_MS + 1 - len(numbers))
     stated = numbers[_STEP_MS] != unknown
     dt = numbers[_STEP_MS] / 1000 if stated else numbers[_RECORDER_STEP]
-    header = _Header(
-        words=[*words, *comments],
-        dt=positive_step(text, dt, at_reals),
-        start_time=_start(whole, numbers, unknown),
-        azimuth=whole[_AZIMUTH],
-        place=tuple(None if numbers[i] == unknown else numbers[i] for i in _PLACE),
-    )
-    return at_samples, header
+    facts = _facts([*words, *comments], whole[_AZIMUTH])
+    latitude, longitude = (None if numbers[i] == unknown else numbers[i] for i in _PLACE)
+    facts["details"] |= {"latitude": latitude, "longitude": longitude}
+    facts["start_time"] = _start(whole, numbers, unknown)
+    return at_samples, positive_step(text, dt, at_reals), facts
 
 
 def _above_samples(text: TextFile, at_reals: int) -> int:
@@ -174,14 +164,6 @@ def _section(text: TextFile, line: int, dt: float) -> Section:
     return Section(quantity, int(match["count"]), line + 1, stop, width, dt, unit)
 
 
-def _unknown(words: list[str]) -> float:
-    for line in words:
-        match = re.search(r"unknown/unspecified:\s*(-?[\d.]+)", line)
-        if match:
-            return float(match[1])
-    return -999.0
-
-
 def _start(whole: list[int], numbers: list[float], unknown: float) -> UTCDateTime | None:
     year, _, month, day, hour, minute = whole[_RECORD_TIME : _RECORD_TIME + 6]
     if unknown in (year, month, day, hour, minute) or year <= 0:
@@ -190,9 +172,10 @@ def _start(whole: list[int], numbers: list[float], unknown: float) -> UTCDateTim
     return time_at(second, year=year, month=month, day=day, hour=hour, minute=minute)
 
 
-def _described(values: Channel, header: _Header) -> Channel:
+def _facts(words: list[str], azimuth: int) -> dict[str, Any]:
+    """Return the fields of a channel that the text header states."""
     network = station = location = code = name = component = ""
-    for line in header.words:
+    for line in words:
         found = re.search(r"Code\s*:\s*(\w+)-(\w+)\s*(.*)$", line)
         if found:
             network, station, name = found[1], found[2], found[3].strip()
@@ -202,25 +185,12 @@ def _described(values: Channel, header: _Header) -> Channel:
         found = re.search(r"SCNL\W+(\w+)\.(\w+)\.(\w+)\.([\w-]+)", line)
         if found:
             code, location = found[2], found[4].strip("-")
-    azimuth = header.azimuth
     if component.lower() in ("", "other", "unknown"):
         component = f"{azimuth:03d}" if 1 <= azimuth <= 360 else _NAMED_AZIMUTHS.get(azimuth, code)
-    return replace(
-        values,
-        start_time=header.start_time,
-        network=network,
-        station=station,
-        location=location,
-        code=code,
-        component=component,
-        details={
-            "station_name": name,
-            "earthquake": " ".join(header.words[1].split()) if len(header.words) > 1 else "",
-            "latitude": header.place[0],
-            "longitude": header.place[1],
-        },
-    )
+    earthquake = " ".join(words[1].split()) if len(words) > 1 else ""
+    seed = {"network": network, "station": station, "location": location, "code": code}
+    details = {"station_name": name, "earthquake": earthquake}
+    return {**seed, "component": component, "details": details}
 
 
 FORMAT = Format("COSMOS", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

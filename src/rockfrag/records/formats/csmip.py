@@ -79,7 +79,7 @@ def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
         if line < 0:
             if not is_pairs_header(text, first):
                 text.fail("no line with the number of samples below; the file is cut short", first)
-            yield "acceleration", _described(read_pairs(text, first, stop).channel(), words)
+            yield "acceleration", _described(read_pairs(text, first, stop), words)
         while line >= 0:
             section = _section(text, line, stop)
             yield section.quantity, _described(section.channel(text), words)
@@ -95,13 +95,10 @@ def _section(text: TextFile, line: int, stop: int) -> Section:
     quantity = QUANTITIES[match["quantity"].upper()]
     dt = float(stated["dt"]) if stated.get("dt") else 1 / float(stated["rate"])
     unit = _UNIT.search(match["rest"])
-    width = field_width(match["rest"])
-    if width is None:
-        width = 10 if _VOLUME_2.match(words) else 9
+    width = field_width(match["rest"]) or (10 if _VOLUME_2.match(words) else 9)
+    stated_unit = _DEFAULT_UNITS[quantity] if _VOLUME_2.match(words) else ""
     if unit:
         stated_unit = canonical_unit(unit["unit"]).replace("1/10g", "g/10")
-    else:
-        stated_unit = _DEFAULT_UNITS[quantity] if _VOLUME_2.match(words) else ""
     dt = positive_step(text, dt, line)
     end = min(stop, text.until(_END, line + 1))
     return Section(quantity, int(match["count"]), line + 1, end, width, dt, stated_unit)
@@ -145,4 +142,3 @@ def _earthquake(lines: list[str]) -> str:
 
 
 FORMAT = Format("CSMIP", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

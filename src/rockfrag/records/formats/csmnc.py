@@ -77,4 +77,3 @@ def _parse(text: TextFile) -> list[Channel]:
 
 
 FORMAT = Format("CSMNC", _recognise, _parse, encoding="gb18030")
-is_format, read = FORMAT.is_format, FORMAT.read

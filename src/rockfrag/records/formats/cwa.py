@@ -7,8 +7,6 @@ local (UTC+8) where the key says ``GMT+08``.
 
 import re
 
-import numpy as np
-from numpy.typing import NDArray
 from obspy import UTCDateTime
 
 from rockfrag.records.parsing.channel import Channel
@@ -53,7 +51,8 @@ def _parse(text: TextFile) -> list[Channel]:
 
     unit = canonical_unit(value("amplitudeunit").split(".")[0])
     order = re.findall(r"\b([UNEZ])\s*\(", value("datasequence")) or list(_ORDER)
-    table = _table(text, start, value("data"), len(order) + 1)
+    values = text.numbers(start, None, field_width(f"({value('data')})") or 10)
+    table = in_rows(text, values, len(order) + 1, start)
     try:
         rate = float(value("samplerate"))
     except ValueError:
@@ -70,7 +69,7 @@ def _parse(text: TextFile) -> list[Channel]:
             dt=dt,
             samples=table[:, column].copy,
             unit=unit,
-            start_time=_time(facts.get("starttime")),
+            start_time=_time(*facts.get("starttime", ("", ""))),
             network="TW",
             station=value("stationcode"),
             component=direction,
@@ -99,20 +98,11 @@ def _check_length(text: TextFile, stated: str, length: float, line: int) -> None
         )
 
 
-def _table(text: TextFile, start: int, words: str, columns: int) -> NDArray[np.float64]:
-    width = field_width(f"({words})") or 10
-    values = text.numbers(start, None, width)
-    return in_rows(text, values, columns, start)
-
-
-def _time(stated: tuple[str, str] | None) -> UTCDateTime | None:
-    match = _TIME.search(stated[0]) if stated else None
-    if match is None or stated is None:
-        return None
-    start = clock_time(*match.groups())
-    zone = re.search(r"(?:GMT|UTC)\s*([+-]\d+)", stated[1])
+def _time(stated: str, note: str) -> UTCDateTime | None:
+    match = _TIME.search(stated)
+    start = clock_time(*match.groups()) if match else None
+    zone = re.search(r"(?:GMT|UTC)\s*([+-]\d+)", note)
     return None if start is None else start - 3600.0 * (int(zone[1]) if zone else 0)
 
 
 FORMAT = Format("CWA", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

@@ -124,4 +124,3 @@ def _details(facts: dict[str, str]) -> dict[str, object]:
 
 
 FORMAT = Format("ESM", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

@@ -26,7 +26,7 @@ _DIGITISED = 30
 _COUNTS = (33, 34, 35)
 _DIGITISED_STEP, _STEP = 24, 25
 _MAGNITUDE, _LATITUDE, _LONGITUDE = 14, 10, 11
-_MILLIMETRES = re.compile(r"units of\s+(?P<factor>[\d.]+)\s*mm/s/s", re.IGNORECASE)
+_MILLIMETRES = r"units of\s+([\d.]+)\s*mm/s/s"
 
 
 def _recognise(lines: list[str], name: str) -> bool:
@@ -76,9 +76,7 @@ def _component(text: TextFile, first: int) -> tuple[Channel, int]:
         acceleration = samples if acceleration is None else acceleration
         line = stop
     assert acceleration is not None
-    component = _word_after(r"component\s+(\S+)", words)
-    scale = _word_after(_MILLIMETRES.pattern, words)
-    values = acceleration * float(scale or 1)
+    values = acceleration * float(_word_after(_MILLIMETRES, words) or 1)
     return (
         Channel(
             npts=counts[0],
@@ -88,7 +86,7 @@ def _component(text: TextFile, first: int) -> tuple[Channel, int]:
             start_time=_start(whole),
             network="NZ",
             station=_word_after(r"site\s+(\S+)", words),
-            component=component,
+            component=_word_after(r"component\s+(\S+)", words),
             details={
                 "station_name": words[2].strip(),
                 "earthquake": ", ".join(" ".join(line.split()) for line in words[6:8]),
@@ -115,4 +113,3 @@ def _start(whole: list[int]) -> UTCDateTime | None:
 
 
 FORMAT = Format("GEONET", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

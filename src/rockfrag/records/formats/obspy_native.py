@@ -6,7 +6,7 @@ import math
 import os
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
@@ -68,7 +68,7 @@ def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Chann
     with _unpacked(path) as plain:
         name = _format_of(plain)
         if not name:
-            _refuse_unknown(path)
+            raise InputError(f"{path}{_unknown(path)}")
         stream = _stream(plain, name, path)
         if name == "MSEED":
             _check_whole_records(plain, path, cut_short)
@@ -109,16 +109,15 @@ def _detector(name: str) -> Callable[[str], bool]:
     return found
 
 
-def _refuse_unknown(path: Path) -> None:
+def _unknown(path: Path) -> str:
+    """Return what is wrong with a file that no format claims."""
     odd = first_odd_row(head_lines(path))
     if odd is not None:
-        raise InputError(
-            f"{path}, line {odd + 1}: not a row of numbers like those above; the file is damaged."
-        )
+        return f", line {odd + 1}: not a row of numbers like those above; the file is damaged."
     lines = [line.strip() for line in head_lines(path) if line.strip()]
     seen = f"it begins with {lines[0][:_SHOWN]!r}" if lines else "it is no text"
-    raise InputError(
-        f"{path}: no known record format: {seen}, and no rows of numbers go on below to its end; plain text "
+    return (
+        f": no known record format: {seen}, and no rows of numbers go on below to its end; plain text "
         "needs columns or rows of numbers, and words above them alone."
     )
 
@@ -157,11 +156,10 @@ def _check_whole_records(plain: Path, path: Path, cut_short: bool) -> None:
     """Check that a MiniSEED file ends where a record of it does: ObsPy leaves a cut one out."""
     from obspy.io.mseed.util import get_record_information
 
-    try:
+    size, length = os.path.getsize(plain), 0
+    # an unusual first record; ObsPy has read the file all the same
+    with suppress(Exception):
         length = int(get_record_information(str(plain))["record_length"])
-    except Exception:  # an unusual first record; ObsPy has read the file all the same
-        return
-    size = os.path.getsize(plain)
     if length and size % length and not cut_short:
         raise InputError(
             f"{path}: {size} bytes are no whole number of MiniSEED records of {length}; the file is cut short."
@@ -230,11 +228,9 @@ def _shortness(trace: Trace, format_name: str, path: Path, cut_short: bool) -> l
 
 def _earthquake_facts(trace: Trace) -> dict[str, Any]:
     knet = trace.stats.get("knet", {})
-    facts: dict[str, Any] = {}
-    if "evot" in knet:
-        facts["earthquake"] = f"{knet['evot']} M {knet.get('mag', '?')}"
-        facts["magnitude"] = knet.get("mag")
-    return facts
+    if "evot" not in knet:
+        return {}
+    return {"earthquake": f"{knet['evot']} M {knet.get('mag', '?')}", "magnitude": knet.get("mag")}
 
 
 @lru_cache(maxsize=256)
@@ -265,7 +261,18 @@ def _physical(
 ) -> tuple[NDArray[np.float64], dict[str, Any]]:
     """Return acceleration [m/s²] and the step that made it of counts."""
     if not response.response_stages:
-        return _by_sensitivity(trace, response, path)
+        # divide counts by the sensitivity
+        sensitivity = response.instrument_sensitivity
+        if sensitivity is None or not sensitivity.value:
+            raise InputError(f"{path}: its StationXML has neither stages nor a sensitivity.")
+        if canonical_unit(str(sensitivity.input_units or "")) != "m/s2":
+            raise InputError(
+                f"{path}: its StationXML has no stages and a sensitivity in {sensitivity.input_units}, "
+                "not M/S**2; get it with the level of the response."
+            )
+        value = float(sensitivity.value)
+        step = {"step": "divide by sensitivity", "counts_per_m_s2": value}
+        return np.asarray(trace.data, dtype=np.float64) / value, step
     physical = trace.copy()
     physical.stats.response = response
     try:
@@ -278,24 +285,6 @@ def _physical(
         ) from error
     step = {"step": "remove response", "output": "acceleration", "water_level_db": _WATER_LEVEL}
     return np.asarray(physical.data, dtype=np.float64), step
-
-
-def _by_sensitivity(
-    trace: Trace, response: Response, path: Path
-) -> tuple[NDArray[np.float64], dict[str, Any]]:
-    """Divide counts by the sensitivity of a StationXML without stages."""
-    sensitivity = response.instrument_sensitivity
-    if sensitivity is None or not sensitivity.value:
-        raise InputError(f"{path}: its StationXML has neither stages nor a sensitivity.")
-    unit = canonical_unit(str(sensitivity.input_units or ""))
-    if unit != "m/s2":
-        raise InputError(
-            f"{path}: its StationXML has no stages and a sensitivity in {sensitivity.input_units}, "
-            "not M/S**2; get it with the level of the response."
-        )
-    value = float(sensitivity.value)
-    step = {"step": "divide by sensitivity", "counts_per_m_s2": value}
-    return np.asarray(trace.data, dtype=np.float64) / value, step
 
 
 def _one_line(error: Exception) -> str:

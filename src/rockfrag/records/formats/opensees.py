@@ -7,6 +7,7 @@ Older scripts say ``Series -dt .02 -filePath elcentro.txt -factor 1``.
 
 import os
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -120,10 +121,9 @@ def _option(script: str, name: str) -> str | None:
 
 
 def _number(text: TextFile, line: int, name: str, words: str) -> float:
-    try:
+    value = float("nan")
+    with suppress(ValueError):
         value = float(words)
-    except ValueError:
-        value = float("nan")
     if not np.isfinite(value):
         text.fail(
             f"{name} is {words[:40]!r}, which is no number; write its value into the script", line
@@ -132,7 +132,6 @@ def _number(text: TextFile, line: int, name: str, words: str) -> float:
 
 
 FORMAT = Format("OPENSEES", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:

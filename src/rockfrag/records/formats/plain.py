@@ -59,8 +59,10 @@ _LONGEST_ROUND = 3  # significant digits of an interval that stands above sample
 
 @dataclass(frozen=True)
 class _Layout:
-    """All that a file says of its samples, and its rows of numbers."""
+    """All that a file says of its samples, and its rows of numbers; ``asked`` is the user's interval [s]."""
 
+    text: TextFile
+    asked: float | None
     table: NumberTable
     stop: int
     facts: StatedFacts
@@ -73,6 +75,36 @@ class _Layout:
     def line(self) -> int:
         """First row of samples, from zero."""
         return self.table.start
+
+    @property
+    def interval(self) -> float | None:
+        """Interval that the file states, else the user's [s]."""
+        return self.asked if self.dt is None else self.dt
+
+    def channel(
+        self, samples: NDArray[np.float64], step: float, column: Column, component: str, title: str
+    ) -> Channel:
+        """Return samples that are ``step`` seconds apart as a channel with what the file says of it."""
+        stated = self.facts.unit
+        if column.unit and stated and column.unit != stated:
+            self.text.fail(
+                f"column {column.title!r} is in {column.unit}, but the lines above it say {stated}; mend the "
+                "header",
+                self.line - 1,
+            )
+        return Channel(
+            npts=self.npts or samples.size,
+            dt=positive_step(self.text, step, self.line),
+            samples=samples.copy,
+            unit=column.unit or stated,
+            component=component,
+            station=self.facts.details.get("station", ""),
+            details={
+                "title": title,
+                "earthquake": self.facts.details.get("earthquake", ""),
+                "steps": tuple(self.steps),
+            },
+        )
 
 
 def _recognise(lines: list[str], name: str) -> bool:
@@ -98,18 +130,16 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
         raise InputError(f"dt must be a positive number of seconds, got {dt}.")
     layout = _layout(text, dt)
     columns = layout.table.columns
-    if columns == 1:
-        return [_series(text, layout, dt)]
-    first = text.table(layout.line, columns, layout.line + 1, layout.table.decimal_comma)
-    assert first.size == columns
     values, widths = text.rows(layout.line, layout.stop, layout.table.decimal_comma)
     # only the last row of a series is shorter
-    _check_widths(text, layout, widths, widths.size - 1)
+    _check_widths(layout, widths, None if columns == 1 else widths.size - 1)
+    if columns == 1:
+        return [_series(*_without_leading(layout, values))]
     filled = widths[widths > 0]
-    if layout.titles or _is_timed(values, columns) or _are_channels(text, layout, values, filled):
-        _check_widths(text, layout, widths)
-        return _channels(text, layout, values.reshape(-1, columns), dt)
-    return [_series(text, layout, dt)]
+    if layout.titles or _is_timed(values, columns) or _are_channels(layout, values, filled):
+        _check_widths(layout, widths)
+        return _channels(layout, values.reshape(-1, columns))
+    return [_series(layout, values)]
 
 
 def _layout(text: TextFile, dt: float | None) -> _Layout:
@@ -131,25 +161,14 @@ def _layout(text: TextFile, dt: float | None) -> _Layout:
         )
     titles = column_titles(table, lines[table.start])
     stop = last_row(text, table.start)
-    layout = _Layout(table, stop, facts, titles, facts.npts, facts.dt)
-    layout = _with_numbers_above(text, layout, lines)
+    layout = _Layout(text, dt, table, stop, facts, titles, facts.npts, facts.dt)
+    layout = _with_numbers_above(layout, lines)
     if dt is not None and layout.dt is not None and abs(dt - layout.dt) > 1e-6 * dt:
         text.fail(f"the file states an interval of {layout.dt:g} s, not {dt:g} s; leave dt= out")
     return layout
 
 
-def _refuse_unclear_titles(text: TextFile, table: NumberTable) -> None:
-    """Refuse titles that name several quantities but cannot be told apart into columns."""
-    number, words = table.words[-1] if table.words else (0, "")
-    if len(re.findall(r"\b(?:acc|vel|disp|time)", words, re.IGNORECASE)) > 1:
-        text.fail(
-            f"{words[:_SHOWN]!r} cannot be told apart into {table.columns} titles of columns; "
-            "separate them as the numbers are",
-            number,
-        )
-
-
-def _with_numbers_above(text: TextFile, layout: _Layout, lines: list[str]) -> _Layout:
+def _with_numbers_above(layout: _Layout, lines: list[str]) -> _Layout:
     """Return the layout with the count and the interval that rows of numbers above the samples state.
 
     They are the first two numbers there, or the only one. A first row of samples that cannot be one, as
@@ -172,30 +191,23 @@ def _with_numbers_above(text: TextFile, layout: _Layout, lines: list[str]) -> _L
     npts, dt = _count_and_step(numbers[:2])
     rows_of_two = len({number for number, _ in above}) > 1 and len(numbers) > 2
     if (npts is None and dt is None) or rows_of_two:
-        text.fail(
+        layout.text.fail(
             f"{' '.join(word for _, word in above)[:_SHOWN]!r} above the samples is neither their number nor "
             "their interval; take the line out, or write # before it",
             above[0][0],
         )
-    return _agreeing(text, layout, table, npts, dt, above[0][0])
+    return _agreeing(replace(layout, table=table), npts, dt, above[0][0])
 
 
-def _agreeing(
-    text: TextFile,
-    layout: _Layout,
-    table: NumberTable,
-    npts: int | None,
-    dt: float | None,
-    line: int,
-) -> _Layout:
+def _agreeing(layout: _Layout, npts: int | None, dt: float | None, line: int) -> _Layout:
     """Return the layout with count and interval of numbers above, which must agree with its words."""
     for what, stated, own in (("samples", layout.npts, npts), ("s as interval", layout.dt, dt)):
         if stated is not None and own is not None and abs(stated - own) > 1e-6 * own:
-            text.fail(
+            layout.text.fail(
                 f"{own:g} {what} here, but {stated:g} in the words of the header; mend it", line
             )
     npts, dt = (layout.npts if npts is None else npts), (layout.dt if dt is None else dt)
-    return replace(layout, table=table, npts=npts, dt=dt)
+    return replace(layout, npts=npts, dt=dt)
 
 
 def _is_count_row(row: list[str], below: list[str], columns: int) -> bool:
@@ -236,9 +248,7 @@ def _is_timed(values: NDArray[np.float64], columns: int) -> bool:
     return bool(even and (steps > 0).mean() > _RISING)
 
 
-def _are_channels(
-    text: TextFile, layout: _Layout, values: NDArray[np.float64], widths: NDArray[np.int64]
-) -> bool:
+def _are_channels(layout: _Layout, values: NDArray[np.float64], widths: NDArray[np.int64]) -> bool:
     """Tell columns of channels side by side from one series that goes on row after row.
 
     Components that are named and a count of rows tell it. Else the samples do: those of one channel
@@ -257,7 +267,7 @@ def _are_channels(
     side_by_side = down < _SMOOTHER * along
     in_rows = along < _SMOOTHER * down or columns > 3
     if (side_by_side and columns > 3) or not (side_by_side or in_rows):
-        text.fail(
+        layout.text.fail(
             f"{columns} numbers a row may be {columns} columns side by side or one series row after row; "
             "write titles above them, or one number a row",
             layout.line,
@@ -266,59 +276,42 @@ def _are_channels(
     return side_by_side
 
 
-def _check_widths(
-    text: TextFile, layout: _Layout, widths: NDArray[np.int64], stop: int | None = None
-) -> None:
+def _check_widths(layout: _Layout, widths: NDArray[np.int64], stop: int | None = None) -> None:
     """Check that rows which are not blank, up to the row ``stop``, have as many numbers as the first."""
     wrong = np.flatnonzero((widths[:stop] != layout.table.columns) & (widths[:stop] > 0))
     if wrong.size:
-        text.fail(
+        layout.text.fail(
             f"{widths[wrong[0]]} columns here, {layout.table.columns} in the rows above; "
             "the file is cut short or damaged",
             layout.line + int(wrong[0]),
         )
 
 
-def _series(text: TextFile, layout: _Layout, dt: float | None) -> Channel:
+def _series(layout: _Layout, values: NDArray[np.float64]) -> Channel:
     """Return the one series of a file, in a column or in rows."""
-    values, widths = text.rows(layout.line, layout.stop, layout.table.decimal_comma)
-    if layout.table.columns == 1:
-        _check_widths(text, layout, widths)
-        values, layout = _without_leading(text, layout, values, dt)
     stated = next(iter(layout.titles), Column("", "", "", ""))
-    _refuse_other(text, layout, stated.quantity or layout.facts.quantity)
+    _refuse_other(layout, stated.quantity or layout.facts.quantity)
     if layout.npts is not None:
-        text.check_count(layout.npts, values.size, layout.line)
-    step = layout.dt if layout.dt is not None else dt
-    if step is None:
+        layout.text.check_count(layout.npts, values.size, layout.line)
+    if layout.interval is None:
         what = "one column" if layout.table.columns == 1 else "rows of numbers"
-        text.fail(f"{what} without sampling interval; give it with dt= (in seconds)")
+        layout.text.fail(f"{what} without sampling interval; give it with dt= (in seconds)")
     names = layout.facts.components
-    return Channel(
-        npts=layout.npts or values.size,
-        dt=positive_step(text, step, layout.line),
-        samples=values.copy,
-        unit=_unit(text, layout, stated),
-        component=names[0] if len(names) == 1 else "",
-        station=layout.facts.details.get("station", ""),
-        details={
-            "title": layout.table.title,
-            "earthquake": layout.facts.details.get("earthquake", ""),
-            "steps": tuple(layout.steps),
-        },
-    )
+    component = names[0] if len(names) == 1 else ""
+    return layout.channel(values, layout.interval, stated, component, layout.table.title)
 
 
 def _without_leading(
-    text: TextFile, layout: _Layout, values: NDArray[np.float64], dt: float | None
-) -> tuple[NDArray[np.float64], _Layout]:
+    layout: _Layout, values: NDArray[np.float64]
+) -> tuple[_Layout, NDArray[np.float64]]:
     """Take count and interval, a line each, from the top of one column of numbers.
 
     They are told by the count, which is that of the numbers below, and by a notation that no sample has.
     What looks like one and does not fit is an error, not a sample.
     """
+    text, dt = layout.text, layout.asked
     if layout.table.numbers:
-        return values, layout
+        return layout, values
     words = [
         word
         for line in text.lines(layout.line, layout.line + LOOKED_AT)
@@ -347,12 +340,12 @@ def _without_leading(
         if len(first) == 2 and whole[1] and odd[1] and values[1] > 1:
             skip, count = 2, int(values[1])
     if not skip:
-        return values, layout
-    layout = _agreeing(text, layout, layout.table, count, step, layout.line)
+        return layout, values
+    layout = _agreeing(layout, count, step, layout.line)
     if dt is not None and step is not None and abs(dt - step) > 1e-6 * dt:
         text.fail(f"states an interval of {step:g} s, not {dt:g} s; leave dt= out", layout.line)
     layout.steps.append({"step": "take first lines as header", "lines": " ".join(words[:skip])})
-    return values[skip:], layout
+    return layout, values[skip:]
 
 
 def _is_interval(word: str, odd: bool, body: list[str]) -> bool:
@@ -379,30 +372,37 @@ def _notation(word: str) -> tuple[bool, int]:
     return mantissa != word, len(decimals[1]) if len(decimals) > 1 else -1
 
 
-def _refuse_other(text: TextFile, layout: _Layout, quantity: str) -> None:
+def _refuse_other(layout: _Layout, quantity: str) -> None:
     """Refuse samples that are stated to be of another quantity than acceleration."""
     if quantity not in ("", "acceleration"):
-        text.refuse(
+        layout.text.refuse(
             f"the lines above the samples say that they are {quantity}, not acceleration", 0
         )
 
 
-def _channels(
-    text: TextFile, layout: _Layout, table: NDArray[np.float64], dt: float | None
-) -> list[Channel]:
+def _channels(layout: _Layout, table: NDArray[np.float64]) -> list[Channel]:
     """Return the columns of acceleration of a file, each with the times left of it."""
-    columns = layout.titles or _untitled(text, layout, table)
-    _refuse_spectra(text, layout, columns)
-    chosen = [i for i, column in enumerate(columns) if column.quantity == "acceleration"]
+    text = layout.text
+    columns = layout.titles or _untitled(layout, table)
+    titles = ", ".join(column.title for column in columns)
+    kinds = [column.quantity for column in columns]
+    if kinds[0] == "spectrum" or (len(columns) == 2 and "spectrum" in kinds):
+        text.refuse(
+            f"the columns {titles} are a spectrum, not acceleration in time", layout.line - 1
+        )
+    chosen = [i for i, kind in enumerate(kinds) if kind == "acceleration"]
     if not chosen:
-        _refuse_other(text, layout, layout.facts.quantity)
-        known = {column.quantity for column in columns} - {""}
-        unnamed = [i for i, column in enumerate(columns) if not column.quantity]
+        _refuse_other(layout, layout.facts.quantity)
+        known = set(kinds) - {""}
         # beside a depth what has no name is no acceleration in time
-        chosen = unnamed if not known or known & {"time", "index"} else []
+        chosen = [
+            i
+            for i, kind in enumerate(kinds)
+            if not kind and (not known or known & {"time", "index"})
+        ]
     if not chosen:
         text.refuse(
-            f"none of the columns {', '.join(column.title for column in columns)} is acceleration; if one "
+            f"none of the columns {titles} is acceleration; if one "
             "is, write the word or the unit into its title",
             layout.line - 1,
         )
@@ -410,32 +410,26 @@ def _channels(
         text.check_count(layout.npts, table.shape[0], layout.line)
     names = [columns[i].component for i in chosen]
     channels = []
-    for n, i in enumerate(chosen):
-        step, notes = _interval(text, layout, columns, table, i, dt)
-        channels.append(
-            Channel(
-                npts=layout.npts or table.shape[0],
-                dt=positive_step(text, step, layout.line),
-                samples=table[:, i].copy,
-                unit=_unit(text, layout, columns[i]),
-                component=names[n] if names.count(names[n]) == 1 else columns[i].title,
-                station=layout.facts.details.get("station", ""),
-                details={
-                    "title": columns[i].title if layout.titles else layout.table.title,
-                    "earthquake": layout.facts.details.get("earthquake", ""),
-                    "steps": (*layout.steps, *notes),
-                },
-            )
-        )
+    for name, i in zip(names, chosen, strict=True):
+        step, notes = _interval(layout, columns, table, i)
+        component = name if names.count(name) == 1 else columns[i].title
+        title = columns[i].title if layout.titles else layout.table.title
+        noted = replace(layout, steps=[*layout.steps, *notes])
+        channels.append(noted.channel(table[:, i], step, columns[i], component, title))
     return channels
 
 
-def _untitled(text: TextFile, layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
+def _untitled(layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
     """Return columns without titles: times that rise, and channels by their number or stated name."""
     count = table.shape[1]
     timed = _is_timed(table.ravel(), count)
-    if timed and count > 2:
-        _refuse_unclear_titles(text, layout.table)
+    number, words = layout.table.words[-1] if layout.table.words else (0, "")
+    if timed and count > 2 and len(re.findall(r"\b(?:acc|vel|disp|time)", words, re.I)) > 1:
+        layout.text.fail(
+            f"{words[:_SHOWN]!r} cannot be told apart into {layout.table.columns} titles of columns; "
+            "separate them as the numbers are",
+            number,
+        )
     stated = layout.facts.components
     named = list(stated) if len(stated) == count - timed else []
     if not named:
@@ -444,48 +438,22 @@ def _untitled(text: TextFile, layout: _Layout, table: NDArray[np.float64]) -> li
     return [*([Column("", "time", "", "")] if timed else []), *channels]
 
 
-def _refuse_spectra(text: TextFile, layout: _Layout, columns: list[Column]) -> None:
-    if columns[0].quantity == "spectrum" or (
-        len(columns) == 2 and any(column.quantity == "spectrum" for column in columns)
-    ):
-        titles = ", ".join(column.title for column in columns)
-        text.refuse(
-            f"the columns {titles} are a spectrum, not acceleration in time", layout.line - 1
-        )
-
-
-def _unit(text: TextFile, layout: _Layout, column: Column) -> str:
-    """Return the unit of a column, by its title or by the lines above, which must not contradict it."""
-    stated = layout.facts.unit
-    if column.unit and stated and column.unit != stated:
-        text.fail(
-            f"column {column.title!r} is in {column.unit}, but the lines above it say {stated}; mend the header",
-            layout.line - 1,
-        )
-    return column.unit or stated
-
-
 def _interval(
-    text: TextFile,
-    layout: _Layout,
-    columns: list[Column],
-    table: NDArray[np.float64],
-    column: int,
-    dt: float | None,
+    layout: _Layout, columns: list[Column], table: NDArray[np.float64], column: int
 ) -> tuple[float, tuple[dict[str, Any], ...]]:
     """Return the interval [s] of a column: that of the times left of it, which what is stated must fit.
 
     The user's replaces a column of times that was printed wrongly; a note says so.
     """
+    text, dt = layout.text, layout.asked
     timed = [i for i, column in enumerate(columns) if column.quantity == "time"]
     left = [i for i in timed if i < column] or timed[:1]
-    stated = layout.dt if layout.dt is not None else dt
     if not left:
-        if stated is None:
+        if layout.interval is None:
             text.fail(
                 "no column is titled as time; give the sampling interval with dt= (in seconds)"
             )
-        return stated, ()
+        return layout.interval, ()
     title, times = columns[left[-1]], table[:, left[-1]]
     seconds = title.seconds
     if seconds is None:
@@ -494,7 +462,11 @@ def _interval(
             layout.line - 1,
         )
     if dt is not None:
-        return _replacing(text, layout, times * seconds, dt)
+        times = times * seconds
+        check_rising(times, text, layout.line)
+        mean = float((times[-1] - times[0]) / max(times.size - 1, 1))
+        replaced = {"step": "replace time column", "dt_s": dt, "mean_step_in_file_s": mean}
+        return dt, (() if abs(mean - dt) <= 1e-6 * dt else (replaced,))
     if not title.title and (np.diff(times) == 1).all():
         text.fail(
             "the first column counts by ones, as numbers of samples do; give the sampling interval with dt= "
@@ -507,19 +479,7 @@ def _interval(
     return measured, ()
 
 
-def _replacing(
-    text: TextFile, layout: _Layout, times: NDArray[np.float64], dt: float
-) -> tuple[float, tuple[dict[str, Any], ...]]:
-    """Return the user's interval in place of a column of times [s], and a note where they differ."""
-    check_rising(times, text, layout.line)
-    mean = float((times[-1] - times[0]) / max(times.size - 1, 1))
-    if abs(mean - dt) <= 1e-6 * dt:
-        return dt, ()
-    return dt, ({"step": "replace time column", "dt_s": dt, "mean_step_in_file_s": mean},)
-
-
 FORMAT = Format("PLAINTEXT", _recognise, _parse, wants_dt=True, encoding="latin-1")
-is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:

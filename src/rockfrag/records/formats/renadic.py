@@ -27,7 +27,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 def _parse(text: TextFile) -> list[Channel]:
     return [
-        _channel(text, first, read_pairs(text, first, stop).channel())
+        _channel(text, first, read_pairs(text, first, stop))
         for first, stop in text.parts(_HEAD, _END)
     ]
 
@@ -53,4 +53,3 @@ def _channel(text: TextFile, first: int, values: Channel) -> Channel:
 
 
 FORMAT = Format("RENADIC", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

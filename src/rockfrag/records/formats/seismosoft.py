@@ -22,10 +22,7 @@ _MAX_HEADER = 40
 
 
 def _find_columns(lines: list[str]) -> int:
-    for number, line in enumerate(lines[:_MAX_HEADER]):
-        if _COLUMNS.match(line):
-            return number
-    return -1
+    return next((i for i, line in enumerate(lines[:_MAX_HEADER]) if _COLUMNS.match(line)), -1)
 
 
 def _recognise(lines: list[str], name: str) -> bool:
@@ -39,10 +36,9 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 def _parse(text: TextFile) -> list[Channel]:
     columns = _find_columns(text.lines(0, _MAX_HEADER))
-    if columns < 0:
+    titles = _COLUMNS.match(text.line(columns)) if columns >= 0 else None
+    if titles is None:
         text.fail("no line 'Time[s] Accel[g]' above the data")
-    titles = _COLUMNS.match(text.line(columns))
-    assert titles is not None
     unit = canonical_unit(titles["unit"])
     if quantity_of(unit) != "acceleration":
         text.refuse(
@@ -85,7 +81,6 @@ def _station_and_component(words: str) -> tuple[str, str]:
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:

@@ -32,7 +32,16 @@ _HIGH_PRECISION = 8
 _PER_LINE, _SURPLUS_LINES = 8, 2
 
 # places in the headers, counted from zero
-_MISSING, _YEAR, _VERTICAL, _HORIZONTAL, _COMMENTS, _COUNT, _PRECISION = 0, 1, 12, 13, 15, 16, 46
+_MISSING, _YEAR, _VERTICAL, _HORIZONTAL, _COMMENTS, _COUNT, _STATION, _PRECISION = (
+    0,
+    1,
+    12,
+    13,
+    15,
+    16,
+    29,
+    46,
+)
 _MISSING_REAL, _RATE, _LATITUDE, _LONGITUDE = 0, 1, 10, 11
 
 
@@ -63,25 +72,25 @@ def _parse(text: TextFile) -> list[Channel]:
     samples, left_out = _without_surplus_lines(text, start, count, _width(text, start, whole))
     if rate == numbers[_MISSING_REAL]:
         # without a rate the values are pairs of time and acceleration
-        values = pairs_of(samples, "cm/s2", text, start, count // 2).channel()
+        values = pairs_of(samples, "cm/s2", text, start, count // 2)
     else:
-        step = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
-        values = Channel(count, positive_step(text, step, at_reals), samples.copy, "cm/s2")
-    values = _noting(values, left_out)
+        dt = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
+        values = Channel(count, positive_step(text, dt, at_reals), samples.copy, "cm/s2")
+    step = {"step": "leave out values beyond the count of the header", "values": left_out}
+    steps = (*([step] if left_out else []), *values.details.get("steps", ()))
     station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.IGNORECASE)
-    missing = whole[_MISSING]
     return [
         replace(
             values,
             start_time=_start(whole),
-            station=_station_code(words[2], whole, missing),
+            station=_station_code(words[2], whole),
             component=_component(whole, station[2].strip() if station else ""),
             details={
                 "station_name": station[1] if station else "",
                 "earthquake": " ".join(words[3].split()),
                 "corrected": held.startswith("CORRECTED"),
                 **_place(numbers),
-                **values.details,
+                **({"steps": steps} if steps else {}),
             },
         )
     ]
@@ -112,14 +121,6 @@ def _ends_a_line(text: TextFile, start: int, count: int, width: int) -> bool:
     return found == count
 
 
-def _noting(channel: Channel, left_out: int) -> Channel:
-    if not left_out:
-        return channel
-    step = {"step": "leave out values beyond the count of the header", "values": left_out}
-    details = {**channel.details, "steps": (step, *channel.details.get("steps", ()))}
-    return replace(channel, details=details)
-
-
 def _width(text: TextFile, start: int, whole: list[int]) -> int:
     """Return the field width: the first number ends where the first field does."""
     first = _FIRST_FIELD.match(text.raw(start))
@@ -137,11 +138,10 @@ def _start(whole: list[int]) -> UTCDateTime | None:
     return time_at(seconds, year=year, julday=day, hour=hour, minute=minute)
 
 
-def _station_code(line: str, whole: list[int], missing: int) -> str:
+def _station_code(line: str, whole: list[int]) -> str:
     """Return the code of the third line: four characters, a fifth names the channel."""
-    code = line[:4].strip().strip("\x00*")
-    number = whole[29]
-    return code or ("" if number == missing else str(number))
+    number = "" if whole[_STATION] == whole[_MISSING] else str(whole[_STATION])
+    return line[:4].strip().strip("\x00*") or number
 
 
 def _component(whole: list[int], words: str) -> str:
@@ -157,12 +157,7 @@ def _component(whole: list[int], words: str) -> str:
 
 def _place(numbers: list[float]) -> dict[str, float]:
     place = {"latitude": numbers[_LATITUDE], "longitude": numbers[_LONGITUDE]}
-    return {
-        key: value
-        for key, value in place.items()
-        if value != numbers[_MISSING_REAL] and np.isfinite(value)
-    }
+    return {key: value for key, value in place.items() if value != numbers[_MISSING_REAL]}
 
 
 FORMAT = Format("SMC", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

@@ -118,4 +118,3 @@ def _details(facts: dict[str, str]) -> dict[str, object]:
 
 
 FORMAT = Format("UNAM", _recognise, _parse, encoding="latin-1")
-is_format, read = FORMAT.is_format, FORMAT.read

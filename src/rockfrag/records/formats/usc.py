@@ -32,7 +32,7 @@ def _parse(text: TextFile) -> list[Channel]:
     for first, stop in text.parts(_HEAD):
         last = text.find(re.compile(rb"^[ \t]*/&", re.M), first, stop)
         pairs = read_pairs(text, first, stop if last < 0 else last)
-        channels.append(place_of(text.lines(first, first + _HEADER), pairs.channel()))
+        channels.append(place_of(text.lines(first, first + _HEADER), pairs))
     return channels
 
 
@@ -57,4 +57,3 @@ def _earthquake(lines: list[str]) -> str:
 
 
 FORMAT = Format("USC", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

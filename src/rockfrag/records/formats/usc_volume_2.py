@@ -125,4 +125,3 @@ def _section(text: TextFile, line: int, words: list[str]) -> Section:
 
 
 FORMAT = Format("USC2", _recognise, _parse)
-is_format, read = FORMAT.is_format, FORMAT.read

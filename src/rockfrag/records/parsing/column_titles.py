@@ -53,6 +53,7 @@ _ORIENTATION = re.compile(
     r"|north\w*|east\w*|radial|transverse|longitudinal|ch(?:annel)?\W?\d+)$",
     re.IGNORECASE,
 )
+_NO_QUANTITY = frozenset({"s", "ms", "-", "min"})
 _AMBIGUOUS = frozenset("vud")
 _BRACKETED = re.compile(r"[\[({](?P<unit>[^\[\](){}]*)[\])}]")
 
@@ -85,7 +86,8 @@ def column_titles(table: NumberTable, row: str) -> list[Column]:
     above = list(table.words)
     words = above[-1][1]
     units = next(iter(_splits(words, separators, table.columns)), [])
-    if len(above) > 1 and units and all(_is_unit(cell) for cell in units):
+    stated = [canonical_unit(cell.strip("[](){}")) for cell in units]
+    if len(above) > 1 and units and all(u in _NO_QUANTITY or quantity_of(u) for u in stated):
         words = above[-2][1]
     else:
         units = [""] * table.columns
@@ -118,11 +120,6 @@ def _splits(words: str, separators: list[str], width: int) -> Iterator[list[str]
         cells[0] = cells[0] or "#"
         if len(cells) == width and all(cells):
             yield cells
-
-
-def _is_unit(cell: str) -> bool:
-    unit = canonical_unit(cell.strip("[](){}"))
-    return unit in {"s", "ms", "-", "min"} or quantity_of(unit) != ""
 
 
 def _columns(titles: list[str], units: list[str]) -> list[Column]:

@@ -39,19 +39,19 @@ class Section:
 
 def integers(text: TextFile, start: int, stop: int, width: int, count: int) -> list[int]:
     """Return the whole numbers of header lines ``start`` up to ``stop`` (columns of ``width``)."""
-    values = text.numbers(start, stop, width)
-    if values.size < count:
-        text.fail(f"{count} whole numbers are expected in this header, not {values.size}", start)
-    if (values != np.round(values)).any():
+    values = reals(text, start, stop, width, count, "whole numbers")
+    if any(value % 1 for value in values):
         text.fail("the header has a fraction where whole numbers are expected", start)
     return [int(value) for value in values]
 
 
-def reals(text: TextFile, start: int, stop: int, width: int, count: int) -> list[float]:
+def reals(
+    text: TextFile, start: int, stop: int, width: int, count: int, kind: str = "numbers"
+) -> list[float]:
     """Return the numbers of header lines ``start`` up to ``stop`` (columns of ``width``)."""
     values = text.numbers(start, stop, width)
     if values.size < count:
-        text.fail(f"{count} numbers are expected in this header, not {values.size}", start)
+        text.fail(f"{count} {kind} are expected in this header, not {values.size}", start)
     return [float(value) for value in values]
 
 

@@ -6,6 +6,7 @@ take is looked at line by line, so that the error names the line.
 
 import re
 import warnings
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,10 +37,14 @@ def parse_separated(text: bytes) -> NDArray[np.float64]:
         return np.empty(0)
     if b"D" in body or b"d" in body:
         body = body.translate(_D_EXPONENT)
-    values = _fast(body)
-    if values is None or not np.isfinite(values).all():
-        return _line_by_line(text)
-    return values
+    with warnings.catch_warnings(), suppress(ValueError, DeprecationWarning):
+        # numpy before 2.4 warns where later ones raise
+        warnings.simplefilter("error", DeprecationWarning)
+        values = np.fromstring(body, dtype=np.float64, sep=" ")
+        if np.isfinite(values).all():
+            return values
+    lines = enumerate(text.split(b"\n"))
+    return np.array([_number(token, number) for number, line in lines for token in line.split()])
 
 
 def parse_columns(lines: list[bytes], width: int) -> NDArray[np.float64]:
@@ -59,30 +64,13 @@ def parse_columns(lines: list[bytes], width: int) -> NDArray[np.float64]:
     starts = filled[:, :-1].astype(np.int8)
     tokens = (np.diff(starts, axis=1) == 1).sum(axis=1) + starts[:, 0]
     if (tokens != 1).any():
-        first = int(np.flatnonzero(tokens != 1)[0])
-        raise NumberError(_line_of_field(padded, width, first), "a field is not one number")
+        ends = np.cumsum([len(line) // width for line in padded])
+        number = int(np.searchsorted(ends, np.flatnonzero(tokens != 1)[0], side="right"))
+        raise NumberError(number, "a field is not one number")
     try:
-        values = parse_separated(separated.tobytes())
+        return parse_separated(separated.tobytes())
     except NumberError as error:
         raise NumberError(_line_of_bad_field(padded, width), str(error)) from None
-    return values
-
-
-def _fast(body: bytes) -> NDArray[np.float64] | None:
-    with warnings.catch_warnings():
-        # numpy before 2.4 warns where later ones raise
-        warnings.simplefilter("error", DeprecationWarning)
-        try:
-            return np.fromstring(body, dtype=np.float64, sep=" ")
-        except (ValueError, DeprecationWarning):
-            return None
-
-
-def _line_by_line(text: bytes) -> NDArray[np.float64]:
-    values: list[float] = []
-    for number, line in enumerate(text.split(b"\n")):
-        values.extend(_number(token, number) for token in line.split())
-    return np.array(values)
 
 
 def _number(token: bytes, line: int) -> float:
@@ -103,11 +91,6 @@ def _number(token: bytes, line: int) -> float:
 def _shown(token: bytes) -> str:
     short = token[:_SHOWN].decode("ascii", errors="replace")
     return repr(short + "…" if len(token) > _SHOWN else short)
-
-
-def _line_of_field(padded: list[bytes], width: int, field: int) -> int:
-    ends = np.cumsum([len(line) // width for line in padded])
-    return int(np.searchsorted(ends, field, side="right"))
 
 
 def _line_of_bad_field(padded: list[bytes], width: int) -> int:

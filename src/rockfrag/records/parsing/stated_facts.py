@@ -1,7 +1,7 @@
 """What the words above the samples of a text file state: count, interval, unit, quantity, components."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
@@ -84,7 +84,9 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
     """Return what lines of words, the uppermost first, state about the samples below them."""
     steps = list(dict.fromkeys(step for line in lines for step in _steps(line)))
     counts = list(dict.fromkeys(count for line in lines for count in _counts(line)))
-    units = list(dict.fromkeys(unit for line in lines for unit in _explicit_units(line)))
+    behind = (_units_in(m["rest"]) for line in lines if (m := _UNIT_WORDS.search(line)))
+    # of each line that has the word unit one of acceleration
+    units = list(dict.fromkeys(u for found in behind for u in [u for u in found if u in TO_SI][:1]))
     contradiction = next(
         (
             f"the header states {what} {_both(found)}"
@@ -141,13 +143,6 @@ def _counts(line: str) -> list[int]:
     return [int(m["count"]) for m in (*found, *([counted] if counted else [])) if int(m["count"])]
 
 
-def _explicit_units(line: str) -> list[str]:
-    """Return the unit of acceleration that stands behind the word unit, at most one."""
-    match = _UNIT_WORDS.search(line)
-    units = _units_in(match["rest"]) if match else []
-    return [unit for unit in units if unit in TO_SI][:1]
-
-
 def _units_in(words: str) -> list[str]:
     """Return what may be units in words, canonical, from left to right."""
     parts = re.split(r"[,;]|\s+and\s+|(?<=[\w)\]])\s+(?![/\d])|[()\[\]]", words, flags=re.I)
@@ -162,7 +157,9 @@ def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str]:
         held = next(iter(map(quantity_of, _units_in(explicit["rest"])[:1])), "") if explicit else ""
         if held:
             return held, ""
-        if _ONE_VALUE.search(line) or _is_value(line):
+        # one value, as of a velocity of waves, is not what the samples are
+        of_one = _VALUE_OF.search(line) and not (_STEP.search(line) or _COUNT.search(line))
+        if _ONE_VALUE.search(line) or of_one:
             continue
         match = _QUANTITY_IN.search(line) or _IN_UNIT.search(line)
         first = next(iter(_units_in(match["rest"])), "") if match else _sure_unit(line)
@@ -178,11 +175,6 @@ def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str]:
     if last and not everywhere:
         return {"vel": "velocity", "dis": "displacement"}[last[0]], ""
     return "", ""
-
-
-def _is_value(line: str) -> bool:
-    """Tell whether a line states one value, as of a velocity of waves, and not what the samples are."""
-    return bool(_VALUE_OF.search(line)) and not _STEP.search(line) and not _COUNT.search(line)
 
 
 def _sure_unit(line: str) -> str:
@@ -202,13 +194,10 @@ def _components(line: str) -> list[str]:
     return [word for word in re.split(r"[\s,;]+", match["names"].strip()) if word] if match else []
 
 
-def _close(found: Iterable[float | int | str]) -> bool:
+def _close(found: Sequence[float | int | str]) -> bool:
     """Tell whether statements of one fact are numbers that differ by rounding only, to a ten-thousandth."""
-    values = list(found)
-    if not all(isinstance(value, float) for value in values):
-        return False
-    numbers = [float(value) for value in values]
-    return max(numbers) - min(numbers) <= 1e-4 * max(numbers)
+    numbers = [value for value in found if isinstance(value, float)]
+    return len(numbers) == len(found) and max(numbers) - min(numbers) <= 1e-4 * max(numbers)
 
 
 def _both(found: Sequence[float | int | str]) -> str:

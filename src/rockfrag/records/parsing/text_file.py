@@ -5,6 +5,7 @@ import os
 import re
 import zlib
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -48,6 +49,10 @@ def name_of(source: Source) -> str:
     return name if isinstance(name, str) else "<file object>"
 
 
+def _opened(path: str | os.PathLike[str]) -> Any:
+    return (gzip.open if str(path).lower().endswith(".gz") else open)(path, "rb")
+
+
 def read_head(source: Source, size: int = HEAD_BYTES) -> bytes:
     """Return the first bytes of a file, or nothing if it cannot be read; never raises.
 
@@ -57,8 +62,7 @@ def read_head(source: Source, size: int = HEAD_BYTES) -> bytes:
         if isinstance(source, (str, os.PathLike)):
             if not os.path.isfile(source):
                 return b""
-            unpacking = str(source).lower().endswith(".gz")
-            with gzip.open(source, "rb") if unpacking else open(source, "rb") as file:
+            with _opened(source) as file:
                 return bytes(file.read(size))
         position = source.tell()
         try:
@@ -175,21 +179,21 @@ class TextFile:
         With ``width`` the lines are first taken as Fortran fields of that width; where they do not
         fit it (blanks edited away), as separated numbers.
         """
-        stop = len(self) if stop is None else min(stop, len(self))
-        body = self.data[self.offset(start) : self.offset(stop)]
+        body = self._body(start, stop)
+        wrong: NumberError | None = None
         if width is not None:
             try:
                 return parse_columns(body.split(b"\n"), width)
             except NumberError as error:
-                in_columns = error
-            try:
-                return parse_separated(body)
-            except NumberError:
-                self.fail(str(in_columns), start + in_columns.line)
+                wrong = error
         try:
             return parse_separated(body)
         except NumberError as error:
-            self.fail(str(error), start + error.line)
+            wrong = wrong or error
+        self.fail(str(wrong), start + wrong.line)
+
+    def _body(self, start: int, stop: int | None) -> bytes:
+        return self.data[self.offset(start) : self.offset(len(self) if stop is None else stop)]
 
     def counted(
         self, start: int, stop: int | None, count: int, width: int | None = None
@@ -198,18 +202,11 @@ class TextFile:
         values = self.numbers(start, stop, width)
         if values.size != count and width is not None:
             # columns that are not where the format puts them may still be separated numbers
-            separated = self._separated(start, stop)
-            values = separated if separated.size == count else values
+            with suppress(NumberError):
+                separated = parse_separated(self._body(start, stop))
+                values = separated if separated.size == count else values
         self.check_count(count, values.size, start)
         return values
-
-    def _separated(self, start: int, stop: int | None) -> NDArray[np.float64]:
-        """Parse lines as separated numbers; none if something is no number."""
-        end = len(self) if stop is None else min(stop, len(self))
-        try:
-            return parse_separated(self.data[self.offset(start) : self.offset(end)])
-        except NumberError:
-            return np.empty(0)
 
     def up_to_last_line_end(self) -> "TextFile":
         """Return the text without a last line that does not end, to be read as it is."""
@@ -245,8 +242,7 @@ class TextFile:
         numbers, one of another width above what is no number is left to the caller to tell, and the values
         are then empty.
         """
-        stop = len(self) if stop is None else min(stop, len(self))
-        body = self.data[self.offset(start) : self.offset(stop)].rstrip(b" \t\r\n,;")
+        body = self._body(start, stop).rstrip(b" \t\r\n,;")
         if not body:
             self.fail("no data below the header; the file is cut short", start)
         separator = b";" if b";" in body or decimal_comma else b","
@@ -369,13 +365,9 @@ def read_bytes(source: Source) -> bytes:
     name = name_of(source)
     if not isinstance(source, (str, os.PathLike)):
         return _read_blocks(source, name)
-    path = Path(source)
-    check_file(path)
+    check_file(source)
     try:
-        if path.suffix.lower() == ".gz":
-            with gzip.open(path, "rb") as unpacked:
-                return _read_blocks(unpacked, name)
-        with path.open("rb") as file:
+        with _opened(source) as file:
             return _read_blocks(file, name)
     except (OSError, EOFError, zlib.error) as error:
         raise InputError(f"{name}: cannot be read ({error}).") from None

@@ -6,8 +6,6 @@ uneven intervals; they are interpolated linearly to even ones.
 """
 
 import re
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,44 +26,12 @@ _FIELD = 7
 _MAX_HEADER = 30
 
 
-@dataclass(frozen=True)
-class Pairs:
-    """Times [s] and accelerations of one channel, shape (n,) each.
-
-    ``promised`` is the number of pairs that the header states, where fewer were to be read.
-    """
-
-    times: NDArray[np.float64]
-    values: NDArray[np.float64]
-    dt: float
-    even: bool
-    unit: str
-    promised: int = 0
-
-    def channel(self) -> Channel:
-        """Return them as a channel of equally spaced samples."""
-        steps: tuple[dict[str, Any], ...] = ()
-        if self.promised > self.values.size:
-            steps = (cut_short_step(self.promised, int(self.values.size)),)
-        if self.even:
-            values, unit = self.values, self.unit
-            return Channel(values.size, self.dt, values.copy, unit, details={"steps": steps})
-        count = int(np.floor((self.times[-1] - self.times[0]) / self.dt * (1 + 1e-12))) + 1
-        even = np.interp(self.times[0] + np.arange(count) * self.dt, self.times, self.values)
-        step = {
-            "step": "interpolate linearly to even intervals",
-            "dt_s": self.dt,
-            "digitised_points": int(self.times.size),
-        }
-        return Channel(count, self.dt, even.copy, self.unit, details={"steps": (*steps, step)})
-
-
 def is_pairs_header(text: TextFile, first: int) -> bool:
     """Tell whether a header states pairs of time and acceleration."""
     return any(_UNITS.search(line) for line in text.lines(first, first + _MAX_HEADER))
 
 
-def read_pairs(text: TextFile, first: int, stop: int) -> Pairs:
+def read_pairs(text: TextFile, first: int, stop: int) -> Channel:
     """Read the channel whose header starts at line ``first`` and which ends before ``stop``."""
     header = text.lines(first, first + _MAX_HEADER)
     count = unit = None
@@ -87,11 +53,8 @@ def read_pairs(text: TextFile, first: int, stop: int) -> Pairs:
 
 def pairs_of(
     values: NDArray[np.float64], unit: str, text: TextFile, line: int, promised: int
-) -> Pairs:
-    """Split times and accelerations that alternate, and tell whether the times are even.
-
-    ``promised`` is the number of pairs that the header states.
-    """
+) -> Channel:
+    """Return times [s] and accelerations that alternate as even samples; ``promised`` is the number stated."""
     if text.cut_short:
         values = values[: 2 * (values.size // 2)]
     times, accelerations = values[0::2], values[1::2]
@@ -100,9 +63,9 @@ def pairs_of(
     if (np.diff(times) < 0).any():
         # rounding may make neighbours equal, never reverse them
         check_rising(times, text, line)
+    steps = [cut_short_step(promised, times.size)] if promised > times.size else []
     try:
-        step = step_of_times(times, text, line)
-        return Pairs(times, accelerations, step, True, unit, promised)
+        dt = step_of_times(times, text, line)
     except InputError:
         mean = float(times[-1] - times[0]) / (times.size - 1)
         if mean > LONGEST_STEP:
@@ -110,7 +73,13 @@ def pairs_of(
                 f"times lie {mean:.3g} s apart on average, those of a record at most {LONGEST_STEP:g} s",
                 line,
             )
-        return Pairs(times, accelerations, even_step(times), False, unit, promised)
+        dt = even_step(times)
+        count = int(np.floor((times[-1] - times[0]) / dt * (1 + 1e-12))) + 1
+        accelerations = np.interp(times[0] + np.arange(count) * dt, times, accelerations)
+        found = {"dt_s": dt, "digitised_points": int(times.size)}
+        steps.append({"step": "interpolate linearly to even intervals", **found})
+    details = {"steps": tuple(steps)}
+    return Channel(accelerations.size, dt, accelerations.copy, unit, details=details)
 
 
 def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:

@@ -8,7 +8,7 @@ import tarfile
 import zipfile
 import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
@@ -59,7 +59,7 @@ def unpacked(path: str | os.PathLike[str]) -> Iterator[list[Member]]:
     An archive within the archive is unpacked as well, one within that is not.
     """
     with TemporaryDirectory(prefix="rockfrag.") as scratch:
-        room = _Room(Path(scratch), MAX_TOTAL, MAX_MEMBERS)
+        room = _Room(Path(scratch))
         members = _take_out(path, room, "")
         nested = [member for member in members if is_archive(member.path)]
         for member in nested:
@@ -72,10 +72,10 @@ def unpacked(path: str | os.PathLike[str]) -> Iterator[list[Member]]:
 
 
 class _Room:
-    """The folder that an archive is unpacked into, and what may still be put there."""
+    """The folder that an archive is unpacked into, and how many bytes may still be put there."""
 
-    def __init__(self, folder: Path, size: int, members: int) -> None:
-        self.folder, self.size, self.members, self.count = folder, size, members, 0
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.size, self.count = folder, MAX_TOTAL, 0
 
     def put(self, name: str, file: IO[bytes], archive: str | os.PathLike[str]) -> Member:
         """Write one member, in a folder like that of the archive, whatever its name says."""
@@ -84,8 +84,8 @@ class _Room:
         ]
         safe = [re.sub(r"[^\w.+@=, ()\[\]-]", "_", part)[-100:] for part in parts] or ["unnamed"]
         self.count += 1
-        if self.count > self.members:
-            raise InputError(f"{archive}: it has more than {self.members} members.")
+        if self.count > MAX_MEMBERS:
+            raise InputError(f"{archive}: it has more than {MAX_MEMBERS} members.")
         # the number keeps members apart whose names differ only in what is replaced
         target = self.folder.joinpath(*safe)
         if target.exists():
@@ -106,15 +106,11 @@ def _kind(path: str | os.PathLike[str]) -> str:
     head = read_head(str(path), 512)
     if head.startswith((b"PK\x03\x04", b"PK\x05\x06")):
         return "zip"
-    named = str(path).lower().endswith(_TAR_NAMES)
-    return "tar" if head[257:262] == b"ustar" or (named and _opens_as_tar(path)) else ""
-
-
-def _opens_as_tar(path: str | os.PathLike[str]) -> bool:
-    try:
-        return os.path.getsize(path) <= MAX_BYTES and tarfile.is_tarfile(path)
-    except _UNREADABLE:
-        return False
+    is_tar = head[257:262] == b"ustar"
+    if not is_tar and str(path).lower().endswith(_TAR_NAMES):
+        with suppress(*_UNREADABLE):
+            is_tar = os.path.getsize(path) <= MAX_BYTES and tarfile.is_tarfile(path)
+    return "tar" if is_tar else ""
 
 
 def _take_out(path: str | os.PathLike[str], room: _Room, prefix: str) -> list[Member]:
@@ -131,8 +127,7 @@ def _take_out(path: str | os.PathLike[str], room: _Room, prefix: str) -> list[Me
 def _from_zip(path: str | os.PathLike[str], room: _Room) -> list[Member]:
     members = []
     with zipfile.ZipFile(path) as archive:
-        names = archive.namelist()
-        if "[Content_Types].xml" in names:
+        if "[Content_Types].xml" in archive.namelist():
             raise InputError(f"{path}: this is an Excel workbook or a document; save it as CSV.")
         for info in archive.infolist():
             if info.is_dir() or _hidden(info.filename):

@@ -31,8 +31,7 @@ RECORDS, STATIONS, FACTS = "records.mseed", "stations.xml", "request.json"
 class FdsnRequest:
     """What is asked of a service; codes may have the wildcards ``*`` and ``?``.
 
-    The window is either from ``start`` to ``end`` or, with ``earthquake``, from ``before`` to ``after``
-    seconds about its origin (``before`` is negative for a time before it).
+    The window is either from one time to another or, with ``earthquake``, from second to second about its origin.
     """
 
     words: str
@@ -41,11 +40,9 @@ class FdsnRequest:
     station: str
     location: str
     channel: str
-    start: UTCDateTime | None = None
-    end: UTCDateTime | None = None
+    begin: UTCDateTime | float
+    end: UTCDateTime | float
     earthquake: str = ""
-    before: float = 0.0
-    after: float = 0.0
 
     @property
     def folder(self) -> str:
@@ -67,29 +64,24 @@ def parse_request(words: str) -> FdsnRequest:
             "'CLIENT NET.STA.LOC.CHA EVENT -30 +120'."
         )
     codes = match["network"], match["station"], match["location"], match["channel"]
-    window = _WINDOW.match(match["rest"])
+    window, times = _WINDOW.match(match["rest"]), match["rest"].split()
+    begin: UTCDateTime | float
     if window is not None:
-        before, after = float(window["before"]), float(window["after"])
-        if after <= before:
-            raise InputError(f"FDSN request {words!r}: the window ends before it begins.")
-        return FdsnRequest(
-            words,
-            match["client"],
-            *codes,
-            earthquake=window["earthquake"],
-            before=before,
-            after=after,
+        begin, end, earthquake = (
+            float(window["before"]),
+            float(window["after"]),
+            window["earthquake"],
         )
-    times = match["rest"].split()
-    if len(times) != 2:
+    elif len(times) != 2:
         raise InputError(f"FDSN request {words!r}: expected START and END, or EVENT -30 +120.")
-    try:
-        start, end = UTCDateTime(times[0]), UTCDateTime(times[1])
-    except Exception as error:  # UTCDateTime raises several kinds
-        raise InputError(f"FDSN request {words!r}: a time is not readable.") from error
-    if end <= start:
+    else:
+        try:
+            begin, end, earthquake = UTCDateTime(times[0]), UTCDateTime(times[1]), ""
+        except Exception as error:  # UTCDateTime raises several kinds
+            raise InputError(f"FDSN request {words!r}: a time is not readable.") from error
+    if end <= begin:
         raise InputError(f"FDSN request {words!r}: the window ends before it begins.")
-    return FdsnRequest(words, match["client"], *codes, start=start, end=end)
+    return FdsnRequest(words, match["client"], *codes, begin, end, earthquake)
 
 
 def fetch_fdsn(words: str, records: Path) -> Path:
@@ -160,8 +152,8 @@ def _ask(request: FdsnRequest) -> tuple[Any, Any, dict[str, str]]:
 def _window(
     request: FdsnRequest, client: "Client"
 ) -> tuple[UTCDateTime, UTCDateTime, dict[str, str]]:
-    if request.start is not None and request.end is not None:
-        return request.start, request.end, {}
+    if not request.earthquake:
+        return request.begin, request.end, {}
     earthquake = client.get_events(eventid=request.earthquake)[0]
     origin = earthquake.preferred_origin() or earthquake.origins[0]
     facts = {"earthquake": request.earthquake, "origin_time": str(origin.time)}
@@ -170,4 +162,4 @@ def _window(
     )
     if magnitude is not None:
         facts["magnitude"] = str(magnitude.mag)
-    return origin.time + request.before, origin.time + request.after, facts
+    return origin.time + request.begin, origin.time + request.end, facts

@@ -24,7 +24,7 @@ from rockfrag.figure_style import (
     one_panel,
     plain_log,
 )
-from rockfrag.fragility.compared import compared_curves
+from rockfrag.fragility.curve_facts import compared_curves
 from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.report.wording import shortened
@@ -37,10 +37,7 @@ GREY = "#777777"
 
 
 def fragility_figure(
-    curves: pd.DataFrame,
-    bands: pd.DataFrame,
-    bins: pd.DataFrame,
-    nonparametric: bool | None = None,
+    curves: pd.DataFrame, bands: pd.DataFrame, bins: pd.DataFrame, nonparametric: bool | None = None
 ) -> Figure:
     """Draw fragility curves of one measure, a panel per configuration, with bands and the outcomes behind them.
 

@@ -34,9 +34,7 @@ AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 150).tolist())
 
 
 def live_kernel(
-    bodies: Mapping[str, System],
-    motions: Sequence[Motion],
-    outcomes: pd.DataFrame | None = None,
+    bodies: Mapping[str, System], motions: Sequence[Motion], outcomes: pd.DataFrame | None = None
 ) -> Markup:
     """Return the element of a page in which bodies rock under motions, live; one to a page.
 

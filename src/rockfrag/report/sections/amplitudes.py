@@ -8,43 +8,23 @@ from rockfrag.files import file_name
 from rockfrag.report.figures.ida import MOST_ROWS, outcome_map
 from rockfrag.report.findings import amplitudes_found, resurrections_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
-from rockfrag.report.wording import amplitude, of_all
+from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
+from rockfrag.report.sections.words import sentences
+from rockfrag.report.wording import amplitude
 
 
 def _section(results: Results) -> Section:
-    found = amplitudes_found(results.tests)
     resurrections = resurrections_found(results.table("resurrections"), results.table("tests"))
     tests = results.tests
     tests = tests[tests["repetition"] == tests["repetition"].min()]
-    names = list(dict.fromkeys(tests["configuration"]))
-    shown = _wide(tests)
     columns = [
-        Column("earthquake", "Earthquake"),
-        Column("floor", "Floor"),
-        Column("motion", "Motion"),
+        *(Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion")),
+        *(Column(name, f"{name} [g]", numeric=True) for name in tests["configuration"].unique()),
     ]
-    columns += [Column(name, f"{name} [g]", numeric=True) for name in names]
-    return Section(
-        "amplitudes",
-        "Overturning amplitudes",
-        f"{found.headline}.",
-        [
-            *opened(found),
-            resurrections.said,
-            "The motion is raised in steps from rest until the body overturns. “>” stands before the largest "
-            "amplitude survived by a body that never overturned, “<” before the first step where it overturned "
-            "there already. These bounds enter no mean.",
-            "Bars show all amplitudes that overturn. Gaps are amplitudes survived although a weaker motion "
-            "overturned the body.",
-        ],
-        [
-            table_html(
-                shown, columns, "Overturning amplitude of every test (step protocol).", "tests.csv"
-            ),
-            *_maps(results),
-        ],
-    )
+    caption = "Overturning amplitude of every test (step protocol)."
+    table = table_html(_wide(tests), columns, caption, "tests.csv")
+    text = sentences().amplitudes(amplitudes_found(results.tests), resurrections)
+    return section_of(text, "amplitudes", [table, *_maps(results)])
 
 
 def _wide(tests: pd.DataFrame) -> pd.DataFrame:
@@ -66,16 +46,10 @@ def _maps(results: Results) -> list[FigureSpec]:
         own = outcomes[outcomes["object"] == name]
         configurations = list(dict.fromkeys(own["configuration"]))
         ida_curves = resurrections[resurrections["configuration"].isin(configurations)]
-        fallen = of_all(
-            int(ida_curves["first_upper"].notna().sum()), len(ida_curves), "analysis", "analyses"
-        )
-        caption = f"{name}: amplitudes that overturn it, by motion."
-        motions = ida_curves["motion"].nunique()
-        if motions > MOST_ROWS:
-            caption += f" Shown are the first {MOST_ROWS} of {motions} motions; the table has all."
-        alt = f"Map of the amplitudes that overturn {name}; it overturns in {fallen}."
+        fallen, motions = ida_curves["first_upper"].count(), ida_curves["motion"].nunique()
+        text = sentences().outcomes_figure(name, fallen, len(ida_curves), motions, MOST_ROWS)
         draw = partial(outcome_map, own, configurations)
-        specs.append(FigureSpec(f"outcomes_{file_name(name)}", alt, caption, draw))
+        specs.append(figure_of(text, f"outcomes_{file_name(name)}", draw))
     return specs
 
 

@@ -5,7 +5,8 @@ import pandas as pd
 from rockfrag.report.figures.as_recorded import MOST_ROWS, recorded_map
 from rockfrag.report.findings import recorded_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
+from rockfrag.report.part import Part, Results, Section, figure_of, section_of
+from rockfrag.report.sections.words import sentences
 
 
 def _section(results: Results) -> Section:
@@ -17,35 +18,11 @@ def _section(results: Results) -> Section:
         *(Column(name, name) for name in names),
     ]
     found = recorded_found(recorded)
-    motions = recorded["motion"].nunique()
-    caption = (
-        "Largest rotation divided by the critical angle, under each motion as recorded. "
-        "A dot marks an outcome that flips if the motion is scaled within ±10 %."
-    )
-    if motions > MOST_ROWS:
-        caption += f" Shown are the {MOST_ROWS} strongest of {motions} motions; the table has all."
-    figure = FigureSpec(
-        "as_recorded", f"{found.headline}. {found.text}", caption, lambda: recorded_map(recorded)
-    )
-    return Section(
-        "as_recorded",
-        "Motions as recorded",
-        f"{found.headline}.",
-        [
-            *opened(found),
-            "Each motion shakes the objects as strongly as it was recorded, or as the building passes it on to "
-            "the floor. “Sensitive” marks an outcome that flips if the motion is scaled within ±10 %.",
-        ],
-        [
-            figure,
-            table_html(
-                _wide(recorded),
-                columns,
-                "Outcome under each motion as recorded.",
-                "as_recorded.csv",
-            ),
-        ],
-    )
+    text = sentences().as_recorded_figure(found, recorded["motion"].nunique(), MOST_ROWS)
+    figure = figure_of(text, "as_recorded", lambda: recorded_map(recorded))
+    caption = "Outcome under each motion as recorded."
+    table = table_html(_wide(recorded), columns, caption, "as_recorded.csv")
+    return section_of(sentences().as_recorded(found), "as_recorded", [figure, table])
 
 
 def _wide(recorded: pd.DataFrame) -> pd.DataFrame:

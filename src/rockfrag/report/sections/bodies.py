@@ -1,10 +1,9 @@
 """What was tested: the bodies, and the acceleration at which each starts to rock."""
 
-import pandas as pd
-
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Part, Results, Section
-from rockfrag.report.wording import counted, number, sentence
+from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.sections.words import sentences
+from rockfrag.report.wording import number
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 _COLUMNS = (
@@ -28,24 +27,11 @@ def _section(results: Results) -> Section:
         height_cm=bodies["height_m"] * CENTIMETRES_PER_METRE,
         uplift_g=bodies["uplift_m_s2"] / GRAVITY,
     )
-    return Section(
-        "bodies",
-        "Bodies",
-        _message(shown, results.study.slides or results.study.vertical),
-        [
-            "Rigid blocks that rock on two edges in the plane of the motion. The critical angle is the angle "
-            "between the diagonal and the vertical. A block starts to rock when the acceleration of its base "
-            "exceeds the one given, and overturns if it rotates too far beyond the critical angle."
-        ],
-        [table_html(shown, _COLUMNS, "The objects, alone and on their pedestals.")],
-    )
-
-
-def _message(bodies: pd.DataFrame, may_differ: bool) -> str:
-    low, high = (number(value, 2) for value in (bodies["uplift_g"].min(), bodies["uplift_g"].max()))
-    span = f"at {low} g" if low == high else f"between {low} and {high} g"
-    where = " if the surfaces neither slip nor move vertically" if may_differ else ""
-    return f"{sentence(counted(len(bodies), 'configuration'))}; rocking starts {span} at the base{where}."
+    ends = (number(value, 2) for value in (shown["uplift_g"].min(), shown["uplift_g"].max()))
+    may_differ = results.study.slides or results.study.vertical
+    text = sentences().bodies(len(shown), *ends, may_differ)
+    table = table_html(shown, _COLUMNS, "The objects, alone and on their pedestals.")
+    return section_of(text, "bodies", [table])
 
 
 BODIES = Part(("bodies",), _section)

@@ -1,5 +1,7 @@
 """Amplitudes side by side: objects, floors, with and without a pedestal."""
 
+from functools import partial
+
 from rockfrag.pedestal.paired_tests import with_counterparts
 from rockfrag.report.figures.amplitudes import (
     amplitudes_by_floor,
@@ -8,9 +10,9 @@ from rockfrag.report.figures.amplitudes import (
 )
 from rockfrag.report.findings import mean_sentence, objects_compared, ratio_of
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
+from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
+from rockfrag.report.sections.words import sentences
 from rockfrag.report.sides import sides_of
-from rockfrag.report.wording import counted
 
 _COLUMNS = (
     Column("what", "Of"),
@@ -39,51 +41,29 @@ def _section(results: Results) -> Section | None:
     tables = [table_html(whole, _COLUMNS, "Means over the same motions.")] if len(whole) > 1 else []
     if floors["floor"].nunique() > 1:
         tables.append(table_html(floors, _COLUMNS, "Means over the same records and objects."))
-    return Section(
-        "comparisons",
-        "Objects, floors and pedestals compared",
-        f"{found[0].headline}." if found else words,
-        [*opened(found[0]), words] if found else [],
-        [*figures, *tables],
-    )
+    return section_of(sentences().comparisons(found, words), "comparisons", [*figures, *tables])
 
 
 def _by_object(results: Results) -> FigureSpec:
     tests, means = results.tests, results.table("mean_amplitudes")
-    alt = f"Overturning amplitudes of {counted(len(results.objects), 'object')}. {mean_sentence(means)}"
-    caption = (
-        "Overturning amplitude of every test by object; thin lines join the tests of one motion with "
-        "and without pedestal."
-        if results.study.has_pairs
-        else "Overturning amplitude of every test by object."
-    )
-    return FigureSpec(
-        "amplitudes_by_object", alt, caption, lambda: amplitudes_by_object(tests, means)
-    )
+    words, pairs = mean_sentence(means), results.study.has_pairs
+    text = sentences().by_object_figure(len(results.objects), words, pairs)
+    return figure_of(text, "amplitudes_by_object", lambda: amplitudes_by_object(tests, means))
 
 
 def _by_floor(results: Results) -> FigureSpec:
     tests, means = results.tests, results.table("mean_amplitudes")
-    alt = f"Overturning amplitudes on {counted(tests['floor'].nunique(), 'floor')}."
-    caption = "Overturning amplitude of every test by floor."
-    return FigureSpec(
-        "amplitudes_by_floor", alt, caption, lambda: amplitudes_by_floor(tests, means)
-    )
+    text = sentences().by_floor_figure(tests["floor"].nunique())
+    return figure_of(text, "amplitudes_by_floor", lambda: amplitudes_by_floor(tests, means))
 
 
 def _scatter(results: Results) -> FigureSpec:
     about = sides_of(results.study)
-    ratio = ratio_of(results.table("pedestal/effects"), about)
-    pair = f"Amplitude {about.first} against that {about.second}"
-    alt = f"{pair}. {ratio('whole', 'all')}."
-    caption = f"{pair}; the grey band is ±10 %, arrows are bounds."
+    ratio = ratio_of(results.table("pedestal/effects"), about)("whole", "all")
     tests, _ = with_counterparts(results.tests, results.study.counterparts)
-    return FigureSpec(
-        "with_and_without_pedestal",
-        alt,
-        caption,
-        lambda: pedestal_scatter(tests, ratio("whole", "all"), about),
-    )
+    text = sentences().pedestal_scatter_figure(about, ratio)
+    draw = partial(pedestal_scatter, tests, ratio, about)
+    return figure_of(text, "with_and_without_pedestal", draw)
 
 
 COMPARISONS = Part(("tests", "mean_amplitudes"), _section)

@@ -1,12 +1,11 @@
 """Fragility on each floor in the peak of that floor's own motion, for each limit state."""
 
-import pandas as pd
-
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.report.answer import has_one_record
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Part, Results, Section
-from rockfrag.report.wording import estimates, listed
+from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.sections.words import sentences
+from rockfrag.report.wording import estimates
 
 _COLUMNS = (
     Column("configuration", "Configuration"),
@@ -34,29 +33,12 @@ def _section(results: Results) -> Section | None:
         theta_text=estimates(shown, "theta"),
         beta_text=estimates(shown, "beta"),
     )
-    words = [
-        "Each floor by itself, as a function of the peak acceleration of that floor. Curves in other measures "
-        "are in the table fragility_floors."
-    ]
-    if files:
-        words.append(f"Files for other programs are in the folder exports: {listed(files)}.")
+    fallen = shown[shown["state"] == OVERTURNS].to_dict("records")
+    weakest = min(fallen, key=lambda row: float(row["theta"]), default=None)
     level = f"{100 * results.study.fragility.confidence:g} %"
     caption = f"Curves by floor, with {level} intervals where there are any."
-    message = _message(shown[shown["state"] == OVERTURNS])
-    return Section(
-        "floor_curves", "Fragility by floor", message, words, [table_html(shown, _COLUMNS, caption)]
-    )
-
-
-def _message(fallen: pd.DataFrame) -> str:
-    """Say which configuration overturns earliest, and where."""
-    if fallen.empty:
-        return "No floor has a curve of overturning: too few objects overturned on a single one."
-    weakest = min(fallen.to_dict("records"), key=lambda row: float(row["theta"]))
-    return (
-        f"{weakest['configuration']} on {weakest['floor']} is the most fragile: the median of its lognormal "
-        f"curve is {weakest['theta_text']} g."
-    )
+    table = table_html(shown, _COLUMNS, caption)
+    return section_of(sentences().floor_curves(weakest, files), "floor_curves", [table])
 
 
 FLOOR_CURVES = Part(("fragility_floors",), _section)

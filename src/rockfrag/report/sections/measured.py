@@ -15,9 +15,10 @@ from rockfrag.report.figures.amplitudes import (
     plot_tests,
 )
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.pedestal import EFFECT_COLUMNS, shown_effects
-from rockfrag.report.wording import amplitude, counted, estimates
+from rockfrag.report.sections.words import sentences
+from rockfrag.report.wording import amplitude, estimates
 
 _TESTS = (
     Column("object", "Object"),
@@ -38,17 +39,12 @@ _CURVES = (
 
 def _section(results: Results) -> Section:
     beside = results.table("measured/beside")
-    words = _words(beside)
+    ratio = np.log(beside["ratio"].dropna())
+    words = sentences().beside(len(beside), len(ratio), np.exp(ratio.mean()), ratio.std())
     parts: list[Markup | FigureSpec] = []
     if beside["simulated_g"].notna().any():
-        parts.append(
-            FigureSpec(
-                "measured_beside",
-                f"Measured against simulated amplitudes. {words}",
-                "Measured against simulated amplitude of the same test; arrows are bounds.",
-                lambda: measured_beside(beside),
-            )
-        )
+        text = sentences().measured_beside_figure(words)
+        parts.append(figure_of(text, "measured_beside", lambda: measured_beside(beside)))
     shown = beside.assign(text=[amplitude(row) for row in beside.to_dict("records")])
     curves = results.table("measured/fragility")
     curves = curves.assign(theta_text=estimates(curves, "theta"))
@@ -60,20 +56,8 @@ def _section(results: Results) -> Section:
     if len(effects):
         caption = "Measured effect of the pedestal."
         parts.append(table_html(shown_effects(effects), EFFECT_COLUMNS, caption))
-    return Section(
-        "measured", "Measured tests", words, list(results.table("measured/notes")["note"]), parts
-    )
-
-
-def _words(beside: pd.DataFrame) -> str:
-    ratio = np.log(beside["ratio"].dropna().to_numpy(dtype=float))
-    words = f"{counted(len(beside), 'measured test')}, {len(ratio)} of them with a simulated counterpart."
-    if ratio.size > 1:
-        words += (
-            f" Measured over simulated amplitude: {np.exp(ratio.mean()):.2f} in the geometric mean, "
-            f"with a scatter of {ratio.std(ddof=1):.2f} in the logarithm."
-        )
-    return words
+    notes = results.table("measured/notes")["note"]
+    return section_of(sentences().measured(words, notes), "measured", parts)
 
 
 def measured_beside(beside: pd.DataFrame) -> Figure:

@@ -3,8 +3,8 @@
 from rockfrag.motions.declared import intensity_measures
 from rockfrag.report.figures.motion import MOST_PANELS, acceleration_histories
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
-from rockfrag.report.wording import counted, listed
+from rockfrag.report.part import Part, Results, Section, figure_of, section_of
+from rockfrag.report.sections.words import sentences
 from rockfrag.units import GRAVITY
 
 
@@ -21,36 +21,17 @@ def _columns() -> list[Column]:
 
 
 def _section(results: Results) -> Section:
-    measures = results.table("measures")
-    table = table_html(
-        measures, _columns(), "Intensity of every motion as recorded.", "measures.csv"
-    )
-    return Section("motions", "Motions", _floors(results), [], [table, _accelerations(results)])
-
-
-def _floors(results: Results) -> str:
-    study = results.study
-    floors = list(dict.fromkeys(results.table("measures")["floor"]))
-    if study.building is None:
-        return "The records shake the objects directly, without a building."
-    return (
-        f"The motions of {counted(len(floors), 'floor')} ({listed(floors)}) are computed with a building model "
-        f"({study.building.name})."
-    )
-
-
-def _accelerations(results: Results) -> FigureSpec:
-    ground = results.ground
+    measures, ground = results.table("measures"), results.ground
+    caption = "Intensity of every motion as recorded."
+    table = table_html(measures, _columns(), caption, "measures.csv")
     shown = min(len(ground), MOST_PANELS)
     peak = max(ground[:shown], key=lambda motion: motion.pga)
-    caption = "Ground accelerations over time; the dot marks the peak."
-    if shown < len(results.records):
-        caption += f" The first {shown} of {len(results.records)}; all are in the table."
-    alt = (
-        f"Ground accelerations of {counted(shown, 'record')}; the strongest, {peak.name}, peaks at "
-        f"{peak.pga / GRAVITY:.2f} g."
-    )
-    return FigureSpec("accelerations", alt, caption, lambda: acceleration_histories(ground))
+    records = len(results.records)
+    text = sentences().accelerations_figure(shown, records, peak, peak.pga / GRAVITY)
+    figure = figure_of(text, "accelerations", lambda: acceleration_histories(ground))
+    floors = list(dict.fromkeys(measures["floor"]))
+    text = sentences().motions(floors, results.study.building)
+    return section_of(text, "motions", [table, figure])
 
 
 MOTIONS = Part(("measures",), _section)

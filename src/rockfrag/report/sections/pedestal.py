@@ -9,9 +9,10 @@ from markupsafe import Markup
 from rockfrag.report.figures.effects import forest_figure
 from rockfrag.report.findings import pedestal_effect, ratio_of, ratio_text
 from rockfrag.report.page import MOST_TABLE_ROWS, Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
+from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
+from rockfrag.report.sections.words import sentences
 from rockfrag.report.sides import WITH_PEDESTAL, Sides, sides_of
-from rockfrag.report.wording import estimate, has_interval, listed, number, probability, sentence
+from rockfrag.report.wording import estimate, has_interval, number, probability, sentence
 from rockfrag.shaketable.definitions import DEFINITION
 
 MOST_ROWS = 45
@@ -87,21 +88,8 @@ def _section(results: Results) -> Section:
         ]
     notes = results.table("pedestal/notes")
     notes = notes[notes["definition"] == DEFINITION] if len(notes) else notes
-    return Section(
-        "pedestal",
-        "Arrangements compared" if study.counterparts else "Effect of the pedestal",
-        f"{found[0].headline}.",
-        [
-            *opened(found[0]),
-            *(finding.said for finding in found[1:]),
-            f"The ratio is the overturning a{about.divided[1:]}, paired by object and motion. Motions of one "
-            "earthquake are not independent, so intervals are over earthquakes where there are several. "
-            "“Detectable” is the smallest ratio found with 80 % power. There is neither interval nor test "
-            "where all amplitudes agree to the steps tested. p values are adjusted within each scope (Holm).",
-            *dict.fromkeys(_plain(note) for note in notes["note"]),
-        ],
-        parts,
-    )
+    text = sentences().pedestal(found, about, study.counterparts, notes["note"])
+    return section_of(text, "pedestal", parts)
 
 
 def _ratio_column(about: Sides) -> Column:
@@ -122,26 +110,15 @@ def _table(effects: pd.DataFrame, about: Sides) -> Markup:
     return table_html(shown_effects(effects), columns, caption, "pedestal/effects.csv")
 
 
-def _plain(note: str) -> str:
-    """A note as a sentence."""
-    text = note[:1].upper() + note[1:]
-    return text if text.endswith(".") else f"{text}."
-
-
 def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
     shown, left_out = effects, []
     for scope in ("cell", "earthquake"):
         if len(shown) > MOST_ROWS:
             shown = shown[shown["scope"] != scope]
             left_out.append({"cell": "floors by object", "earthquake": "earthquakes"}[scope])
-    caption = (
-        f"Overturning a{about.divided[1:]}, with 95 % intervals; grey is ±10 %, the range "
-        "that counts as no effect. Step protocol."
-    )
-    if left_out:
-        caption += f" Not drawn, and in the table only: {listed(left_out)}."
-    alt = f"Ratios by scope. All pairs: {ratio_of(effects, about)('whole', 'all')}."
-    return FigureSpec("pedestal_effect", alt, caption, lambda: forest_figure(shown, about))
+    ratio = ratio_of(effects, about)("whole", "all")
+    text = sentences().pedestal_effect_figure(about, left_out, ratio)
+    return figure_of(text, "pedestal_effect", lambda: forest_figure(shown, about))
 
 
 PEDESTAL = Part(

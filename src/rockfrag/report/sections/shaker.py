@@ -1,9 +1,11 @@
 """What the study's shaking table could do."""
 
+from dataclasses import replace
+
 from rockfrag.report.figures.shaker import shaker_limits
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
-from rockfrag.report.wording import listed, of_all
+from rockfrag.report.part import FigureSpec, Part, Results, Section, section_of
+from rockfrag.report.sections.words import sentences
 from rockfrag.stages.shaker import LIMITED
 
 _COLUMNS = (
@@ -22,37 +24,16 @@ def _section(results: Results) -> Section:
     free = results.tests[results.tests["censored"] == "right"]
     new = ended[~ended["test"].isin(free["test"])]
     names = [f"{row['test']} ({row['remark']})" for row in new.to_dict("records")]
-    words = (
-        f"The shaking table’s limits end {of_all(len(new), len(limited), 'test')} before the object overturns."
-        if len(new)
-        else "The shaking table’s limits end no test before the object overturns."
-    )
+    section = section_of(sentences().shaker(names, len(limited)), "shaker", [])
     figure = FigureSpec(
         "shaker_limits",
-        words,
+        section.message,
         "Peak up to which the shaking table can reproduce each motion (bars; behind each its limiting quantity: "
         "stroke, velocity, acceleration or force), and the peak that overturns each object.",
         lambda: shaker_limits(limits, results.tests),
     )
-    return Section(
-        "shaker",
-        "What the shaking table could do",
-        words,
-        [
-            *([f"These are {listed(names)}."] if names else []),
-            "The definition “step protocol shaker” of the pedestal’s effect includes these limits. The other "
-            "definitions do not, because the position at which the table starts is an assumption.",
-        ],
-        [
-            figure,
-            table_html(
-                limits,
-                _COLUMNS,
-                "What each motion requires of the shaking table, per g of its peak.",
-                "shaker.csv",
-            ),
-        ],
-    )
+    caption = "What each motion requires of the shaking table, per g of its peak."
+    return replace(section, parts=[figure, table_html(limits, _COLUMNS, caption, "shaker.csv")])
 
 
 SHAKER = Part(("shaker", "tests"), _section, asked=lambda study: study.shaker is not None)

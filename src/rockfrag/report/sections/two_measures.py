@@ -10,8 +10,8 @@ from rockfrag.fragility.vector import INTERACTION_LEVEL
 from rockfrag.fragility.vector_tables import VectorTables, describe_pair
 from rockfrag.report.figures.two_measures import two_measures_figure
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
-from rockfrag.report.wording import agree, of_all, sentence
+from rockfrag.report.part import FigureSpec, Part, Results, Section, section_of
+from rockfrag.report.sections.words import sentences
 
 _COLUMNS = (
     Column("configuration", "Object"),
@@ -39,46 +39,18 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
     found = fits[fits["method"] != "none"]
     if found.empty:
         return None
-    rejected = found[found["p_fit"] < REJECTED]
-    level = f"{100 * confidence:g} %"
-    return Section(
-        "two-measures",
-        "Fragility in two measures",
-        _message(found, rejected),
-        [
-            "The probability of overturning is Φ(b₀ + b₁ ln IM₁ + b₂ ln IM₂ + b₁₂ ln IM₁ ln IM₂). The product "
-            f"stands in it where a score test over earthquakes rejects its absence at "
-            f"{100 * INTERACTION_LEVEL:.0f} % "
-            f"and it improves the prediction of held-out earthquakes; b₁₂ is 0 otherwise. Bands are {level} "
-            "intervals over earthquakes (jackknife). The p of the fit is from simulated tests in which each "
-            "motion has one capacity.",
-            *dict.fromkeys(note for note in fits["warnings"] if note),
-        ],
-        [
-            *_figures(tables, found),
-            table_html(
-                found.assign(pair=_pairs(found)),
-                _COLUMNS,
-                "Fits in two measures.",
-                "fragility_two_measures",
-            ),
-        ],
+    pairs = [describe_pair(a, b) for a, b in zip(found["first"], found["second"], strict=True)]
+    text = sentences().two_measures(
+        ", ".join(dict.fromkeys(pairs)),
+        len(found),
+        int((found["p_fit"] < REJECTED).sum()),
+        INTERACTION_LEVEL,
+        f"{100 * confidence:g} %",
+        list(dict.fromkeys(fits["warnings"])),
     )
-
-
-def _pairs(fits: pd.DataFrame) -> list[str]:
-    return [describe_pair(a, b) for a, b in zip(fits["first"], fits["second"], strict=True)]
-
-
-def _message(found: pd.DataFrame, rejected: pd.DataFrame) -> str:
-    pairs = ", ".join(dict.fromkeys(_pairs(found)))
-    if rejected.empty:
-        return f"Every fit in {pairs} describes its tests."
-    return (
-        f"{sentence(of_all(len(rejected), len(found), 'fit'))} in {pairs} "
-        f"{agree(len(rejected), len(found), 'does', 'do')} not describe the tests; use the observed "
-        "probabilities by cell there."
-    )
+    shown, caption = found.assign(pair=pairs), "Fits in two measures."
+    table = table_html(shown, _COLUMNS, caption, "fragility_two_measures")
+    return section_of(text, "two-measures", [*_figures(tables, found), table])
 
 
 def _figures(tables: VectorTables, found: pd.DataFrame) -> list[FigureSpec]:

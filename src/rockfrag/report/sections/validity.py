@@ -1,11 +1,14 @@
 """What the model assumes, that nothing slides and nothing jumps, or what friction did where it is limited."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
 from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Part, Results, Section, opened
+from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.sections.words import sentences
 from rockfrag.stages.validity import MOST_TESTED
 
 _COLUMNS = (
@@ -32,57 +35,24 @@ _SLIDING = (
 
 def _section(results: Results) -> Section | None:
     if results.study.slides:
-        return _what_friction_did(results.table("sliding"))
+        sliding = results.table("sliding")
+        shown = sliding.assign(largest_slip_cm=100 * sliding["largest_slip_m"])
+        table = table_html(shown, _SLIDING, "Sliding and flight in all analyses.")
+        return section_of(sentences().sliding(sliding_found(sliding)), "validity", [table])
     validity = results.table("validity")
     if validity.empty:
         return None
-    found = model_allowed(validity)[0]
     rows = [
         _row(str(name), str(side), part)
         for (name, side), part in validity.groupby(["object", "pedestal"], sort=False)
     ]
-    return Section(
-        "validity",
-        "What the model assumes",
-        f"{found.headline}.",
-        [
-            *opened(found),
-            f"Blocks neither slide nor jump in this model. The contact forces of {_which(validity)}, at its "
-            "overturning amplitude, give the friction that this requires.",
-        ],
-        [
-            table_html(
-                pd.DataFrame(rows),
-                _COLUMNS,
-                "Friction coefficient needed, and tests with lift-off.",
-            )
-        ],
-    )
+    caption = "Friction coefficient needed, and tests with lift-off."
+    all_tests = max(row["tests"] for row in rows) < MOST_TESTED
+    text = sentences().validity(model_allowed(validity)[0], all_tests)
+    return section_of(text, "validity", [table_html(pd.DataFrame(rows), _COLUMNS, caption)])
 
 
-def _which(validity: pd.DataFrame) -> str:
-    tests = validity.groupby(["object", "pedestal"]).size().max()
-    return "every test" if tests < MOST_TESTED else "each test of a sample spread evenly over all"
-
-
-def _what_friction_did(sliding: pd.DataFrame) -> Section:
-    found = sliding_found(sliding)
-    shown = sliding.assign(largest_slip_cm=100 * sliding["largest_slip_m"])
-    return Section(
-        "validity",
-        "What friction does",
-        f"{found.headline}.",
-        [
-            *opened(found),
-            "Bodies stick, slide, rock and fly with the friction of this study, at every amplitude of every "
-            "motion. Each analysis is repeated without sliding. “Saved by sliding” overturns only without "
-            "sliding, “overturned by it” only with sliding and flight.",
-        ],
-        [table_html(shown, _SLIDING, "Sliding and flight in all analyses.")],
-    )
-
-
-def _row(name: str, side: str, part: pd.DataFrame) -> dict[str, object]:
+def _row(name: str, side: str, part: pd.DataFrame) -> dict[str, Any]:
     demand = part["friction_demand"].to_numpy(dtype=float)
     known = demand[np.isfinite(demand)]
     return {

@@ -21,13 +21,7 @@ def has_thesis_floors(effects: pd.DataFrame) -> bool:
 
 
 def ratios_figure(effects: pd.DataFrame) -> Figure:
-    """Draw the ratio with over without pedestal, of all pairs and on each floor.
-
-    Parameters
-    ----------
-    effects
-        Rows of one definition of :func:`rockfrag.pedestal.study.effects_table`.
-    """
+    """Draw the ratio with over without pedestal, of all pairs and on each floor, of effects of one definition."""
     whole, floors = effects[effects["scope"] == "whole"], effects[effects["scope"] == "floor"]
     rows = [("all pairs", row) for row in whole.to_dict("records")]
     rows += [(str(row["level"]), row) for row in floors.to_dict("records")]
@@ -58,9 +52,7 @@ def ratios_figure(effects: pd.DataFrame) -> Figure:
         axes.set_ylim(len(rows) - 0.5, -0.5)
         axes.tick_params(axis="y", length=0)
         ratio_axis(axes, drawn)
-        handles = [
-            Line2D([], [], color=BLUE, marker="o", mfc="white", label="simulated"),
-        ]
+        handles = [Line2D([], [], color=BLUE, marker="o", mfc="white", label="simulated")]
         if has_thesis_floors(effects):
             handles.append(
                 Line2D([], [], color=ORANGE, lw=1.8, marker=">", label="direction in the thesis")

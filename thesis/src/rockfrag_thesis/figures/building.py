@@ -20,14 +20,7 @@ AXIS_NAMES = {
 def floor_amplitudes(means: pd.DataFrame, axis: str) -> Figure:
     """Draw the mean overturning amplitude of lone objects on each floor along one assumption.
 
-    Parameters
-    ----------
-    means
-        Means by floor of every variant of the building: ``axis``, ``label``, ``value``,
-        ``credible`` and the columns of
-        :func:`rockfrag.shaketable.mean_amplitudes.mean_amplitudes`.
-    axis
-        The assumption.
+    ``means`` are those by floor of every variant, with its ``axis``, ``label``, ``value`` and ``credible``.
     """
     rows = means[(means["axis"] == axis) & (means["by"] == "floor") & (means["pedestal"] == "NP")]
     rows = rows.sort_values("value", kind="stable")

@@ -34,18 +34,8 @@ MEANINGFUL = 0.02
 def floor_order(means: pd.DataFrame, margins: pd.DataFrame, definition: str) -> Figure:
     """Draw the mean overturning amplitude of lone objects on each floor against the first period.
 
-    Parameters
-    ----------
-    means
-        Means of every variant of the building, as the stage ``building_sensitivity`` writes them.
-    margins
-        See :func:`rockfrag_thesis.floor_order.margins_table`.
-    definition
-        Reading of the IDA curves.
-
-    Returns
-    -------
-    Figure; shaded are the periods at which the order is the thesis's, ground highest and 3rd lowest.
+    Shaded are the periods at which the order is the thesis's, ground highest and 3rd lowest. For ``margins`` see
+    :func:`rockfrag_thesis.floor_order.margins_table`.
     """
     means = means[(means["axis"] == "first_period_s") & (means["by"] == "floor")]
     margins = margins[(margins["axis"] == "first_period_s") & (margins["hypothesis"] == "order")]
@@ -84,17 +74,7 @@ def _shade(axes: Axes, periods: np.ndarray, margins: np.ndarray) -> None:
 
 
 def floor_hypotheses(margins: pd.DataFrame, axis: str, definition: str) -> Figure:
-    """Draw by how much each hypothesis about floors holds along one assumption.
-
-    Parameters
-    ----------
-    margins
-        As :func:`rockfrag_thesis.building_sensitivity.building_sensitivity` returns them.
-    axis
-        Assumption along which to draw, such as ``first_period_s``.
-    definition
-        Reading of the IDA curves.
-    """
+    """Draw by how much each hypothesis about floors holds along an assumption such as ``first_period_s``."""
     chosen = margins[(margins["axis"] == axis) & (margins["definition"] == definition)]
     chosen = chosen[chosen["hypothesis"].isin(list(HYPOTHESES))]
     chosen = chosen.sort_values("value", kind="stable")

@@ -84,17 +84,9 @@ _SHOWN: Mapping[str, Callable[[Evidence], str]] = {
 
 
 def contradictions(evidence: Evidence | None = None) -> pd.DataFrame:
-    """Table of the thesis's contradictions with itself.
+    """Table of the thesis's contradictions with itself: hypotheses, what, why, in_these_tests.
 
-    Parameters
-    ----------
-    evidence
-        Tests that show what holds there; without it that column is empty.
-
-    Returns
-    -------
-    pandas.DataFrame
-        hypotheses, what, why, in_these_tests.
+    The last column is empty without evidence, which shows what holds there.
     """
     table = pd.read_csv(
         Path(__file__).with_name("contradictions.csv"), comment="#", keep_default_na=False

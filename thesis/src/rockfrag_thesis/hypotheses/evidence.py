@@ -20,28 +20,18 @@ PEDESTAL = "P"
 
 @dataclass(frozen=True)
 class Evidence:
-    """One table of tests and what may accompany it.
+    """One table of tests and what may accompany it."""
 
-    Parameters
-    ----------
-    tests
-        See `rockfrag.pedestal.paired_tests.check_tests`; columns friction_demand [-] and
-        least_normal_force_n [N] are used for C57, force_n [N] and moved_mass_kg [kg] for C56.
-    basis
-        ``simulated`` or ``measured``.
-    measures
-        Intensity measures by motion: name, pgv_over_pga_s, mean_period_s, d5_95_s.
-    bodies
-        Specimens by name, the pedestal as "P"; without them those of the thesis.
-    sliding
-        Pairs of simulations: earthquake, rocking_g, sliding_g (overturning amplitude with and without
-        the possibility to slide) [g].
-    """
-
+    # See `rockfrag.pedestal.paired_tests.check_tests`; columns friction_demand [-] and
+    # least_normal_force_n [N] are used for C57, force_n [N] and moved_mass_kg [kg] for C56
     tests: pd.DataFrame
-    basis: str
+    basis: str  # ``simulated`` or ``measured``
+    # Intensity measures by motion: name, pgv_over_pga_s, mean_period_s, d5_95_s
     measures: pd.DataFrame | None = None
+    # Specimens by name, the pedestal as "P"; without them those of the thesis
     bodies: Mapping[str, Block] | None = None
+    # Pairs of simulations: earthquake, rocking_g, sliding_g (overturning amplitude with and without
+    # the possibility to slide) [g]
     sliding: pd.DataFrame | None = None
 
     @property

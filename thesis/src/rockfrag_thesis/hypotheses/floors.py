@@ -231,13 +231,7 @@ def floor_steps(tests: Evidence) -> Parts:
 
 
 def floor_means(tests: Evidence) -> pd.DataFrame:
-    """Arithmetic mean amplitude by floor and side [g], as the thesis plots it.
-
-    Raises
-    ------
-    Undecidable
-        If a floor of the thesis is missing.
-    """
+    """Arithmetic mean amplitude by floor and side [g], as the thesis plots it; Undecidable without a floor."""
     for floor in FLOORS:
         tests.level("floor", floor)
     rows = tests.amplitudes

@@ -62,10 +62,7 @@ _FROM_A_LABORATORY = {
 def outcome(kind: Kind, basis: str, finding: Finding) -> str:
     """Word for a finding: a simulation reproduces a laboratory or does not, it cannot reject it.
 
-    Raises
-    ------
-    KeyError
-        If there is no such word, as for exceptions among the tests of a laboratory.
+    There is no word (KeyError) for exceptions among the tests of a laboratory.
     """
     if kind in (Kind.IDENTITY, Kind.PROPERTY):
         return _ABOUT_THE_MODEL[finding]
@@ -74,38 +71,23 @@ def outcome(kind: Kind, basis: str, finding: Finding) -> str:
 
 @dataclass(frozen=True)
 class Result:
-    """What one test says about one hypothesis.
+    """What one test says about one hypothesis."""
 
-    Parameters
-    ----------
-    finding
-        What the evidence says.
-    figure
-        The result with its interval, in words and digits.
-    estimate, lower, upper
-        The figure and its interval in ``unit``; NaN where there is no single figure.
-    unit
-        Unit of the three, ``-`` for ratios and probabilities.
-    p
-        Two-sided p value behind the finding [-], where there is inference; NaN elsewhere.
-    p_of
-        The hypothesis that p concerns, such as ``no change``; empty where there is none.
-    remark
-        What else a reader must know, such as the power needed where the finding is open.
-    basis
-        One of ``BASES`` where it is not that of the evidence as a whole, such as a measured history
-        among simulations.
-    """
-
-    finding: Finding
-    figure: str
+    finding: Finding  # What the evidence says
+    figure: str  # The result with its interval, in words and digits
+    # The figure and its interval in ``unit``; NaN where there is no single figure
     estimate: float = math.nan
     lower: float = math.nan
     upper: float = math.nan
-    unit: str = "-"
+    unit: str = "-"  # Unit of the three, ``-`` for ratios and probabilities
+    # Two-sided p value behind the finding [-], where there is inference; NaN elsewhere
     p: float = math.nan
+    # The hypothesis that p concerns, such as ``no change``; empty where there is none
     p_of: str = ""
+    # What else a reader must know, such as the power needed where the finding is open
     remark: str = ""
+    # One of ``BASES`` where it is not that of the evidence as a whole, such as a measured history
+    # among simulations
     basis: str | None = None
 
 
@@ -118,32 +100,18 @@ Test = Callable[[Any], Result]
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """One hypothesis of the thesis, in our own words.
+    """One hypothesis of the thesis, in our own words."""
 
-    Parameters
-    ----------
-    number
-        Its number, 1 to 58 (written C1 to C58); it never changes.
-    text, source, kind
-        What it says, where the thesis says it, and what sort of sentence it is: its row of ``statements.csv``.
-    evidence
-        What is looked at.
-    rule
-        When it is held to be true, and when false, in words a statistician can repeat.
-    error_rate
-        How often the rule errs by chance, or why it cannot.
-    test
-        Function that applies the rule.
-    """
-
-    number: int
+    number: int  # Its number, 1 to 58 (written C1 to C58); it never changes
+    # What it says, where the thesis says it, and what sort of sentence it is: its row of
+    # ``statements.csv``
     text: str
     source: str
     kind: Kind
-    evidence: str
-    rule: str
-    error_rate: str
-    test: Test
+    evidence: str  # What is looked at
+    rule: str  # When it is held to be true, and when false, in words a statistician can repeat
+    error_rate: str  # How often the rule errs by chance, or why it cannot
+    test: Test  # Function that applies the rule
 
 
 _STATEMENTS = pd.read_csv(
@@ -156,20 +124,8 @@ HYPOTHESES: Mapping[int, Hypothesis] = _HYPOTHESES
 """Hypothesis by number, as far as their modules are loaded; the package loads all 58."""
 
 
-def hypothesis(
-    number: int,
-    *,
-    evidence: str,
-    rule: str,
-    error_rate: str,
-) -> Callable[[Test], Test]:
-    """Enter the decorated function as the test of a hypothesis; see `Hypothesis`.
-
-    Raises
-    ------
-    ValueError
-        If the number is taken.
-    """
+def hypothesis(number: int, *, evidence: str, rule: str, error_rate: str) -> Callable[[Test], Test]:
+    """Enter the decorated function as the test of a hypothesis, see `Hypothesis`; a number is taken once."""
 
     def enter(test: Test) -> Test:
         if number in _HYPOTHESES:

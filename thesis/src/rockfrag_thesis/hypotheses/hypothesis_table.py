@@ -68,54 +68,21 @@ def theory_table(
     threads: int | None = None,
     assemblies: Mapping[str, Stack] | None = None,
 ) -> pd.DataFrame:
-    """Compute C1 to C24 for specimens and ground motions.
+    """Compute C1 to C24 for specimens and ground motions; returns ``COLUMNS``.
 
-    A hypothesis about which they cannot speak (no stack, no motion) is open, with the reason.
-
-    Parameters
-    ----------
-    specimens
-        Blocks by name.  A block named "P" is the pedestal: without ``assemblies`` each other block is put on it.
-    motions
-        Ground motions at their recorded amplitude.
-    seed
-        Of the perturbations and random geometries.
-    free_rocking
-        Measured free rocking by specimen: times [s] and rotations [rad] of a history (C5).
-    threads
-        Threads to use; the results do not depend on it.
-    assemblies
-        Stacks by name.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns of ``COLUMNS``.
-
-    Raises
-    ------
-    InputError
-        If a measured history cannot be used.
+    A hypothesis about which they cannot speak (no stack, no motion) is open, with the reason. A specimen named "P"
+    is the pedestal: without ``assemblies``, stacks by name, each other block is put on it. Motions are as
+    recorded, ``free_rocking`` has times [s] and rotations [rad] of a measured history by specimen (C5).
     """
     setting = make_setting(specimens, motions, seed, free_rocking, threads, assemblies)
     return _table(_row(hypothesis, setting, "simulated") for hypothesis in _hypotheses(theory=True))
 
 
 def hypothesis_table(tests: Evidence) -> pd.DataFrame:
-    """Test C25 to C58 on one table of tests.
+    """Test C25 to C58 on one table of tests; returns ``COLUMNS``.
 
-    A hypothesis about which the table cannot speak (a floor that was not tested, a column that is
-    absent, a single object) is open, with the reason.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns of ``COLUMNS``.
-
-    Raises
-    ------
-    InputError
-        If the table of tests itself cannot be used.
+    A hypothesis about which the table cannot speak (a floor that was not tested, a column that is absent, a single
+    object) is open, with the reason.
     """
     _ = tests.clean  # a table that cannot be used is the user's error, and no hypothesis's
     return _table(_row(hypothesis, tests, tests.basis) for hypothesis in _hypotheses(theory=False))

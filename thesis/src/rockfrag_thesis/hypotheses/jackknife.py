@@ -7,25 +7,10 @@ from rockfrag.pedestal.cluster_means import Estimate, t_estimate
 
 
 def jackknife(whole: float, without: Sequence[float]) -> Estimate:
-    """Figure of all data with its t interval from what it is without each earthquake in turn.
+    """Figure of all data with its t interval from what it is without each earthquake in turn, shape (k,).
 
-    Parameters
-    ----------
-    whole
-        The figure.
-    without
-        The figure without each earthquake, shape (k,).
-
-    Returns
-    -------
-    Estimate
-        Centred on ``whole``, with the standard error of Tukey's k pseudovalues and k - 1 degrees of
-        freedom.
-
-    Raises
-    ------
-    TooFewUnitsError
-        If a figure is not finite.
+    It is centred on ``whole``, with the standard error of Tukey's k pseudovalues and k - 1 degrees of freedom; a
+    figure that is not finite is a TooFewUnitsError.
     """
     k = len(without)
     pseudo = t_estimate([k * whole - (k - 1) * fewer for fewer in without])

@@ -21,21 +21,11 @@ PERIODS = np.geomspace(0.1, 10.0, 60)
 
 @dataclass(frozen=True)
 class MotionSpectra:
-    """Spectra of motions as recorded; each is computed when it is first asked for.
+    """Spectra of motions as recorded; each is computed when it is first asked for."""
 
-    Attributes
-    ----------
-    motions
-        Ground motions.
-    alpha
-        Critical angles of the blocks [rad], rising, shape (slendernesses,).
-    threads
-        Threads to use; the results do not depend on it.
-    """
-
-    motions: Sequence[Motion]
-    alpha: Floats
-    threads: int | None
+    motions: Sequence[Motion]  # Ground motions
+    alpha: Floats  # Critical angles of the blocks [rad], rising, shape (slendernesses,)
+    threads: int | None  # Threads to use; the results do not depend on it
     _oscillator: dict[float, list[ResponseSpectrum]] = field(default_factory=dict)
     _rotation: dict[float, Floats] = field(default_factory=dict)
 
@@ -54,19 +44,11 @@ class MotionSpectra:
     def rotation(self, factor: float = 1.0) -> Floats:
         """Largest |θ|/θc over `SIZES`, shape (slendernesses, motions, sizes) [-]; infinite if it fell.
 
-        Parameters
-        ----------
-        factor
-            On the critical angles ``alpha``.
+        The critical angles are ``alpha`` times the factor.
         """
         if factor not in self._rotation:
             blocks = [uniform_block(a * factor, T) for a in self.alpha for T in SIZES]
-            found = overturns(
-                blocks,
-                self.motions,
-                scales=[1.0],
-                threads=self.threads,
-            )
+            found = overturns(blocks, self.motions, scales=[1.0], threads=self.threads)
             shape = (self.alpha.size, SIZES.size, len(self.motions))
             self._rotation[factor] = np.moveaxis(found.of_top("peak_rotation").reshape(shape), 2, 1)
         return self._rotation[factor]

@@ -37,18 +37,10 @@ class Size(Enum):
 
 @dataclass(frozen=True)
 class Part:
-    """One difference that a hypothesis says is positive.
+    """One difference that a hypothesis says is positive."""
 
-    Parameters
-    ----------
-    estimate
-        The difference, in logarithms of ratios [-].
-    size
-        How large it is meant to be.
-    """
-
-    estimate: Estimate
-    size: Size = Size.SLIGHT
+    estimate: Estimate  # The difference, in logarithms of ratios [-]
+    size: Size = Size.SLIGHT  # How large it is meant to be
 
     def p_for(self) -> float:
         """One-sided p value of the hypothesis that the difference is not positive; 1 if unknown."""
@@ -71,22 +63,11 @@ NO_CHANGE, LARGE_CHANGE = "no change", "a change of 10 % or more"
 
 
 def order(parts: Parts, *, unit: str = "earthquake", more: str = "") -> Result:
-    """Judge differences of which a hypothesis says that all are positive.
+    """Judge differences, by name and at least one, of which a hypothesis says that all are positive.
 
-    Parameters
-    ----------
-    parts
-        The differences by name, at least one.
-    unit
-        What was sampled, for the note on power.
-    more
-        What else there is to say.
-
-    Returns
-    -------
-    Result
-        Its estimate is the decisive difference as a ratio: the one furthest from being shown, or the one
-        that speaks most against the hypothesis.
+    ``unit`` is what was sampled, for the note on power; ``more`` what else there is to say. The estimate is the
+    decisive difference as a ratio: the one furthest from being shown, or the one that speaks most against the
+    hypothesis.
     """
     for_it = {name: part.p_for() for name, part in parts.items()}
     against = {name: part.p_against() for name, part in parts.items()}
@@ -171,18 +152,10 @@ def order_hypothesis(
     unit: str = "earthquake",
     more: Callable[[Evidence], str] = lambda _: "",
 ) -> Callable[[Differences], Differences]:
-    """Enter the decorated function, from tests to differences, as a hypothesis about their order.
+    """Enter the decorated function, from tests to differences, as a hypothesis about their order, see `order`.
 
-    Parameters
-    ----------
-    number, rule, evidence
-        See `rockfrag_thesis.hypotheses.hypothesis.Hypothesis`.
-    several
-        Whether there is more than one difference.
-    error_rate
-        Where it is not that of the rule for one or several differences.
-    unit, more
-        As of `order`; ``more`` is computed from the tests.
+    ``several`` says whether there is more than one difference; ``error_rate`` is where it is not that of the rule
+    for one or several; ``more`` is computed from the tests.
     """
     rate = error_rate or (SEVERAL_INTERVALS if several else ONE_INTERVAL)
 

@@ -59,18 +59,9 @@ def same(
     unit: str = "earthquake",
     more: str = "",
 ) -> Result:
-    """Judge "nearly equal" or "not correlated": a log ratio within ±ln(1 + bound).
+    """Judge "nearly equal" or "not correlated": a log ratio [-] within ±ln(1 + bound).
 
-    Parameters
-    ----------
-    estimate
-        The log ratio that the hypothesis says is nothing [-].
-    figure
-        The result in words.
-    bound
-        Change that counts as none [-].
-    unit, more
-        What was sampled, for the note on power; what else there is to say.
+    ``figure`` is the result in words, ``unit`` what was sampled, for the note on power.
     """
     limit = math.log1p(bound)
     inside = max(known(estimate.p_above(-limit)), known(estimate.p_below(limit)))

@@ -33,26 +33,13 @@ EXACT = 1e-9
 
 @dataclass(frozen=True)
 class Setting:
-    """Specimens and motions, ready for the tests.
+    """Specimens and motions, ready for the tests."""
 
-    Attributes
-    ----------
-    objects
-        Lone blocks by name, without the pedestal.
-    pedestal
-        The block named "P", if there is one.
-    stacks
-        Stacks by name.
-    all_motions
-        Ground motions, perhaps none.
-    seed, free_rocking, threads
-        As in `rockfrag_thesis.hypotheses.hypothesis_table.theory_table`.
-    """
-
-    objects: Mapping[str, Block]
-    pedestal: Block | None
-    stacks: Mapping[str, Stack]
-    all_motions: Sequence[Motion]
+    objects: Mapping[str, Block]  # Lone blocks by name, without the pedestal
+    pedestal: Block | None  # The block named "P", if there is one
+    stacks: Mapping[str, Stack]  # Stacks by name
+    all_motions: Sequence[Motion]  # Ground motions, perhaps none
+    # As in `rockfrag_thesis.hypotheses.hypothesis_table.theory_table`
     seed: int
     free_rocking: FreeRocking | None
     threads: int | None
@@ -170,17 +157,9 @@ def make_setting(
 
 
 def bisect(happens: Callable[[float], bool], low: float, high: float, tolerance: float) -> float:
-    """Least argument at which something happens that does not at ``low`` and does at ``high``.
+    """Least argument at which something happens that does not at ``low`` and does at ``high``, else Undecidable.
 
-    Parameters
-    ----------
-    tolerance
-        Relative width of the bracket at which the search ends [-].
-
-    Raises
-    ------
-    Undecidable
-        If it happens at ``low`` already, or not even at ``high``.
+    ``tolerance`` is the relative width of the bracket at which the search ends [-].
     """
     if happens(low) or not happens(high):
         raise Undecidable(f"no threshold lies between {low:.3g} and {high:.3g}")

@@ -154,15 +154,7 @@ def c28(tests: Evidence) -> Result:
 def stack_slenderness(tests: Evidence) -> pd.DataFrame:
     """Slenderness of the standing stack, height of the common centre over half the base's width.
 
-    Returns
-    -------
-    pandas.DataFrame
-        object, alone, stacked [-].
-
-    Raises
-    ------
-    Undecidable
-        If there is no pedestal among the specimens.
+    Returns object, alone, stacked [-]; Undecidable without a pedestal among the specimens.
     """
     bodies = tests.specimens
     if PEDESTAL not in bodies or len(bodies) < 2:

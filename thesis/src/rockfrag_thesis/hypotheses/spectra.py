@@ -168,18 +168,10 @@ def c17(setting: Setting) -> Result:
 
 
 def exchanges(values: Floats, other: Floats) -> tuple[int, int]:
-    """How many pairs of motions change their order from one set of spectra to the other.
+    """How many pairs of motions change their order between two sets of spectra, shape (motions, abscissas) each.
 
-    A spectrum exceeds another if it does so over more than half of the abscissas at which they differ.
-
-    Parameters
-    ----------
-    one, other
-        Ordinates, shape (motions, abscissas).
-
-    Returns
-    -------
-    Number of pairs that are ordered the other way, and of pairs that are ordered in both.
+    A spectrum exceeds another if it does so over more than half of the abscissas at which they differ. Returns the
+    number of pairs that are ordered the other way, and of pairs that are ordered in both.
     """
     changed = total = 0
     for i, j in itertools.combinations(range(len(values)), 2):
@@ -235,15 +227,9 @@ AMPLITUDES_G = np.geomspace(0.05, 2.0, 150)
 def dispersion_ratio(measure: Floats, other: Floats, groups: list[str]) -> Estimate:
     """Ln of the scatter of one measure at overturning over that of another, by jackknife over groups.
 
-    A measure is the better proxy the less it scatters from motion to motion when the block falls.
-
-    Parameters
-    ----------
-    measure, other
-        The measures at which each block overturned, in logarithms, shape (blocks, motions); NaN where it
-        did not.
-    groups
-        Earthquake of each motion: motions of one are left out together.
+    A measure is the better proxy the less it scatters from motion to motion when the block falls. Both are
+    logarithms of shape (blocks, motions), NaN where it did not; motions of one earthquake, a group, are left out
+    together.
     """
     names = sorted(set(groups))
 

@@ -2,13 +2,11 @@
 
 from functools import partial
 
-import pandas as pd
-
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
-from rockfrag.report.wording import agree, number, of_all, sentence
+from rockfrag.report.part import Part, Results, Section, figure_of, section_of
 from rockfrag.study.study import Study
 from rockfrag_thesis.figures.building import AXIS_NAMES, floor_amplitudes
+from rockfrag_thesis.sections.words import sentences
 from rockfrag_thesis.settings import settings_of
 
 _COLUMNS = (
@@ -33,42 +31,19 @@ def _section(results: Results) -> Section:
     span = span.assign(axis=[AXIS_NAMES.get(axis, axis) for axis in span["axis"]])
     variants = means.drop_duplicates("label")
     doubtful = int((~variants["credible"].astype(bool)).sum())
-    return Section(
-        "building",
-        "The assumed building",
-        _message(span),
-        [
-            "One property of the building is changed at a time. Lines are geometric means of the objects "
-            "without pedestal over the motions that overturned them on every floor.",
-            f"{sentence(of_all(doubtful, len(variants), 'building'))} "
-            f"{agree(doubtful, len(variants), 'is', 'are')} shaken beyond the validity of the building model.",
-        ],
-        [
-            *(
-                FigureSpec(
-                    f"building_{axis}",
-                    f"Mean overturning amplitude on each floor over {AXIS_NAMES.get(axis, axis)}.",
-                    f"Mean overturning amplitude on each floor. {AXIS_NAMES.get(axis, axis)}; crosses "
-                    "mark buildings shaken beyond the validity of their model.",
-                    partial(floor_amplitudes, means, axis),
-                )
-                for axis in axes
-            ),
-            table_html(span, _COLUMNS, "Range of the mean amplitude on each floor."),
-        ],
-    )
-
-
-def _message(span: pd.DataFrame) -> str:
-    """Say which assumption moves the mean amplitude of a floor most."""
-    known = span[span["min"] > 0]
-    if known.empty:
-        return "No mean amplitude is known for other buildings."
-    row = max(known.to_dict("records"), key=lambda row: float(row["max"] / row["min"]))
-    return (
-        f"The {str(row['axis']).lower()} matters most: the mean amplitude on {row['floor']} lies between "
-        f"{number(row['min'], 2)} and {number(row['max'], 2)} g over the values tried."
-    )
+    figures = [
+        figure_of(
+            sentences().building_figure(AXIS_NAMES.get(axis, axis)),
+            f"building_{axis}",
+            partial(floor_amplitudes, means, axis),
+        )
+        for axis in axes
+    ]
+    table = table_html(span, _COLUMNS, "Range of the mean amplitude on each floor.")
+    known = span[span["min"] > 0].to_dict("records")
+    most = max(known, key=lambda row: float(row["max"] / row["min"]), default=None)
+    text = sentences().building(most, doubtful, len(variants))
+    return section_of(text, "building", [*figures, table])
 
 
 BUILDING = Part(("building_sensitivity/means",), _section, asked=varies_building)

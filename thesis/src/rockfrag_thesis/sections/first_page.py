@@ -2,13 +2,14 @@
 
 from rockfrag.report.answer import could_change, questions, rests_on, study_answer
 from rockfrag.report.findings import FRICTION
-from rockfrag.report.part import Answer, FigureSpec, Results
-from rockfrag.report.wording import agree, of_all
+from rockfrag.report.part import Answer, Results, figure_of
+from rockfrag.report.wording import said
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag_thesis.figures.answer import has_thesis_floors, ratios_figure
 from rockfrag_thesis.first_page import first_page
 from rockfrag_thesis.sections.inverse_problem import asks_inverse_problem
 from rockfrag_thesis.sections.sensitivity_analysis import asks_sensitivity_analysis
+from rockfrag_thesis.sections.words import sentences
 from rockfrag_thesis.settings import settings_of
 
 
@@ -35,11 +36,9 @@ def thesis_answer(results: Results) -> Answer:
     return Answer(
         asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
         sentences=found,
-        figure=FigureSpec(
+        figure=figure_of(
+            sentences().answer_figure(found[0].headline, has_thesis_floors(here)),
             "answer",
-            f"Amplitude with over amplitude without pedestal, with what the thesis reports. {found[0].headline}.",
-            "Ratio with/without pedestal, 95 % intervals; grey: ±10 %."
-            + (" Arrows: thesis." if has_thesis_floors(here) else ""),
             lambda: ratios_figure(here),
         ),
         advice=_advice(results),
@@ -56,6 +55,4 @@ def _advice(results: Results) -> list[str]:
         return []
     with_pedestal = validity[validity["pedestal"] == "P"]
     beyond = int((~(with_pedestal["friction_demand"].astype(float) <= FRICTION)).sum())
-    who = of_all(beyond, len(with_pedestal), "test with", "tests with")
-    verb = agree(beyond, len(with_pedestal), "needs", "need")
-    return [f"Measure the friction under the statue: {who} pedestal {verb} more than {FRICTION:g}."]
+    return said(sentences().advice(beyond, len(with_pedestal), FRICTION))

@@ -7,9 +7,10 @@ import pandas as pd
 
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Part, Results, Section
-from rockfrag.report.wording import listed
+from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.wording import said
 from rockfrag.study.study import Study
+from rockfrag_thesis.sections.words import sentences
 from rockfrag_thesis.settings import settings_of
 
 ORDINARY = (0.3, 0.7)
@@ -56,30 +57,10 @@ def _section(results: Results) -> Section | None:
     )
     sensitivity_analysis = settings_of(results.study).sensitivity_analysis
     wanted = {} if sensitivity_analysis is None else dict(sensitivity_analysis.wanted_percent)
-    words = [*_ordinary(ground, above), *_wished(ground, above, wanted)]
-    return Section(
-        "friction",
-        "What friction does to the effect of the pedestal",
-        _first(words),
-        [
-            *words[1:],
-            "Bodies slide, rock and fly on surfaces with these friction coefficients, with the amplitudes of "
-            "the protocol. Without pedestal an object stands on the ground. A pair has no ratio where nothing "
-            "overturns with or without the pedestal: a body slides and never rocks if the friction "
-            "coefficient is below its width over its height.",
-        ],
-        [
-            table_html(
-                shown,
-                _COLUMNS,
-                "Ratio of overturning amplitudes with/without pedestal by friction.",
-            )
-        ],
-    )
-
-
-def _first(words: list[str]) -> str:
-    return words[0] if words else "The ratio is known for these friction coefficients."
+    caption = "Ratio of overturning amplitudes with/without pedestal by friction."
+    words = _found(ground, above, wanted)
+    table = table_html(shown, _COLUMNS, caption)
+    return section_of(sentences().friction(words), "friction", [table])
 
 
 def _by_pair(effects: pd.DataFrame, place: str) -> Means:
@@ -102,29 +83,16 @@ def _is_ordinary(pair: tuple[float, float]) -> bool:
     return all(ORDINARY[0] <= mu <= ORDINARY[1] for mu in pair)
 
 
-def _ordinary(ground: Means, above: Means) -> list[str]:
-    """Say how far the mean ratio goes with ordinary friction everywhere."""
-    words = []
+def _found(ground: Means, above: Means, wanted: dict[str, float]) -> list[str]:
+    """Say how far the mean ratio goes with ordinary friction, and with which it has the signs asked for."""
+    ordinary = []
     for place, table in (("on the ground", ground), ("above it", above)):
         inside = [row["ratio"] for pair, row in table.items() if _is_ordinary(pair)]
         inside = [ratio for ratio in inside if math.isfinite(ratio)]
         if inside:
-            words.append(f"{min(inside):.2f} to {max(inside):.2f} {place}")
-    if not words:
-        return []
-    low, high = ORDINARY
-    return [
-        f"Friction of ordinary surfaces ({low} to {high}) changes the mean ratio to {listed(words)}."
-    ]
-
-
-def _wished(ground: Means, above: Means, wanted: dict[str, float]) -> list[str]:
-    """Say with which friction the mean ratios have the signs that are asked for."""
-    asked = [
-        (table, wanted[n]) for n, table in (("ground", ground), ("above", above)) if n in wanted
-    ]
-    if not asked or not all(table for table, _ in asked):
-        return []
+            ordinary.append(f"{min(inside):.2f} to {max(inside):.2f} {place}")
+    tables = {"ground": ground, "above": above}
+    asked = [(tables[name], percent) for name, percent in wanted.items()]
 
     def has_signs(pair: tuple[float, float], rising: str, falling: str) -> bool:
         ends = [(table[pair][rising if goal > 0 else falling], goal) for table, goal in asked]
@@ -132,21 +100,19 @@ def _wished(ground: Means, above: Means, wanted: dict[str, float]) -> list[str]:
             math.isfinite(end) for end, _ in ends
         )
 
-    signs = [pair for pair in ground if has_signs(pair, "ratio", "ratio")]
+    known = ground if asked and all(table for table, _ in asked) else {}
+    signs = [pair for pair in known if has_signs(pair, "ratio", "ratio")]
     clear = [pair for pair in signs if has_signs(pair, "lower", "upper")]
     places = {"ground": "on the ground", "above": "above it"}
     goal = " and ".join(
-        f"{percent:+g} % {places[name]}".replace("-", "−") for name, percent in wanted.items()
+        f"{percent:+g} % {places[name]}".replace("-", "−")
+        for name, percent in wanted.items()
+        if known
     )
-    if not signs:
-        return [f"No pair of friction coefficients gives the signs asked for ({goal})."]
-    words = [f"{_coefficient(sign)} and {_coefficient(two)}" for sign, two in signs]
+    named = [f"{_coefficient(first)} and {_coefficient(other)}" for first, other in signs]
     usual = sum(map(_is_ordinary, signs))
-    return [
-        f"{len(signs)} of {len(ground)} pairs of friction coefficients (ground, interface) give the signs asked "
-        f"for ({goal}): {listed(words[:6])}{' among them' if len(words) > 6 else ''}. The intervals have these "
-        f"signs too in {len(clear)}; {usual} are of ordinary surfaces."
-    ]
+    about = (ordinary, *ORDINARY, goal, len(ground), named, len(clear), usual)
+    return said(sentences().friction_found(*about))
 
 
 FRICTION = Part(("sensitivity_analysis/friction",), _section, asked=asks_friction)

@@ -4,12 +4,14 @@ import math
 from collections.abc import Hashable, Mapping
 from typing import Any
 
+import pandas as pd
+
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Part, Results, Section
-from rockfrag.report.wording import sentence
+from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.wording import said, sentence
 from rockfrag.study.study import Study
 from rockfrag_thesis.sections.sensitivity_analysis import FACTORS, asks_sensitivity_analysis
-from rockfrag_thesis.sensitivity_analysis.inverse_problem import inverse_problem_words
+from rockfrag_thesis.sections.words import sentences
 from rockfrag_thesis.settings import settings_of
 
 SHOWN = 12
@@ -48,27 +50,36 @@ def _section(results: Results) -> Section | None:
         together=[_together(row) for row in rows],
         excluded=["no" if row["plausible"] else "yes" for row in rows],
     )
-    first, *rest = inverse_problem_words(readable, wanted)
     columns = [
         column
         for column in _COLUMNS
         if column.name not in ("ground", "above") or column.name in wanted
     ]
     caption = f"The closest of {len(table)} mechanisms (single perturbed parameters and pairs)."
-    return Section(
-        "inverse_problem",
-        "What would produce the effect asked for",
-        first,
-        [
-            *rest,
-            "Between the values tried, ln(with/without pedestal) is interpolated linearly; nothing is said "
-            "beyond them. The changes of two parameters are added; the closest pairs, and friction at both "
-            "interfaces, were also simulated together. A mechanism is ruled out if no value of it lies within "
-            "the scatter between earthquakes (Hotelling’s T² at 5 %, Bonferroni over all mechanisms). Few "
-            "earthquakes rule out little.",
-        ],
-        [table_html(shown, columns, caption)],
+    text = sentences().inverse_problem(inverse_problem_words(readable, wanted))
+    return section_of(text, "inverse_problem", [table_html(shown, columns, caption)])
+
+
+def inverse_problem_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> list[str]:
+    """Say what would and what would not produce the wanted effect, the most important sentence first.
+
+    Mechanisms are those of `rockfrag_thesis.sensitivity_analysis.inverse_problem.invert`, with readable names.
+    """
+    places = {"ground": "on the ground", "above": "above it"}
+    asked = " and ".join(
+        f"{100 * (value - 1):+.0f} % {places[name]}".replace("-", "−")
+        for name, value in wanted.items()
     )
+    can = table[table["reaches"]].to_dict("records")
+    everywhere = [row for row in can if row["acts_on"] == "all floors"]
+    alone = [row["factor_1"] for row in everywhere if not row["factor_2"]]
+    pairs = [f"{row['factor_1']} with {row['factor_2']}" for row in everywhere if row["factor_2"]]
+    local = [
+        f"{row['factor_1']} {places[row['acts_on']]} alone" for row in can if row not in everywhere
+    ]
+    excluded, several = int((~table["plausible"]).sum()), len(wanted) > 1
+    about = (asked, alone, pairs, several, local, excluded, len(table))
+    return said(sentences().mechanisms(*about))
 
 
 def _title(factor: str) -> str:

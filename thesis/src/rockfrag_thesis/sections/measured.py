@@ -2,20 +2,15 @@
 
 from rockfrag.report.part import Part, Results, Section
 from rockfrag_thesis.hypotheses_html import hypotheses_html
-from rockfrag_thesis.sections.hypotheses import outcomes_in_words, words_on_outcomes
+from rockfrag_thesis.sections.hypotheses import outcomes_section
 
 
 def _section(results: Results) -> Section | None:
     hypotheses = results.table("measured/hypotheses")
     if hypotheses.empty:
         return None
-    return Section(
-        "measured_hypotheses",
-        "The thesis’s hypotheses on measured tests",
-        outcomes_in_words(hypotheses),
-        [words_on_outcomes(hypotheses)],
-        [hypotheses_html(hypotheses)],
-    )
+    title, parts = "The thesis’s hypotheses on measured tests", [hypotheses_html(hypotheses)]
+    return outcomes_section("measured_hypotheses", title, hypotheses, parts)
 
 
 MEASURED_HYPOTHESES = Part(

@@ -7,8 +7,9 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.report.page import cell_html, framed
-from rockfrag.report.part import Part, Results, Section
-from rockfrag.report.wording import listed, number
+from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.wording import number
+from rockfrag_thesis.sections.words import sentences
 
 _CAPTIONS = {
     "table_3_1": "Table 3.1: critical angle, radius, frequency parameter and slenderness of the "
@@ -21,30 +22,17 @@ _CAPTIONS = {
 
 
 def _section(results: Results) -> Section:
-    return Section(
-        "printed",
-        "The thesis’s printed tables",
-        _message(results),
-        [
-            *_differing(results),
-            "Computed values are rounded to the digits printed in the thesis, with g = 9.81 m/s². GF is the "
-            "ground motion itself; F3 and F5 are floors of an assumed building, which the thesis does not "
-            "describe. The printed value is below each computed one, with ✓ where they agree to its digits.",
-        ],
-        [comparison_html(results.table(name), caption) for name, caption in _CAPTIONS.items()],
-    )
+    comparison = pd.concat([results.table(name) for name in _CAPTIONS], ignore_index=True)
+    known = comparison[comparison["agrees"].notna()]
+    wrong = known[~known["agrees"].astype(bool)]
+    names = list(wrong["name"] + " " + wrong["quantity"])
+    parts = [comparison_html(results.table(name), caption) for name, caption in _CAPTIONS.items()]
+    text = sentences().printed(len(known) - len(wrong), len(known), names)
+    return section_of(text, "printed", parts)
 
 
 def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:
-    """Render computed values with the printed ones below them, a row per name.
-
-    Parameters
-    ----------
-    comparison
-        See :func:`rockfrag_thesis.printed_tables.compare`.
-    caption
-        What the table shows.
-    """
+    """Render computed values with the printed ones below them, a row per name."""
     # a lone block has no pattern 3: the order of the columns is that of the fullest row
     fullest = max((part for _, part in comparison.groupby("name")), key=len)
     titles = {
@@ -81,35 +69,6 @@ def _compared(row: Mapping[str, Any] | None) -> Markup:
     return Markup("<span>{}<br><small>{} {}</small></span>").format(
         number(row["computed"], 4), row["printed"], sign
     )
-
-
-def _known(results: Results) -> pd.DataFrame:
-    comparison = pd.concat([results.table(name) for name in _CAPTIONS], ignore_index=True)
-    return comparison[comparison["agrees"].notna()]
-
-
-def _reproduced(right: int, total: int) -> str:
-    if right == total:
-        return f"All {total} printed values of Tables 3.1, 3.3 and 4.1 are"
-    return f"{right} of {total} printed values of Tables 3.1, 3.3 and 4.1 are"
-
-
-def _differing(results: Results) -> list[str]:
-    known = _known(results)
-    wrong = known[~known["agrees"].astype(bool)]
-    return (
-        [f"Different: {listed(list(wrong['name'] + ' ' + wrong['quantity']))}."]
-        if len(wrong)
-        else []
-    )
-
-
-def _message(results: Results) -> str:
-    known = _known(results)
-    if known.empty:
-        return "None of these values is printed in the thesis."
-    right = int(known["agrees"].sum())
-    return f"{_reproduced(right, len(known))} reproduced."
 
 
 PRINTED = Part(tuple(_CAPTIONS), _section)

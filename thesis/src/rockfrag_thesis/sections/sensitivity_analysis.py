@@ -1,6 +1,7 @@
 """What could produce an effect of the pedestal: one parameter of the ideal model at a time is perturbed."""
 
 from collections.abc import Hashable, Mapping, Sequence
+from functools import partial
 from textwrap import fill
 from typing import Any, NamedTuple
 
@@ -10,50 +11,26 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import (
-    BLACK,
-    OKABE_ITO,
-    WIDEST,
-    figure_style,
-    new_figure,
-)
+from rockfrag.figure_style import BLACK, OKABE_ITO, WIDEST, figure_style, new_figure
 from rockfrag.pedestal.multiplicity import benjamini_hochberg
 from rockfrag.report.figures.amplitudes import BAND, GREY, MARKERS
 from rockfrag.report.figures.effects import NONE, ratio_axis
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
-from rockfrag.report.wording import (
-    agree,
-    counted,
-    has_interval,
-    listed,
-    of_all,
-    probability,
-    sentence,
-    shortened,
-)
+from rockfrag.report.part import Part, Results, Section, figure_of, section_of
+from rockfrag.report.wording import has_interval, one_line, probability, sentence, shortened
 from rockfrag.study.study import Study
+from rockfrag_thesis.sections.words import sentences
 from rockfrag_thesis.sensitivity_analysis.simulated import LAW_OF, REFERENCE
 from rockfrag_thesis.settings import settings_of
 
 
 class Factor(NamedTuple):
-    """A parameter of the ideal model that is perturbed, in words that stand in a sentence as they are.
+    """A parameter of the ideal model that is perturbed, in words that stand in a sentence as they are."""
 
-    Attributes
-    ----------
-    title
-        The factor, whatever its level.
-    level
-        How a level is written, its value at ``{}``.
-    phrase
-        The factor at a level, which stands at ``{}``.
-    """
-
-    title: str
-    level: str
-    phrase: str
+    title: str  # The factor, whatever its level
+    level: str  # How a level is written, its value at ``{}``
+    phrase: str  # The factor at a level, which stands at ``{}``
 
     def at(self, level: str) -> str:
         """The factor at a level, as a phrase."""
@@ -91,9 +68,7 @@ FACTORS = {
     ),
     "pedestal_width_cm": Factor("the width of the pedestal", "{} cm", "a pedestal {} wide"),
     "pedestal_not_counted": Factor(
-        "the pedestal's mass neglected",
-        "{} kg table",
-        "neglecting the pedestal's mass on a {}",
+        "the pedestal's mass neglected", "{} kg table", "neglecting the pedestal's mass on a {}"
     ),
     "table_not_counted": Factor(
         "the table's mass neglected", "{} kg table", "neglecting the mass of a {}"
@@ -138,16 +113,9 @@ def asks_sensitivity_analysis(study: Study) -> bool:
 def perturbations(effects: pd.DataFrame) -> pd.DataFrame:
     """Every perturbation over all floors, in the order of ``FACTORS``.
 
-    Parameters
-    ----------
-    effects
-        As :func:`rockfrag_thesis.stages.sensitivity_analysis.sensitivity_analysis_tables` returns them.
-
-    Returns
-    -------
-    The rows with ``name`` (for a sentence), ``lower`` and ``upper``, ``arithmetic`` (whether it is computed
-    without a
-    simulation) and ``p_adjusted`` (Benjamini and Hochberg over the simulated ones; NaN of the others).
+    Returns rows of the effects with ``name`` (for a sentence), ``lower`` and ``upper``, ``arithmetic`` (whether it
+    is computed without a simulation) and ``p_adjusted`` (Benjamini and Hochberg over the simulated ones; NaN of
+    the others).
     """
     whole = effects[(effects["floor"] == "all") & (effects["level"] != REFERENCE)]
     order = list(FACTORS)
@@ -173,7 +141,8 @@ def _section(results: Results) -> Section | None:
     if whole.empty:
         return None
     simulated, computed = whole[~whole["arithmetic"]], whole[whole["arithmetic"]]
-    message = within_ten_percent(simulated)
+    small = int(simulated["ratio"].between(*NONE).sum())
+    message = one_line(sentences().within(small, len(simulated)))
     tables = [
         table_html(
             _shown(simulated),
@@ -186,41 +155,13 @@ def _section(results: Results) -> Section | None:
             "Ratio over all floors, errors of arithmetic (not simulated).",
         ),
     ]
-    figure = FigureSpec(
-        "sensitivity_analysis",
-        f"Ratios with over without pedestal where one parameter is perturbed. {message}",
-        "Overturning amplitude with over that without pedestal, where one parameter of the ideal model is "
-        "perturbed: diamonds with 95 % intervals are all floors, small marks single floors. Grey is ±10 %."
-        + (
-            f" Shown are the {MOST_DRAWN} of {len(simulated)} perturbations with the largest effect."
-            if len(simulated) > MOST_DRAWN
-            else ""
-        ),
-        lambda: sensitivity_analysis_figure(effects, list(results.study.floors)),
-    )
-    return Section(
-        "sensitivity_analysis",
-        "What could produce an effect of the pedestal",
-        message,
-        [
-            "One parameter at a time is perturbed, with the amplitudes and steps of the protocol; the rest is "
-            "as in the study.",
-            *_beyond(simulated),
-            adjusted_words(simulated),
-            *_arithmetic_words(computed),
-        ],
-        [*([figure] if len(simulated) else []), *tables],
-    )
-
-
-def within_ten_percent(simulated: pd.DataFrame) -> str:
-    """Say how many simulated perturbations leave the mean ratio within ±10 %."""
-    if simulated.empty:
-        return "No perturbation was simulated."
-    small = int(simulated["ratio"].between(*NONE).sum())
-    who = sentence(of_all(small, len(simulated), "simulated perturbation"))
-    verb = agree(small, len(simulated), "leaves", "leave")
-    return f"{who} {verb} the mean ratio with/without pedestal within ±10 %."
+    text = sentences().sensitivity_figure(message, len(simulated), MOST_DRAWN)
+    draw = partial(sensitivity_analysis_figure, effects, list(results.study.floors))
+    figures = [figure_of(text, "sensitivity_analysis", draw)] if len(simulated) else []
+    adjusted = adjusted_words(simulated)
+    about = (message, *_beyond(simulated), adjusted, len(computed))
+    text = sentences().sensitivity_analysis(*about)
+    return section_of(text, "sensitivity_analysis", [*figures, *tables])
 
 
 def adjusted_words(simulated: pd.DataFrame, level: float = 0.05) -> str:
@@ -228,42 +169,18 @@ def adjusted_words(simulated: pd.DataFrame, level: float = 0.05) -> str:
     tests = len(simulated)
     outside = int(((simulated["lower"] > 1) | (simulated["upper"] < 1)).sum())
     left = int((simulated["p_adjusted"] < level).sum())
-    has = agree(
-        outside, tests, "has a 95 % interval that excludes", "have 95 % intervals that exclude"
-    )
-    return (
-        f"{sentence(of_all(outside, tests, 'simulated perturbation'))} {has} 1. Chance alone produces some of "
-        f"these: after the Benjamini–Hochberg adjustment for {counted(tests, 'test')}, {left or 'none'} "
-        f"{agree(left, tests, 'differs', 'differ')} from 1 at the {100 * level:g} % level."
-    )
+    return one_line(sentences().adjusted(outside, left, tests, level))
 
 
-def _beyond(simulated: pd.DataFrame) -> list[str]:
-    """Name the perturbations beyond ±10 %, and those on which the laws of impact disagree."""
+def _beyond(simulated: pd.DataFrame) -> tuple[list[str], list[str]]:
+    """Perturbations beyond ±10 % with their ratios, and those on which the laws of impact disagree."""
     beyond = (simulated["ratio"] > NONE[1]).astype(int) - (simulated["ratio"] < NONE[0]).astype(int)
     differ = _laws_differ(simulated, beyond)
-    words = []
-    for rows, what in (
-        (simulated[(beyond != 0) & ~differ], "Beyond ±10 %"),
-        (
-            simulated[differ],
-            "Undecided, because the laws of impact that agree with a measured restitution disagree here",
-        ),
-    ):
-        if len(rows):
-            each = [f"{row['name']} ({ratio_text(row)})" for row in rows.to_dict("records")]
-            words.append(f"{what}: {listed(each)}.")
-    return words
-
-
-def _arithmetic_words(computed: pd.DataFrame) -> list[str]:
-    if computed.empty:
-        return []
-    return [
-        f"{sentence(counted(len(computed), 'further value'))} {'is' if len(computed) == 1 else 'are'} "
-        "arithmetic and not simulation: a mass that is moved but not counted multiplies each amplitude by a "
-        "known factor. Their intervals are scatter of the same pairs, and no adjustment applies."
-    ]
+    clear, open_ones = (
+        [f"{row['name']} ({ratio_text(row)})" for row in rows.to_dict("records")]
+        for rows in (simulated[(beyond != 0) & ~differ], simulated[differ])
+    )
+    return clear, open_ones
 
 
 def _shown(rows: pd.DataFrame) -> pd.DataFrame:
@@ -286,12 +203,7 @@ def _laws_differ(whole: pd.DataFrame, beyond: pd.Series) -> pd.Series:
 def sensitivity_analysis_figure(effects: pd.DataFrame, order: Sequence[str] = ()) -> Figure:
     """Draw the ratio with over without pedestal of the perturbations with the largest effect.
 
-    Parameters
-    ----------
-    effects
-        As :func:`rockfrag_thesis.stages.sensitivity_analysis.sensitivity_analysis_tables` returns them.
-    order
-        Floors in the order of the legend; others follow.
+    Floors are in the given order in the legend; others follow.
     """
     simulated = perturbations(effects)
     simulated = simulated[~simulated["arithmetic"]]

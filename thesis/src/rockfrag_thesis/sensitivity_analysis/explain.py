@@ -12,8 +12,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import mean_effects
-from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.cluster_means import equivalence, mean_effects
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.tabular import join_rows
 
@@ -28,28 +27,16 @@ CHANGES, SAME, OPEN = "changes P/NP", "within ±10 %", "open"
 def explain(table: pd.DataFrame) -> pd.DataFrame:
     """Effect of every level of every factor on the ratio P/NP, with intervals.
 
-    Parameters
-    ----------
-    table
-        One row per factor, level, object, earthquake, floor (and replicate): factor, level (text or
-        number), reference (True for the rows of the reference level, one level per factor), object,
-        earthquake, floor, ratio (a_P over a_NP, NaN where censored), and optionally motion, replicate
-        (such as a number of a perturbed copy) and resolution (half-width to which ln ratio is known).
-        Replicates are averaged in the logarithm.
+    The table has a row per factor, level, object, earthquake, floor (and replicate): factor, level (text or
+    number), reference (True for the rows of the reference level, one per factor), object, earthquake, floor, ratio
+    (a_P over a_NP, NaN where censored), and optionally motion, replicate (averaged in the logarithm) and
+    resolution (half-width to which ln ratio is known).
 
-    Returns
-    -------
-    pandas.DataFrame
-        factor, level, floor ("all" or one floor), ratio, ratio_lower, ratio_upper (P/NP at that
-        level [-]), effect, effect_lower, effect_upper (ratio over the reference's [-]), p, p_holm
-        (within the factor), p_bh (over everything), pairs, earthquakes, left_out (pairs without a value
-        on either side), p_equivalence (of a change within ±10 %), judgement (`CHANGES` where p_bh is
-        below 5 %, `SAME` where p_equivalence is, else `OPEN`; empty for the reference).
-
-    Raises
-    ------
-    InputError
-        If a column is missing, a ratio is not positive, or a factor has no or several references.
+    Returns factor, level, floor ("all" or one floor), ratio, ratio_lower, ratio_upper (P/NP at that level [-]),
+    effect, effect_lower, effect_upper (ratio over the reference's [-]), p, p_holm (within the factor), p_bh (over
+    everything), pairs, earthquakes, left_out (pairs without a value on either side), p_equivalence (of a change
+    within ±10 %), judgement (`CHANGES` where p_bh is below 5 %, `SAME` where p_equivalence is, else `OPEN`; empty
+    for the reference).
     """
     missing = [name for name in COLUMNS if name not in table.columns]
     if missing:
@@ -78,12 +65,7 @@ def explain(table: pd.DataFrame) -> pd.DataFrame:
 def where_laws_agree(effects: pd.DataFrame, laws: Mapping[str, tuple[str, str]]) -> pd.DataFrame:
     """Leave a judgement open where the laws of one perturbed parameter do not all give it.
 
-    Parameters
-    ----------
-    effects
-        As :func:`explain` returns them.
-    laws
-        Perturbed parameter and law of each factor that has several.
+    ``laws`` has perturbed parameter and law of each factor that has several.
     """
     known = effects[effects["factor"].isin(laws) & (effects["judgement"] != "")]
     base = known["factor"].map(lambda factor: laws[factor][0])

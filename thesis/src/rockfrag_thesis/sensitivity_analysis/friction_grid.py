@@ -37,28 +37,13 @@ def friction_ratios(
 ) -> pd.DataFrame:
     """Ratio P/NP of every object and motion at every pair of coefficients of friction.
 
-    Parameters
-    ----------
-    stacks
-        Object on its pedestal, by the object's name; alone the object stands on the ground.
-    motions
-        Motions of the ground or floor.
-    levels_g
-        Amplitudes that are climbed until the first overturning, rising [g].
-    ground, interface
-        Coefficients between the ground and what stands on it, and between pedestal and object [-]; infinite
-        ones are added.
-    threads
-        Threads to use; the result does not depend on it.
-    progress
-        Called with the name of each object that is done.
+    Stacks are each object on its pedestal, by the object's name; alone it stands on the ground. ``levels_g`` are
+    climbed until the first overturning [g]. Coefficients are of the ``ground`` and of the ``interface`` of
+    pedestal and object [-]; infinite ones are added.
 
-    Returns
-    -------
-    One row per object, motion and pair: ``object``, ``earthquake``, ``floor``, ``motion``, ``ground``,
-    ``interface`` (coefficients), ``p_g``, ``np_g`` (largest amplitudes survived before the first overturning [g],
-    NaN where nothing or everything was), ``ratio``, and ``resolution`` (half-width to which its logarithm is
-    known).
+    Returns one row per object, motion and pair: ``object``, ``earthquake``, ``floor``, ``motion``, ``ground``,
+    ``interface``, ``p_g``, ``np_g`` (largest amplitudes survived before the first overturning [g], NaN where
+    nothing or everything was), ``ratio``, and ``resolution`` (half-width to which its logarithm is known).
     """
     below = sorted({*map(float, ground), math.inf})
     between = sorted({*map(float, interface), math.inf})
@@ -92,17 +77,10 @@ def friction_ratios(
 def friction_effects(ratios: pd.DataFrame, floors: Mapping[str, int]) -> pd.DataFrame:
     """Mean ratio at every pair of coefficients with its interval over earthquakes, by place and object.
 
-    Parameters
-    ----------
-    ratios
-        As of :func:`friction_ratios`.
-    floors
-        Level of each floor by its name; 0 is the ground.
+    ``floors`` has the level of each floor by its name; 0 is the ground.
 
-    Returns
-    -------
-    One row per ``ground``, ``interface``, ``place`` ("ground", "above", or a floor) and ``object`` ("all" or
-    one): ``ratio``, ``lower``, ``upper``, ``pairs``, ``earthquakes``, ``left_out`` (pairs that have no ratio,
+    Returns one row per ``ground``, ``interface``, ``place`` ("ground", "above", or a floor) and ``object`` ("all"
+    or one): ``ratio``, ``lower``, ``upper``, ``pairs``, ``earthquakes``, ``left_out`` (pairs that have no ratio,
     because with or without the pedestal nothing fell), ``p_survives``, ``np_survives`` (pairs in which nothing
     fell).
     """

@@ -54,17 +54,9 @@ COLUMNS = [
 
 
 def friction_perturbations(tried: pd.DataFrame) -> pd.DataFrame:
-    """Friction of the ground alone and of the interface alone as two factors beside the others.
+    """Friction of the ground alone and of the interface alone as two factors, as `invert` takes them.
 
-    Parameters
-    ----------
-    tried
-        As `rockfrag_thesis.sensitivity_analysis.friction_grid.friction_ratios` returns it; infinite coefficients
-        are the ideal model.
-
-    Returns
-    -------
-    Rows as `invert` takes them.
+    Infinite coefficients are the ideal model.
     """
     rough = {
         name: np.isinf(tried[name].to_numpy(dtype=np.float64)) for name in ("ground", "interface")
@@ -95,29 +87,17 @@ def invert(
 ) -> pd.DataFrame:
     """Find the perturbed parameters, alone and in pairs, that come closest to a wanted effect.
 
-    Parameters
-    ----------
-    ratios
-        As `rockfrag_thesis.sensitivity_analysis.explain.explain` takes them; levels are text, numbers where they
-        can be varied continuously.
-    wanted
-        Ratio P/NP on the ``ground`` and ``above`` it [-]; either may be missing.
-    floors
-        Level of each floor by its label; level 0 is the ground.
-    neutral
-        Level of the ideal model by factor; of a factor without one only the levels themselves are tried.
-    resolution
-        ln(1 + step) of the series of levels [-].
+    Ratios are as `rockfrag_thesis.sensitivity_analysis.explain.explain` takes them; levels are text, numbers where
+    they can be varied continuously. ``wanted`` is P/NP on the ``ground`` and ``above`` it [-]; either may be
+    missing. Floors have levels by label, 0 is the ground; ``neutral`` is the level of the ideal model by factor,
+    and of a factor without one only the levels themselves are tried; ``resolution`` is ln(1 + step) of the series
+    of levels [-].
 
-    Returns
-    -------
-    pandas.DataFrame
-        One row per factor, acting everywhere, on the ``ground`` alone or ``above`` alone, and per pair of
-        factors, the closest first: factor_1, level_1, level_1_low, level_1_high (levels that are not excluded
-        with all mechanisms counted, Bonferroni; empty where all are); the same of factor_2 (empty for one
-        factor); acts_on; ground, above (P/NP of the model there); p (of the wanted effect under the model's
-        scatter between earthquakes; NaN with too few earthquakes); plausible; reaches (both ratios within 2 % of
-        the wanted ones).
+    Returns one row per factor, acting everywhere, on the ``ground`` alone or ``above`` alone, and per pair of
+    factors, the closest first: factor_1, level_1, level_1_low, level_1_high (levels that are not excluded with all
+    mechanisms counted, Bonferroni; empty where all are); the same of factor_2 (empty for one factor); acts_on;
+    ground, above (P/NP of the model there); p (of the wanted effect under the model's scatter between earthquakes;
+    NaN with too few earthquakes); plausible; reaches (both ratios within 2 % of the wanted ones).
     """
     places = [name for name in ("ground", "above") if name in wanted]
     cells = _by_earthquake(ratios, floors, places)
@@ -179,9 +159,7 @@ def _by_earthquake(
 
 
 def _lines(
-    cells: Mapping[tuple[str, str], pd.DataFrame],
-    ideal: pd.DataFrame,
-    neutral: Mapping[str, float],
+    cells: Mapping[tuple[str, str], pd.DataFrame], ideal: pd.DataFrame, neutral: Mapping[str, float]
 ) -> list[_Line]:
     """Changes along each factor whose levels are numbers and share the ideal model's earthquakes."""
     lines = []
@@ -248,20 +226,10 @@ def _row(
 
 
 def hotelling(values: Array, goal: Array, resolution: float) -> Array:
-    """P value of a goal as the mean over earthquakes (Hotelling 1931) [-].
+    """P values of a goal, shape (places,), as the mean over earthquakes (Hotelling 1931) [-], shape (points,).
 
-    Parameters
-    ----------
-    values
-        Logarithms by earthquake, shape (points, earthquakes, places).
-    goal
-        Shape (places,).
-    resolution
-        Half-width to which each is known [-]; a goal nearer than that cannot be told from the mean.
-
-    Returns
-    -------
-    Shape (points,); NaN where there are no more earthquakes than places.
+    Values are logarithms by earthquake, shape (points, earthquakes, places), each known to ``resolution`` [-]; a
+    goal nearer than that cannot be told from the mean. NaN where there are no more earthquakes than places.
     """
     points, earthquakes, places = values.shape
     if earthquakes <= places:
@@ -275,63 +243,3 @@ def hotelling(values: Array, goal: Array, resolution: float) -> Array:
     distance = earthquakes * np.einsum("pi,pi->p", away, inverse)
     scaled = distance * (earthquakes - places) / (places * (earthquakes - 1))
     return np.asarray(special.fdtrc(places, earthquakes - places, scaled))
-
-
-def inverse_problem_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> list[str]:
-    """Say what would and what would not produce the wanted effect, the most important sentence first.
-
-    Parameters
-    ----------
-    table
-        Mechanisms of :func:`invert`, with readable names in ``factor_1`` and ``factor_2``.
-    wanted
-        Ratio P/NP on the ``ground`` and ``above`` it [-].
-
-    Returns
-    -------
-    list of str
-        Sentences.
-    """
-    asked = " and ".join(
-        f"{100 * (value - 1):+.0f} % {'on the ground' if name == 'ground' else 'above it'}".replace(
-            "-", "−"
-        )
-        for name, value in wanted.items()
-    )
-    single = table[(table["factor_2"] == "") & (table["acts_on"] == "all floors")]
-    reach = table[table["reaches"] & (table["acts_on"] == "all floors")]
-    alone = [str(name) for name in single.loc[single["reaches"], "factor_1"]]
-    pairs = [
-        f"{first} with {two}"
-        for first, two in zip(reach["factor_1"], reach["factor_2"], strict=True)
-        if two
-    ]
-    if not alone and not pairs:
-        words = [
-            f"No perturbed parameter, alone or with a second one, produces {asked} within the values tried."
-        ]
-    else:
-        who = f"{', '.join(alone)} alone" if alone else "No single perturbed parameter"
-        words = [f"{who[:1].upper()}{who[1:]} can produce {asked} within the values tried."]
-        words.append(f"Pairs that can: {'; '.join(pairs[:3])}." if pairs else "No pair can.")
-    if len(wanted) > 1:
-        words.append(_one_place(table))
-    excluded = int((~table["plausible"]).sum())
-    many = f"{excluded} of the {len(table)}" if excluded else f"none of the {len(table)}"
-    words.append(f"The scatter between earthquakes rules out {many} mechanisms tried.")
-    return words
-
-
-def _one_place(table: pd.DataFrame) -> str:
-    """Say what a parameter could do that acts on the ground alone, or above it alone."""
-    local = table[table["acts_on"] != "all floors"]
-    names = [
-        f"{row['factor_1']} {_PLACES[row['acts_on']]}"
-        for row in local[local["reaches"]].to_dict("records")
-    ]
-    if names:
-        return f"Mechanisms that act at one place only and can: {', '.join(names[:3])}."
-    return "No mechanism that acts on the ground alone, or above it alone, can."
-
-
-_PLACES = {"ground": "on the ground alone", "above": "above it alone"}

@@ -16,29 +16,12 @@ def _nonnegative(name: str, mass: float) -> None:
 
 
 def ratio_bias(
-    statue: float,
-    pedestal: float,
-    table: float,
-    *,
-    counted_with: float,
-    counted_without: float,
+    statue: float, pedestal: float, table: float, *, counted_with: float, counted_without: float
 ) -> float:
     """Factor on P/NP when a is computed from force over the counted mass [-].
 
-    The force F = (table + blocks) a moves everything; the reported figure is F over the counted
-    mass.
-
-    Parameters
-    ----------
-    statue, pedestal, table
-        Moved masses [kg].
-    counted_with, counted_without
-        Masses that were divided by in tests with and without the pedestal [kg].
-
-    Raises
-    ------
-    InputError
-        If a mass is negative or a counted mass is not positive.
+    The force F = (table + blocks) a moves everything; the reported figure is F over the counted mass, which was
+    divided by in tests with and without the pedestal. All masses in kg.
     """
     for name, mass in (("statue", statue), ("pedestal", pedestal), ("table", table)):
         _nonnegative(name, mass)

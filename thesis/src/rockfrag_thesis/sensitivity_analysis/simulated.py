@@ -41,19 +41,13 @@ LARGEST_RESTITUTION = 0.995
 
 @dataclass(frozen=True)
 class Case:
-    """An object with and without its pedestal at one level of one factor.
+    """An object with and without its pedestal at one level of one factor."""
 
-    Attributes
-    ----------
-    factor, level, object, replicate
-        What differs, how much, of which object, and the number of the perturbed copy.
-    lone, stack
-        What stands on the table without and with the pedestal.
-    """
-
+    # What differs, how much, of which object, and the number of the perturbed copy
     factor: str
     level: float
     object: str
+    # What stands on the table without and with the pedestal
     lone: System
     stack: System
     replicate: int = 0
@@ -67,24 +61,12 @@ def ideal_case(object_name: str, stack: Stack) -> Case:
 def factor_cases(
     object_name: str, stack: Stack, levels: Mapping[str, Sequence[float]]
 ) -> list[Case]:
-    """One case per level of each mechanical factor.
+    """One case per level of each mechanical factor of an ideal stack, whose statue is the lone object.
 
-    Parameters
-    ----------
-    object
-        Its name.
-    stack
-        The ideal stack; its statue is the lone object.
-    levels
-        Any of ``statue_restitution``, ``interface_restitution``, ``ground_restitution`` (factors on
-        the restitution that conserves momentum; once by each law that differs, see `LAW_OF`),
-        ``pedestal_lean_deg``, ``statue_offset_mm``, ``statue_cg_offset_mm``, ``pedestal_width_cm``; others
-        are left alone.
-
-    Raises
-    ------
-    InputError
-        If a body cannot stand or a restitution would add energy; factor and level are named.
+    Levels are of any of ``statue_restitution``, ``interface_restitution``, ``ground_restitution`` (factors on the
+    restitution that conserves momentum; once by each law that differs, see `LAW_OF`), ``pedestal_lean_deg``,
+    ``statue_offset_mm``, ``statue_cg_offset_mm``, ``pedestal_width_cm``; others are left alone. A body that cannot
+    stand or a restitution that adds energy is an InputError that names factor and level.
     """
     cases = []
     for factor in PERTURBATIONS:
@@ -97,21 +79,9 @@ def factor_cases(
 
 
 def perturbed_case(object_name: str, stack: Stack, perturbations: Mapping[str, float]) -> Case:
-    """Object with and without its pedestal where one or more factors depart from the ideal together.
+    """Object with and without its pedestal where factors of `PERTURBATIONS` are off the ideal together.
 
-    Parameters
-    ----------
-    object_name
-        Its name.
-    stack
-        The ideal stack; its statue is the lone object.
-    perturbations
-        Level by factor, of `PERTURBATIONS`.
-
-    Raises
-    ------
-    InputError
-        If a body cannot stand or a restitution would add energy; factor and level are named.
+    A body that cannot stand or a restitution that adds energy is an InputError that names factor and level.
     """
     names = [name for name in PERTURBATIONS if name in perturbations]
     measured: dict[str, float] = {}
@@ -208,16 +178,8 @@ def perturbed_cases(
 ) -> list[Case]:
     """Copies with tolerances; the two sides of a pair are drawn apart, as in separate tests.
 
-    Parameters
-    ----------
-    tolerance
-        Standard deviation of every width and height, relative [-].
-    restitution
-        Standard deviation of every restitution [-].
-    replicates
-        Number of copies.
-    rng
-        Source of the random numbers.
+    ``tolerance`` is the standard deviation of every width and height, relative [-], ``restitution`` that of every
+    restitution [-].
     """
     cases = []
     for number in range(1, replicates + 1):
@@ -250,10 +212,7 @@ def _perturbed(block: Block, tolerance: float, rng: np.random.Generator) -> Bloc
 
 
 def level_amplitudes(
-    systems: Sequence[System],
-    motions: Sequence[Motion],
-    levels_g: Floats,
-    threads: int = 1,
+    systems: Sequence[System], motions: Sequence[Motion], levels_g: Floats, threads: int = 1
 ) -> Floats:
     """Largest amplitude [g] survived before the first overturning, climbing rising levels from rest.
 
@@ -288,22 +247,13 @@ def case_ratios(
     threads: int = 1,
     progress: Callable[[int], None] = lambda done: None,
 ) -> pd.DataFrame:
-    """Ratio P/NP of every case under every motion.
+    """Ratio P/NP of every case under every motion, climbed through ``levels_g`` [g].
 
-    Parameters
-    ----------
-    cases
-        What is tested.
-    motions, levels_g, threads
-        Motions of the table, amplitudes that are climbed [g], and threads to use.
-    progress
-        Called with the number of bodies done.
+    ``progress`` is called with the number of bodies done.
 
-    Returns
-    -------
-    One row per case and motion: ``factor``, ``level``, ``reference`` (False), ``object``, ``earthquake``,
-    ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g`` (amplitudes [g]), ``ratio``,
-    ``resolution`` (half-width to which its logarithm is known, a step of the series of levels [-]).
+    Returns one row per case and motion: ``factor``, ``level``, ``reference`` (False), ``object``, ``earthquake``,
+    ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g`` (amplitudes [g]), ``ratio``, ``resolution`` (half-width
+    to which its logarithm is known, a step of the series of levels [-]).
     """
     order = list(dict.fromkeys(name for case in cases for name in (case.lone, case.stack)))
     parts = []
@@ -347,19 +297,9 @@ def mass_error_rows(
 ) -> pd.DataFrame:
     """Ratios that a laboratory would report which divides the force by the wrong mass.
 
-    Parameters
-    ----------
-    ideal
-        Rows of :func:`case_ratios` for the ideal model.
-    stacks
-        Stacks by object.
-    table_masses
-        Moved masses of the table [kg].
-
-    Returns
-    -------
-    Rows like ``ideal`` with the factors ``pedestal_not_counted`` and ``table_not_counted`` and the
-    table's mass as level; see :mod:`rockfrag_thesis.sensitivity_analysis.mass_bias`.
+    Masses of the table are moved ones [kg]. Returns rows like ``ideal``, those of :func:`case_ratios` for the
+    ideal model, with the factors ``pedestal_not_counted`` and ``table_not_counted`` and the table's mass as level;
+    see :mod:`rockfrag_thesis.sensitivity_analysis.mass_bias`.
     """
     parts = []
     for mass in table_masses:

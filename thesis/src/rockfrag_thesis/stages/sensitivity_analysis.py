@@ -41,10 +41,7 @@ def run(job: Job[Study]) -> Results:
         )
     levels = effects[["factor", "level"]].drop_duplicates()
     job.log.info(
-        "ratios: %d, levels: %d, factors: %d",
-        len(ratios),
-        len(levels),
-        effects["factor"].nunique(),
+        "ratios: %d, levels: %d, factors: %d", len(ratios), len(levels), effects["factor"].nunique()
     )
 
 
@@ -56,25 +53,12 @@ def sensitivity_analysis_tables(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Simulate every level of every factor on the laboratory's own series of levels, and estimate effects.
 
-    Parameters
-    ----------
-    study
-        A study with pairs and the key ``sensitivity_analysis``.
-    motions
-        Motions that shake the bodies.
-    threads
-        Threads to use; the result does not depend on it.
-    progress
-        Called with bodies done and bodies to do.
+    ``progress`` is called with bodies done and bodies to do.
 
-    Returns
-    -------
-    ratios
-        One row per factor, level, object and motion: ``factor``, ``level`` (text), ``reference``,
-        ``object``, ``earthquake``, ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g``, ``ratio``.
-    effects
-        See :func:`rockfrag_thesis.sensitivity_analysis.explain.explain`, levels in rising order; restitution once
-        by each law, and judged only where these agree.
+    Returns ratios and effects. Ratios have one row per factor, level, object and motion: ``factor``, ``level``
+    (text), ``reference``, ``object``, ``earthquake``, ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g``,
+    ``ratio``. For effects see :func:`rockfrag_thesis.sensitivity_analysis.explain.explain`, levels in rising
+    order; restitution once by each law, and judged only where these agree.
     """
     from rockfrag_thesis.sensitivity_analysis.explain import explain, where_laws_agree
     from rockfrag_thesis.sensitivity_analysis.simulated import (
@@ -131,16 +115,8 @@ def friction_tables(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Climb the laboratory's series of levels on surfaces of every friction that the study asks for.
 
-    Parameters
-    ----------
-    study
-        A study with the key ``sensitivity_analysis.friction``.
-    motions, threads
-        As of :func:`sensitivity_analysis_tables`.
-
-    Returns
-    -------
-    Tables of :func:`rockfrag_thesis.sensitivity_analysis.friction_grid.friction_ratios` and ``friction_effects``.
+    Returns tables of :func:`rockfrag_thesis.sensitivity_analysis.friction_grid.friction_ratios` and
+    ``friction_effects``.
     """
     from rockfrag_thesis.sensitivity_analysis.friction_grid import friction_effects, friction_ratios
 
@@ -165,23 +141,11 @@ def inverse_problem_table(
 ) -> pd.DataFrame:
     """Find what would give the wanted effect, and simulate the closest pairs of perturbed parameters together.
 
-    Parameters
-    ----------
-    study
-        A study with the key ``sensitivity_analysis.wanted_percent``.
-    ratios
-        As of :func:`sensitivity_analysis_tables`.
-    motions, threads
-        Likewise.
-    friction
-        As :func:`rockfrag_thesis.sensitivity_analysis.friction_grid.friction_ratios` returns it, where friction
-        was tried.
+    Ratios are as of :func:`sensitivity_analysis_tables`, ``friction`` those of friction where it was tried.
 
-    Returns
-    -------
-    Table of :func:`rockfrag_thesis.sensitivity_analysis.inverse_problem.invert` with ``simulated_ground`` and
-    ``simulated_above``, the ratios when the two perturbed parameters act together in one simulation, for the
-    closest pairs and for friction of both interfaces; the others have none.
+    Returns the table of :func:`rockfrag_thesis.sensitivity_analysis.inverse_problem.invert` with
+    ``simulated_ground`` and ``simulated_above``, the ratios when the two perturbed parameters act together in one
+    simulation, for the closest pairs and for friction of both interfaces; the others have none.
     """
     from rockfrag.laws import law_names
     from rockfrag_thesis.sensitivity_analysis.inverse_problem import (
