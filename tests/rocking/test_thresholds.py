@@ -113,18 +113,6 @@ def test_both_ends_of_every_window_survive_and_it_overturns_just_outside(ensembl
     assert counts == found.table["resurrections"].sum()
 
 
-def test_thresholds_do_not_depend_on_threads(ensemble):
-    bodies, motions = ensemble
-    first, two = (
-        find_thresholds(
-            bodies, motions, 0.01, 1.0, tolerance=1e-3, narrowest_resurrection=0.05, threads=threads
-        )
-        for threads in (1, 2)
-    )
-    assert first.table.equals(two.table)
-    assert first.resurrections.equals(two.resurrections)
-
-
 def test_a_block_that_nothing_topples_has_no_threshold():
     found = find_thresholds(
         Block(10.0, 10.0, 1.0),

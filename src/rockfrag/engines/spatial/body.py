@@ -68,11 +68,7 @@ def round_body(
 
 
 def _filled(
-    body: NDArray[np.void],
-    inertia: Array,
-    height: float,
-    friction: tuple[float, float],
-    g: float,
+    body: NDArray[np.void], inertia: Array, height: float, friction: tuple[float, float], g: float
 ) -> np.void:
     """Complete the record of a body whose base is in it."""
     body["height"], body["inertia"] = height, inertia
