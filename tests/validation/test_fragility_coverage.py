@@ -15,6 +15,7 @@ from rockfrag.fragility.intervals import interval_over_motions
 from rockfrag.fragility.observations import Observations
 
 from .documented import document
+from .made import drawn
 
 THETA, BETA, SHARED = 0.35, 0.4, 0.3
 DESIGNS = {4: (4, 1), 12: (4, 3), 44: (22, 2)}
@@ -35,10 +36,6 @@ KINDS = {
 }
 WARNED = ("heavy tails (t, 3 df)",)
 COARSE = ("nearly all in one step (β = 0.03, series of 10 %)",)
-
-
-def drawn(rng, law, size):
-    return rng.normal(size=size) if law == "normal" else rng.standard_t(3, size) / np.sqrt(3)
 
 
 def simulated(n, rng, step=0.1, shared=SHARED, law="normal", beta=BETA, uneven=1.0):
