@@ -237,7 +237,7 @@ def test_hostile_input_gets_a_sentence(tmp_path, motions):
         "level": "0,3 g",
         "years": "475",
     }
-    fields = (
+    fields = [
         "width",
         "height",
         "depth",
@@ -247,9 +247,8 @@ def test_hostile_input_gets_a_sentence(tmp_path, motions):
         "restitution",
         "pedestal_width",
         "floor",
-        "level",
-        "years",
-    )
+    ]
+    fields += ["level", "years"]
     forms = [usual | {field: text} for field in fields for text in HOSTILE]
     forms += [
         usual | {"years": "", "hazard": text}
