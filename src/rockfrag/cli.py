@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from rockfrag.rocking import Block, Body, Response
     from rockfrag.rocking.options import FrictionInput
 
-MOST_CONTACT_EVENTS = 30
-"""Lines of the pattern history that are printed unless all are asked for."""
+MOST_CONTACT_EVENTS = 30  # lines of the pattern history that are printed unless all are asked for
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -12,12 +12,8 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 
-LONGEST_NAME = 80
-"""Characters of a name, and of the file name made of it."""
-
-FORMULA = ("=", "+", "-", "@")
-"""Characters with which a spreadsheet takes a cell for a formula."""
-
+LONGEST_NAME = 80  # characters of a name, and of the file name made of it
+FORMULA = ("=", "+", "-", "@")  # characters with which a spreadsheet takes a cell for a formula
 _RESERVED = {
     "con",
     "prn",

@@ -14,8 +14,7 @@ from rockfrag.study.heading import Heading, Steps, beside, checked_steps, headin
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
 """Measures from which the motion of a commanded pulse follows."""
 
-CAMPAIGN_KEY = "campaign"
-"""Key that only a study of a campaign has."""
+CAMPAIGN_KEY = "campaign"  # key that only a study of a campaign has
 
 
 @dataclass(frozen=True)
