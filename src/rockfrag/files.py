@@ -32,6 +32,12 @@ def is_file(path: Path) -> bool:
         return False
 
 
+def sha256_of(path: Path) -> str:
+    """Return the SHA-256 of a file, 64 hexadecimal digits in lower case."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
 def check_name(name: str) -> None:
     """Check that a name which a user gave can stand in tables, figures and file names.
 
