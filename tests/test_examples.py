@@ -1,14 +1,18 @@
-"""Examples of docstrings are run, and what a name at a prompt shows fits the screen."""
+"""Public names say what they are, their examples are run, and what they show at a prompt fits the screen."""
 
 import doctest
 import importlib
 import inspect
+import pkgutil
 import pydoc
+import re
+import warnings
 
 import numpy as np
 import pytest
 
 import rockfrag
+import rockfrag_thesis
 from rockfrag import Block, Motion, Stack, find_thresholds, overturns, read_motion, simulate
 from rockfrag.errors import InputError
 from rockfrag.rocking.inputs import UnitWarning
@@ -40,7 +44,13 @@ def public() -> dict[str, object]:
     return found
 
 
+def is_exception(value: object) -> bool:
+    return inspect.isclass(value) and issubclass(value, Exception)
+
+
 PUBLIC = public()
+FORM = {"GL05", "GL06", "GL07", "GL08", "PR02", "PR03", "YD01"}
+PARAMETERS = "PR01"
 WITH_EXAMPLES = {
     name: value for name, value in PUBLIC.items() if ">>>" in (inspect.getdoc(value) or "")
 }
@@ -53,6 +63,39 @@ def run_examples(value: object, name: str) -> None:
             example, out=report.append
         )
         assert not report, "".join(report)
+
+
+@pytest.mark.parametrize(
+    "name", [name for name, value in sorted(PUBLIC.items()) if not is_exception(value)]
+)
+def test_public_name_is_documented(name):
+    """In the form of numpydoc."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        validation = pytest.importorskip("numpydoc.validate", reason="numpydoc is not installed")
+    found = validation.validate(f"{PUBLIC[name].__module__}.{PUBLIC[name].__qualname__}")
+    wrong = [f"{code}: {words}" for code, words in found["errors"] if code in FORM]
+    # the fields of a class are described as its attributes
+    value = PUBLIC[name]
+    if inspect.isfunction(value):
+        wrong += [f"{code}: {words}" for code, words in found["errors"] if code == PARAMETERS]
+        returned = inspect.signature(value).return_annotation
+        if returned not in (None, "None") and "Returns\n-------" not in inspect.getdoc(value):
+            wrong += ["it does not say what it returns"]
+    elif inspect.signature(value).parameters and not re.search(
+        r"(Attributes|Parameters)\n", found["docstring"]
+    ):
+        wrong += ["neither attributes nor parameters are described"]
+    assert not wrong
+
+
+def test_every_module_says_what_it_is_for():
+    modules = [
+        module.name
+        for package in (rockfrag, rockfrag_thesis)
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+    ]
+    assert not [name for name in modules if not importlib.import_module(name).__doc__]
 
 
 @pytest.mark.parametrize("name", sorted(WITH_EXAMPLES))

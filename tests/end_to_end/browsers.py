@@ -8,6 +8,7 @@ import socket
 import subprocess
 import tempfile
 import time
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Protocol, Self
 
@@ -97,7 +98,6 @@ class Chromium:
     def open(
         self, page: Path, width: int = 1400, height: int = 1000, *, dark: bool = False
     ) -> None:
-        """Open a file in a window of so many pixels."""
         self.console.clear()
         self._ask(
             "Emulation.setDeviceMetricsOverride",
@@ -114,7 +114,6 @@ class Chromium:
         )
 
     def run(self, script: str) -> Any:
-        """Return what an expression, or a promise of it, comes to in the page."""
         found = self._ask(
             "Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True
         )
@@ -123,7 +122,6 @@ class Chromium:
         return found["result"].get("value")
 
     def press(self, *keys: str) -> None:
-        """Press keys, by the names in ``KEYS``, or type a text into what has the focus."""
         for key in keys:
             if key not in KEYS:
                 self._ask("Input.insertText", text=key)
@@ -134,7 +132,6 @@ class Chromium:
             self._ask("Input.dispatchKeyEvent", type="keyUp", **about)
 
     def picture(self) -> bytes:
-        """Return what is seen, as PNG."""
         return base64.b64decode(self._ask("Page.captureScreenshot")["data"])
 
     def printed(self) -> bytes:
@@ -232,7 +229,6 @@ class Firefox:
     def open(
         self, page: Path, width: int = 1400, height: int = 1000, *, dark: bool = False
     ) -> None:
-        """Open a file in a window of so many pixels."""
         self._in_chrome(
             "Services.prefs.setIntPref('layout.css.prefers-color-scheme.content-override', arguments[0]);"
             "Services.console.reset();",
@@ -242,7 +238,6 @@ class Firefox:
         self._ask("WebDriver:Navigate", url=page.resolve().as_uri())
 
     def run(self, script: str) -> Any:
-        """Return what an expression, or a promise of it, comes to in the page."""
         found = self._ask(
             "WebDriver:ExecuteScript", script=f"return ({script})", args=[], newSandbox=False
         )["value"]
@@ -253,7 +248,6 @@ class Firefox:
         return found
 
     def press(self, *keys: str) -> None:
-        """Press keys, by the names in ``KEYS``, or type a text into what has the focus."""
         letters = [letter for key in keys for letter in (KEYS[key][2] if key in KEYS else key)]
         both = ({"type": kind, "value": a} for a in letters for kind in ("keyDown", "keyUp"))
         self._ask(
@@ -262,7 +256,6 @@ class Firefox:
         )
 
     def picture(self) -> bytes:
-        """Return what is seen, as PNG."""
         return base64.b64decode(self._ask("WebDriver:TakeScreenshot", full=False)["value"])
 
     def _in_chrome(self, script: str, *arguments: Any) -> Any:
@@ -319,16 +312,52 @@ def _firefox() -> str | None:
     return next((path for name in ("firefox-esr", "firefox") if (path := shutil.which(name))), None)
 
 
-BROWSERS = {
-    "chromium": (Chromium, _chromium()),
-    "firefox": (Firefox, _firefox()),
-}
+BROWSERS = {"chromium": (Chromium, _chromium()), "firefox": (Firefox, _firefox())}
 """Each with the path of its program, or None where there is none."""
 
 QUICK_IN_ONE = pytest.mark.parametrize(
     "browser", ["chromium", pytest.param("firefox", marks=pytest.mark.slow)], indirect=True
 )
 """Marks long tests whose figures and words are seen in both browsers by quick ones."""
+
+
+def put(browser: Browser, place: str, value: object, event: str = "input") -> None:
+    """Give the element at a selector a value, as a person does."""
+    browser.run(
+        f"(() => {{ const field = document.querySelector({json.dumps(place)}); field.focus();"
+        f"field.value = {json.dumps(value)}; field.dispatchEvent(new Event('{event}', {{bubbles: true}})); }})()"
+    )
+
+
+def put_file(browser: Browser, name: str, text: str) -> None:
+    """Open a file in the page of ``rockfrag app``."""
+    browser.run(
+        f"(() => {{ const data = new DataTransfer(); data.items.add(new File([{json.dumps(text)}], '{name}'));"
+        "const file = document.getElementById('file'); file.files = data.files;"
+        "file.dispatchEvent(new Event('change')); })()"
+    )
+
+
+def waited(browser: Browser, script: str) -> None:
+    """Wait until something is so in the page."""
+    until = time.monotonic() + 60
+    while not browser.run(script):
+        assert time.monotonic() < until, (
+            f"{script}: {browser.run('document.body.innerText')[:2000]}"
+        )
+        time.sleep(0.05)
+
+
+def barriers(browser: Browser) -> list[list[str]]:
+    """What axe finds in the page that keeps readers from it; skips where it is not installed."""
+    axe = find_spec("axe_core_python")
+    if axe is None or axe.origin is None:
+        pytest.skip("axe-core-python is not installed")
+    script = (Path(axe.origin).parent / "axe.min.js").read_text(encoding="utf-8")
+    browser.run(f"(() => {{ {script} }})() || 1")
+    return browser.run(
+        "axe.run().then(found => found.violations.map(one => [one.id, one.nodes[0].html]))"
+    )
 
 
 READY = """

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rockfrag.assess.motions import MotionSet
 from rockfrag.records.motion import Motion
 from rockfrag.report.play_page import write_play_page
 from rockfrag.rocking import Block, Stack
@@ -28,6 +29,13 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of a study with pairs, on a floor of a building."""
     study = STUDIES["with and without a plinth on one upper floor"]
     return run(study, tmp_path_factory.mktemp("study")) / "report.html"
+
+
+@pytest.fixture(scope="session")
+def motions(made_motions) -> MotionSet:
+    """Twelve made motions of six records with both components."""
+    made = made_motions(12)
+    return MotionSet(made, made, tuple((i, i + 1) for i in range(0, 12, 2)), "12 made motions")
 
 
 @pytest.fixture(scope="session")

@@ -129,22 +129,26 @@ def run_stages(path: Path) -> Path:
 
 
 TEN = {f"record {number}": f"quake {number // 2}" for number in range(10)}
+TWO, THREE = {"a": "one", "b": "two"}, {"a": "one", "b": "two", "c": "three"}
 MARBLE = {"marble figure": (30.0, 120.0, 110.0), "plinth": (50.0, 60.0, 350.0)}
+WITH_BASE = MARBLE | {"base": (40.0, 20.0, 85.0)}
+FIGURE = {"figure": ("marble figure", None)}
+ON_PLINTH = FIGURE | {"figure on plinth": ("marble figure", "plinth")}
+
+
+def alone(*names: str) -> dict[str, tuple[str | None, ...]]:
+    """Configurations of objects that stand on the floor."""
+    return {name: (name, None) for name in names}
+
 
 STUDIES = {
     "one marble figure, one record": Foreign(
         blocks={"marble figure": MARBLE["marble figure"]},
-        configurations={"figure": ("marble figure", None)},
+        configurations=FIGURE,
         records={"Irpinia": "Irpinia 1980"},
     ),
     "with and without a plinth on one upper floor": Foreign(
-        blocks=MARBLE,
-        configurations={
-            "figure": ("marble figure", None),
-            "figure on plinth": ("marble figure", "plinth"),
-        },
-        records=TEN,
-        floors={"piano nobile": 2},
+        blocks=MARBLE, configurations=ON_PLINTH, records=TEN, floors={"piano nobile": 2}
     ),
     "three cabinets on floors of their own": Foreign(
         blocks={
@@ -152,28 +156,19 @@ STUDIES = {
             "Schrank klein": (50.0, 120.0, 60.0),
             "Vitrine": (40.0, 180.0, 70.0),
         },
-        configurations={
-            "Schrank groß": ("Schrank groß", None),
-            "Schrank klein": ("Schrank klein", None),
-            "Vitrine": ("Vitrine", None),
-        },
+        configurations=alone("Schrank groß", "Schrank klein", "Vitrine"),
         records={"a": "Erste", "b": "Zweite", "c": "Zweite"},
         floors={"Keller": 0, "Dachboden": 3},
     ),
     "pairs of which some never overturn": Foreign(
         blocks={**MARBLE, "urn": (45.0, 90.0, 80.0)},
-        configurations={
-            "figure": ("marble figure", None),
-            "figure on plinth": ("marble figure", "plinth"),
-            "urn": ("urn", None),
-            "urn on plinth": ("urn", "plinth"),
-        },
+        configurations=ON_PLINTH | alone("urn") | {"urn on plinth": ("urn", "plinth")},
         records=dict(list(TEN.items())[:4]),
         content={"amplitudes": {"lowest_g": 0.1, "highest_g": 0.7, "step_percent": 20}},
     ),
     "two bodies under one earthquake": Foreign(
         blocks={"bust": (25.0, 60.0, 45.0), "column": (30.0, 180.0, 200.0)},
-        configurations={"bust": ("bust", None), "column": ("column", None)},
+        configurations=alone("bust", "column"),
         records={"north": "the one", "east": "the one"},
     ),
     "the thesis's bodies, but nobody asks for the thesis": Foreign(
@@ -183,80 +178,64 @@ STUDIES = {
             "T3": (12.4, 62.0, 3.456),
             "P": (18.4, 20.8, 2.3),
         },
-        configurations={
-            "T1": ("T1", None),
-            "T2": ("T2", None),
-            "T3": ("T3", None),
-            "P&T1": ("T1", "P"),
-        },
+        configurations=alone("T1", "T2", "T3") | {"P&T1": ("T1", "P")},
         records={"Friuli": "Friuli", "Gilroy": "Loma Prieta"},
         floors={"GF": 0, "F5": 3},
     ),
     "nothing overturns": Foreign(
         blocks=MARBLE,
-        configurations={
-            "figure": ("marble figure", None),
-            "figure on plinth": ("marble figure", "plinth"),
-        },
-        records={"a": "one", "b": "two"},
+        configurations=ON_PLINTH,
+        records=TWO,
         content={"amplitudes": {"lowest_g": 0.01, "highest_g": 0.05, "step_percent": 20}},
     ),
     "everything overturns at the first step": Foreign(
         blocks={"pivot": (2.0, 150.0, 1.5), "foot": (30.0, 10.0, 20.0)},
         configurations={"pivot": ("pivot", None), "pivot on foot": ("pivot", "foot")},
-        records={"a": "one", "b": "two"},
+        records=TWO,
         content={"amplitudes": {"lowest_g": 0.8, "highest_g": 1.5, "step_percent": 20}},
     ),
     "one amplitude": Foreign(
         blocks={"marble figure": MARBLE["marble figure"]},
-        configurations={"figure": ("marble figure", None)},
-        records={"a": "one", "b": "two"},
+        configurations=FIGURE,
+        records=TWO,
         content={"amplitudes": {"lowest_g": 0.5, "highest_g": 0.55, "step_percent": 20}},
     ),
     "a stack only": Foreign(
         blocks=MARBLE,
         configurations={"figure on plinth": ("marble figure", "plinth")},
-        records={"a": "one", "b": "two", "c": "three"},
+        records=THREE,
     ),
     "two pedestals under one figure": Foreign(
         blocks={**MARBLE, "low plinth": (60.0, 20.0, 180.0)},
-        configurations={
-            "figure": ("marble figure", None),
-            "figure on plinth": ("marble figure", "plinth"),
-            "figure on low plinth": ("marble figure", "low plinth"),
-        },
-        records={"a": "one", "b": "two", "c": "three"},
+        configurations=ON_PLINTH | {"figure on low plinth": ("marble figure", "low plinth")},
+        records=THREE,
     ),
     "a figure on a base on a plinth": Foreign(
-        blocks={**MARBLE, "base": (40.0, 20.0, 85.0)},
-        configurations={
-            "figure": ("marble figure", None),
-            "figure on plinth": ("marble figure", "plinth"),
-            "figure on base on plinth": ("marble figure", "base|plinth"),
-        },
-        records={"a": "one", "b": "two", "c": "three"},
+        blocks=WITH_BASE,
+        configurations=ON_PLINTH | {"figure on base on plinth": ("marble figure", "base|plinth")},
+        records=THREE,
     ),
     "a base between figure and plinth, and nothing else": Foreign(
-        blocks={**MARBLE, "base": (40.0, 20.0, 85.0)},
+        blocks=WITH_BASE,
         configurations={
             "on plinth": ("marble figure", "plinth"),
             "on base": ("marble figure", "base|plinth", "on plinth"),
         },
-        records={"a": "one", "b": "two", "c": "three"},
+        records=THREE,
     ),
     "arrangements compared with each other": Foreign(
-        blocks={**MARBLE, "base": (40.0, 20.0, 85.0)},
+        blocks=WITH_BASE,
         configurations={
             "alone": ("marble figure", None),
             "on plinth": ("marble figure", "plinth"),
             "on base": ("marble figure", "base|plinth", "on plinth"),
         },
-        records={"a": "one", "b": "two", "c": "three"},
+        records=THREE,
     ),
     "a column that may slide, and nothing else": Foreign(
-        blocks={**MARBLE, "base": (40.0, 20.0, 85.0)},
+        blocks=WITH_BASE,
         configurations={"figure on base on plinth": ("marble figure", "base|plinth")},
-        records={"a": "one", "b": "two"},
+        records=TWO,
         content={"friction": {"ground": 0.7, "interface": 0.5}},
     ),
     "names that are hard to print": Foreign(

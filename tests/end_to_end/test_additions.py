@@ -8,13 +8,7 @@ import pandas as pd
 import pytest
 
 from rockfrag import laws, simulate
-from rockfrag.engines.contract import (
-    Support,
-    by_wishes,
-    engines,
-    forget_engine,
-    register_engine,
-)
+from rockfrag.engines.contract import Support, by_wishes, engines, forget_engine, register_engine
 from rockfrag.laws import ratio
 from rockfrag.motions.declared import forget_intensity_measure, intensity_measure
 from rockfrag.outcomes.limit_states import forget_limit_state, limit_state

@@ -3,20 +3,18 @@
 import json
 import random
 import time
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.app.writing import write_app
-from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import make_request, read_request
 from rockfrag.assess.words import five_lines
 from rockfrag.cli import main
 
 from ..app_forms import options_of, some_form
-from .browsers import QUICK_IN_ONE, Browser
+from .browsers import QUICK_IN_ONE, Browser, barriers, put, put_file, waited
 
 FORM = {"width": "25 cm", "height": "1 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
 SETTINGS = {"width": "25 cm", "height": "1 m", "pga": "0.4 g", "return_period": "475"}
@@ -30,34 +28,16 @@ new Promise(done => {
 
 
 @pytest.fixture(scope="module")
-def motions(made_motions) -> MotionSet:
-    made = made_motions(12)
-    pairs = tuple((i, i + 1) for i in range(0, len(made), 2))
-    return MotionSet(made, made, pairs, "12 made motions")
-
-
-@pytest.fixture(scope="module")
 def app_page(motions, tmp_path_factory) -> Path:
     path = tmp_path_factory.mktemp("app") / "assess.html"
     write_app(motions, FORM, path, made=True)
     return path
 
 
-def typed(field: str, text: str) -> str:
-    """A script that types into a field, as a person does."""
-    return (
-        f"(() => {{ const field = document.getElementById('field-{field}'); field.focus();"
-        f"field.value = {json.dumps(text)}; field.dispatchEvent(new Event('input', {{bubbles: true}})); }})()"
-    )
-
-
-def waited(browser: Browser, script: str) -> None:
-    """Wait until something is so in the page."""
-    for _ in range(600):
-        if browser.run(script):
-            return
-        time.sleep(0.05)
-    raise AssertionError(f"{script}: {browser.run('document.body.innerText')[:2000]}")
+def opened(browser: Browser, page: Path) -> None:
+    """Open a page and wait for its first answer."""
+    browser.open(page)
+    assert browser.run(STAGE)
 
 
 def lines_of(browser: Browser) -> list[str]:
@@ -145,8 +125,7 @@ def test_it_loads_nothing(browser, app_page, tmp_path):
     assert browser.run(STAGE)
     assert browser.run("location.protocol") == "file:"
     assert browser.run("window.asked") == []
-    browser.open(app_page)
-    assert browser.run(STAGE)
+    opened(browser, app_page)
     loaded = browser.run("performance.getEntriesByType('resource').map(entry => entry.name)")
     assert [name for name in loaded if not name.startswith("blob:")] == []
     refused = browser.run("fetch('data:,x').then(() => false, () => true)")
@@ -154,10 +133,9 @@ def test_it_loads_nothing(browser, app_page, tmp_path):
 
 
 def test_the_last_key_stroke_is_answered(browser, app_page):
-    browser.open(app_page)
-    assert browser.run(STAGE)
+    opened(browser, app_page)
     for text in ("10 cm", "2 m", "45,5 cm"):
-        browser.run(typed("width", text))
+        put(browser, "#field-width", text)
         time.sleep(0.15)
     waited(browser, "document.getElementById('lines').textContent.includes('45.5 cm')")
     assert browser.run(STAGE)
@@ -167,8 +145,7 @@ def test_the_last_key_stroke_is_answered(browser, app_page):
 
 @QUICK_IN_ONE
 def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
-    browser.open(app_page)
-    assert browser.run(STAGE)
+    opened(browser, app_page)
     for field, text in (
         ("width", "<b>1</b> m"),
         ("mass", "12"),
@@ -179,10 +156,10 @@ def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
         ("cg_offset", "20 cm"),
     ):
         before = browser.run(f"document.getElementById('field-{field}').value")
-        browser.run(typed(field, text))
+        put(browser, f"#field-{field}", text)
         error = "width" if field == "cg_offset" else field
         waited(browser, f"document.getElementById('field-{error}-error').textContent.endsWith('.')")
-        browser.run(typed(field, before))
+        put(browser, f"#field-{field}", before)
         waited(browser, f"!document.getElementById('field-{error}-error').textContent")
     assert browser.run("document.querySelectorAll('main img, main b').length") == 0
     assert browser.console == []
@@ -219,8 +196,7 @@ TRIED = """
 
 @pytest.mark.slow
 def test_hostile_text_in_every_field_gets_a_sentence(browser, app_page):
-    browser.open(app_page)
-    assert browser.run(STAGE)
+    opened(browser, app_page)
     title = browser.run("document.title")
     found = browser.run(TRIED.format(texts=json.dumps(HOSTILE)))
     assert len(found) > 12 * len(HOSTILE)
@@ -255,13 +231,9 @@ def test_a_browser_that_is_not_allowed_to_compute_says_so(
 
 
 def test_sliders_compare_before_and_after(browser, app_page):
-    browser.open(app_page)
-    assert browser.run(STAGE)
+    opened(browser, app_page)
     waited(browser, "document.querySelectorAll('#compared tr').length === 2")
-    browser.run(
-        "(() => { const slide = document.getElementById('slide-width'); slide.value = 40;"
-        "slide.dispatchEvent(new Event('input')); })()"
-    )
+    put(browser, "#slide-width", 40)
     cells = "[...document.querySelectorAll('#compared tr')[1].cells].map(cell => parseFloat(cell.textContent))"
     waited(browser, f"{cells}[2] >= 0")
     _, before, after = browser.run(cells)
@@ -269,13 +241,12 @@ def test_sliders_compare_before_and_after(browser, app_page):
 
 
 def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
-    browser.open(app_page)
-    assert browser.run(STAGE)
+    opened(browser, app_page)
     browser.run(
         "URL.createObjectURL = blob => { blob.text().then(text => { window.saved = text; }); return 'blob:x'; }"
     )
     press = "[...document.querySelectorAll('#tools button')][{}].click()"
-    browser.run(typed("name", "=HYPERLINK(1)"))
+    put(browser, "#field-name", "=HYPERLINK(1)")
     waited(browser, "document.getElementById('lines').textContent.includes('=HYPERLINK')")
     assert browser.run(STAGE)
     browser.run(press.format(0))
@@ -290,14 +261,7 @@ def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
     path.write_text(browser.run("window.saved"))
     request = read_request(path)
     assert (request.objects.block.width, request.hazard[0].measure.imt) == (0.25, "PGA")
-    open_file = (
-        "(() => {{ const data = new DataTransfer(); data.items.add(new File([{}], {}));"
-        "const file = document.getElementById('file'); file.files = data.files;"
-        "file.dispatchEvent(new Event('change')); }})()"
-    )
-    browser.run(
-        open_file.format(json.dumps("width: 30 cm\nheight: 1 m\npga: 0.5 g\n"), "'statue.yaml'")
-    )
+    put_file(browser, "statue.yaml", "width: 30 cm\nheight: 1 m\npga: 0.5 g\n")
     waited(browser, "document.getElementById('field-width').value === '30 cm'")
     for name, text in (
         ("a.yaml", "!!js/function x"),
@@ -305,46 +269,33 @@ def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
         ("a.yaml", "friction: 0.5\n"),
         ("a.csv", "\x00\x01"),
     ):
-        browser.run(open_file.format(json.dumps(text), json.dumps(name)))
+        put_file(browser, name, text)
         waited(browser, "!document.getElementById('file-error').hidden")
         assert browser.run("document.getElementById('file-error').textContent").endswith(".")
 
 
 def test_readers_of_every_kind_can_use_it(browser, app_page):
-    axe = find_spec("axe_core_python")
-    if axe is None or axe.origin is None:
-        pytest.skip("axe-core-python is not installed")
-    script = (Path(axe.origin).parent / "axe.min.js").read_text(encoding="utf-8")
     for width, dark in ((1400, False), (1400, True), (390, False), (390, True)):
         browser.open(app_page, width, 900, dark=dark)
         assert browser.run(STAGE)
         browser.run("document.getElementById('keep').click()")
         waited(browser, "document.querySelectorAll('#objects tr').length === 1")
         browser.run("document.querySelectorAll('details').forEach(one => { one.open = true; })")
-        browser.run(f"(() => {{ {script} }})() || 1")
-        found = browser.run(
-            "axe.run().then(found => found.violations.map(one => [one.id, one.nodes[0].html]))"
-        )
-        assert found == [], (width, dark)
+        assert barriers(browser) == [], (width, dark)
         assert browser.run("document.documentElement.scrollWidth <= innerWidth")
 
 
 def test_a_keyboard_is_enough(browser, app_page):
     """All that is pressed or typed into is of a kind that browsers give to the keyboard."""
-    browser.open(app_page)
-    assert browser.run(STAGE)
+    opened(browser, app_page)
     unreached = "[...document.querySelectorAll('input, select, textarea, button, summary')]"
     assert browser.run(f"{unreached}.filter(one => !one.hidden && one.tabIndex < 0).length") == 0
     assert browser.run("document.querySelectorAll('[onclick], div[role=button]').length") == 0
 
 
 def test_it_speaks_italian(browser, app_page):
-    browser.open(app_page)
-    assert browser.run(STAGE)
-    browser.run(
-        "(() => { const choice = document.getElementById('language'); choice.value = 'it';"
-        "choice.dispatchEvent(new Event('change')); })()"
-    )
+    opened(browser, app_page)
+    put(browser, "#language", "it", "change")
     text = browser.run("document.body.innerText")
     for word in ("Si ribalta?", "Larghezza", "Rischio", "0,4 g"):
         assert word in text

@@ -13,7 +13,7 @@ import pytest
 
 from rockfrag.cli import main
 
-from .browsers import QUICK_IN_ONE, Browser
+from .browsers import QUICK_IN_ONE, Browser, put, put_file, waited
 
 STAGE = "document.body.dataset.stage === 'complete' && !document.querySelector('.stale')"
 LINES = "[...document.querySelectorAll('#lines dd')].map(line => line.textContent)"
@@ -28,14 +28,6 @@ def page(own_records, tmp_path_factory) -> Path:
     )
     assert main(["app", *records, "--output", str(path)]) == 0
     return path
-
-
-def waited(browser: Browser, script: str) -> None:
-    """Wait until something is so in the page."""
-    until = time.monotonic() + 60
-    while not browser.run(script):
-        assert time.monotonic() < until, browser.run("document.body.innerText")[:2000]
-        time.sleep(0.05)
 
 
 def reach(browser: Browser, where: str) -> None:
@@ -106,10 +98,7 @@ def test_a_vase_in_a_gallery_on_a_phone_in_italian(browser, page, tmp_path):
     browser.open(page, 390, 844)
     waited(browser, STAGE)
     reach(browser, "#language")
-    browser.run(
-        "(() => { const choice = document.getElementById('language'); choice.value = 'it';"
-        "choice.dispatchEvent(new Event('change')); })()"
-    )
+    put(browser, "#language", "it", "change")
     type_into(browser, name="Vaso", width="16 cm", height="48 cm", mass="6,5 kg")
     reach(browser, "#form summary")
     browser.press("Enter")
@@ -120,10 +109,7 @@ def test_a_vase_in_a_gallery_on_a_phone_in_italian(browser, page, tmp_path):
     browser.press("26 cm")
     lines = answered(browser, of="Vaso")
     assert "Vaso" in lines[0] and "topple" not in " ".join(lines)
-    browser.run(
-        "(() => { const slide = document.getElementById('slide-width'); slide.value = 30;"
-        "slide.dispatchEvent(new Event('input')); })()"
-    )
+    put(browser, "#slide-width", 30)
     cells = "[...document.querySelectorAll('#compared tr')[1].cells].map(cell => cell.textContent)"
     waited(browser, f"{cells}[2] !== '–'")
     before, after = (float(text.replace(",", ".").split()[0]) for text in browser.run(cells)[1:])
@@ -155,21 +141,14 @@ def test_cabinets_of_a_hospital_with_a_hazard_curve(browser, page, tmp_path):
     type_into(browser, floor="3/5", level=" ", years=" ")
     reach(browser, "#field-hazard")
     # pasted, not typed: a line's end is no key
-    browser.run(
-        f"(() => {{ const field = document.activeElement; field.value = {json.dumps(CURVE)};"
-        "field.dispatchEvent(new Event('input', {bubbles: true})); })()"
-    )
+    put(browser, "#field-hazard", CURVE)
     _, risk, *_ = answered(browser, of="once in 475 years")
     assert "probability" in risk
     seen(browser, tmp_path, "rack")
     reach(browser, "#keep")
     browser.press("Enter")
     waited(browser, "document.querySelectorAll('#objects tr').length === 1")
-    browser.run(
-        f"(() => {{ const data = new DataTransfer(); data.items.add(new File([{json.dumps(LIST)}], 'list.csv'));"
-        "const file = document.getElementById('file'); file.files = data.files;"
-        "file.dispatchEvent(new Event('change')); })()"
-    )
+    put_file(browser, "list.csv", LIST)
     waited(browser, "document.querySelectorAll('#objects tr').length === 4")
     waited(browser, "document.getElementById('file-error').textContent.includes('rows 4')")
     risks = browser.run(

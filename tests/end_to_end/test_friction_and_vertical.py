@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import pytest
 
 import rockfrag.study.study
 from rockfrag.records.motion import read_motion_set
@@ -43,9 +42,7 @@ def table(results: Path, name: str) -> pd.DataFrame:
     return pd.read_parquet(results / f"{name}.parquet")
 
 
-def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(tmp_path, monkeypatch):
     content = {
         "friction": 0.3,
         "amplitudes": {"lowest_g": 0.2, "highest_g": 1.2, "step_percent": 20},

@@ -9,7 +9,7 @@ import pytest
 
 from rockfrag.rocking import Block, Stack, simulate
 
-from .browsers import READY, Browser
+from .browsers import READY, Browser, put
 
 pytestmark = pytest.mark.slow
 
@@ -121,13 +121,6 @@ def test_histories_have_the_bits_of_simulate(browser: Browser, play_page: Path):
     assert 0 < sum(response.overturned for response in responses) < CASES
 
 
-def change(browser: Browser, name: str, value: object, event: str) -> None:
-    place = f"document.querySelector('#live .{name}')"
-    browser.run(
-        f"(() => {{ {place}.value = {json.dumps(value)}; {place}.dispatchEvent(new Event('{event}')); }})()"
-    )
-
-
 def outcome(browser: Browser) -> str:
     return str(browser.run("document.querySelector('#live .outcomes').textContent"))
 
@@ -139,11 +132,11 @@ def test_the_live_outcome_is_that_of_the_table(browser: Browser, report: Path):
     most = int(browser.run("document.querySelector('#live .amplitude').max"))
     seen = []
     for body in range(bodies):
-        change(browser, "body", str(body), "change")
+        put(browser, "#live .body", str(body), "change")
         for motion in ("0", "3", "8"):
-            change(browser, "motion", motion, "change")
+            put(browser, "#live .motion", motion, "change")
             for place in range(0, most + 1, 2):
-                change(browser, "amplitude", str(place), "input")
+                put(browser, "#live .amplitude", str(place))
                 seen.append(outcome(browser))
     assert all(words.endswith("Equal.") and "Not equal" not in words for words in seen)
     assert any("Live: overturns" in words for words in seen)
@@ -155,7 +148,7 @@ def test_another_width_is_another_body_at_once(browser: Browser, report: Path):
     assert browser.run(READY)
     before = outcome(browser)
     assert "Live: overturns" in before
-    change(browser, "sizes input", "48", "input")
+    put(browser, "#live .sizes input", "48")
     assert "Live: stands" in outcome(browser) and "not in the table of the study" in outcome(
         browser
     )
@@ -170,7 +163,7 @@ def test_another_width_is_another_body_at_once(browser: Browser, report: Path):
 def test_dimensions_that_cannot_stand_are_said_to(browser: Browser, play_page: Path):
     browser.open(play_page)
     assert browser.run(READY)
-    change(browser, "sizes input", "900", "input")
+    put(browser, "#live .sizes input", "900")
     assert "edge" in outcome(browser) or "touch" in outcome(browser) or "stand" in outcome(browser)
     assert browser.console == []
 

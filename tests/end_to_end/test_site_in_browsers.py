@@ -5,8 +5,6 @@ from pathlib import Path
 
 import pytest
 
-from .browsers import Browser
-
 pytestmark = pytest.mark.slow
 
 
@@ -19,9 +17,7 @@ def pages_of(site: Path) -> list[Path]:
 @pytest.mark.parametrize(
     ("width", "dark"), [(1400, False), (1400, True), (390, False), (390, True)]
 )
-def test_readers_of_every_kind_can_use_the_site(
-    browser: Browser, site: Path, width: int, dark: bool
-):
+def test_readers_of_every_kind_can_use_the_site(browser, site, width, dark):
     axe = find_spec("axe_core_python")
     if axe is None or axe.origin is None:
         pytest.skip("axe-core-python is not installed")

@@ -1,6 +1,5 @@
 """A body in space rocks live in a page: with the outcomes of the package, by keys, in any width."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,7 @@ from rockfrag.report.part import Answer
 from rockfrag.rocking import Block
 from rockfrag.system.system import turned_about_vertical
 
-from .browsers import Browser
+from .browsers import Browser, put
 
 pytestmark = pytest.mark.slow
 
@@ -58,22 +57,13 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def choose(browser: Browser, name: str, value: object, event: str) -> None:
-    place = f"document.querySelector('#live .{name}')"
-    browser.run(
-        f"(() => {{ {place}.value = {json.dumps(value)}; {place}.dispatchEvent(new Event('{event}')); }})()"
-    )
-
-
 @pytest.mark.parametrize(("body", "system"), [("0", BOX), ("1", VASE)])
-def test_outcomes_over_the_amplitudes_are_those_of_the_package(
-    browser: Browser, page: Path, body: str, system
-):
+def test_outcomes_over_the_amplitudes_are_those_of_the_package(browser, page, body, system):
     from rockfrag.engines.spatial import run_in_space
 
     browser.open(page)
     assert browser.run(READY)
-    choose(browser, "body", body, "change")
+    put(browser, "#live .body", body, "change")
     assert browser.run(READY)
     motion = waves()
     peak = browser.run(
@@ -107,9 +97,9 @@ def test_keys_and_sizes_change_what_is_seen(browser: Browser, page: Path):
     browser.run("document.querySelector('#live .weaker').click()")
     before = browser.run(state)
     assert before.startswith("It stands")
-    choose(browser, "sizes input", "60", "input")
+    put(browser, "#live .sizes input", "60")
     assert browser.run(state) != before
-    choose(browser, "amplitude", "0", "input")
+    put(browser, "#live .amplitude", "0")
     assert browser.run(state) == "It stays at rest."
 
 

@@ -1,6 +1,5 @@
 """Damaged files of an assessment: hazard curves of every kind, statues, and inventories."""
 
-import importlib.util
 import random
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +11,7 @@ from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.request import read_request
 
+from ..assess.samples import SAMPLES
 from .damage import changed, damage
 from .inputs import DUMPER
 
@@ -41,7 +41,7 @@ Attempt = tuple[Path, Callable[[], object]]
 
 def hazard_files(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a hazard file with damaged bytes."""
-    samples = {name: text.encode() for name, text in _samples().items()}
+    samples = {name: text.encode() for name, text in SAMPLES.items()}
 
     def one(rng: random.Random) -> Attempt:
         name = rng.choice(list(samples))
@@ -54,7 +54,7 @@ def hazard_files(folder: Path) -> Callable[[random.Random], Attempt]:
 
 def objects(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a statue, with other values or damaged bytes, or an inventory."""
-    (folder / "table.csv").write_text(_samples()["table.csv"])
+    (folder / "table.csv").write_text(SAMPLES["table.csv"])
     (folder / "building.yaml").write_bytes((ROOT / "config" / "building.yaml").read_bytes())
     texts = [yaml.dump(statue, Dumper=DUMPER, sort_keys=False).encode() for statue in STATUES]
     path, table = folder / "statue.yaml", folder / "inventory.csv"
@@ -74,13 +74,3 @@ def objects(folder: Path) -> Callable[[random.Random], Attempt]:
         return table, lambda: read_inventory(table, {"pga": "0.3 g"})
 
     return one
-
-
-def _samples() -> dict[str, str]:
-    place = ROOT / "tests" / "assess" / "samples.py"
-    spec = importlib.util.spec_from_file_location("hazard_samples", place)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    samples: dict[str, str] = module.SAMPLES
-    return samples

@@ -1,26 +1,34 @@
 """Random draws in parts, one process each, and what came of them."""
 
 import argparse
+import random
+import tempfile
+import traceback
 from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
-
-Part = tuple[int, int, int]
-"""Seed, first number and the number after the last one."""
+from functools import partial
+from pathlib import Path
+from typing import Any
 
 Found = tuple[Counter[int], list[str]]
 """How many ended with each exit status, and what is wrong."""
 
 
 def run_draws(
-    one_part: Callable[[Part], Found], what: str, many: int, size: int, least: float, about: str
+    make: Callable[[random.Random, Path], tuple[Any, Callable[[], tuple[int, list[str]]]]],
+    what: str,
+    many: int,
+    size: int,
+    least: float,
+    about: str,
 ) -> int:
     """Make the draws that the command line asks for; return 0 if nothing is wrong with any.
 
     Parameters
     ----------
-    one_part
-        Makes the draws of one part.
+    make
+        Draws one in a folder: what it is, and what gives its exit status and what is wrong with it.
     what
         What is drawn, in the plural: an option of the command line.
     many
@@ -42,7 +50,7 @@ def run_draws(
     fates: Counter[int] = Counter()
     wrong: list[str] = []
     with ProcessPoolExecutor() as pool:
-        for found, lines in pool.map(one_part, parts):
+        for found, lines in pool.map(partial(_part, make), parts):
             fates += found
             wrong += lines
             print("\n".join([f"{sum(fates.values())} of {asked.many}", *lines]), flush=True)
@@ -52,3 +60,20 @@ def run_draws(
         print("too few of them were answered for this to say anything")
         return 1
     return 1 if wrong else 0
+
+
+def _part(make: Callable[..., Any], part: tuple[int, int, int]) -> Found:
+    """Make the draws of a seed from a number up to another, all in one folder."""
+    seed, first, last = part
+    fates: Counter[int] = Counter()
+    wrong = []
+    with tempfile.TemporaryDirectory(prefix="rockfrag.") as folder:
+        for number in range(first, last):
+            drawn, answer = make(random.Random(f"{seed} {number}"), Path(folder))
+            try:
+                status, found = answer()
+            except Exception:
+                status, found = 1, [traceback.format_exc(limit=-3)]
+            fates[status] += 1
+            wrong += [f"{number}: {drawn}\n    {said}" for said in found]
+    return fates, wrong

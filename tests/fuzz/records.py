@@ -1,10 +1,8 @@
 """Damaged records: every format, archives and catalogues, cut, flipped, doubled and mixed."""
 
 import gzip
-import importlib.util
 import io
 import random
-import sys
 import tarfile
 import zipfile
 from collections.abc import Callable, Iterable
@@ -18,9 +16,8 @@ from rockfrag.records.catalogue import load_motions
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.read import motion_of, read_record
 
+from ..records import built_records
 from .damage import damage
-
-BUILDERS = Path(__file__).resolve().parents[2] / "tests/records/built_records.py"
 
 
 def records(folder: Path) -> Callable[[random.Random], tuple[Path, Callable[[], object]]]:
@@ -65,11 +62,6 @@ def _catalogue_of(path: Path) -> None:
 
 def _seeds(folder: Path) -> Iterable[tuple[str, bytes, Callable[[Path], None]]]:
     """Yield name, content and reader of every kind of input."""
-    spec = importlib.util.spec_from_file_location("built_records", BUILDERS)
-    assert spec is not None and spec.loader is not None
-    built_records = importlib.util.module_from_spec(spec)
-    sys.modules["built_records"] = built_records
-    spec.loader.exec_module(built_records)
     inside = folder / "built"
     inside.mkdir()
     texts = {}
@@ -84,35 +76,22 @@ def _seeds(folder: Path) -> Iterable[tuple[str, bytes, Callable[[Path], None]]]:
         yield name, content, _read_all
         yield f"c-{name}", content, _catalogue_of
     (folder / "a.txt").write_bytes(texts["plain_csv-plain.csv"])
-    row = "A,E,1976-05-06,S,090,6.5,20.1,folder,a.txt,,,\n"
     catalogue = (
         "name,earthquake,date,station,component,magnitude,distance_km,source,file,sha256,unit,dt\n"
-        + row
+        "A,E,1976-05-06,S,090,6.5,20.1,folder,a.txt,,,\n"
     )
-    yield "motions.csv", catalogue.encode(), lambda path: load_motions(path) and None
-    yield (
-        "motions2.csv",
-        catalogue.replace(",", ";").encode(),
-        lambda path: load_motions(path) and None,
-    )
+    for name, text in (("motions.csv", catalogue), ("motions2.csv", catalogue.replace(",", ";"))):
+        yield name, text.encode(), lambda path: load_motions(path) and None
     yield "_SearchResults.csv", built_records.search_results(4).encode(), _catalogue_of
 
 
 def _binary(folder: Path) -> Iterable[tuple[str, bytes]]:
     """Yield records of the formats that ObsPy reads."""
     samples = np.round(1e4 * np.sin(np.arange(400) * 0.1)).astype(np.int32)
-    header = {
-        "station": "ABC",
-        "channel": "HNE",
-        "delta": 0.01,
-        "starttime": UTCDateTime(2019, 7, 6),
-    }
-    for name, kind in (
-        ("a.mseed", "MSEED"),
-        ("a.sac", "SAC"),
-        ("a.gse", "GSE2"),
-        ("a.slist", "SLIST"),
-    ):
+    start = UTCDateTime(2019, 7, 6)
+    header = {"station": "ABC", "channel": "HNE", "delta": 0.01, "starttime": start}
+    kinds = {"a.mseed": "MSEED", "a.sac": "SAC", "a.gse": "GSE2", "a.slist": "SLIST"}
+    for name, kind in kinds.items():
         data = samples.astype(np.float32) if kind == "SAC" else samples
         buffer = io.BytesIO()
         trace = Trace(data.copy(), dict(header))
@@ -122,16 +101,7 @@ def _binary(folder: Path) -> Iterable[tuple[str, bytes]]:
             Stream([trace]).write(str(folder / name), format=kind)
             buffer.write((folder / name).read_bytes())
         yield name, buffer.getvalue()
-    lines = [
-        "Origin Time       2018/01/24 19:51:00", "Lat.              41.0", "Long.             142.5",
-        "Depth. (km)       34", "Mag.              6.3", "Station Code      AOM001",
-        "Station Lat.      41.5", "Station Long.     140.9", "Station Height(m) 10",
-        "Record Time       2018/01/24 19:51:43", "Sampling Freq(Hz) 100Hz", "Duration Time(s)  4",
-        "Dir.              E-W", "Scale Factor      7845(gal)/8223790", "Max. Acc. (gal)   4.1",
-        "Last Correction   2018/01/24 19:51:27", "Memo.",
-    ]  # fmt: skip
-    body = "".join("".join(f"{v:9d}" for v in samples[i : i + 8]) + "\n" for i in range(0, 400, 8))
-    yield "AOM001.EW", ("\n".join(lines) + "\n" + body).encode()
+    yield "AOM001.EW", built_records.knet_text().encode()
 
 
 def _archives(texts: dict[str, bytes]) -> Iterable[tuple[str, bytes]]:

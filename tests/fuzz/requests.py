@@ -8,9 +8,7 @@ Prints how many were answered and refused, and what went wrong; exit status 1 if
 
 import random
 import sys
-import tempfile
-import traceback
-from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +19,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 
 from ..assess import asking, samples
-from .draws import Found, Part, run_draws
+from .draws import run_draws
 
 EARTHQUAKES = 6
 PART = 50
@@ -32,32 +30,25 @@ LEAST_ANSWERED = 0.25
 
 def main() -> int:
     """Run the draws; return 0 if every answer agreed with itself."""
-    return run_draws(_part, "requests", 2000, PART, LEAST_ANSWERED, __doc__)
+    return run_draws(_request, "requests", 2000, PART, LEAST_ANSWERED, __doc__)
 
 
-def _part(part: Part) -> Found:
-    seed, first, last = part
-    fates: Counter[int] = Counter()
-    wrong = []
-    with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
-        folder = Path(scratch)
-        records = write_records(folder)
-        (folder / "hazard.csv").write_text(samples.table_csv())
-        for number in range(first, last):
-            rng = random.Random(f"{seed} {number}")
-            asked = asking.request(rng, records, folder / "hazard.csv")
-            try:
-                status, out, err = asking.answered(asked, folder / "answer")
-                found = asking.contradictions(status, out, err)
-            except Exception:
-                status, found = 1, [traceback.format_exc(limit=-3)]
-            fates[status] += 1
-            wrong += [f"{number}: {' '.join(asked)}\n    {item}" for item in found]
-    return fates, wrong
+def _request(rng: random.Random, folder: Path) -> tuple[str, Callable[[], tuple[int, list[str]]]]:
+    records, hazard = folder / "catalogue.csv", folder / "hazard.csv"
+    if not hazard.exists():
+        write_records(folder)
+        hazard.write_text(samples.table_csv())
+    asked = asking.request(rng, records, hazard)
+
+    def answer() -> tuple[int, list[str]]:
+        status, out, err = asking.answered(asked, folder / "answer")
+        return status, asking.contradictions(status, out, err)
+
+    return " ".join(asked), answer
 
 
-def write_records(folder: Path) -> Path:
-    """Write a catalogue of short records of noise, one an earthquake and two a station; return its path."""
+def write_records(folder: Path) -> None:
+    """Write a catalogue of short records of noise, one an earthquake and two a station."""
     rng = np.random.default_rng(0)
     rows = ["name,earthquake,station,file,unit"]
     for i in range(EARTHQUAKES):
@@ -66,9 +57,7 @@ def write_records(folder: Path) -> Path:
         values = zip(motion.time, motion.acceleration / GRAVITY, strict=True)
         (folder / f"{i}.txt").write_text("".join(f"{t:.2f} {a:.7f}\n" for t, a in values))
         rows.append(f"noise {i},earthquake {i},station {i // 2},{i}.txt,g")
-    place = folder / "catalogue.csv"
-    place.write_text("\n".join(rows) + "\n")
-    return place
+    (folder / "catalogue.csv").write_text("\n".join(rows) + "\n")
 
 
 if __name__ == "__main__":

@@ -9,13 +9,14 @@ wrong; exit status 1 if anything did.
 
 import random
 import sys
-import tempfile
-import traceback
-from collections import Counter
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
 
 from ..end_to_end import asking_studies
-from .draws import Found, Part, run_draws
+from .draws import run_draws
 
 PART = 10
 
@@ -25,23 +26,12 @@ LEAST_RUN = 0.4
 
 def main() -> int:
     """Run the draws; return 0 if every answer agreed with itself."""
-    return run_draws(_part, "studies", 500, PART, LEAST_RUN, __doc__)
+    return run_draws(_study, "studies", 500, PART, LEAST_RUN, __doc__)
 
 
-def _part(part: Part) -> Found:
-    seed, first, last = part
-    fates: Counter[int] = Counter()
-    wrong = []
-    for number in range(first, last):
-        study = asking_studies.draw(random.Random(f"{seed} {number}"))
-        with tempfile.TemporaryDirectory(prefix="rockfrag.") as folder:
-            try:
-                status, found = asking_studies.fate(study, Path(folder))
-            except Exception:
-                status, found = 1, [traceback.format_exc(limit=-3)]
-        fates[status] += 1
-        wrong += [f"{number}: {study}\n    {said}" for said in found]
-    return fates, wrong
+def _study(rng: random.Random, folder: Path) -> tuple[Any, Callable[[], tuple[int, list[str]]]]:
+    study = asking_studies.draw(rng)
+    return study, partial(asking_studies.fate, study, Path(mkdtemp(dir=folder)))
 
 
 if __name__ == "__main__":

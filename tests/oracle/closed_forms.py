@@ -5,7 +5,6 @@ Unless it says otherwise a formula belongs to the slender linearised equation (H
 """
 
 import math
-from dataclasses import dataclass
 
 from scipy.integrate import quad
 from scipy.optimize import brentq
@@ -52,27 +51,9 @@ def one_cosine_pulse(omega: float, p: float) -> float:
     return (1 + (omega / p) ** 2) / -math.expm1(-2 * math.pi * p / omega)
 
 
-def west_acceleration(block: Block, g: float = GRAVITY) -> float:
-    """Least acceleration that starts rocking, and the one West's formula overturns at, (b/h) g [m/s²].
+def ishiyama_bounds(block: Block, g: float = GRAVITY) -> tuple[float, float]:
+    """Least peak acceleration [m/s²] and velocity [m/s] of a motion that may overturn (Ishiyama 1982).
 
-    Milne & Omori (1893), Kirkpatrick (1927).
+    a ≥ (B/H) g and v ≥ 10 B/√H with lengths in cm: with B and H in metres B/√H m/s, for the Earth's gravity.
     """
-    return min(abs(block.arm(s).x) / block.arm(s).y for s in (1, -1)) * g
-
-
-@dataclass(frozen=True)
-class LowerBounds:
-    """Least peak acceleration [m/s²] and velocity [m/s] of a motion that may overturn."""
-
-    acceleration: float
-    velocity: float
-
-
-def ishiyama_bounds(block: Block, g: float = GRAVITY) -> LowerBounds:
-    """Lower bounds of overturning, a ≥ (B/H) g and v ≥ 10 B/√H with lengths in cm (Ishiyama 1982).
-
-    With B and H in metres the velocity is B/√H m/s, which holds for the Earth's gravity.
-    """
-    return LowerBounds(
-        acceleration=block.width / block.height * g, velocity=block.width / math.sqrt(block.height)
-    )
+    return block.width / block.height * g, block.width / math.sqrt(block.height)

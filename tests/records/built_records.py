@@ -831,6 +831,20 @@ BUILDERS: dict[str, Callable[[Path], Built]] = {
 """Every function above that makes a record in a folder."""
 
 
+def knet_text() -> str:
+    """Return four seconds of K-NET at 100 Hz, which ObsPy reads."""
+    lines = [
+        "Origin Time       2018/01/24 19:51:00", "Lat.              41.0", "Long.             142.5",
+        "Depth. (km)       34", "Mag.              6.3", "Station Code      AOM001",
+        "Station Lat.      41.5", "Station Long.     140.9", "Station Height(m) 10",
+        "Record Time       2018/01/24 19:51:43", "Sampling Freq(Hz) 100Hz", "Duration Time(s)  4",
+        "Dir.              E-W", "Scale Factor      7845(gal)/8223790", "Max. Acc. (gal)   4.1",
+        "Last Correction   2018/01/24 19:51:27", "Memo.",
+    ]  # fmt: skip
+    samples = np.round(1e4 * np.sin(np.arange(400) * 0.1))
+    return "\n".join([*lines, rows(samples, 8, lambda v: f"{int(v):9d}")])
+
+
 def search_results(count: int) -> str:
     """Return the ``_SearchResults.csv`` of a download of ``count`` records of PEER's database."""
     lines = [

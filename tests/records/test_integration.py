@@ -11,10 +11,10 @@ from rockfrag.records.integration import integrate, peak_displacement, peak_velo
 from rockfrag.units import GRAVITY
 
 TABLE_3_3 = [
-    ("Friuli", 0.35, 22.020, 4.067),
-    ("Kobe", 0.34, 27.678, 9.694),
-    ("Loma_Prieta", 0.37, 44.703, 19.615),
-    ("Northridge", 0.57, 52.013, 9.035),
+    ("Friuli", 3633, 0.35, 22.020, 4.067),
+    ("Kobe", 4091, 0.34, 27.678, 9.694),
+    ("Loma_Prieta", 3991, 0.37, 44.703, 19.615),
+    ("Northridge", 3989, 0.57, 52.013, 9.035),
 ]
 
 # a drawing of whole thousandths keeps zeros and repeated values likely and overflow impossible
@@ -23,9 +23,10 @@ accelerations = st.lists(st.integers(-5000, 5000), min_size=2, max_size=30).map(
 )
 
 
-@pytest.mark.parametrize(("name", "pga_g", "pgv_cm_s", "pgd_cm"), TABLE_3_3)
-def test_table_3_3_to_the_printed_digit(four_records, name, pga_g, pgv_cm_s, pgd_cm):
+@pytest.mark.parametrize(("name", "npts", "pga_g", "pgv_cm_s", "pgd_cm"), TABLE_3_3)
+def test_table_3_3_to_the_printed_digit(four_records, name, npts, pga_g, pgv_cm_s, pgd_cm):
     motion = four_records[name]
+    assert motion.acceleration.size == npts
     assert round(motion.pga / GRAVITY, 2) == pga_g
     assert round(100 * peak_velocity(motion.acceleration, motion.dt), 3) == pgv_cm_s
     assert round(100 * peak_displacement(motion.acceleration, motion.dt), 3) == pgd_cm

@@ -12,6 +12,8 @@ from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import read_motion, read_record
 
+from .built_records import knet_text
+
 PEER = "PEER STRONG MOTION\nQUAKE, PLACE, 090\nACCELERATION IN UNITS OF G\n{size}\n 1.0 2.0 3.0\n"
 
 
@@ -91,19 +93,8 @@ class TestCutShort:
     @pytest.fixture
     def knet(self, tmp_path):
         """Four seconds of K-NET at 100 Hz."""
-        lines = [
-            "Origin Time       2018/01/24 19:51:00", "Lat.              41.0",
-            "Long.             142.5", "Depth. (km)       34", "Mag.              6.3",
-            "Station Code      AOM001", "Station Lat.      41.5", "Station Long.     140.9",
-            "Station Height(m) 10", "Record Time       2018/01/24 19:51:43",
-            "Sampling Freq(Hz) 100Hz", "Duration Time(s)  4", "Dir.              E-W",
-            "Scale Factor      7845(gal)/8223790", "Max. Acc. (gal)   4.1",
-            "Last Correction   2018/01/24 19:51:27", "Memo.",
-        ]  # fmt: skip
-        samples = np.round(1e4 * np.sin(np.arange(400) * 0.1)).astype(int)
-        rows = ["".join(f"{v:9d}" for v in samples[i : i + 8]) for i in range(0, 400, 8)]
         path = tmp_path / "AOM001.EW"
-        path.write_text("\n".join([*lines, *rows]) + "\n")
+        path.write_text(knet_text())
         return path
 
     def test_a_k_net_file_is_held_to_its_duration(self, knet):

@@ -18,9 +18,7 @@ def test_a_page_is_printed_beside_itself(tmp_path: Path):
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
 
 
-def test_without_a_page_or_a_browser_one_sentence_says_what_to_do(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_without_a_page_or_a_browser_one_sentence_says_what_to_do(tmp_path, monkeypatch):
     page = tmp_path / "report.html"
     with pytest.raises(InputError, match="run the study first"):
         pdf.print_page(page)

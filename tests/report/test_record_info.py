@@ -5,12 +5,7 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.report.record_info import (
-    COLUMNS,
-    describe_files,
-    draw_record,
-    record_figure,
-)
+from rockfrag.report.record_info import COLUMNS, describe_files, draw_record, record_figure
 
 
 @pytest.fixture

@@ -36,9 +36,7 @@ NAN, INF = math.nan, math.inf
         (INF, 1.0, INF, "–"),
     ],
 )
-def test_an_estimate_has_limits_only_where_they_say_something(
-    value: float, lower: float, upper: float, words: str
-):
+def test_an_estimate_has_limits_only_where_they_say_something(value, lower, upper, words):
     assert estimate(value, lower, upper, 2) == words
 
 

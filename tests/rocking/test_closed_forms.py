@@ -175,12 +175,12 @@ def test_no_simulated_block_overturns_below_ishiyamas_bounds() -> None:
         block = uniform(rng.uniform(2.5, 5), rng.uniform(0.12, 0.3))
         motion = random_motion(rng, 200, 0.01)
         velocity = np.concatenate([[0], np.cumsum((motion[1:] + motion[:-1]) / 2 * 0.01)])
-        bounds = formulas.ishiyama_bounds(block)
+        acceleration, bound = formulas.ishiyama_bounds(block)
         if simulate(block, motion, 0.01).overturned:
             fallen += 1
-            assert np.abs(motion).max() >= bounds.acceleration
+            assert np.abs(motion).max() >= acceleration
             # the bound is an envelope of simulations of earthquakes: it is met within a tenth
-            assert np.abs(velocity).max() >= 0.9 * bounds.velocity
+            assert np.abs(velocity).max() >= 0.9 * bound
     assert fallen >= 3
 
 
@@ -190,7 +190,3 @@ def test_housners_velocity_is_of_the_order_of_fema_s_vertical_files() -> None:
         file = Block(depth * inch, 52 * inch, 100.0)
         found = cf.housner_velocity(file.alpha, file.frequency())
         assert median / 2 < found < 2 * median
-
-
-def test_west_is_the_threshold_of_motion() -> None:
-    assert formulas.west_acceleration(T2) == pytest.approx(9.81 / 4)

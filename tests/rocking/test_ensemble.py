@@ -60,12 +60,6 @@ def test_threads_do_not_change_a_bit(whole, threads):
     same(whole, overturns(BODIES, MOTIONS, benchmark_cases.DT, SCALES, threads=threads))
 
 
-def test_parts_give_the_bits_of_the_whole(whole):
-    for k in range(SCALES.shape[1]):
-        part = overturns(BODIES, MOTIONS, benchmark_cases.DT, SCALES[:, k : k + 1], threads=1)
-        same(picked(whole, slice(None), slice(None), slice(k, k + 1)), part)
-
-
 def test_order_does_not_change_a_bit(whole):
     rng = np.random.default_rng(3)
     i, j, k = (rng.permutation(n) for n in whole.overturned.shape)

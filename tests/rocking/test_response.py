@@ -47,11 +47,6 @@ def response(request: pytest.FixtureRequest) -> Response:
     return found
 
 
-def test_an_opening_does_not_change_the_energy(response: Response) -> None:
-    openings = response.contact_events.query("kind == 'opening'")
-    assert (openings["energy_after"] == openings["energy_before"]).all()
-
-
 def test_velocity_is_continuous_where_there_is_no_impact(response: Response) -> None:
     for _, contact_event in response.contact_events.query("kind == 'opening'").iterrows():
         assert contact_event["omega_before"] == contact_event["omega_after"]
@@ -64,20 +59,6 @@ def test_velocity_is_continuous_where_there_is_no_impact(response: Response) -> 
     mean = 0.5 * (response.alpha[1:] + response.alpha[:-1])[quiet - 1] * DT
     jump = np.abs(np.diff(response.alpha, axis=0))[quiet - 1].max() * DT
     assert np.abs(step - mean).max() < 0.5 * jump + 1e-3
-
-
-def test_the_energy_energy_balance_closes(response: Response) -> None:
-    energy = response.energy
-    scale = energy["kinetic"].max() + energy["input"].abs().max()
-    assert energy["residual"].abs().max() < 1e-6 * scale
-    columns = [f"lost_contact_{k + 1}" for k in range(response.system.count)]
-    for column in columns:
-        assert (np.diff(energy[column]) >= -1e-15 * scale).all()
-    lost = (
-        response.contact_events["energy_before"] - response.contact_events["energy_after"]
-    ).sum()
-    total = energy[columns].iloc[-1].sum()
-    assert total == pytest.approx(lost, rel=1e-9)
 
 
 @pytest.mark.parametrize("body", [*BODIES, T1, T3])

@@ -4,28 +4,26 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def snakemake(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+SNAKEFILE = str(ROOT / "workflow" / "Snakefile")
+LAUNCHER = [sys.executable, str(ROOT / "workflow" / "run.py")]
+
+
+def called(folder: Path, *command: str, **more: Any) -> subprocess.CompletedProcess[str]:
+    """Run a command in a folder and return what it said."""
     return subprocess.run(
-        [
-            *(
-                sys.executable,
-                "-m",
-                "snakemake",
-                "--snakefile",
-                str(ROOT / "workflow" / "Snakefile"),
-            ),
-            *("--directory", str(folder), "--configfile", str(folder / "study.yaml")),
-            *arguments,
-        ],
-        capture_output=True,
-        text=True,
-        timeout=500,
-        check=False,
+        command, cwd=folder, capture_output=True, text=True, timeout=900, check=False, **more
     )
+
+
+def snakemake(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    study = ("--directory", str(folder), "--configfile", str(folder / "study.yaml"))
+    command = (sys.executable, "-m", "snakemake", "--snakefile", SNAKEFILE)
+    return called(ROOT, *command, *study, *arguments)
 
 
 def tables_of(folder: Path) -> dict[str, bytes]:
@@ -39,18 +37,11 @@ def tables_of(folder: Path) -> dict[str, bytes]:
 
 def run_locally_and_with(folder: Path, *arguments: str) -> str:
     """Run a study here, then from nothing with more arguments; the bytes must agree. Return what was said."""
-    launcher = [sys.executable, str(ROOT / "workflow" / "run.py"), "study.yaml"]
-    subprocess.run([*launcher, "--cores", "2"], cwd=folder, check=True, capture_output=True)
+    here = called(folder, *LAUNCHER, "study.yaml", "--cores", "2")
+    assert here.returncode == 0, here.stderr[-3000:]
     wanted = tables_of(folder)
     shutil.rmtree(folder / "results")
-    done = subprocess.run(
-        [*launcher, *arguments],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=900,
-        check=False,
-    )
+    done = called(folder, *LAUNCHER, "study.yaml", *arguments)
     assert done.returncode == 0, done.stderr[-3000:]
     assert tables_of(folder) == wanted
     return done.stderr

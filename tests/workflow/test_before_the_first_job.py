@@ -2,7 +2,6 @@
 
 import hashlib
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -22,7 +21,7 @@ from rockfrag.yaml_file import read_yaml
 
 from .conftest import study_content, write_study
 from .measured_example import write_example, write_synthetic
-from .running import ROOT, snakemake
+from .running import ROOT, SNAKEFILE, called, snakemake
 
 
 def said(capsys: pytest.CaptureFixture[str], path: Path) -> str:
@@ -49,9 +48,7 @@ def said(capsys: pytest.CaptureFixture[str], path: Path) -> str:
         ("study: " + "x" * 5000 + "\n", "key"),
     ],
 )
-def test_a_file_that_is_wrong_yaml_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, words: str
-):
+def test_a_file_that_is_wrong_yaml_is_refused(tmp_path, capsys, text, words):
     path = tmp_path / "study.yaml"
     path.write_text(text)
     assert words in said(capsys, path)
@@ -72,9 +69,7 @@ def test_dates_and_numbers_as_keys_are_texts(tmp_path: Path):
 
 
 @pytest.mark.parametrize("key", ["building", "shaker"])
-def test_a_building_or_shaker_that_is_no_text_is_refused(
-    study_folder: Path, capsys: pytest.CaptureFixture[str], key: str
-):
+def test_a_building_or_shaker_that_is_no_text_is_refused(study_folder, capsys, key):
     (study_folder / "other.yaml").write_bytes(b"name: \xff\xfe\n")
     path = write_study(study_folder, {**study_content(), key: "other.yaml"})
     assert "other.yaml: is not UTF-8" in said(capsys, path)
@@ -98,9 +93,7 @@ def test_a_building_or_shaker_that_is_no_text_is_refused(
         ({"compare_with": "someone"}, "compare_with"),
     ],
 )
-def test_values_that_would_fail_in_a_job_are_refused(
-    study_folder: Path, capsys: pytest.CaptureFixture[str], change: dict, words: str
-):
+def test_values_that_would_fail_in_a_job_are_refused(study_folder, capsys, change, words):
     assert words in said(capsys, write_study(study_folder, {**study_content(), **change}))
 
 
@@ -131,9 +124,7 @@ def test_an_absent_record_is_named(study_folder: Path, capsys: pytest.CaptureFix
     assert "record3.txt" in said(capsys, study_folder / "study.yaml")
 
 
-def test_a_record_that_cannot_be_read_is_named_by_command_and_workflow(
-    study_folder: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_a_record_that_cannot_be_read_is_named_by_command_and_workflow(study_folder, capsys):
     (study_folder / "record3.txt").write_text("no record at all\n")
     sentence = said(capsys, study_folder / "study.yaml")
     assert "motion 3" in sentence
@@ -144,18 +135,14 @@ def test_a_record_that_cannot_be_read_is_named_by_command_and_workflow(
     assert not (study_folder / "results").exists()
 
 
-def test_a_record_that_is_not_the_one_of_its_digest_is_named(
-    study_folder: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_a_record_that_is_not_the_one_of_its_digest_is_named(study_folder, capsys):
     wrong = hashlib.sha256(b"another").hexdigest()
     table = study_folder / "motions.csv"
     table.write_text(table.read_text().replace("record3.txt,,", f"record3.txt,{wrong},"))
     assert "SHA-256" in said(capsys, study_folder / "study.yaml")
 
 
-def test_a_record_in_cm_s2_that_is_taken_for_m_s2_is_refused(
-    study_folder: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_a_record_in_cm_s2_that_is_taken_for_m_s2_is_refused(study_folder, capsys):
     record = study_folder / "record3.txt"
     rows = [line.split() for line in record.read_text().splitlines()]
     record.write_text("\n".join(f"{t} {981 * float(a):.4f}" for t, a in rows) + "\n")
@@ -166,12 +153,9 @@ def test_a_record_in_cm_s2_that_is_taken_for_m_s2_is_refused(
 
 
 @pytest.mark.parametrize(
-    "columns",
-    [{"overturned": "fell"}, {"overturned": "overturned", "earthquake": "quake"}],
+    "columns", [{"overturned": "fell"}, {"overturned": "overturned", "earthquake": "quake"}]
 )
-def test_a_column_that_a_measured_table_lacks_is_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], columns: dict
-):
+def test_a_column_that_a_measured_table_lacks_is_named(tmp_path, capsys, columns):
     write_synthetic(tmp_path)
     sentence = said(capsys, write_example(tmp_path, "synthetic.csv", columns=columns))
     assert "expected a column of" in sentence
@@ -180,9 +164,7 @@ def test_a_column_that_a_measured_table_lacks_is_named(
         load_any(write_example(tmp_path, "synthetic.csv", measures={"pgv_cm_s": ["pgv"]}))
 
 
-def test_a_study_does_not_overwrite_the_results_of_another(
-    study_folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-):
+def test_a_study_does_not_overwrite_the_results_of_another(study_folder, capsys, monkeypatch):
     monkeypatch.chdir(study_folder)
     other = study_folder / "other.yaml"
     other.write_text((study_folder / "study.yaml").read_text())
@@ -219,9 +201,7 @@ def test_blocks_are_the_same_in_whatever_unit_and_separator(tmp_path: Path, tabl
         ("name,width_m,height_m,mass_kg\nA,35 kg,1.2,180\n", "expected a length"),
     ],
 )
-def test_a_block_with_a_wrong_unit_is_refused_with_the_number(
-    tmp_path: Path, table: str, words: str
-):
+def test_a_block_with_a_wrong_unit_is_refused_with_the_number(tmp_path, table, words):
     path = tmp_path / "bodies.csv"
     path.write_text(table)
     with pytest.raises(InputError) as caught:
@@ -249,18 +229,14 @@ def test_names_become_files_that_stay_in_their_folder_and_apart():
             distinct_file_names([first, second])
 
 
-def test_a_file_whose_name_the_workflow_cannot_use_is_refused(
-    study_folder: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_a_file_whose_name_the_workflow_cannot_use_is_refused(study_folder, capsys):
     (study_folder / "record3.txt").rename(study_folder / "record{3}.txt")
     table = study_folder / "motions.csv"
     table.write_text(table.read_text().replace("record3.txt", "record{3}.txt"))
     assert "curly brackets" in said(capsys, study_folder / "study.yaml")
 
 
-def test_a_failed_job_is_one_sentence_and_the_path_of_its_log(
-    study_folder: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_failed_job_is_one_sentence_and_the_path_of_its_log(study_folder, monkeypatch):
     # a machine whose numba cannot be imported, which no check of the study can see
     (study_folder / "sitecustomize.py").write_text("import sys\nsys.modules['numba'] = None\n")
     monkeypatch.setenv("PYTHONPATH", str(study_folder))
@@ -282,23 +258,9 @@ def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
         "import importlib.util as util, sys\nfind = util.find_spec\nutil.find_spec = lambda name, *rest: None "
         "if name == 'rockfrag' else find(name, *rest)\nfrom snakemake.cli import main\nmain()\n"
     )
-    done = subprocess.run(
-        [
-            *(
-                sys.executable,
-                "-c",
-                program,
-                "--snakefile",
-                str(ROOT / "workflow" / "Snakefile"),
-                "--dry-run",
-            ),
-            *("--directory", str(study_folder), "--configfile", str(study_folder / "study.yaml")),
-        ],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    study = ("--directory", str(study_folder), "--configfile", str(study_folder / "study.yaml"))
+    command = (sys.executable, "-c", program, "--snakefile", SNAKEFILE, "--dry-run")
+    done = called(ROOT, *command, *study)
     assert done.returncode == 0, done.stderr[-2000:]
     assert "results/tiny/report.html" in done.stdout + done.stderr
     assert "rule study" in done.stdout + done.stderr
@@ -323,17 +285,13 @@ def test_the_schema_is_one_file_for_everything_that_yaml_says():
         (b"# " + b"x" * 300_000, "larger than 256 KiB"),
     ],
 )
-def test_what_is_no_text_or_no_plain_data_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], content: bytes, words: str
-):
+def test_what_is_no_text_or_no_plain_data_is_refused(tmp_path, capsys, content, words):
     path = tmp_path / "study.yaml"
     path.write_bytes(content)
     assert words in said(capsys, path)
 
 
-def test_folders_and_devices_are_no_configuration(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_folders_and_devices_are_no_configuration(tmp_path, capsys):
     assert "folder or a device" in said(capsys, tmp_path)
     assert "folder or a device" in said(capsys, Path("/dev/zero"))
 
@@ -350,9 +308,7 @@ def test_values_are_those_of_yaml_1_2(tmp_path: Path):
 
 
 @pytest.mark.parametrize("name", ["=1+1", "-rf", "+1", "@SUM(A1)"])
-def test_names_that_begin_as_formulas_are_refused(
-    study_folder: Path, capsys: pytest.CaptureFixture[str], name: str
-):
+def test_names_that_begin_as_formulas_are_refused(study_folder, capsys, name):
     table = study_folder / "specimens.csv"
     table.write_text(table.read_text().replace("T2,", f"{name},"))
     assert "begins as a formula" in said(capsys, study_folder / "study.yaml")
@@ -377,9 +333,7 @@ def test_fetched_files_stay_in_the_folder(tmp_path: Path, capsys: pytest.Capture
         assert "outside of this folder" in said(capsys, write_study(tmp_path, content))
 
 
-def test_whole_numbers_beyond_all_files_are_refused(
-    study_folder: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_whole_numbers_beyond_all_files_are_refused(study_folder, capsys):
     assert "key seed: expected a number of at most" in said(
         capsys, write_study(study_folder, {**study_content(), "seed": 10**300})
     )

@@ -62,9 +62,7 @@ def test_the_thesis_has_72_tests():
         (lambda c: c.update(fragility=None), ["fragility", "mapping"]),
     ],
 )
-def test_a_wrong_key_or_value_is_named_with_what_was_expected(
-    study_folder: Path, change: Change, words: list[str]
-):
+def test_a_wrong_key_or_value_is_named_with_what_was_expected(study_folder, change, words):
     content = copy.deepcopy(study_content())
     change(content)
     message = refusal(study_folder, content)
@@ -94,9 +92,7 @@ def test_a_wrong_key_or_value_is_named_with_what_was_expected(
         ),
     ],
 )
-def test_a_wrong_cell_is_named_with_line_and_column(
-    study_folder: Path, table: str, words: list[str]
-):
+def test_a_wrong_cell_is_named_with_line_and_column(study_folder, table, words):
     (study_folder / "specimens.csv").write_text(table)
     message = refusal(study_folder, study_content())
     for word in words:
@@ -157,9 +153,7 @@ ANYTHING = st.recursive(
     value=ANYTHING,
 )
 @example(key="motions", value={"\n": None})
-def test_no_value_of_any_key_gives_anything_but_a_study_or_one_sentence(
-    study_folder: Path, key: str, value: object
-):
+def test_no_value_of_any_key_gives_anything_but_a_study_or_one_sentence(study_folder, key, value):
     content = {**study_content(), key: value}
     try:
         study_from(content, study_folder / "study.yaml")

@@ -123,9 +123,7 @@ def test_the_vertical_component_is_the_catalogues_with_the_factor_of_its_row(wit
     assert up.pga == pytest.approx(2 * motion.pga / 2, rel=1e-3)
 
 
-def test_check_config_reads_the_vertical_components_too(
-    with_vertical: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_check_config_reads_the_vertical_components_too(with_vertical, capsys):
     path = write_study(with_vertical, {**study_content(), "vertical": True})
     assert main(["check-config", str(path)]) == 0
     (with_vertical / "up1.txt").write_text("Not a record.\n")

@@ -23,9 +23,7 @@ from rockfrag.stages.running import RUN
 from rockfrag.stages.same_numbers import same_numbers
 
 from .conftest import study_content, write_study
-from .running import ROOT, tables_of
-
-LAUNCHER = ROOT / "workflow" / "run.py"
+from .running import LAUNCHER, ROOT, called, tables_of
 
 WITHOUT_FLOCK = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP)
 """What the system says of locks where there are none, as on some network drives."""
@@ -34,10 +32,7 @@ WITHOUT_FLOCK = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP)
 def program(text: str, **more: str) -> subprocess.Popen[str]:
     """Start a program in Python that says when it is there."""
     process = subprocess.Popen(
-        [sys.executable, "-c", text],
-        env={**os.environ, **more},
-        stdout=subprocess.PIPE,
-        text=True,
+        [sys.executable, "-c", text], env={**os.environ, **more}, stdout=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
     assert process.stdout.readline().strip() == "there"
@@ -91,9 +86,7 @@ def test_a_killed_run_leaves_neither_a_lock_nor_half_written_files(tmp_path: Pat
 
 
 @pytest.mark.parametrize("number", WITHOUT_FLOCK, ids=errno.errorcode.get)
-def test_where_there_are_no_locks_nobody_waits(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
-):
+def test_where_there_are_no_locks_nobody_waits(tmp_path, monkeypatch, number):
     def refused(*_: object) -> None:
         raise OSError(number, os.strerror(number))
 
@@ -192,9 +185,7 @@ def test_what_a_machine_lacks_is_said_in_a_sentence(error: Exception, words: str
     assert "\n" not in in_words(error)
 
 
-def test_a_job_that_may_not_write_its_log_says_so(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_a_job_that_may_not_write_its_log_says_so(tmp_path, capsys):
     (tmp_path / "file").write_text("")
     with pytest.raises(SystemExit), logged(str(tmp_path / "file" / "x.log"), "ida"):
         pass
@@ -210,18 +201,16 @@ def test_a_run_that_may_not_have_the_memory_it_needs_says_so_at_once(mebibytes: 
     # of this process alone, as a limit that was lowered is not raised again
     program = (
         f"import resource, runpy, sys; resource.setrlimit(resource.RLIMIT_AS, ({mebibytes << 20},) * 2); "
-        f"sys.argv = ['run.py', 'no.yaml']; runpy.run_path({str(LAUNCHER)!r}, run_name='__main__')"
+        f"sys.argv = ['run.py', 'no.yaml']; runpy.run_path({LAUNCHER[1]!r}, run_name='__main__')"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=False
-    )
+    done = called(ROOT, sys.executable, "-c", program)
     assert done.returncode == 2
     assert done.stderr.startswith(f"a process may reserve {mebibytes} MiB of memory here")
     assert done.stderr.count("\n") == 1
 
 
 def test_a_folder_of_results_that_may_not_be_written_is_named_before_the_first_job(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path, monkeypatch
 ):
     figures = tmp_path / "results" / "tiny" / "figures"
     check_folders(figures.parent)
@@ -235,7 +224,7 @@ def test_a_folder_of_results_that_may_not_be_written_is_named_before_the_first_j
 
 @pytest.mark.slow
 def test_a_run_killed_at_any_level_ends_in_the_same_bytes(study_folder: Path):
-    command = [sys.executable, str(LAUNCHER), "study.yaml", "--cores", "2"]
+    command = [*LAUNCHER, "study.yaml", "--cores", "2"]
     wanted = None
     for wait in (None, 6.0, 12.0):
         process = subprocess.Popen([*command, "--logger", "rockfrag"], cwd=study_folder)
@@ -256,14 +245,9 @@ def test_libraries_take_what_every_processor_has(monkeypatch: pytest.MonkeyPatch
     assert chosen["GLIBC_TUNABLES"].startswith("glibc.malloc.check=1:glibc.cpu.hwcaps=-FMA,")
     assert chosen["OPENBLAS_NUM_THREADS"] == "1"
     program = "import numpy; print(numpy.show_config(mode='dicts')['SIMD Extensions'].get('found'))"
-    found = subprocess.run(
-        [sys.executable, "-W", "error", "-c", program],
-        env={**os.environ, **chosen},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert found.stdout.strip() == "None"
+    asked = (sys.executable, "-W", "error", "-c", program)
+    found = called(ROOT, *asked, env={**os.environ, **chosen})
+    assert found.stdout.strip() == "None", found.stderr
 
 
 FOREIGN = {
@@ -279,14 +263,12 @@ FOREIGN = {
 
 
 @pytest.mark.slow
-def test_the_same_bytes_on_other_processors_and_in_other_places(
-    study_folder: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_the_same_bytes_on_other_processors_and_in_other_places(study_folder, monkeypatch):
     (study_folder / "building.yaml").write_text((ROOT / "config" / "building.yaml").read_text())
     content = {**study_content(), "building": "building.yaml"}
     content["fragility"]["measures"] = ["pga_g", "pgv_cm_s", "sa_0_3s_g"]
     write_study(study_folder, content)
-    command = [sys.executable, str(LAUNCHER), "study.yaml", "--cores", "2"]
+    command = [*LAUNCHER, "study.yaml", "--cores", "2"]
     found = []
     for more in ({}, FOREIGN):
         environment = {**os.environ, **more}

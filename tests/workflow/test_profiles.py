@@ -27,9 +27,7 @@ def test_snakemake_knows_every_key_of_a_profile(profile: Path):
     assert parsed(profile).rerun_incomplete
 
 
-def test_a_key_that_snakemake_does_not_know_ends_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_a_key_that_snakemake_does_not_know_ends_it(tmp_path, capsys):
     (tmp_path / "config.yaml").write_text("jobs: 2\nlatency-wat: 60\n")
     with pytest.raises(SystemExit):
         parsed(tmp_path)

@@ -1,6 +1,5 @@
 """The rules as users of Snakemake expect them: written out, in good form, and usable as a module."""
 
-import os
 import re
 import signal
 import subprocess
@@ -11,7 +10,7 @@ import pytest
 import yaml
 
 from .conftest import study_content, write_study
-from .running import ROOT, snakemake
+from .running import LAUNCHER, ROOT, SNAKEFILE, called, snakemake
 
 RULES = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
 
@@ -33,14 +32,7 @@ rule everything:
 
 def by_snakefile(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """Call Snakemake as the owner of a workflow of one's own does, in its folder."""
-    return subprocess.run(
-        [sys.executable, "-P", "-m", "snakemake", *arguments],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    return called(folder, sys.executable, "-P", "-m", "snakemake", *arguments)
 
 
 def planned(said: str) -> list[str]:
@@ -73,12 +65,10 @@ def test_records_come_first_and_the_report_last(study_folder: Path):
 
 
 @pytest.mark.parametrize(("config", "inside"), [("config", False), ('config["overturning"]', True)])
-def test_another_workflow_takes_the_rules_with_a_prefix(
-    study_folder: Path, config: str, inside: bool
-):
+def test_another_workflow_takes_the_rules_with_a_prefix(study_folder, config, inside):
     content = study_content()
     write_study(study_folder, {"overturning": content, "mine": 1} if inside else content)
-    text = MODULE.format(snakefile=str(ROOT / "workflow" / "Snakefile"), config=config)
+    text = MODULE.format(snakefile=SNAKEFILE, config=config)
     (study_folder / "Snakefile").write_text(text)
     assert "rf_report" in by_snakefile(study_folder, "--dry-run").stdout
     if inside:
@@ -105,14 +95,8 @@ def test_files_named_like_libraries_in_the_folder_of_a_study_are_not_code(study_
     for name in ("statsmodels", "numba", "pandas", "rockfrag", "snakemake", "json"):
         program = f"open({str(marked)!r}, 'a').write({name!r})\n"
         (study_folder / f"{name}.py").write_text(program)
-    launcher = [sys.executable, str(ROOT / "workflow" / "run.py"), "study.yaml"]
-    done = subprocess.run(
-        [*launcher, "--cores", "1", "results/tiny/measures.csv"],
-        cwd=study_folder,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    wanted = ("--cores", "1", "results/tiny/measures.csv")
+    done = called(study_folder, *LAUNCHER, "study.yaml", *wanted)
     assert done.returncode == 0, done.stderr[-2000:]
     assert not marked.exists()
 
@@ -122,15 +106,9 @@ def test_make_ends_with_the_sentence_of_the_run_and_an_exit_status(tmp_path: Pat
     content = study_content()
     del content["title"]
     path = write_study(tmp_path, content)
-    done = subprocess.run(
-        ["make", "-o", ".venv/installed", "run", f"STUDY={path}"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-        # what a shell starts in the background ignores it
-        preexec_fn=lambda: signal.signal(signal.SIGQUIT, signal.SIG_DFL),
-    )
+    # what a shell starts in the background ignores it
+    heard = {"preexec_fn": lambda: signal.signal(signal.SIGQUIT, signal.SIG_DFL)}
+    done = called(ROOT, "make", "-o", ".venv/installed", "run", f"STUDY={path}", **heard)
     assert done.returncode in (1, 2)
     assert done.stderr.count("\n") == 1
     assert "key title is missing" in done.stderr
@@ -140,14 +118,7 @@ def test_a_profile_whose_executor_is_not_installed_says_what_to_install(study_fo
     profile = study_folder / "profile"
     profile.mkdir()
     (profile / "config.yaml").write_text(yaml.safe_dump({"executor": "nowhere", "jobs": 1}))
-    done = subprocess.run(
-        [sys.executable, str(ROOT / "workflow" / "run.py"), "study.yaml", "--profile", "profile"],
-        cwd=study_folder,
-        env=os.environ,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = called(study_folder, *LAUNCHER, "study.yaml", "--profile", "profile")
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "snakemake-executor-plugin-nowhere" in done.stderr

@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -13,7 +12,7 @@ import pytest
 from rockfrag.stages.same_numbers import same_numbers
 
 from .conftest import make_study, study_content, write_study
-from .running import ROOT, snakemake, tables_of
+from .running import LAUNCHER, ROOT, called, snakemake, tables_of
 
 
 def test_a_wrong_configuration_stops_before_anything_runs(study_folder: Path):
@@ -91,14 +90,8 @@ def test_the_workflow_writes_what_the_stages_write_to_the_byte(ran: Path, tmp_pa
         "results = run_stages(Path(sys.argv[1])); check_report(results, sys.argv[2:]); print(results)"
     )
     names = ("P&T1", "T1", "First", "Second")
-    done = subprocess.run(
-        [sys.executable, "-c", alone, str(path), *names],
-        cwd=ROOT,
-        env=os.environ | same_numbers(os.environ),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    program = (sys.executable, "-c", alone, str(path))
+    done = called(ROOT, *program, *names, env=os.environ | same_numbers(os.environ))
     assert done.returncode == 0, done.stderr[-3000:]
     by_hand = Path(done.stdout.splitlines()[-1])
     results = ran / "results" / "tiny"
@@ -119,10 +112,7 @@ def test_a_study_runs_from_records_to_report(ran: Path):
     assert 'src="http' not in report
     assert "<strong>Simulated,</strong> unless labelled" in report
     assert "thesis" not in report
-    assert {path.name for path in ran.iterdir() if path.is_dir()} <= {
-        ".snakemake",
-        "results",
-    }
+    assert {path.name for path in ran.iterdir() if path.is_dir()} <= {".snakemake", "results"}
 
     listed = snakemake(ran, "--report", "listed.html")
     assert listed.returncode == 0, listed.stderr[-3000:]
@@ -140,11 +130,9 @@ def test_a_finished_study_has_nothing_to_do_even_where_nothing_may_be_written(ra
     program = (
         "import os, runpy, sys; access = os.access; os.access = lambda path, mode, **more: 'results' not in "
         "str(path) and access(path, mode, **more); sys.argv = ['run.py', 'study.yaml', '--cores', '2', "
-        f"'--logger', 'rockfrag']; runpy.run_path({str(ROOT / 'workflow' / 'run.py')!r}, run_name='__main__')"
+        f"'--logger', 'rockfrag']; runpy.run_path({LAUNCHER[1]!r}, run_name='__main__')"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program], cwd=ran, capture_output=True, text=True, check=False
-    )
+    done = called(ran, sys.executable, "-c", program)
     assert done.returncode == 0, done.stderr[-3000:]
     assert done.stdout == "Nothing to do; the report is results/tiny/report.html\n"
     assert {path: path.stat().st_mtime_ns for path in (ran / "results").rglob("*")} == before

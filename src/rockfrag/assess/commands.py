@@ -13,15 +13,8 @@ from rockfrag.errors import InputError
 
 _INVENTORY = ".csv"
 _KEYS = (
-    "width",
-    "height",
-    "depth",
-    "mass",
-    "cg_height",
-    "cg_offset",
-    "pga",
-    "pgv",
-    "return_period",
+    *("width", "height", "depth", "mass", "cg_height", "cg_offset"),
+    *("pga", "pgv", "return_period"),
 )
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 
@@ -357,11 +350,7 @@ def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:
 
 def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
     from rockfrag.assess.gallery import write_inventory
-    from rockfrag.assess.inventory import (
-        assess_inventory,
-        inventory_lines,
-        joint_lines,
-    )
+    from rockfrag.assess.inventory import assess_inventory, inventory_lines, joint_lines
 
     unfit = [key for key in ("name", "width", "height", "mesh") if key in shared]
     if unfit:

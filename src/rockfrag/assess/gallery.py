@@ -17,13 +17,7 @@ from rockfrag.assess.joint import JointRisk
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, mitigation_words, sentences
-from rockfrag.figure_style import (
-    BLUE,
-    COLUMN_WIDTH,
-    PAGE_WIDTH,
-    one_panel,
-    plain_log,
-)
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, one_panel, plain_log
 from rockfrag.files import write_table, write_text
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import (

@@ -10,13 +10,7 @@ from typing import Any
 
 import pandas as pd
 
-from rockfrag.assess.answer import (
-    RECORDS,
-    Assessment,
-    assessed,
-    plan_for,
-    shake_all,
-)
+from rockfrag.assess.answer import RECORDS, Assessment, assessed, plan_for, shake_all
 from rockfrag.assess.joint import JointRisk, joint_risk
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set

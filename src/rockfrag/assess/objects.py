@@ -279,9 +279,7 @@ def _higher(objects: Objects, factor: float) -> Objects:
 def higher(block: Block, factor: float) -> Block:
     """A block whose centre of gravity is higher; its inertia about it stays."""
     return replace(
-        block,
-        cg_height=min(block.h * factor, block.height),
-        inertia=block.centroidal_inertia,
+        block, cg_height=min(block.h * factor, block.height), inertia=block.centroidal_inertia
     )
 
 

@@ -63,7 +63,7 @@ def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64
     def end_to_end(each: Sequence[Array]) -> Array:
         made = np.zeros(offsets[-1])
         for start, (times, motion) in zip(offsets.tolist(), each_kind, strict=False):
-            dense = _refined(each[motion], times)
+            dense = refined(each[motion], times)
             made[start : start + dense.size] = dense
         return made
 
@@ -103,7 +103,7 @@ def _extremes(samples: Array, offsets: NDArray[np.int64]) -> tuple[Array, Array,
     return high, low, ahead, behind
 
 
-def _refined(values: Array, times: int) -> Array:
+def refined(values: Array, times: int) -> Array:
     """Sample a piecewise linear motion that ends in zero ``times`` as densely, up to that zero at least."""
     if times == 1:
         return values

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from rockfrag.engines.contract import Case, Cases, Wish
 from rockfrag.engines.pure_rocking import PureRocking
-from rockfrag.engines.response import Response
-from rockfrag.engines.response_tables import contact_event_table, energy_table
+from rockfrag.engines.response import Response, contact_event_table, energy_table
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.system.system import System

@@ -28,21 +28,21 @@ def fastest_frequency(system: System | Body, g: float) -> float:
     )
 
 
-def slowest_frequency(system: System | Body, g: float) -> float:
-    """Smallest frequency parameter p of the ways in which a system rocks [1/s]."""
-    system = as_system(system)
+def rocking_shapes(system: System) -> list[geometry.Shape]:
+    """Shapes that rock: those of the bodies, the lower of two joined with what it carries."""
     shapes = list(system.carried)
     if system.count == 2:
         shapes[0] = geometry.joined(system.pile)
-    slowest = min(geometry.frequency(shape, pivot, g) for shape in shapes for pivot in (+1, -1))
-    if not slowest > 0:
-        raise InputError("body: its frequency parameter p is 0; check lengths, mass and inertia.")
-    return slowest
+    return shapes
 
 
 def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.int64]:
     """Return the most samples of free rocking that are followed after a motion, for every interval."""
-    samples = np.ceil(FREE_TIME / slowest_frequency(system, g) / np.asarray(dt))
+    shapes = rocking_shapes(as_system(system))
+    slowest = min(geometry.frequency(shape, pivot, g) for shape in shapes for pivot in (+1, -1))
+    if not slowest > 0:
+        raise InputError("body: its frequency parameter p is 0; check lengths, mass and inertia.")
+    samples = np.ceil(FREE_TIME / slowest / np.asarray(dt))
     if samples.max(initial=0) > MOST_SAMPLES:
         raise InputError(
             f"dt: free rocking sampled every {np.min(dt):.3g} s would take {samples.max():.3g} samples, "

@@ -2,15 +2,14 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cache
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.outcomes.columns import SUFFIXES, Column, Table, column
 from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
@@ -22,6 +21,43 @@ Words = NDArray[np.object_]
 NOT_TOLD = math.nan
 """Where an engine does not tell a number."""
 
+Table = Literal["cases", "bodies", "contacts"]
+"""The three tables of outcomes: a row per case, per body of a case, per contact of a case."""
+
+SUFFIXES = {"": "", "s": "_s", "rad": "_rad", "rad/s": "_rad_s", "m": "_m", "N": "_n"}
+"""What a unit adds to the name of a column."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a table of outcomes: an attribute of :class:`rockfrag.outcomes.Outcomes`.
+
+    ``unit`` is empty for a number without one, a count or a statement; ``meaning`` says in one sentence what it
+    is, and what NaN means where it can be NaN; ``empty``, of the column's type, stands where no engine has
+    answered.
+    """
+
+    name: str
+    table: Table
+    unit: str
+    meaning: str
+    empty: Any
+
+    @property
+    def title(self) -> str:
+        """Name in a table, with the unit."""
+        return self.name + SUFFIXES[self.unit]
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of its values; words are objects, as numpy cuts longer ones off otherwise."""
+        return np.dtype(object) if isinstance(self.empty, str) else np.asarray(self.empty).dtype
+
+
+def column(table: Table, unit: str, meaning: str, empty: Any) -> Any:
+    """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`."""
+    return field(metadata={"table": table, "unit": unit, "meaning": meaning, "empty": empty})
+
 
 @dataclass(frozen=True)
 class Outcomes:
@@ -29,32 +65,14 @@ class Outcomes:
 
     Arrays of cases have shape (systems, motions, scales), those of bodies and contacts one axis more, from below:
     body 0 is the lowest, contact 0 the ground's; what a system has fewer of is filled with what is not told.
-    ``docs/definitions.md`` defines each word.
-
-    Attributes
-    ----------
-    names
-        Names of the bodies of each system, from below.
-    scales
-        Factors on the motions, shape (motions, scales).
-    engines
-        Names of the engines that answered.
-    engine
-        Which of them answered each case.
-    overturned, overturned_body, overturning_time, certain_time, impacts, flights, given_way, paradoxes
-        Of cases, see :func:`columns`.
-    parted_contact, several_modes, unstable_distance, minimum_gravity_ratio, lost_contact
-        Likewise.
-    peak_rotation, peak_velocity, turn, walk, fall_direction, fell_over
-        Of bodies.
-    slip, peak_slip, friction_demand, least_normal_force
-        Of contacts.
+    ``docs/definitions.md`` defines each word; what is told of cases, bodies and contacts is declared below, see
+    :func:`columns`.
     """
 
-    names: tuple[tuple[str, ...], ...]
-    scales: Floats
-    engines: tuple[str, ...]
-    engine: Small
+    names: tuple[tuple[str, ...], ...]  # of the bodies of each system, from below
+    scales: Floats  # factors on the motions, shape (motions, scales)
+    engines: tuple[str, ...]  # names of those that answered
+    engine: Small  # which of them answered each case
     overturned: Bools = column("cases", "", "Whether a body fell.", False)
     overturned_body: Small = column(
         "cases",
@@ -246,9 +264,9 @@ class Outcomes:
 def columns(table: Table | None = None) -> tuple[Column, ...]:
     """Return the columns of a table of outcomes, or of all three, in their order."""
     return tuple(
-        Column(field.name, **field.metadata)
-        for field in fields(Outcomes)
-        if field.metadata and table in (None, field.metadata["table"])
+        Column(each.name, **each.metadata)
+        for each in fields(Outcomes)
+        if each.metadata and table in (None, each.metadata["table"])
     )
 
 

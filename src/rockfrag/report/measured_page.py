@@ -172,8 +172,7 @@ def _curves(
     warnings = list(dict.fromkeys(note for note in fitted["warnings"] if note))
     goodness = goodness.assign(p_text=[probability(p) for p in goodness["p_value"]])
     fitted = fitted.assign(
-        theta_text=estimates(fitted, "theta"),
-        beta_text=estimates(fitted, "beta"),
+        theta_text=estimates(fitted, "theta"), beta_text=estimates(fitted, "beta")
     )
     level, notes = _level(study), [*goodness["finding"], *warnings]
     parts: list[Markup | FigureSpec] = [

@@ -13,13 +13,7 @@ from rockfrag.files import write_text
 from rockfrag.processes import in_processes
 from rockfrag.report.live import live_kernel
 from rockfrag.report.page import Picture, render
-from rockfrag.report.part import (
-    Answer,
-    FigureSpec,
-    Part,
-    Results,
-    Section,
-)
+from rockfrag.report.part import Answer, FigureSpec, Part, Results, Section
 from rockfrag.report.provenance import study_provenance
 from rockfrag.report.wording import counted
 from rockfrag.study.study import Study

@@ -12,20 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.engines.contract import Cases, Request, run_cases
-from rockfrag.engines.steps import STEP
+from rockfrag.engines.steps import STEP, rocking_shapes
 from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
 from rockfrag.outcomes.outcomes import Outcomes
-from rockfrag.rocking.inputs import (
-    MotionLike,
-    check_case_count,
-    checked_scales,
-    checked_switch,
-    checked_threads,
-    listed_bodies,
-    listed_motions,
-    warn_of_units,
-)
+from rockfrag.rocking import inputs
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput, systems_of
 from rockfrag.system import geometry
@@ -59,7 +50,7 @@ class Options(TypedDict, total=False):
 
     restitution: Sequence[Restitution] | None
     friction: FrictionInput | None
-    vertical: MotionLike | Sequence[MotionLike] | None
+    vertical: inputs.MotionLike | Sequence[inputs.MotionLike] | None
     theta0: Sequence[StartInput] | None
     omega0: Sequence[StartInput] | None
     linear: bool
@@ -71,7 +62,7 @@ class Options(TypedDict, total=False):
 @named_keywords
 def overturns(
     bodies: SystemLike | Sequence[SystemLike],
-    motions: MotionLike | Sequence[MotionLike],
+    motions: inputs.MotionLike | Sequence[inputs.MotionLike],
     dt: float | Sequence[float] | None = None,
     scales: ArrayLike = (1.0,),
     *,
@@ -80,7 +71,7 @@ def overturns(
     restitution: Sequence[Restitution] | None = None,
     linear: bool = False,
     friction: FrictionInput | None = None,
-    vertical: MotionLike | Sequence[MotionLike] | None = None,
+    vertical: inputs.MotionLike | Sequence[inputs.MotionLike] | None = None,
     forces: bool = False,
     g: float = GRAVITY,
     step: float = STEP,
@@ -164,13 +155,13 @@ def overturns(
         threads=threads,
     )
     cases = prepared(bodies, motions, dt, scales, forces=forces, **options)
-    check_case_count(len(cases.systems) * cases.scales.size)
+    inputs.check_case_count(len(cases.systems) * cases.scales.size)
     return shaken(cases)
 
 
 def prepared(
     bodies: SystemLike | Sequence[SystemLike],
-    motions: MotionLike | Sequence[MotionLike],
+    motions: inputs.MotionLike | Sequence[inputs.MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
     *,
@@ -178,9 +169,9 @@ def prepared(
     **options: Unpack[Options],
 ) -> Cases:
     """Return the checked cases of a door."""
-    body_list = listed_bodies(bodies)
-    shaking = listed_motions(motions, dt, options.get("vertical"))
-    factors = checked_scales(scales, shaking)
+    body_list = inputs.listed_bodies(bodies)
+    shaking = inputs.listed_motions(motions, dt, options.get("vertical"))
+    factors = inputs.checked_scales(scales, shaking)
     g = options.get("g", GRAVITY)
     positive_number("g", g, "m/s²")
     systems = systems_of(
@@ -191,17 +182,17 @@ def prepared(
         options.get("omega0"),
     )
     request = Request(
-        forces=checked_switch("forces", forces),
-        linear=checked_switch("linear", options.get("linear", False)),
+        forces=inputs.checked_switch("forces", forces),
+        linear=inputs.checked_switch("linear", options.get("linear", False)),
         g=g,
         step=positive_number("step", options.get("step", STEP)),
     )
-    threads = checked_threads(options.get("threads"))
+    threads = inputs.checked_threads(options.get("threads"))
     cases = Cases(systems, tuple(shaking), factors, request, threads)
     if shaking:
         # refused before anything is computed
         _ = cases.answering
-    warn_of_units(cases, motions)
+    inputs.warn_of_units(cases, motions)
     return cases
 
 
@@ -211,7 +202,10 @@ def shaken(cases: Cases) -> Outcomes:
     if not outcomes.overturned.size:
         return outcomes
     if any(motion.z is not None for motion in cases.motions):
-        outcomes.minimum_gravity_ratio[:] = _minimum_gravity_ratio(cases)
+        ups = [motion.z.acceleration if motion.z else np.zeros(1) for motion in cases.motions]
+        ends = np.array([(up.min(initial=0.0), up.max(initial=0.0)) for up in ups])
+        least = np.min(ends[:, np.newaxis, :] * cases.scales[..., np.newaxis], axis=2)
+        outcomes.minimum_gravity_ratio[:] = 1.0 + least / cases.request.g
     # a body that is answered in space leaves the ground where it has to, and so do more than two bodies
     in_space = any(motion.y is not None for motion in cases.motions)
     stuck = np.array(
@@ -259,14 +253,6 @@ def overturned_cases(
     return overturned
 
 
-def _minimum_gravity_ratio(cases: Cases) -> Array:
-    """Least weight under each motion at each scale, over that on a ground at rest, (motions, scales)."""
-    ups = [motion.z.acceleration if motion.z else np.zeros(1) for motion in cases.motions]
-    ends = np.array([(up.min(initial=0.0), up.max(initial=0.0)) for up in ups])
-    least = np.min(ends[:, np.newaxis, :] * cases.scales[..., np.newaxis], axis=2)
-    return np.asarray(1.0 + least / cases.request.g)
-
-
 def _warn_of_weight(ratio: Array) -> None:
     """Warn of cases in which bodies may leave the ground because it drops."""
     light, none = int((ratio < LIGHT).sum()), int((ratio <= 0).sum())
@@ -307,11 +293,8 @@ def lifting_acceleration(system: System, g: float) -> float:
 
     The centre of gravity falls with b θ'' where θ'' = m (a h + g b) / I_O brakes the rocking: at g it is free.
     """
-    shapes = list(system.carried)
-    if system.count == 2:
-        shapes[0] = geometry.joined(system.pile)
     found = np.inf
-    for shape in shapes:
+    for shape in rocking_shapes(system):
         for pivot in (+1, -1):
             x, y = geometry.arm(shape, pivot)
             if x:

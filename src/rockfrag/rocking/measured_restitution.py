@@ -9,7 +9,7 @@ import numpy as np
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number, shown
-from rockfrag.laws import Told, law_named, law_names, ratio
+from rockfrag.laws import law_named, law_names, ratio
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block
 from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
@@ -103,25 +103,20 @@ def _law_of(name: str, law: str, value: object, shape: geometry.Shape, lone: boo
     both = _checked(name, value, shape)
     if both is None:
         return BY_MOMENTUM
-    right, left = (_told(name, law, shape, *side) for side in zip(both, (+1, -1), strict=True))
-    if lone:
-        # what was measured is the ratio of the lone body, unless its law makes another one of it
-        both = _of_lone(right, both[0]), _of_lone(left, both[1])
-    return ImpactLaw("ratio" if lone else law, *both)
-
-
-def _of_lone(told: Told, measured: float) -> float:
-    return told[1] if told[0] == ratio.NUMBER else measured
-
-
-def _told(name: str, law: str, shape: geometry.Shape, measured: float, pivot: int) -> Told:
-    told = law_named(law).tell(shape, measured, pivot)
-    if math.isnan(told[1]):
+    told = [law_named(law).tell(shape, *side) for side in zip(both, (+1, -1), strict=True)]
+    if any(math.isnan(number) for _, number in told):
         raise InputError(
             f"{name}: momentum leaves this block nothing to rock on with, so the law {law} has nothing to "
             "multiply; choose the law position or ratio."
         )
-    return told
+    if lone:
+        # what was measured is the ratio of the lone body, unless its law makes another one of it
+        right, left = (
+            number if kind == ratio.NUMBER else measured
+            for (kind, number), measured in zip(told, both, strict=True)
+        )
+        return ImpactLaw("ratio", right, left)
+    return ImpactLaw(law, *both)
 
 
 def _checked(name: str, measured: object, shape: geometry.Shape) -> tuple[float, float] | None:

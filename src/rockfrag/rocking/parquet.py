@@ -5,9 +5,8 @@ from __future__ import annotations
 import itertools
 import math
 import os
-from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Unpack
@@ -24,7 +23,7 @@ from rockfrag.engines.steps import step_count
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.keywords import named_keywords
-from rockfrag.outcomes.columns import Column, Table
+from rockfrag.outcomes.outcomes import Table
 from rockfrag.outcomes.outcomes import columns as columns_of
 from rockfrag.rocking.ensemble import Options, prepared, shaken
 from rockfrag.rocking.inputs import MotionLike
@@ -97,9 +96,11 @@ def stream_overturns(
             )
     cases = prepared(bodies, motions, dt, scales, forces=forces, **options)
     chosen = [known[name] for name in known if name in columns]
-    schema = pa.schema(
-        PLACE | WITHIN[table] | {quantity.title: _type_of(quantity) for quantity in chosen}
-    )
+    types = {
+        each.title: pa.string() if each.dtype == object else pa.from_numpy_dtype(each.dtype)
+        for each in chosen
+    }
+    schema = pa.schema(PLACE | WITHIN[table] | types)
     total = len(cases.systems) * cases.scales.size
     done = 0
     with new_table(path, schema) as writer:
@@ -120,11 +121,6 @@ def stream_overturns(
             if progress is not None:
                 progress(done, total)
     return total
-
-
-def _type_of(quantity: Column) -> pa.DataType:
-    """Type of a column in the file."""
-    return pa.string() if quantity.dtype == object else pa.from_numpy_dtype(quantity.dtype)
 
 
 @contextmanager
@@ -155,7 +151,7 @@ def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, sli
 # --------------------------------------------------------------------------- histories
 
 Place = tuple[int, int, int]  # positions of system, motion and scale
-AHEAD = 2  # histories that are computed or wait to be written at a time, for each thread
+AHEAD = 4  # histories that are computed or wait to be written at a time, for each thread
 
 SCHEMA = pa.schema(
     PLACE
@@ -222,25 +218,14 @@ def stream_histories(
     workers = cases.threads
     with new_table(path, SCHEMA) as writer, ThreadPoolExecutor(workers) as pool:
         written = 0
-        for group in _row_groups(_in_order(pool, history, places, AHEAD * workers)):
+        batches = iter(lambda: list(itertools.islice(places, AHEAD * workers)), [])
+        tables = itertools.chain.from_iterable(pool.map(history, batch) for batch in batches)
+        for group in _row_groups(tables):
             writer.write_table(pa.concat_tables(group), row_group_size=ROWS)
             written += len(group)
             if progress is not None:
                 progress(written, total)
     return total
-
-
-def _in_order(
-    pool: ThreadPoolExecutor, work: Callable[[Place], pa.Table], places: Iterable[Place], most: int
-) -> Iterator[pa.Table]:
-    """Yield ``work(place)`` in the order of the places, ``most`` of them at a time under work or done."""
-    waiting: deque[Future[pa.Table]] = deque()
-    for place in places:
-        if len(waiting) == most:
-            yield waiting.popleft().result()
-        waiting.append(pool.submit(work, place))
-    while waiting:
-        yield waiting.popleft().result()
 
 
 def _row_groups(tables: Iterable[pa.Table]) -> Iterator[list[pa.Table]]:

@@ -220,10 +220,16 @@ def restitution_from_impacts(
         speed_before(block, block.critical_angle(pivot), pivot, linear=linear, g=g)
         for pivot in (+1, -1)
     ) * (1 - 1e-12)
-    speeds = [
-        _speed_of_flight(lambda s, pivot=pivot: flight(s, pivot), float(T), largest)  # type: ignore[misc]
-        for T, pivot in zip(intervals, pivots, strict=True)
-    ]
+
+    def speed_of(interval: float, pivot: int) -> float:
+        if flight(largest, pivot) <= interval:
+            return largest
+        if flight(1e-9 * largest, pivot) >= interval:
+            return 1e-9 * largest
+        ends = 1e-9 * largest, largest
+        return float(brentq(lambda s: flight(s, pivot) - interval, *ends, xtol=1e-14))
+
+    speeds = [speed_of(float(T), pivot) for T, pivot in zip(intervals, pivots, strict=True)]
     start = min(max((speeds[-1] / speeds[0]) ** (1 / (len(speeds) - 1)), 0.01), 0.9999)
     fit = _least_squares(
         lambda q: model(q) - values,
@@ -345,15 +351,6 @@ def _peaks_of(theta: Floats) -> list[float]:
         else:
             peaks.append(float(value))
     return peaks
-
-
-def _speed_of_flight(flight: Callable[[float], float], interval: float, largest: float) -> float:
-    low = 1e-9 * largest
-    if flight(largest) <= interval:
-        return largest
-    if flight(low) >= interval:
-        return low
-    return float(brentq(lambda s: flight(s) - interval, low, largest, xtol=1e-14))
 
 
 def _least_squares(

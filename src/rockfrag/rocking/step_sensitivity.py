@@ -114,12 +114,13 @@ def find_step_size_sensitive(
 
 def _doubled(motion: GroundMotion) -> GroundMotion:
     """Sample a ground motion, which is zero one sample after its last, twice as densely."""
-    y, z = (None if component is None else _dense(component) for component in (motion.y, motion.z))
-    return GroundMotion(_dense(motion.x), y, z)
+    # the kernels are loaded only by those who shake
+    from rockfrag.engines.lanes import refined
 
+    def dense(component: Motion) -> Motion:
+        return replace(
+            component, acceleration=refined(component.acceleration, 2), dt=component.dt / 2
+        )
 
-def _dense(motion: Motion) -> Motion:
-    closed = np.append(motion.acceleration, 0.0)
-    at = np.arange(2 * closed.size - 1) / 2
-    values = np.interp(at, np.arange(closed.size), closed)
-    return replace(motion, acceleration=values, dt=motion.dt / 2)
+    y, z = (None if part is None else dense(part) for part in (motion.y, motion.z))
+    return GroundMotion(dense(motion.x), y, z)

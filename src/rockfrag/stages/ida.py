@@ -193,13 +193,7 @@ def _shaken(
     with warnings.catch_warnings():
         # told of in the column minimum_gravity_ratio and in the report
         warnings.simplefilter("ignore", LightBodies)
-        return overturns(
-            configuration,
-            motions,
-            scales=scales,
-            vertical=vertical,
-            threads=threads,
-        )
+        return overturns(configuration, motions, scales=scales, vertical=vertical, threads=threads)
 
 
 def as_recorded(

@@ -76,10 +76,7 @@ def _shaken(
 
 
 def _forces(
-    system: System,
-    motions: list[Motion],
-    vertical: list[NDArray[np.float64]] | None,
-    threads: int,
+    system: System, motions: list[Motion], vertical: list[NDArray[np.float64]] | None, threads: int
 ) -> pd.DataFrame:
     """Forces of a configuration under motions as they are, a row each."""
     from rockfrag.rocking import overturns
@@ -129,13 +126,7 @@ def sliding_table(files: Iterable[Path]) -> pd.DataFrame:
     return both.groupby("configuration", sort=False, as_index=False).agg(how)
 
 
-_SLIDING = (
-    "configuration",
-    "overturned",
-    "overturned_without_sliding",
-    "peak_slip_m",
-    "flights",
-)
+_SLIDING = ("configuration", "overturned", "overturned_without_sliding", "peak_slip_m", "flights")
 
 
 def _sliding(ida_curves: pd.DataFrame) -> pd.DataFrame:

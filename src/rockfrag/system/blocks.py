@@ -110,9 +110,8 @@ class Block:
     round: bool = False
 
     def __post_init__(self) -> None:
-        self._check_number("width", "metres", positive_number)
-        self._check_number("height", "metres", positive_number)
-        self._check_number("mass", "kilograms", positive_number)
+        for name, unit in (("width", "metres"), ("height", "metres"), ("mass", "kilograms")):
+            self._check_number(name, unit, positive_number)
         self._check_space()
         if self.cg_height is not None:
             self._check_number("cg_height", "metres", positive_number)
@@ -165,32 +164,8 @@ class Block:
         mass: float,
         inertia: float,
     ) -> "Block":
-        """Make a block of the distances at which its edges were measured.
-
-        Parameters
-        ----------
-        left, right
-            Horizontal distances of the edges from the centre of gravity [m].
-        cg_height, height
-            Height of the centre of gravity above the base, and of the whole body [m].
-        mass
-            Mass [kg].
-        inertia
-            Moment of inertia about the centre of gravity [kg m²].
-
-        Raises
-        ------
-        InputError
-            As :class:`Block`.
-        """
-        return cls(
-            width=left + right,
-            height=height,
-            mass=mass,
-            inertia=inertia,
-            cg_height=cg_height,
-            cg_offset=(left - right) / 2,
-        )
+        """Make a block of the distances of its edges to the left and the right of the centre of gravity [m]."""
+        return cls(left + right, height, mass, inertia, cg_height, (left - right) / 2)
 
     @property
     def in_space(self) -> bool:
@@ -217,9 +192,8 @@ class Block:
         if self.round:
             return cylinder(self.width, self.height, self.mass, self.inertia, centre, "block")
         if self.depth is not None:
-            return box(
-                self.width, self.depth, self.height, self.mass, self.inertia, centre, "block"
-            )
+            sides = self.width, self.depth, self.height
+            return box(*sides, self.mass, self.inertia, centre, "block")
         ends = Interval(-self.width / 2, self.width / 2)
         return RigidBody(self.mass, self.shape.inertia, centre, ends, self.height, ends, "block")
 
@@ -234,22 +208,12 @@ class Block:
     @cached_property
     def shape(self) -> geometry.Shape:
         """The block as the kernels know it, in the plane of its width."""
-        inertia = math.nan
-        if isinstance(self.inertia, tuple):
-            inertia = self.inertia[1][1]
-        elif self.inertia is not None:
-            inertia = self.inertia
-        elif self.round:
-            inertia = round_inertia(self.width, self.height, self.mass)
-        return geometry.shape_of(
-            self.width,
-            self.height,
-            self.mass,
-            inertia,
-            math.nan if self.cg_height is None else self.cg_height,
-            self.cg_offset,
-            self.lean,
-        )
+        size = self.width, self.height, self.mass
+        inertia = self.inertia[1][1] if isinstance(self.inertia, tuple) else self.inertia
+        if inertia is None:
+            inertia = round_inertia(*size) if self.round else math.nan
+        cg_height = math.nan if self.cg_height is None else self.cg_height
+        return geometry.shape_of(*size, inertia, cg_height, self.cg_offset, self.lean)
 
     @property
     def b(self) -> float:
@@ -302,11 +266,7 @@ class Block:
         return geometry.frequency(self.shape, pivot, g)
 
     def momentum_restitution(self, pivot_before: int = 1) -> float:
-        """Ratio of angular velocities after and before an impact that conserves momentum [-].
-
-        The block turns about ``pivot_before`` and comes down on the other pivot (Housner, 1963:
-        1 - 1.5 sin²α for a uniform block).
-        """
+        """Ratio of rates after and before an impact that conserves momentum, on the other pivot [-] (Housner)."""
         return geometry.momentum_restitution(self.shape, -pivot_before)
 
 
@@ -349,29 +309,22 @@ class Stack:
             if not isinstance(block, Block):
                 raise InputError(f"Stack: {name} must be a Block, got {shown(block)}.")
         real_number("Stack: offset", self.offset, "metres")
-        failed = geometry.failed_stability_check(self.pile)
-        if failed == geometry.BESIDE:
-            raise InputError(
-                f"Stack: the statue's base (width {self.upper.width} m, offset {self.offset} m) "
-                f"does not lie on the pedestal (width {self.lower.width} m)."
-            )
-        if failed == geometry.OFF_CONTACT:
-            raise InputError(
-                "Stack: the statue's centre of gravity is not above the part of its base that lies "
-                "on the pedestal, so the stack cannot stand."
-            )
-        if failed == geometry.TILTED_OFF:
-            raise InputError(
-                "Stack: a centre of gravity is not above its base once the pedestal's lean "
-                "is counted, so the stack cannot stand."
-            )
-        if failed == geometry.REACHES_GROUND:
-            overhang, pivot = max((geometry.overhang(self.pile, pivot), pivot) for pivot in (1, -1))
-            raise InputError(
-                f"Stack: the statue reaches {overhang:.4g} m beyond its pedestal, whose upper edge can come as "
-                f"low as {geometry.lowest_edge(self.pile, pivot):.4g} m, so it could touch the ground; such "
-                "contacts are not modelled."
-            )
+        pile, failed = self.pile, geometry.failed_stability_check(self.pile)
+        if failed == geometry.STANDS:
+            return
+        overhang, pivot = max((geometry.overhang(pile, pivot), pivot) for pivot in (1, -1))
+        wrong = {
+            geometry.BESIDE: f"the statue's base (width {self.upper.width} m, offset {self.offset} m) "
+            f"does not lie on the pedestal (width {self.lower.width} m).",
+            geometry.OFF_CONTACT: "the statue's centre of gravity is not above the part of its base that lies "
+            "on the pedestal, so the stack cannot stand.",
+            geometry.TILTED_OFF: "a centre of gravity is not above its base once the pedestal's lean "
+            "is counted, so the stack cannot stand.",
+            geometry.REACHES_GROUND: f"the statue reaches {overhang:.4g} m beyond its pedestal, whose upper edge "
+            f"can come as low as {geometry.lowest_edge(pile, pivot):.4g} m, so it could touch the ground; such "
+            "contacts are not modelled.",
+        }
+        raise InputError(f"Stack: {wrong[failed]}")
 
     @property
     def blocks(self) -> tuple[Block, ...]:
@@ -401,13 +354,8 @@ class Stack:
         aside = Vector((pile.low + pile.high) / 2 - self.offset, 0.0)
         centre = self.upper.centre.minus(aside).turned(-self.upper.lean)
         made = Block(
-            width=pile.high - pile.low,
-            height=self.upper.height,
-            mass=self.upper.mass,
-            inertia=self.upper.centroidal_inertia,
-            cg_height=centre.y,
-            cg_offset=centre.x,
-            lean=self.upper.lean,
+            *(pile.high - pile.low, self.upper.height, self.upper.mass),
+            *(self.upper.centroidal_inertia, centre.y, centre.x, self.upper.lean),
         )
         # to the last bit what the kernels know, without the turn there and back
         vars(made)["shape"] = pile.upper
@@ -424,15 +372,8 @@ class Stack:
 
     def rigidly_joined(self) -> Block:
         """Return the two as one rigid body, which is what rocks in pattern 3."""
-        whole = geometry.joined(self.pile)
-        return Block(
-            width=self.lower.width,
-            height=self.lower.height + self.upper.height,
-            mass=whole.mass,
-            inertia=whole.inertia,
-            cg_height=whole.y,
-            cg_offset=whole.x,
-        )
+        whole, height = geometry.joined(self.pile), self.lower.height + self.upper.height
+        return Block(self.lower.width, height, whole.mass, whole.inertia, whole.y, whole.x)
 
 
 @named_fields
@@ -520,8 +461,7 @@ def piled(blocks: Sequence[Block], offsets: Sequence[float], names: Sequence[str
 
 Body = Block | Stack | Column
 
-SystemLike = Body | System
-"""What stands, as it may be written."""
+SystemLike = Body | System  # what stands, as it may be written
 
 
 def is_system(thing: object) -> TypeGuard[SystemLike]:
@@ -530,13 +470,7 @@ def is_system(thing: object) -> TypeGuard[SystemLike]:
 
 
 def as_system(thing: SystemLike) -> System:
-    """Return a system as it is, or the one that a block, a stack or a column writes.
-
-    Raises
-    ------
-    InputError
-        If it is none of them.
-    """
+    """Return a system as it is, or the one that a block, a stack or a column writes; InputError if it is none."""
     if not is_system(thing):
         raise InputError(
             f"body: expected a Block, a Stack, a Column or a System, got {shown(thing)}."

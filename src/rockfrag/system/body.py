@@ -24,6 +24,11 @@ class Interval(NamedTuple):
     left: float
     right: float
 
+    @property
+    def middle(self) -> float:
+        """What lies halfway between its ends [m]."""
+        return (self.left + self.right) / 2
+
 
 class Polygon(NamedTuple):
     """Base or face of a body in space: the vertices of a convex polygon, anticlockwise seen from above [m]."""
@@ -155,11 +160,7 @@ def interval_of(outline: Outline, along: tuple[float, float]) -> Interval:
 
 
 def checked_tensor(given: object) -> Tensor:
-    """Return a tensor of inertia as three rows.
-
-    It must be symmetric, and each principal moment positive and at most the sum of the other two, as of every
-    body.
-    """
+    """Return a tensor of inertia as three rows; it must be symmetric and that of a body."""
     values = real_array("RigidBody: inertia", given, "kg m²")
     if values.shape != (3, 3) or not np.isfinite(values).all():
         raise InputError(

@@ -270,13 +270,8 @@ def pivot_constants(
 def fill_pile(body: Any, pile: Pile) -> None:
     """Fill the geometry of a stack into its record."""
     first, two = pile.lower, pile.upper
-    body.m1, body.i1, body.b1, body.c1x, body.c1y = (
-        first.mass,
-        first.inertia,
-        first.b,
-        first.x,
-        first.y,
-    )
+    body.m1, body.i1, body.b1 = first.mass, first.inertia, first.b
+    body.c1x, body.c1y = first.x, first.y
     (rx, ry), (lx, ly) = pile.right, pile.left
     width = 2 * two.b
     body.tx, body.ty = (rx + lx) / 2, (ry + ly) / 2

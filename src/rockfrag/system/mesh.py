@@ -28,9 +28,7 @@ MESH_ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf")
 Y_UP = (".glb", ".gltf")
 """Formats whose specification says that y points up (glTF 2.0, section 3.4)."""
 
-FEWEST_CARRY = 3
-"""Points that make a polygon to stand on."""
-
+FEWEST_CARRY = 3  # points that make a polygon to stand on
 MOST_CORNERS, FLAT = 48, 1e-3
 """Most corners of a polygon to stand on in space, and distance over its size at which one hardly turns it."""
 
@@ -87,8 +85,7 @@ class Shape:
     def contact_polygon(self, tolerance: float) -> Array:
         """Return the corners of the polygon around all points at most ``tolerance`` [m] above the lowest one.
 
-        They are relative to the centre of gravity, in order [m], shape (n, 2). Fewer than three points that
-        carry, or points on one line, are refused.
+        They are relative to the centre of gravity, in order [m], shape (n, 2).
         """
         low = self.points[self.points[:, 2] <= tolerance - self.cg_height][:, :2]
         try:
@@ -127,28 +124,10 @@ class Shape:
         points[:, 2] += scan_tolerance * rng.standard_normal(len(points))
         return replace(self, points=points)
 
-    def inertia_about(self, direction_deg: float) -> float:
-        """Moment of inertia for rotation in the vertical plane of a direction [kg m²]."""
-        angle = math.radians(direction_deg)
-        axis = np.array([-math.sin(angle), math.cos(angle), 0.0])
-        return float(axis @ self.inertia @ axis)
-
     def block(self, direction_deg: float, tolerance: float, retreat: float = 0.0) -> Block:
-        """Return the planar block that rocks in the vertical plane of a direction.
+        """Return the planar block that rocks in the vertical plane of a direction, as of :meth:`edges` [degrees].
 
-        Parameters
-        ----------
-        direction_deg
-            Direction of shaking, from the mesh's x axis towards its y axis [degrees].
-        tolerance
-            Height above the lowest point up to which a point carries [m].
-        retreat
-            Distance by which the edges lie further in than the polygon [m].
-
-        Raises
-        ------
-        InputError
-            If the centre of gravity is not above what is left of the base.
+        Points up to ``tolerance`` above the lowest carry; edges lie ``retreat`` further in than their polygon [m].
         """
         # rounded or crushed edges carry further in
         left, right = (edge - retreat for edge in self.edges(direction_deg, tolerance))
@@ -157,14 +136,10 @@ class Shape:
                 f"{self.name}: along {direction_deg:g}° its edges are {left:.4f} and {right:.4f} m "
                 "from the centre of gravity, so it cannot stand; give a larger tolerance or less retreat."
             )
-        return Block.from_edges(
-            left,
-            right,
-            cg_height=self.cg_height,
-            height=self.height,
-            mass=self.mass,
-            inertia=self.inertia_about(direction_deg),
-        )
+        size = {"cg_height": self.cg_height, "height": self.height, "mass": self.mass}
+        angle = math.radians(direction_deg)
+        axis = np.array([-math.sin(angle), math.cos(angle), 0.0])
+        return Block.from_edges(left, right, **size, inertia=float(axis @ self.inertia @ axis))
 
     def body(self, direction_deg: float, tolerance: float, retreat: float = 0.0) -> RigidBody:
         """Return the body in space on the polygon that carries, turned so that a direction [degrees] is its x.
@@ -192,18 +167,9 @@ class Shape:
         )
 
     def worst_direction(self, tolerance: float, step_deg: float = 1.0) -> tuple[float, float]:
-        """Return the direction towards which the body leans over its edge at the least angle.
+        """Return the direction in which the body leans over its edge at the least angle, and that angle [rad].
 
-        Parameters
-        ----------
-        tolerance
-            Height above the lowest point up to which a point carries [m].
-        step_deg
-            Step of the search [degrees].
-
-        Returns
-        -------
-        The direction [degrees], and the critical angle of the edge there [rad].
+        Points up to ``tolerance`` [m] above the lowest carry; directions [degrees] are ``step_deg`` apart.
         """
         directions = np.arange(0.0, 360.0, step_deg)
         angle = np.radians(directions)
@@ -299,8 +265,14 @@ def read_shape(
     """
     if (mass is None) == (density is None):
         raise InputError(f"{path}: give either the mass or the density of the body.")
-    mesh = _closed_mesh(Path(path), hull)
-    mesh.vertices = _standing(np.asarray(mesh.vertices), _up_axis(Path(path), up))
+    file = Path(path)
+    mesh = _closed_mesh(file, hull)
+    above = up or ("y" if file.suffix.lower() in Y_UP else "z")
+    if above not in ("x", "y", "z"):
+        raise InputError(f"{path}: up must be x, y or z, got {up!r:.20}.")
+    # a turn, so that nothing is mirrored
+    turn = {"x": [1, 2, 0], "y": [2, 0, 1], "z": [0, 1, 2]}[above]
+    mesh.vertices = np.asarray(mesh.vertices)[:, turn]
     mesh.apply_scale(metres_per_unit)
     size = float(np.ptp(mesh.bounds, axis=0).max())
     if size > LARGEST_SIZE:
@@ -331,19 +303,6 @@ def _positive(path: str | os.PathLike[str], name: str, value: float | None) -> f
     return float(value)
 
 
-def _up_axis(path: Path, up: str | None) -> str:
-    if up is None:
-        return "y" if path.suffix.lower() in Y_UP else "z"
-    if up not in ("x", "y", "z"):
-        raise InputError(f"{path}: up must be x, y or z, got {up!r:.20}.")
-    return up
-
-
-def _standing(vertices: Array, up: str) -> Array:
-    """Vertices turned so that z points up; a turn, so that nothing is mirrored."""
-    return vertices[:, {"x": [1, 2, 0], "y": [2, 0, 1], "z": [0, 1, 2]}[up]]
-
-
 def _closed_mesh(path: Path, hull: bool) -> Any:
     """Read a mesh with trimesh and turn it outside out; refuse one with holes."""
     import trimesh
@@ -363,7 +322,10 @@ def _closed_mesh(path: Path, hull: bool) -> Any:
     if not np.isfinite(vertices).all():
         raise InputError(f"{path}: the mesh has a vertex that is not finite.")
     if hull:
-        return _hull(path, vertices)
+        try:
+            return trimesh.convex.convex_hull(vertices)
+        except (QhullError, ValueError, IndexError) as error:
+            raise InputError(f"{path}: its {len(vertices)} points enclose no volume.") from error
     if len(faces) == 0:
         raise InputError(
             f"{path}: is a cloud of {len(vertices)} points without triangles; make a closed mesh of it, or take "
@@ -382,14 +344,4 @@ def _closed_mesh(path: Path, hull: bool) -> Any:
         mesh.invert()
     if not mesh.volume > 0:
         raise InputError(f"{path}: the surface encloses no volume.")
-    return mesh
-
-
-def _hull(path: Path, vertices: Array) -> Any:
-    import trimesh
-
-    try:
-        mesh: Any = trimesh.convex.convex_hull(vertices)
-    except (QhullError, ValueError, IndexError) as error:
-        raise InputError(f"{path}: its {len(vertices)} points enclose no volume.") from error
     return mesh

@@ -1,7 +1,6 @@
 """What is shaken: bodies that stand on each other, the contacts between them, and how they begin."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -10,11 +9,10 @@ from rockfrag.elementary import sin_cos
 from rockfrag.errors import InputError
 from rockfrag.input_checks import shown
 from rockfrag.system import geometry
-from rockfrag.system.body import Circle, Interval, Polygon, RigidBody
+from rockfrag.system.body import Circle, Interval, Polygon, RigidBody, Vector3
 from rockfrag.system.contact import Contact
 
-MOST_BODIES = 12
-"""Bodies of a column."""
+MOST_BODIES = 12  # bodies of a column
 
 
 @dataclass(frozen=True)
@@ -143,14 +141,9 @@ class System:
         lower, upper = self.in_plane().bodies
         assert isinstance(lower.face, Interval)
         assert isinstance(upper.base, Interval)
-        middle = self.contacts[1].offset[0] + (upper.base.left + upper.base.right) / 2
-        return geometry.pile_of(
-            self.shapes[0],
-            self.shapes[1],
-            lower.height,
-            self.contacts[0].tilt,
-            middle - (lower.face.left + lower.face.right) / 2,
-        )
+        aside = self.contacts[1].offset[0] + upper.base.middle - lower.face.middle
+        below, above = self.shapes
+        return geometry.pile_of(below, above, lower.height, self.contacts[0].tilt, aside)
 
     @cached_property
     def carried(self) -> tuple[geometry.Shape, ...]:
@@ -165,7 +158,7 @@ class System:
             lower, upper, shape = bodies[k - 1], bodies[k], self.shapes[k]
             assert isinstance(lower.face, Interval)
             assert isinstance(upper.base, Interval)
-            middle = self.contacts[k].offset[0] + (upper.base.left + upper.base.right) / 2
+            middle = self.contacts[k].offset[0] + upper.base.middle
             low = max(lower.face.left, middle - shape.b)
             high = min(lower.face.right, middle + shape.b)
             found.append(shape._replace(b=(high - low) / 2, x=shape.x + middle - (low + high) / 2))
@@ -177,15 +170,14 @@ def planar_shape(body: RigidBody, tilt: float) -> geometry.Shape:
     base = body.base
     assert isinstance(base, Interval)
     assert isinstance(body.inertia, float | int)
-    x, y = geometry.turned(body.centre[0] - (base.left + base.right) / 2, body.centre[2], tilt)
+    x, y = geometry.turned(body.centre[0] - base.middle, body.centre[2], tilt)
     return geometry.Shape((base.right - base.left) / 2, body.mass, body.inertia, x, y)
 
 
 def uplift_ratios(system: System) -> tuple[float, ...]:
     """Least horizontal acceleration over g that opens each contact of a planar system at rest, from below.
 
-    A full contact opens about the pivot whose overturning moment first exceeds the weight's (Kirkpatrick, 1927;
-    Psycharis, 1990).
+    The pivot is the one whose overturning moment first exceeds the weight's (Kirkpatrick, 1927; Psycharis, 1990).
     """
     if system.count == 1:
         arms = [tuple(geometry.arm(system.shapes[0], pivot) for pivot in (+1, -1))]
@@ -230,7 +222,7 @@ def box(
     height: float,
     mass: float,
     inertia: Any,
-    centre: Sequence[float],
+    centre: Vector3,
     name: str = "",
 ) -> RigidBody:
     """Return a body in space with a rectangular base and face [m], of uniform mass where inertia is None."""
@@ -242,25 +234,18 @@ def box(
             mass * (width * width + height * height) / 12,
             mass * (width * width + depth * depth) / 12,
         )
-    place = (float(centre[0]), float(centre[1]), float(centre[2]))
-    return RigidBody(mass, inertia, place, outline, height, outline, name)
+    return RigidBody(mass, inertia, centre, outline, height, outline, name)
 
 
 def cylinder(
-    diameter: float,
-    height: float,
-    mass: float,
-    inertia: Any,
-    centre: Sequence[float],
-    name: str = "",
+    diameter: float, height: float, mass: float, inertia: Any, centre: Vector3, name: str = ""
 ) -> RigidBody:
     """Return a body in space with a round base and face [m], of uniform mass where inertia is None."""
     outline = Circle(diameter / 2)
     if inertia is None:
         across = round_inertia(diameter, height, mass)
         inertia = diagonal(across, across, mass * diameter * diameter / 8)
-    place = (float(centre[0]), float(centre[1]), float(centre[2]))
-    return RigidBody(mass, inertia, place, outline, height, outline, name)
+    return RigidBody(mass, inertia, centre, outline, height, outline, name)
 
 
 def round_inertia(diameter: float, height: float, mass: float) -> float:
@@ -270,10 +255,9 @@ def round_inertia(diameter: float, height: float, mass: float) -> float:
 
 def diagonal(*moments: float) -> Any:
     """Return the tensor with these moments about x, y and z [kg m²]."""
-    rows = [[0.0] * 3 for _ in range(3)]
-    for k, moment in enumerate(moments):
-        rows[k][k] = moment
-    return tuple(tuple(row) for row in rows)
+    return tuple(
+        tuple(moment if i == k else 0.0 for i in range(3)) for k, moment in enumerate(moments)
+    )
 
 
 def turned_about_vertical(system: System, angle_deg: float) -> System:
@@ -327,26 +311,21 @@ def standing_centres(system: System) -> list[tuple[float, float]]:
     found = []
     for (angle, (x, y), body), shape in zip(_bases(system), system.shapes, strict=True):
         assert isinstance(body.base, Interval)
-        middle = (body.base.left + body.base.right) / 2
-        dx, dy = geometry.turned(middle + shape.x, shape.y, angle)
+        dx, dy = geometry.turned(body.base.middle + shape.x, shape.y, angle)
         found.append((x + dx, y + dy))
     return found
 
 
 def _bases(system: System) -> list[tuple[float, tuple[float, float], RigidBody]]:
     """Angle of the face [rad] that each planar body stands on, origin of its base [m], and the body."""
-    found = []
+    bodies = system.in_plane().bodies
     angle, origin = 0.0, (0.0, 0.0)
-    below: RigidBody | None = None
-    for k, (body, contact) in enumerate(
-        zip(system.in_plane().bodies, system.contacts, strict=True)
-    ):
-        if below is not None:
-            angle += system.contacts[k - 1].tilt
-            dx, dy = geometry.turned(contact.offset[0], below.height, angle)
-            origin = (origin[0] + dx, origin[1] + dy)
+    found = [(angle, origin, bodies[0])]
+    for below, body, k in zip(bodies, bodies[1:], range(1, system.count), strict=False):
+        angle += system.contacts[k - 1].tilt
+        dx, dy = geometry.turned(system.contacts[k].offset[0], below.height, angle)
+        origin = (origin[0] + dx, origin[1] + dy)
         found.append((angle, origin, body))
-        below = body
     return found
 
 

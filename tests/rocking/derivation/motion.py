@@ -42,6 +42,15 @@ def positions(i: int, s1: int, s2: int):
     return truth
 
 
+def centre_2(s: System, s1: int, s2: int, turn: Array | None = None) -> Array:
+    """Displacements of 2.30, 2.39, 2.45 and 2.48; ``turn`` is θ2 as the height has it."""
+    reach, beta = (s.length, s.beta) if s1 == s2 else (s.length_, s.beta_)
+    arm = s.th1 - s1 * beta
+    x = s.xg + s2 * (s.b2 - s.r2 * sin(s.tc2 - s2 * s.th2)) + reach * (s1 * sin(beta) + sin(arm))
+    lifted = s.r2 * cos(s.tc2 - s2 * (s.th2 if turn is None else turn))
+    return np.array([x, lifted + reach * cos(arm) - 2 * s.h1 - s.h2])
+
+
 def first(s: System, side: Array | int, length: Array, beta: Array, swirl: Array) -> Array:
     """First row of 2.43 and 2.51 without the terms that couple the blocks."""
     return (
@@ -244,20 +253,7 @@ EQUATIONS = [
         ),
         positions(1, 1, 1),
     ),
-    Equation(
-        "2.30",
-        lambda s: np.array(
-            [
-                s.xg
-                + s.b2
-                - s.r2 * sin(s.tc2 - s.th2)
-                + s.length * sin(s.beta)
-                + s.length * sin(s.th1 - s.beta),
-                s.r2 * cos(s.tc2 - s.th2) + s.length * cos(s.th1 - s.beta) - 2 * s.h1 - s.h2,
-            ]
-        ),
-        positions(2, 1, 1),
-    ),
+    Equation("2.30", lambda s: centre_2(s, 1, 1), positions(2, 1, 1)),
     Equation(
         "2.31",
         lambda s: np.array(
@@ -309,9 +305,9 @@ EQUATIONS = [
     ),
     Equation(
         "2.39",
-        lambda s: _position_2_39(s, -1),
+        lambda s: centre_2(s, -1, -1, turn=-s.th2),
         positions(2, -1, -1),
-        mended=lambda s: _position_2_39(s, 1),
+        mended=lambda s: centre_2(s, -1, -1),
     ),
     Equation("2.40", lambda s: rocking_mode_1(s, -1), lambda s: s.moments(-1, -1)),
     Equation("2.41", lambda s: cos(gamma_1(s, -1)), lambda s: _cosine(s, -1, -1)),
@@ -322,20 +318,7 @@ EQUATIONS = [
         lambda s: cos(gamma_1(s, sign(s.th1))),
         lambda s: np.where(s.th1 > 0, _cosine(s, 1, 1), _cosine(s, -1, -1)),
     ),
-    Equation(
-        "2.45",
-        lambda s: np.array(
-            [
-                s.xg
-                - s.b2
-                + s.r2 * sin(s.tc2 + s.th2)
-                + s.length_ * sin(s.beta_)
-                - s.length_ * sin(s.beta_ - s.th1),
-                s.r2 * cos(s.tc2 + s.th2) + s.length_ * cos(s.beta_ - s.th1) - 2 * s.h1 - s.h2,
-            ]
-        ),
-        positions(2, 1, -1),
-    ),
+    Equation("2.45", lambda s: centre_2(s, 1, -1), positions(2, 1, -1)),
     Equation(
         "2.46",
         lambda s: rocking_mode_2(s, 1, weight=1),
@@ -349,20 +332,7 @@ EQUATIONS = [
         lambda s: _cosine(s, -1, 1),
         mended=lambda s: cos(gamma_2(s, -1)),
     ),
-    Equation(
-        "2.48",
-        lambda s: np.array(
-            [
-                s.xg
-                + s.b2
-                - s.r2 * sin(s.tc2 - s.th2)
-                - s.length_ * sin(s.beta_)
-                + s.length_ * sin(s.beta_ + s.th1),
-                s.r2 * cos(s.tc2 - s.th2) + s.length_ * cos(s.beta_ + s.th1) - 2 * s.h1 - s.h2,
-            ]
-        ),
-        positions(2, -1, 1),
-    ),
+    Equation("2.48", lambda s: centre_2(s, -1, 1), positions(2, -1, 1)),
     Equation("2.49", lambda s: rocking_mode_2(s, -1), lambda s: s.moments(-1, 1)),
     Equation("2.50", lambda s: cos(gamma_2(s, -1)), lambda s: _cosine(s, -1, 1)),
     # the first row names γ2a where it means γ2
@@ -434,19 +404,3 @@ def _between(s: System, s1: int, s2: int) -> Array:
     """Horizontal distance of the pivots of the standing blocks."""
     still = s.with_(th1=0.0, th2=0.0)
     return np.abs(still.get("pivot2", s1, s2) - still.get("pivot1", s1, s2))[0]
-
-
-def _position_2_39(s: System, printed_sign: int) -> Array:
-    return np.array(
-        [
-            s.xg
-            - s.b2
-            + s.r2 * sin(s.tc2 + s.th2)
-            - s.length * sin(s.beta)
-            + s.length * sin(s.th1 + s.beta),
-            s.r2 * cos(s.tc2 + printed_sign * s.th2)
-            + s.length * cos(s.th1 + s.beta)
-            - 2 * s.h1
-            - s.h2,
-        ]
-    )

@@ -172,9 +172,7 @@ IMPACTS = pytest.mark.parametrize(
 
 
 @IMPACTS
-def test_an_impact_has_one_outcome_and_takes_energy(
-    old: tuple[int, int], closing: tuple[int, int], s: System
-) -> None:
+def test_an_impact_has_one_outcome_and_takes_energy(old, closing, s):
     without = 0
     for k in range(N):
         model = Model(STACKS[k], S.g[k])
@@ -193,9 +191,7 @@ def test_an_impact_has_one_outcome_and_takes_energy(
 
 
 @IMPACTS
-def test_the_fast_kernel_finds_the_same_outcome(
-    old: tuple[int, int], closing: tuple[int, int], s: System
-) -> None:
+def test_the_fast_kernel_finds_the_same_outcome(old, closing, s):
     for k in range(N):
         theta, omega = state(s, k)
         new, after, _ = Model(STACKS[k], S.g[k]).impact(old, closing, theta, omega)
@@ -215,13 +211,7 @@ def has_something_to_multiply(stack: Stack) -> bool:
 @pytest.mark.parametrize("law", law_names())
 @pytest.mark.parametrize("measured", [(0.2, 0.3), (0.6, 0.9), (1.0, 1.0)])
 @IMPACTS
-def test_energy_never_grows_whatever_restitution_is_asked_for(
-    old: tuple[int, int],
-    closing: tuple[int, int],
-    s: System,
-    measured: tuple[float, float],
-    law: str,
-) -> None:
+def test_energy_never_grows_whatever_restitution_is_asked_for(old, closing, s, measured, law):
     restitution = MeasuredRestitution(measured, law)
     asked = range(0, N, 5)
     if law == "couple":

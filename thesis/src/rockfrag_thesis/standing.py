@@ -53,12 +53,7 @@ def standing_definitions(
     rows = []
     for configuration in configurations:
         copies = [[_copy(configuration, size, rng) for _ in range(COPIES)] for size in SIZES]
-        fell = overturns(
-            configuration,
-            motions,
-            scales=scales,
-            threads=threads,
-        ).overturned[0]
+        fell = overturns(configuration, motions, scales=scales, threads=threads).overturned[0]
         found = [_definitions(amplitudes_g, flags, protocol) for flags in fell]
         stands = {
             (k, i, name): True
@@ -129,11 +124,7 @@ def _asked(
 
 
 def _outcomes(
-    copies: Sequence[Copy],
-    motions: Sequence[Motion],
-    scales: Floats,
-    wanted: Flags,
-    threads: int,
+    copies: Sequence[Copy], motions: Sequence[Motion], scales: Floats, wanted: Flags, threads: int
 ) -> Flags:
     """Whether each copy overturns in the wanted cases, shape (copies, motions, amplitudes); False elsewhere."""
     copy, motion, amplitude = np.nonzero(wanted)

@@ -97,10 +97,7 @@ def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
 
 
 def make_curve(
-    measure: IntensityMeasure,
-    levels: Sequence[float],
-    rates: Sequence[float],
-    where: str,
+    measure: IntensityMeasure, levels: Sequence[float], rates: Sequence[float], where: str
 ) -> HazardCurve:
     """Make a curve of levels and rates [1/year] of a file, or say in one sentence what is wrong with it.
 

@@ -21,13 +21,7 @@ consistent one is taken, so that every transition that the mechanics allows occu
 
 import math
 
-from rockfrag.engines.kernels.equations import (
-    accelerations,
-    equations,
-    ground_hold,
-    interface_hold,
-    pivot,
-)
+from rockfrag.engines.kernels import equations as model
 from rockfrag.engines.kernels.jit import kernel
 
 HALF_TURN = 0.5 * math.pi  # a block that has turned so far lies down [rad]
@@ -87,7 +81,7 @@ def _rest_moment(body, contact, c, ground, scratch):
     """Contact moment s τ(s) of a contact at rest at its corner ``c``."""
     at_rest(scratch, ground, body.gravity)
     c1, c2 = (c, 1) if contact == GROUND else (1, c)
-    _, _, _, f1, f2 = equations(body, pivot(c1), pivot(c2), scratch)
+    _, _, _, f1, f2 = model.equations(body, model.pivot(c1), model.pivot(c2), scratch)
     return c * (f1 + f2) if contact == GROUND else c * f2
 
 
@@ -111,13 +105,13 @@ def settle(body, state):
                     continue
                 t1 = c1 if c1 != 0 else n1
                 t2 = c2 if c2 != 0 else n2
-                alpha1, alpha2 = accelerations(body, t1, t2, state)
+                alpha1, alpha2 = model.accelerations(body, t1, t2, state)
                 good = True
                 if c1 == 0:
                     if n1 != 0:
                         good = n1 * alpha1 > 0.0
                     else:
-                        hold, corner = ground_hold(body, t2, state, alpha2)
+                        hold, corner = model.ground_hold(body, t2, state, alpha2)
                         good = hold >= 0.0
                         if opened == 0 and not good:
                             fallback1 = corner
@@ -125,7 +119,7 @@ def settle(body, state):
                     if n2 != 0:
                         good = good and n2 * (alpha2 - alpha1) > 0.0
                     else:
-                        hold, corner = interface_hold(body, t1, state, alpha1)
+                        hold, corner = model.interface_hold(body, t1, state, alpha1)
                         good = good and hold >= 0.0
                         if opened == 0 and hold < 0.0:
                             fallback2 = corner
@@ -144,11 +138,11 @@ def release(body, state, fails, stuck):
     c1, c2 = settle(body, state)
     if stuck and c1 == state.c1 and c2 == state.c2:
         # rounding at a threshold: open the contact that fails
-        alpha1, alpha2 = accelerations(body, c1, c2, state)
+        alpha1, alpha2 = model.accelerations(body, c1, c2, state)
         if fails == GROUND:
-            _, c1 = ground_hold(body, c2, state, alpha2)
+            _, c1 = model.ground_hold(body, c2, state, alpha2)
         else:
-            _, c2 = interface_hold(body, c1, state, alpha1)
+            _, c2 = model.interface_hold(body, c1, state, alpha1)
     return c1, c2
 
 
@@ -158,8 +152,8 @@ def uplift(body, state):
     c1, c2 = settle(body, state)
     if c1 == 0 and c2 == 0:
         # rounding at the threshold: open the contact with the least hold
-        hold1, corner1 = ground_hold(body, 0, state, 0.0)
-        hold2, corner2 = interface_hold(body, 0, state, 0.0)
+        hold1, corner1 = model.ground_hold(body, 0, state, 0.0)
+        hold2, corner2 = model.interface_hold(body, 0, state, 0.0)
         if hold1 <= hold2:
             return corner1, 0
         return 0, corner2

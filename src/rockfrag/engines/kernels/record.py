@@ -5,18 +5,8 @@ import math
 import numpy as np
 
 from rockfrag.elementary import hypot, sin_cos
+from rockfrag.engines.kernels import equations
 from rockfrag.engines.kernels.demand import DEMAND, add_demand, ask_forces, no_demand
-from rockfrag.engines.kernels.equations import (
-    STATE,
-    accelerations,
-    balance,
-    first_moment1,
-    first_moment2,
-    kinetic_energy,
-    pivot,
-    potential_energy,
-    upper_balance,
-)
 from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, kernel
 from rockfrag.engines.kernels.roots import NEVER, bend, slope, value
 
@@ -56,7 +46,7 @@ SAMPLE = np.dtype(
 CONTACT_EVENT = np.dtype(
     [
         ("time", np.float64), ("kind", np.int64),
-        ("before", STATE), ("after", STATE),
+        ("before", equations.STATE), ("after", equations.STATE),
         ("energy_before", np.float64), ("energy_after", np.float64),  # kinetic [J]
     ],
     align=True,
@@ -98,10 +88,10 @@ def fill_balances(body, balances):
     """Fill the ways to balance, (8,): of the pedestal in places 0 to 5, of the statue in 6 and 7."""
     for c1 in (1, -1):
         for c2 in (-1, 0, 1):
-            critical, vx, vy, inertia = balance(body, c1, c2)
+            critical, vx, vy, inertia = equations.balance(body, c1, c2)
             _keep_balance(body, balances[_way_of_lower(c1, c2)], critical, (vx, vy), inertia)
     for c2 in (1, -1):
-        critical, vx, vy, inertia = upper_balance(body, c2)
+        critical, vx, vy, inertia = equations.upper_balance(body, c2)
         _keep_balance(body, balances[_way_of_upper(c2)], critical, (vx, vy), inertia)
 
 
@@ -201,9 +191,9 @@ def note_demand(body, step, series, end, work, summary):
 @kernel
 def work_of(body, c1, c2, series, end, step):
     """Work of the ground's acceleration over (0, end] of a step [J]: -∫ Σ m (a x' + a_v y') dt."""
-    s1, s2 = pivot(c1), pivot(c2)
-    v1x, v1y = first_moment1(body, s1, s2)
-    v2x, v2y = first_moment2(body, s2)
+    s1, s2 = equations.pivot(c1), equations.pivot(c2)
+    v1x, v1y = equations.first_moment1(body, s1, s2)
+    v2x, v2y = equations.first_moment2(body, s2)
     # Gauss-Legendre, six points: exact to order 11
     nodes = (0.2386191860831969, 0.6612093864662645, 0.9324695142031521)
     weights = (0.4679139345726910, 0.3607615730481386, 0.1713244923791704)
@@ -232,7 +222,7 @@ def work_of(body, c1, c2, series, end, step):
 @kernel
 def keep_sample(body, state, sample, work):
     """Write a state into the history."""
-    alpha1, alpha2 = accelerations(body, state.c1, state.c2, state)
+    alpha1, alpha2 = equations.accelerations(body, state.c1, state.c2, state)
     sample.theta1, sample.omega1 = state.theta1, state.omega1
     sample.theta2, sample.omega2 = state.theta2, state.omega2
     sample.c1, sample.c2, sample.alpha1, sample.alpha2 = state.c1, state.c2, alpha1, alpha2
@@ -247,8 +237,8 @@ def keep_contact_event(body, time, kind, before, after, contact_events, summary)
         contact_event.time, contact_event.kind = time, kind
         copy_state(before, contact_event.before)
         copy_state(after, contact_event.after)
-        contact_event.energy_before = kinetic_energy(body, before)
-        contact_event.energy_after = kinetic_energy(body, after)
+        contact_event.energy_before = equations.kinetic_energy(body, before)
+        contact_event.energy_after = equations.kinetic_energy(body, after)
     summary.contact_events += 1
 
 
@@ -260,8 +250,8 @@ def fill_energies(body, history, kinetic, potential, scratch):
         scratch.c1, scratch.c2 = sample.c1, sample.c2
         scratch.theta1, scratch.omega1 = sample.theta1, sample.omega1
         scratch.theta2, scratch.omega2 = sample.theta2, sample.omega2
-        kinetic[i] = kinetic_energy(body, scratch)
-        potential[i] = potential_energy(body, scratch)
+        kinetic[i] = equations.kinetic_energy(body, scratch)
+        potential[i] = equations.potential_energy(body, scratch)
 
 
 @entry_kernel

@@ -13,15 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.engines.kernels import contact_states, record, roots
 from rockfrag.engines.kernels.chatter import HISTORY, RESTORING, Ahead, dies_out, fill_restoring
-from rockfrag.engines.kernels.contact_states import (
-    GROUND,
-    HALF_TURN,
-    INTERFACE,
-    first_contacts,
-    release,
-    settle,
-)
 from rockfrag.engines.kernels.demand import add_demand, ask_impulses, no_demand
 from rockfrag.engines.kernels.equations import (
     STATE,
@@ -32,30 +25,6 @@ from rockfrag.engines.kernels.equations import (
 )
 from rockfrag.engines.kernels.impact import impact, stuck
 from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, kernel
-from rockfrag.engines.kernels.record import (
-    BALANCE,
-    CHATTER,
-    CLOSING,
-    LIFTING,
-    OPENING,
-    begin,
-    copy_state,
-    fill_balances,
-    keep_contact_event,
-    keep_sample,
-    note_demand,
-    track,
-    work_of,
-)
-from rockfrag.engines.kernels.roots import (
-    NEVER,
-    closing_time,
-    guess_between,
-    is_narrow,
-    narrowed,
-    slope,
-    value,
-)
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series
 
 GRAZING_SPEED = 1e-3  # relative speed [rad/s] below which a contact grazes
@@ -94,7 +63,7 @@ def scratch() -> Scratch:
         *np.zeros(3, STATE),
         np.zeros(1, SERIES)[0],
         np.zeros(1, RESTORING)[0],
-        np.zeros(8, BALANCE),
+        np.zeros(8, record.BALANCE),
         np.zeros(1, np.bool_),
     )
 
@@ -107,19 +76,19 @@ def integrate(body, shaking, initial, history, contact_events, summary, work):
     CONTACT_EVENTs as fit; ``summary`` is a SUMMARY, ``work`` a :class:`Scratch`.
     """
     state = work.state
-    copy_state(initial, state)
-    begin(state, summary)
+    record.copy_state(initial, state)
+    record.begin(state, summary)
     samples, scale = shaking.samples, shaking.scale
     n = samples.size
     state.ground = samples[0] * scale
     state.gravity = _gravity(body, shaking, 0)
-    state.c1, state.c2 = first_contacts(state)
-    state.c1, state.c2 = settle(body, state)
-    fill_balances(body, work.balances)
+    state.c1, state.c2 = contact_states.first_contacts(state)
+    state.c1, state.c2 = contact_states.settle(body, state)
+    record.fill_balances(body, work.balances)
     fill_restoring(body, work.restoring, work.trial)
     work.beyond[0] = False
     if len(history) > 0:
-        keep_sample(body, state, history[0], 0.0)
+        record.keep_sample(body, state, history[0], 0.0)
     done = 1
     for k in range(n - 1 + shaking.free_samples):
         right = samples[k + 1] * scale if k + 1 < n else 0.0
@@ -127,9 +96,11 @@ def integrate(body, shaking, initial, history, contact_events, summary, work):
         done = k + 2
         state.ground, state.gravity = right, _gravity(body, shaking, k + 1)
         if len(history) > k + 1:
-            keep_sample(body, state, history[k + 1], summary.work)
-        lying1 = abs(state.theta1) >= HALF_TURN
-        lying2 = max(abs(state.theta2), abs(state.theta2 - state.theta1)) >= HALF_TURN
+            record.keep_sample(body, state, history[k + 1], summary.work)
+        lying1 = abs(state.theta1) >= contact_states.HALF_TURN
+        lying2 = (
+            max(abs(state.theta2), abs(state.theta2 - state.theta1)) >= contact_states.HALF_TURN
+        )
         if lying1 or lying2:
             summary.fallen = 1 if lying1 and not body.fixed else 2
             summary.fall_time = (done - 1) * shaking.dt
@@ -179,15 +150,23 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
             at = min(1.0, when)
             moves = state.c1 != 0 or state.c2 != 0
             _move(state, series, at, step.length)
-            lifts = note_demand(body, step, series, at, work, summary)
-            if lifts != NEVER and math.isnan(summary.lost_contact):
+            lifts = record.note_demand(body, step, series, at, work, summary)
+            if lifts != roots.NEVER and math.isnan(summary.lost_contact):
                 summary.lost_contact = (k + (sub + tau + lifts * remaining) / substeps) * shaking.dt
-                keep_contact_event(
-                    body, summary.lost_contact, LIFTING, state, state, contact_events, summary
+                record.keep_contact_event(
+                    body,
+                    summary.lost_contact,
+                    record.LIFTING,
+                    state,
+                    state,
+                    contact_events,
+                    summary,
                 )
             if moves:
-                work.beyond[0] = track(work.balances, state, series, at, step.length, summary)
-                summary.work += work_of(body, state.c1, state.c2, series, at, step)
+                work.beyond[0] = record.track(
+                    work.balances, state, series, at, step.length, summary
+                )
+                summary.work += record.work_of(body, state.c1, state.c2, series, at, step)
             tau += at * remaining
             if when > 1.0:
                 break
@@ -198,10 +177,10 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                     state.theta1 = 0.0
                 if closes2 or state.c2 == 0:
                     state.theta2 = state.theta1
-            copy_state(state, before)
+            record.copy_state(state, before)
             if fails != 0:
-                kind = OPENING
-                state.c1, state.c2 = release(body, state, fails, at == 0.0)
+                kind = record.OPENING
+                state.c1, state.c2 = contact_states.release(body, state, fails, at == 0.0)
             else:
                 _count_impact(state, closes1, summary)
                 part = (sub + tau) / substeps
@@ -214,16 +193,18 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                 summary.given_way += gave_way
                 demand = summary.beyond if work.beyond[0] else summary.demand
                 # of a series of impacts that is ended at once, its first one asks as all do
-                after = state if kind == CLOSING else _struck(body, before, closes, work.trial)
+                after = (
+                    state if kind == record.CLOSING else _struck(body, before, closes, work.trial)
+                )
                 ask_impulses(body, before, after, demand)
             clock = (k + (sub + tau) / substeps) * shaking.dt
-            keep_contact_event(body, clock, kind, before, state, contact_events, summary)
+            record.keep_contact_event(body, clock, kind, before, state, contact_events, summary)
 
 
 @kernel
 def _struck(body, before, closes, after):
     """Fill the state after an impact that nothing else has ended, and return it."""
-    copy_state(before, after)
+    record.copy_state(before, after)
     n1, n2, w1, w2, _ = impact(body, before, closes[0], closes[1])
     after.c1, after.c2, after.omega1, after.omega2 = n1, n2, w1, w2
     return after
@@ -234,10 +215,10 @@ def _move(state, series, tau, h):
     """Move a state to an instant of its series."""
     first, two = series.one.angle, series.two.angle
     open1, open2 = state.c1 != 0, state.c2 != 0
-    state.theta1 = value(first, tau) if open1 else 0.0
-    state.omega1 = slope(first, tau) / h if open1 else 0.0
-    state.theta2 = value(two, tau) if open2 else state.theta1
-    state.omega2 = slope(two, tau) / h if open2 else state.omega1
+    state.theta1 = roots.value(first, tau) if open1 else 0.0
+    state.omega1 = roots.slope(first, tau) / h if open1 else 0.0
+    state.theta2 = roots.value(two, tau) if open2 else state.theta1
+    state.omega2 = roots.slope(two, tau) / h if open2 else state.omega1
 
 
 @kernel
@@ -256,7 +237,7 @@ def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, for
     (``forced``) too, and impacts that are sure to end at rest are not followed.
     """
     closes1, closes2 = closes
-    kind = CLOSING
+    kind = record.CLOSING
     free1 = closes1 or state.c1 == 0
     free2 = closes2 or state.c2 == 0
     n1, n2, w1, w2, gave_way = impact(body, state, closes1, closes2)
@@ -267,20 +248,20 @@ def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, for
         n1 = 0 if slow1 else n1
         n2 = 0 if slow2 else n2
         w1, w2 = stuck(body, state, n1, n2)
-        kind = CHATTER
+        kind = record.CHATTER
     before = kinetic_energy(body, state)
     state.c1, state.c2, state.omega1, state.omega2 = n1, n2, w1, w2
     level = state.theta1 == 0.0 and state.theta2 == 0.0
     speed = max(abs(w1), abs(w2))
-    if kind == CLOSING and level and (n1 != 0 or n2 != 0) and speed < restoring.fastest:
+    if kind == record.CLOSING and level and (n1 != 0 or n2 != 0) and speed < restoring.fastest:
         fraction = math.sqrt(kinetic_energy(body, state) / before)
         # a pedestal that is thrown about lengthens the flights of the statue
         safety = 1.03 if body.fixed else 1.5
         if dies_out(speed, fraction, safety, restoring, chatter_tolerance.drop, ahead):
             state.c1, state.c2, state.omega1, state.omega2 = 0, 0, 0.0, 0.0
-            kind = CHATTER
+            kind = record.CHATTER
     if not forced:
-        state.c1, state.c2 = settle(body, state)
+        state.c1, state.c2 = contact_states.settle(body, state)
     return kind, gave_way
 
 
@@ -291,14 +272,14 @@ def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, for
 def _hold_at(body, contact, step, series, tau, trial):
     """Least contact moment of a closed contact at τ; ``trial`` holds the contacts of the step."""
     first, two = series.one.angle, series.two.angle
-    trial.theta1 = value(first, tau)
-    trial.theta2 = value(two, tau)
-    trial.omega1 = slope(first, tau) / step.length
-    trial.omega2 = slope(two, tau) / step.length
+    trial.theta1 = roots.value(first, tau)
+    trial.theta2 = roots.value(two, tau)
+    trial.omega1 = roots.slope(first, tau) / step.length
+    trial.omega2 = roots.slope(two, tau) / step.length
     trial.ground = step.ground + step.rise * tau
     trial.gravity = step.gravity + step.lift * tau
     alpha1, alpha2 = accelerations(body, trial.c1, trial.c2, trial)
-    if contact == GROUND:
+    if contact == contact_states.GROUND:
         least, _ = ground_hold(body, trial.c2, trial, alpha2)
     else:
         least, _ = interface_hold(body, trial.c1, trial, alpha1)
@@ -316,22 +297,22 @@ def _failing_time(body, contact, step, series, end, trial):
         middle = _hold_at(body, contact, step, series, 0.5 * end, trial)
         curve = 2.0 * (at_start + at_end - 2.0 * middle)
         if curve <= 0.0:
-            return NEVER
+            return roots.NEVER
         vertex = -(4.0 * middle - 3.0 * at_start - at_end) / (2.0 * curve)
         if not 0.0 < vertex < 1.0:
-            return NEVER
+            return roots.NEVER
         high = vertex * end
         at_end = _hold_at(body, contact, step, series, high, trial)
         if at_end >= 0.0:
-            return NEVER
+            return roots.NEVER
     if at_start < 0.0:
         return 0.0
     bracket = (0.0, at_start, high, at_end, 0)
     for _ in range(200):
-        if is_narrow(bracket):
+        if roots.is_narrow(bracket):
             break
-        tau = guess_between(bracket)
-        bracket = narrowed(bracket, tau, _hold_at(body, contact, step, series, tau, trial))
+        tau = roots.guess_between(bracket)
+        bracket = roots.narrowed(bracket, tau, _hold_at(body, contact, step, series, tau, trial))
     return bracket[2]
 
 
@@ -341,7 +322,7 @@ def fill_gap(series, contact, side):
     first, two, gap = series.one.angle, series.two.angle, series.gap
     end = 0.0
     for i in range(ORDER + 1):
-        gap[i] = side * first[i] if contact == GROUND else side * (two[i] - first[i])
+        gap[i] = side * first[i] if contact == contact_states.GROUND else side * (two[i] - first[i])
         end += gap[i]
     return end
 
@@ -349,21 +330,21 @@ def fill_gap(series, contact, side):
 @kernel
 def first_closing(c1, c2, series):
     """Time in a step at which a contact closes first, NEVER if none does; whether ground and interface do."""
-    when = NEVER
+    when = roots.NEVER
     closes1 = False
     closes2 = False
     if c1 != 0:
-        fill_gap(series, GROUND, c1)
-        when = closing_time(series.gap, 1.0)
+        fill_gap(series, contact_states.GROUND, c1)
+        when = roots.closing_time(series.gap, 1.0)
         closes1 = when <= 1.0
     if c2 != 0:
-        fill_gap(series, INTERFACE, c2)
-        time = closing_time(series.gap, min(1.0, when))
+        fill_gap(series, contact_states.INTERFACE, c2)
+        time = roots.closing_time(series.gap, min(1.0, when))
         if time < when:
             closes1 = False
             closes2 = True
             when = time
-        elif closes1 and value(series.gap, when) < 1e-13:
+        elif closes1 and roots.value(series.gap, when) < 1e-13:
             closes2 = True
     return when, closes1, closes2
 
@@ -378,9 +359,9 @@ def _next_contact_event(body, state, step, series, trial):
     when, closes1, closes2 = first_closing(c1, c2, series)
     trial.c1, trial.c2 = c1, c2
     fails = 0
-    for contact in (GROUND, INTERFACE):
-        open_ = c1 != 0 if contact == GROUND else c2 != 0
-        if open_ or (contact == GROUND and body.fixed):
+    for contact in (contact_states.GROUND, contact_states.INTERFACE):
+        open_ = c1 != 0 if contact == contact_states.GROUND else c2 != 0
+        if open_ or (contact == contact_states.GROUND and body.fixed):
             continue
         time = _failing_time(body, contact, step, series, min(1.0, when), trial)
         if time < when:

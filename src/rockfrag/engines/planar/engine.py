@@ -6,18 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.engines.contract import (
-    Case,
-    Cases,
-    Engine,
-    Request,
-    Support,
-    Wish,
-    by_wishes,
-    engines,
-    run_cases,
-)
-from rockfrag.engines.response import Response
+from rockfrag.engines import contract
+from rockfrag.engines.contract import Wish
+from rockfrag.engines.response import ROCKING_MODES, Response, with_slips
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.system.system import System
@@ -34,16 +25,24 @@ class PlanarContact:
     name = "planar contact"
     meets = frozenset(
         {
-            *(Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.VERTICAL, Wish.FRICTION, Wish.RESTITUTION),
+            *(
+                Wish.TWO_BODIES,
+                Wish.MANY_BODIES,
+                Wish.VERTICAL,
+                Wish.FRICTION,
+                Wish.RESTITUTION,
+            ),
             *(Wish.START, Wish.HISTORY),
         }
     )
 
-    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+    def supports(
+        self, system: System, motion: GroundMotion, request: contract.Request
+    ) -> contract.Support:
         """Say whether it computes this system under this motion as requested, and if not, why."""
-        return by_wishes(self, system, motion, request)
+        return contract.by_wishes(self, system, motion, request)
 
-    def run(self, cases: Cases) -> Outcomes:
+    def run(self, cases: contract.Cases) -> Outcomes:
         """Return the outcomes of cases."""
         from rockfrag.engines.planar.ensemble import contact_outcomes
 
@@ -56,7 +55,7 @@ class PlanarContact:
             if self._pure(system, richest, cases.request) is not None
         ]
         if rocking:
-            pure = run_cases(replace(cases, systems=tuple(stuck[i] for i in rocking)))
+            pure = contract.run_cases(replace(cases, systems=tuple(stuck[i] for i in rocking)))
             outcomes = replace(outcomes, engines=(self.name, *pure.engines))
             merge_outcomes(outcomes, rocking, pure)
         found = contact_outcomes(cases)
@@ -64,9 +63,11 @@ class PlanarContact:
             self._write(outcomes, i, count, found[i], everything=i not in rocking)
         return outcomes
 
-    def _pure(self, system: System, motion: GroundMotion, request: Request) -> Engine | None:
+    def _pure(
+        self, system: System, motion: GroundMotion, request: contract.Request
+    ) -> contract.Engine | None:
         """Engine of pure rocking of a system, if there is one."""
-        others = (engine for engine in engines() if engine is not self)
+        others = (engine for engine in contract.engines() if engine is not self)
         return next((other for other in others if other.supports(system, motion, request)), None)
 
     def _write(
@@ -98,7 +99,7 @@ class PlanarContact:
             into.slip[own] = left["slip"][:, k]
             into.peak_slip[own] = left["peak_slip"][:, k]
 
-    def history(self, case: Case) -> Response:
+    def history(self, case: contract.Case) -> Response:
         """Return the response of a case."""
         from rockfrag.engines.planar.ensemble import COARSE_CLOSING
         from rockfrag.engines.planar.history import contact_run, response_of
@@ -135,9 +136,6 @@ def scaled(motion: GroundMotion, factor: float) -> GroundMotion:
 
 def without_slip(response: Response) -> Response:
     """Give a response of pure rocking the columns of one with friction."""
-    from rockfrag.engines.response import ROCKING_MODES
-    from rockfrag.engines.response_tables import with_slips
-
     bodies = response.slip.shape[1]
     states = {name: pair[2 - bodies :] for pair, name in ROCKING_MODES.items()}
     after = np.array([states[name] for name in response.contact_events["to"]], dtype=np.int64)

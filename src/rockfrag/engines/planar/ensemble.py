@@ -7,15 +7,8 @@ from numpy.typing import NDArray
 
 from rockfrag.engines.contract import Cases as Grid
 from rockfrag.engines.lanes import intervals_of
+from rockfrag.engines.planar import records
 from rockfrag.engines.planar.integrate import Book, Cases, integrate_cases
-from rockfrag.engines.planar.records import (
-    BODY,
-    MOST,
-    OUTCOME,
-    posed,
-    system_record,
-    working_memory,
-)
 from rockfrag.engines.steps import free_samples, step_count
 from rockfrag.system.system import System
 
@@ -29,11 +22,11 @@ def contact_outcomes(grid: Grid, wanted: NDArray[np.bool_] | None = None) -> NDA
     """Integrate the ``wanted`` cases of systems × motions × scales, all if None; the others are left zero."""
     g, step, dts = grid.request.g, grid.request.step, intervals_of(grid)
     wanted = np.ones(grid.shape, dtype=bool) if wanted is None else wanted
-    table = np.zeros(len(grid.systems), BODY)
-    starts = np.zeros((len(grid.systems), 2, 3 * MOST))
+    table = np.zeros(len(grid.systems), records.BODY)
+    starts = np.zeros((len(grid.systems), 2, 3 * records.MOST))
     for i, system in enumerate(grid.systems):
-        table[i] = system_record(system, g)
-        starts[i] = posed(table[i], *started(system))
+        table[i] = records.system_record(system, g)
+        starts[i] = records.posed(table[i], *started(system))
     ups = [motion.z.acceleration for motion in grid.motions if motion.z is not None]
     sizes = [motion.x.acceleration.size for motion in grid.motions]
     cases = Cases(
@@ -47,7 +40,7 @@ def contact_outcomes(grid: Grid, wanted: NDArray[np.bool_] | None = None) -> NDA
         substeps=np.array([step_count(system, dts, g, step) for system in grid.systems]),
         free_samples=np.array([free_samples(system, dts, g) for system in grid.systems]),
     )
-    outcome = np.zeros(wanted.size, OUTCOME)
+    outcome = np.zeros(wanted.size, records.OUTCOME)
     numbers = np.flatnonzero(wanted)
     book = Book(np.zeros((0, 0)), np.zeros((0, 0)))
 
@@ -58,7 +51,7 @@ def contact_outcomes(grid: Grid, wanted: NDArray[np.bool_] | None = None) -> NDA
             chunk = numbers[first : first + CHUNK]
             integrate_cases(chunk, cases, COARSE_CLOSING, book, memory, outcome)
 
-    memories = [working_memory() for _ in range(grid.threads)]
+    memories = [records.working_memory() for _ in range(grid.threads)]
     integrate_cases(numbers[:0], cases, COARSE_CLOSING, book, memories[0], outcome)
     if grid.threads == 1:
         work(memories[0])

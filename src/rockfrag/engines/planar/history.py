@@ -8,22 +8,17 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.engines.kernels.single import GRAZING_SPEED
+from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar.ensemble import started
-from rockfrag.engines.planar.integrate import (
-    CHANGE,
-    FALLEN,
-    IMPACT,
-    PARADOX,
-    PASSING,
-    Book,
-    Shaking,
-    contact_event_columns,
-    history_columns,
-    integrate,
-)
 from rockfrag.engines.planar.records import posed, system_record, working_memory
-from rockfrag.engines.response import FLIGHT, Response, sampled_demand
-from rockfrag.engines.response_tables import contact_event_table, energy_table, with_slips
+from rockfrag.engines.response import (
+    FLIGHT,
+    Response,
+    contact_event_table,
+    energy_table,
+    sampled_demand,
+    with_slips,
+)
 from rockfrag.engines.steps import STEP, free_samples, step_count
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.system.system import System
@@ -35,7 +30,12 @@ Ints = NDArray[np.int64]
 CLOSING = 1e-6
 """Parting speed over √(g b) below which a contact stays closed after an impact, where the history is kept."""
 
-_KINDS = {IMPACT: "impact", PARADOX: "paradox", FALLEN: "fall", PASSING: "edge"}
+_KINDS = {
+    contact.IMPACT: "impact",
+    contact.PARADOX: "paradox",
+    contact.FALLEN: "fall",
+    contact.PASSING: "edge",
+}
 _STATES = np.array([FLIGHT, -1, +1, 0])
 """Contact state of an interface whose closed ends are the bits (left, right) of a number."""
 
@@ -62,32 +62,28 @@ class ContactRun(NamedTuple):
 
 
 def contact_run(
-    system: System,
-    motion: GroundMotion,
-    g: float = GRAVITY,
-    step: float = STEP,
-    closing: float = CLOSING,
+    system: System, motion: GroundMotion, g: float = GRAVITY, closing: float = CLOSING
 ) -> ContactRun:
     """Integrate one planar system that may slide, rock and fly; :func:`response_of` makes a response of it.
 
-    ``step`` is the largest product of the frequency parameter and the step [-], ``closing`` the parting speed over
-    √(g b) below which a contact that would fall shut again stays closed after an impact [-].
+    ``closing`` is the parting speed over √(g b) below which a contact that would fall shut again stays closed
+    after an impact [-].
     """
     values, interval = motion.x.acceleration, motion.dt
     up = np.zeros(0) if motion.z is None else motion.z.acceleration
     p = system_record(system, g)
     blocks = int(p["count"])
     start = posed(p, *started(system))
-    substeps = int(step_count(system, interval, g, step))
+    substeps = int(step_count(system, interval, g, STEP))
     free = int(free_samples(system, interval, g))
-    shaking = Shaking(values, up, interval, 1.0, substeps, free)
-    history = np.zeros((values.size + free, history_columns(blocks)))
+    shaking = contact.Shaking(values, up, interval, 1.0, substeps, free)
+    history = np.zeros((values.size + free, contact.history_columns(blocks)))
     work = working_memory()
     capacity = 4096
     while True:
-        contact_events = np.zeros((capacity, contact_event_columns(blocks)))
-        done, count, fall = integrate(
-            p, shaking, start, closing, Book(history, contact_events), work
+        contact_events = np.zeros((capacity, contact.contact_event_columns(blocks)))
+        done, count, fall = contact.integrate(
+            p, shaking, start, closing, contact.Book(history, contact_events), work
         )
         if count <= capacity:
             break
@@ -107,6 +103,7 @@ def response_of(run: ContactRun) -> Response:
     state, slides = _modes(history[:, -1], blocks)
     fallen = int(work["fallen"])
     table = _contact_events(run.contact_events, blocks)
+    meets = np.array([np.abs(np.diff([0.0, *omega])).max() for omega in table["omega_before"]])
     ground = np.zeros(done)
     ground[: min(done, values.size)] = values[:done]
     return Response(
@@ -128,7 +125,7 @@ def response_of(run: ContactRun) -> Response:
         normal_force=normal,
         friction_force=shear,
         impacts=int(work["impacts"]),
-        grazings=_grazings(table),
+        grazings=int((table["kind"].eq("impact") & (meets < GRAZING_SPEED)).sum()),
         given_way=int(work["given_way"]),
         friction_demand=sampled_demand(normal, shear),
         least_normal_force=np.asarray(normal.min(axis=0)),
@@ -164,7 +161,7 @@ def _contact_events(contact_events: Array, blocks: int) -> pd.DataFrame:
 
 def _kind_of_change(before: Ints, after: Ints, slid: Ints, slides: Ints) -> str:
     """Name of a contact event without an impact: what opens first, then what slides."""
-    assert CHANGE not in _KINDS
+    assert contact.CHANGE not in _KINDS
     if np.any((after == FLIGHT) & (before != FLIGHT)):
         return "flight"
     if np.any((after != 0) & (before == 0)):
@@ -174,19 +171,13 @@ def _kind_of_change(before: Ints, after: Ints, slid: Ints, slides: Ints) -> str:
     return "slip" if np.any((slides != 0) & (slides != slid)) else "stick"
 
 
-def _grazings(contact_events: pd.DataFrame) -> int:
-    """Impacts that met with less than the speed of grazing."""
-    speeds = [np.abs(np.diff([0.0, *omega])).max() for omega in contact_events["omega_before"]]
-    return int(((contact_events["kind"] == "impact") & (np.array(speeds) < GRAZING_SPEED)).sum())
-
-
 def _energies(p: np.void, time: Array, history: Array, contact_events: Array) -> pd.DataFrame:
     """Balance of energy by cause over time [J]."""
     blocks = int(p["count"])
     inertia = 1.0 / p["inverse"][: 3 * blocks]
     kinetic = (inertia * history[:, 3 * blocks : 6 * blocks] ** 2).sum(axis=1) / 2
     potential = float(p["g"]) * (p["mass"][:blocks] * history[:, 1 : 3 * blocks : 3]).sum(axis=1)
-    struck = np.isin(contact_events[:, 1], (IMPACT, PARADOX))
+    struck = np.isin(contact_events[:, 1], (contact.IMPACT, contact.PARADOX))
     loss = np.where(struck, contact_events[:, 4] - contact_events[:, 5], 0.0)
     # the lowest contact whose mode changes as it comes down, or the uppermost
     before, after = (_modes(contact_events[:, column], blocks)[0] for column in (2, 3))

@@ -3,13 +3,7 @@
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.kernels.laws import moves_impulse, scales_momentum
 from rockfrag.engines.kernels.laws import rate as lawful_rate
-from rockfrag.engines.planar.modes import (
-    approach,
-    kinetic_energy,
-    project,
-    remember_slides,
-    slip_speed,
-)
+from rockfrag.engines.planar import modes
 from rockfrag.engines.planar.search import search
 from rockfrag.engines.planar.solve import bias, end_of, rate, solve
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
@@ -28,11 +22,11 @@ def strike(p, w, ah, av, closing, push):
     ``closing``: speed [m/s] below which a contact that parts and would fall shut again stays closed.  ``push``:
     nothing approaches, but no mode was consistent; see ``docs/contact.md``, 7.
     """
-    before = kinetic_energy(p, w.v)
+    before = modes.kinetic_energy(p, w.v)
     lawful = _read_laws(p, w, push)
     for k in range(p.count):
         w.moves[k] = 0
-        w.limit[k] = p.static[k] if slip_speed(p, w, w.v, k, True) == 0.0 else p.kinetic[k]
+        w.limit[k] = p.static[k] if modes.slip_speed(p, w, w.v, k, True) == 0.0 else p.kinetic[k]
         if push:
             w.v[3 * k + 1] -= 1e-7 * p.speed
     scale = 1e-300
@@ -45,15 +39,15 @@ def strike(p, w, ah, av, closing, push):
     if lawful:
         _obey(p, w, ah, av, mass * scale, scale)
     lift_laws(p, w)
-    remember_slides(p, w)
+    modes.remember_slides(p, w)
     for d in range(3 * p.count):
         w.v[d] = w.out[d]
     while _shut_weak(p, w, ah, av, closing):
         solve(p, w, w.q, w.v, ah, av, True, False)
         for d in range(3 * p.count):
             w.v[d] = w.out[d]
-    project(p, w)
-    w.struck += before - kinetic_energy(p, w.v)
+    modes.project(p, w)
+    w.struck += before - modes.kinetic_energy(p, w.v)
     w.impacts += 1
 
 
@@ -76,7 +70,7 @@ def _read_laws(p, w, push):
                 continue
             if w.old_closed[k, 1 - end] == 0 or w.old_closed[k, end] == 1:
                 continue
-            speed = approach(p, w, k, end)
+            speed = modes.approach(p, w, k, end)
             if speed < 0.0 and p.law[k, end] != MOMENTUM:
                 w.falls[k] = end
                 w.goal[k, 1] = -speed
@@ -87,7 +81,7 @@ def _read_laws(p, w, push):
 @kernel
 def _obey(p, w, ah, av, force, motion):
     """Let the laws of the contacts act on the plastic outcome that is in ``w``, as far as no energy is gained."""
-    energy = kinetic_energy(p, w.v)
+    energy = modes.kinetic_energy(p, w.v)
     for k in range(p.count):
         end = w.falls[k]
         if end < 0:
@@ -129,7 +123,7 @@ def _outcome(p, w, ah, av, force, motion, part, before):
             w.closed[k, end], w.closed[k, 1 - end] = 1, 0
     wrong = search(p, w, ah, av, True, force, motion, -1)
     solve(p, w, w.q, w.v, ah, av, True)
-    return wrong <= UNREACHED and kinetic_energy(p, w.out) <= before * (1.0 + NO_GAIN)
+    return wrong <= UNREACHED and modes.kinetic_energy(p, w.out) <= before * (1.0 + NO_GAIN)
 
 
 @kernel
@@ -144,9 +138,9 @@ def _shut_weak(p, w, ah, av, closing):
     for k in range(p.count):
         for end in range(2):
             if w.touching[k, end] == 1 and w.closed[k, end] == 0:
-                weak = weak or approach(p, w, k, end) < closing
+                weak = weak or modes.approach(p, w, k, end) < closing
         if crowd and w.slides[k] != 0:
-            weak = weak or abs(slip_speed(p, w, w.v, k, False)) < closing
+            weak = weak or abs(modes.slip_speed(p, w, w.v, k, False)) < closing
     if not weak:
         return False
     solve(p, w, w.q, w.v, ah, av, False)
@@ -162,7 +156,7 @@ def _shut_weak(p, w, ah, av, closing):
                 if (pull < 0.0 or crowd) and slow:
                     w.closed[k, end] = 1
                     found = True
-        if crowd and w.slides[k] != 0 and abs(slip_speed(p, w, w.v, k, False)) < closing:
+        if crowd and w.slides[k] != 0 and abs(modes.slip_speed(p, w, w.v, k, False)) < closing:
             w.slides[k] = 0
             found = True
     return found

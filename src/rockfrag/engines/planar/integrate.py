@@ -7,28 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.engines.kernels.jit import entry_kernel, kernel
+from rockfrag.engines.planar import step as stepping
 from rockfrag.engines.planar.impact import lift_laws, strike
 from rockfrag.engines.planar.modes import approach, kinetic_energy, project, settle
 from rockfrag.engines.planar.search import mode_number
 from rockfrag.engines.planar.solve import end_of, look_at, solve
-from rockfrag.engines.planar.step import (
-    EDGE,
-    ERROR,
-    FALL,
-    FRICTION,
-    GAP,
-    SHORTEST,
-    Stretch,
-    beginning,
-    comes_near,
-    first_failure,
-    ground_at,
-    least_margin,
-    margin_at,
-    start_step,
-    step_error,
-    take_step,
-)
 
 MOST_CONTACT_EVENTS = 300
 """Contact events within a sample after which accumulating ones are ended ten times as coarsely, and again."""
@@ -168,7 +151,7 @@ def integrate(p, shaking, start, closing, book, w):
     jolts = 0
     for i in range(n - 1 + shaking.free_samples):
         late = _now(shaking, i + 1)
-        sample = Stretch(dt, now.ah, now.av, late.ah - now.ah, late.av - now.av)
+        sample = stepping.Stretch(dt, now.ah, now.av, late.ah - now.ah, late.av - now.av)
         tau = 0.0
         w.met = 0
         while tau < 1.0:
@@ -181,7 +164,7 @@ def integrate(p, shaking, start, closing, book, w):
                     break
                 known_rest = False
                 fresh = True
-                ah, av = ground_at(sample, tau)
+                ah, av = stepping.ground_at(sample, tau)
                 instant = Instant((i + tau) * dt, ah, av)
                 count = _handle(p, w, instant, closing, True, True, book.contact_events, count)
                 w.met += 1
@@ -191,26 +174,31 @@ def integrate(p, shaking, start, closing, book, w):
                 continue
             known_rest = False
             step = (math.floor(tau * substeps + 1e-9) + 1.0) / substeps - tau
-            ah, av = ground_at(sample, tau)
+            ah, av = stepping.ground_at(sample, tau)
             if fresh:
                 look_at(p, w, w.q)
                 solve(p, w, w.q, w.v, ah, av, False)
                 for d in range(3 * p.count):
                     w.a[d] = w.out[d]
-            start_step(p, w)
+            stepping.start_step(p, w)
             while True:
-                stretch = Stretch(step * dt, ah, av, step * sample.rise_h, step * sample.rise_v)
-                work, rubbed = take_step(p, w, stretch, energy_balance)
-                if step < SHORTEST or step_error(p, w, stretch.length) <= ERROR:
+                stretch = stepping.Stretch(
+                    step * dt, ah, av, step * sample.rise_h, step * sample.rise_v
+                )
+                work, rubbed = stepping.take_step(p, w, stretch, energy_balance)
+                if (
+                    step < stepping.SHORTEST
+                    or stepping.step_error(p, w, stretch.length) <= stepping.ERROR
+                ):
                     break
                 step *= 0.5
-            at_end = least_margin(p, w, w.q1, w.v1)
+            at_end = stepping.least_margin(p, w, w.q1, w.v1)
             while not at_end >= -BURST and step > LEAST_STEP:
                 # sliding that jams: forces grow faster than the step sees
                 step *= 0.125
-                stretch = beginning(stretch, 0.125)
-                work, rubbed = take_step(p, w, stretch, energy_balance)
-                at_end = least_margin(p, w, w.q1, w.v1)
+                stretch = stepping.beginning(stretch, 0.125)
+                work, rubbed = stepping.take_step(p, w, stretch, energy_balance)
+                at_end = stepping.least_margin(p, w, w.q1, w.v1)
             when = 2.0
             if idle <= MOST_IDLE or at_end < -LARGEST_FAILURE:
                 when = _contact_event_in_step(p, w, at_end, stretch)
@@ -239,9 +227,11 @@ def integrate(p, shaking, start, closing, book, w):
                 if 1.0 - tau < 1e-12:
                     tau = 1.0
             else:
-                margin_at(p, w, when, stretch)  # sets what fails
+                stepping.margin_at(p, w, when, stretch)  # sets what fails
                 if when > 0.0:
-                    work, rubbed = take_step(p, w, beginning(stretch, when), energy_balance)
+                    work, rubbed = stepping.take_step(
+                        p, w, stepping.beginning(stretch, when), energy_balance
+                    )
                     for d in range(3 * p.count):
                         w.q[d] = w.q1[d]
                         w.v[d] = w.v1[d]
@@ -259,7 +249,7 @@ def integrate(p, shaking, start, closing, book, w):
                 coarser = closing * 10.0 ** (w.met // MOST_CONTACT_EVENTS)
                 if w.met >= MOST_CONTACT_EVENTS:
                     w.forced += 1
-                ah, av = ground_at(sample, tau)
+                ah, av = stepping.ground_at(sample, tau)
                 instant = Instant((i + tau) * dt, ah, av)
                 count = _handle(p, w, instant, coarser, False, False, book.contact_events, count)
                 fresh = True
@@ -335,23 +325,23 @@ def _contact_event_in_step(p, w, at_end, stretch):
     at_high = at_end
     if at_end < 0.0:
         high = 1.0
-    near = comes_near(p, w)
+    near = stepping.comes_near(p, w)
     if near or at_end < 0.02:
         for quarter in range(1, 4):
             if not near and quarter != 2:
                 continue
             tau = 0.25 * quarter
-            value = margin_at(p, w, tau, stretch)
+            value = stepping.margin_at(p, w, tau, stretch)
             if value < 0.0:
                 high = tau
                 at_high = value
                 break
     if high > 1.0:
         return 2.0
-    at_low = margin_at(p, w, 0.0, stretch)
+    at_low = stepping.margin_at(p, w, 0.0, stretch)
     if at_low < 0.0:
         return 0.0
-    return first_failure(p, w, at_low, high, at_high, stretch)
+    return stepping.first_failure(p, w, at_low, high, at_high, stretch)
 
 
 @kernel
@@ -365,7 +355,7 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
     passes = False
     if not all_ends:
         for k in range(p.count):
-            if w.fails[k, FALL] == 1:
+            if w.fails[k, stepping.FALL] == 1:
                 w.fallen = k + 1
                 w.parted = _parted(w, k)
                 return _note(p, w, now.time, FALLEN, contact_events, count)
@@ -374,9 +364,9 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
         leaves0, leaves1 = 0, 0
         if not all_ends:
             for end in range(2):
-                if w.closed[k, end] == 1 and w.fails[k, GAP + end] == 1:
+                if w.closed[k, end] == 1 and w.fails[k, stepping.GAP + end] == 1:
                     exclude = True
-                if w.closed[k, end] == 1 and w.fails[k, EDGE + end] == 1:
+                if w.closed[k, end] == 1 and w.fails[k, stepping.EDGE + end] == 1:
                     passes = True
                     if w.closed[k, 1 - end] == 1:
                         w.kind[k, end] = 1 - w.kind[k, end]
@@ -384,7 +374,7 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
                         leaves0 = 1
                     else:
                         leaves1 = 1
-            if w.fails[k, FRICTION] == 1:
+            if w.fails[k, stepping.FRICTION] == 1:
                 if w.slides[k] == 0:
                     exclude = True
                 else:
@@ -400,7 +390,7 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
             if not touches:
                 _, _, _, _, gap, _, kind = end_of(p, w, w.q, k, end, -1)
                 touches = gap < 1e-11 * p.size
-                if not all_ends and w.fails[k, GAP + end] == 1:
+                if not all_ends and w.fails[k, stepping.GAP + end] == 1:
                     touches = True
                 if touches:
                     w.kind[k, end] = kind

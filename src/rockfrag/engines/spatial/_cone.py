@@ -14,7 +14,7 @@ import numpy as np
 from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import factor, norm, solve_symmetric, substitute
-from rockfrag.engines.spatial._forces import MOST, largest_compliance
+from rockfrag.engines.spatial._forces import MOST, in_set, largest_compliance, stick_together
 
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
 """Sets of four contacts as bits, the smallest first."""
@@ -51,70 +51,6 @@ def product(s, n, x, out):
         for j in range(3 * n):
             value += s.delassus[i, j] * x[j]
         out[i] = value
-
-
-@kernel
-def in_set(mask, i):
-    """Whether contact i belongs to a set."""
-    return (mask >> i) & 1
-
-
-@kernel
-def stick_together(s, n, mask, soft):
-    """Solve for impulses at which all of a set stick (or slide the given way); the others get none."""
-    size = 0
-    for j in range(n):
-        if not in_set(mask, j):
-            continue
-        for axis in range(2 if s.given[j] else 0, 3):
-            row = 0
-            for i in range(n):
-                if not in_set(mask, i):
-                    continue
-                for k in range(2 if s.given[i] else 0, 3):
-                    value = s.delassus[3 * i + k, 3 * j + axis]
-                    if s.given[j]:
-                        push = s.delassus[3 * i + k, 3 * j] * s.way[j, 0]
-                        push += s.delassus[3 * i + k, 3 * j + 1] * s.way[j, 1]
-                        value -= s.friction[j] * push
-                    s.matrix[row, size] = value
-                    s.right[row] = -s.free[3 * i + k]
-                    row += 1
-            size += 1
-    for i in range(size):
-        s.matrix[i, i] += soft
-        s.unknown[i] = 0.0
-    if not factor(s.matrix, s.order, size):
-        return False
-    for _ in range(3):
-        for i in range(size):
-            s.vector[i] = s.right[i] + soft * s.unknown[i]
-        substitute(s.matrix, s.order, size, s.vector)
-        for i in range(size):
-            s.unknown[i] = s.vector[i]
-    spread(s, n, mask)
-    return True
-
-
-@kernel
-def spread(s, n, mask):
-    """Write the unknowns of a set to the impulses."""
-    row = 0
-    for i in range(n):
-        for k in range(3):
-            s.impulse[3 * i + k] = 0.0
-        if not in_set(mask, i):
-            continue
-        if s.given[i]:
-            normal = s.unknown[row]
-            s.impulse[3 * i] = -s.friction[i] * normal * s.way[i, 0]
-            s.impulse[3 * i + 1] = -s.friction[i] * normal * s.way[i, 1]
-            s.impulse[3 * i + 2] = normal
-            row += 1
-        else:
-            for k in range(3):
-                s.impulse[3 * i + k] = s.unknown[row]
-                row += 1
 
 
 @kernel

@@ -240,68 +240,81 @@ def fraction_along(whole, far, edge, friction, s):
 
 
 @kernel
-def fill_general(body, y, rows, n, friction, s):
-    """Fill in the system of a mode's unknown forces; return its size."""
-    fill_delassus(body, rows, s.closed, n, s.delassus)
-    size = 0
-    for j in range(n):
-        u = point_velocity(y, rows, arm(body, rows[2], s.closed[j]))
-        way = slip_direction(s, j, u[0], u[1])
-        for axis in range(2 if s.slides[j] else 0, 3):
-            row = 0
-            for i in range(n):
-                for k in range(2 if s.slides[i] else 0, 3):
-                    value = s.delassus[3 * i + k, 3 * j + axis]
-                    if s.slides[j]:
-                        push = s.delassus[3 * i + k, 3 * j] * way[0]
-                        push += s.delassus[3 * i + k, 3 * j + 1] * way[1]
-                        value -= friction * push
-                    s.matrix[row, size] = value
-                    row += 1
-            size += 1
-    soft = SOFTNESS * largest_compliance(s, n)
-    for i in range(size):
-        s.matrix[i, i] += soft
-    return size
+def in_set(mask, i):
+    """Whether contact i belongs to a set."""
+    return (mask >> i) & 1
 
 
 @kernel
-def solve_general(body, y, rows, n, friction, s):
-    """Solve for the forces (or impulses) that undo s.free in a mode; fill ``lam`` in world components."""
-    size = fill_general(body, y, rows, n, friction, s)
-    row = 0
-    for i in range(n):
-        for k in range(2 if s.slides[i] else 0, 3):
-            s.right[row] = -s.free[3 * i + k]
-            row += 1
-    # the softness shifts forces by a part of 1e-9, which one more pass with it as a reference removes
+def stick_together(s, n, mask, soft):
+    """Solve for impulses at which all of a set stick (or slide the given way); the others get none."""
+    size = 0
+    for j in range(n):
+        if not in_set(mask, j):
+            continue
+        for axis in range(2 if s.given[j] else 0, 3):
+            row = 0
+            for i in range(n):
+                if not in_set(mask, i):
+                    continue
+                for k in range(2 if s.given[i] else 0, 3):
+                    value = s.delassus[3 * i + k, 3 * j + axis]
+                    if s.given[j]:
+                        push = s.delassus[3 * i + k, 3 * j] * s.way[j, 0]
+                        push += s.delassus[3 * i + k, 3 * j + 1] * s.way[j, 1]
+                        value -= s.friction[j] * push
+                    s.matrix[row, size] = value
+                    s.right[row] = -s.free[3 * i + k]
+                    row += 1
+            size += 1
     for i in range(size):
+        s.matrix[i, i] += soft
         s.unknown[i] = 0.0
-    soft = SOFTNESS * largest_compliance(s, n)
     done = factor(s.matrix, s.order, size)
-    for _ in range(3):
-        if not done:
-            break
+    # what the softness shifts one more pass with it as a reference removes
+    for _ in range(3 if done else 0):
         for i in range(size):
             s.vector[i] = s.right[i] + soft * s.unknown[i]
         substitute(s.matrix, s.order, size, s.vector)
         for i in range(size):
             s.unknown[i] = s.vector[i]
+    spread(s, n, mask)
+    return done
+
+
+@kernel
+def spread(s, n, mask):
+    """Write the unknowns of a set to the impulses."""
     row = 0
     for i in range(n):
-        if s.slides[i]:
-            u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
-            way = slip_direction(s, i, u[0], u[1])
+        for k in range(3):
+            s.impulse[3 * i + k] = 0.0
+        if not in_set(mask, i):
+            continue
+        if s.given[i]:
             normal = s.unknown[row]
-            s.lam[i, 0] = -friction * normal * way[0]
-            s.lam[i, 1] = -friction * normal * way[1]
-            s.lam[i, 2] = normal
+            s.impulse[3 * i] = -s.friction[i] * normal * s.way[i, 0]
+            s.impulse[3 * i + 1] = -s.friction[i] * normal * s.way[i, 1]
+            s.impulse[3 * i + 2] = normal
             row += 1
         else:
             for k in range(3):
-                s.lam[i, k] = s.unknown[row]
+                s.impulse[3 * i + k] = s.unknown[row]
                 row += 1
-    return done
+
+
+@kernel
+def solve_general(body, y, rows, n, friction, s):
+    """Solve for the forces (or impulses) that undo s.free in a mode; fill ``lam`` in world components."""
+    fill_delassus(body, rows, s.closed, n, s.delassus)
+    for i in range(n):
+        u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
+        s.way[i, 0], s.way[i, 1] = slip_direction(s, i, u[0], u[1])
+        s.given[i], s.friction[i] = s.slides[i], friction
+    stick_together(s, n, (1 << n) - 1, SOFTNESS * largest_compliance(s, n))
+    for i in range(n):
+        for k in range(3):
+            s.lam[i, k] = s.impulse[3 * i + k]
 
 
 @kernel

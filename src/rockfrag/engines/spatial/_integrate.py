@@ -4,6 +4,10 @@ import math
 
 from rockfrag.elementary import atan2, sin_cos
 from rockfrag.engines.kernels.jit import entry_kernel, kernel
+from rockfrag.engines.kernels.roots import narrowed
+from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _modes as modes
+from rockfrag.engines.spatial import _step as step
 from rockfrag.engines.spatial._algebra import (
     cross,
     norm,
@@ -26,55 +30,6 @@ from rockfrag.engines.spatial._body import (
     position_of_base,
     rim_contact,
     rim_direction,
-)
-from rockfrag.engines.spatial._forces import (
-    FLIGHT,
-    HINGE,
-    PIVOT,
-    REST,
-    SLIDES,
-    STAGES,
-    STICKS,
-    kind_of,
-    pull_at,
-    rates,
-)
-from rockfrag.engines.spatial._modes import (
-    AT_REST,
-    CLOSE,
-    COUNTERS,
-    JAMS,
-    LANDS,
-    LEAVES_CONE,
-    NOTHING,
-    OPENS,
-    PASSES,
-    SLIDINGS,
-    SLIP_ENDS,
-    TOUCH,
-    UNSOLVED,
-    anchor_all,
-    choose_mode,
-    come_to_rest,
-    count_touching,
-    edge_margin,
-    gap,
-    hold,
-    impact,
-    insist,
-    jam,
-    lay_flat,
-    rest_margin,
-    settle,
-    touching,
-)
-from rockfrag.engines.spatial._step import (
-    attempt,
-    begin_slips,
-    dips,
-    is_closed,
-    margin,
-    pressure_centre,
 )
 
 RIM_START = 1e-7
@@ -109,11 +64,10 @@ MOST_STEPS = 400_000
 COARSE = 1e-6
 """Error of a step that is allowed then [m, m/s, rad/s]."""
 
-OUTCOME = 21
+OUTCOME = 16
 (
-    FELL, FALL_TIME, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, PEAK_WALK, WALK_X,
-    WALK_Y, TURN, STEPS, LOST, ENERGY_BALANCE, END_TIME, CERTAIN_TIME, FIRST_MOTION, LEAST_GRAVITY, CONTACT_EVENTS,
-    GAINED,
+    FELL, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, WALK_X, WALK_Y, TURN, STEPS,
+    LOST, ENERGY_BALANCE, CERTAIN_TIME, CONTACT_EVENTS, GAINED,
 ) = range(OUTCOME)  # fmt: skip
 
 COLUMNS = 17
@@ -148,44 +102,36 @@ def rest_ends(body, y, field, tau, dt):
 
     The margin is the least of concave functions of time, so it is enough to look at the ends.
     """
-    if lies_still(body, pull_at(field, dt)):
+    if lies_still(body, forces.pull_at(field, dt)):
         return -1.0
     rows = rotation(y)
-    if rest_margin(body, y, rows, pull_at(field, dt)) >= 0:
+    if modes.rest_margin(body, y, rows, forces.pull_at(field, dt)) >= 0:
         return -1.0
-    low, high = tau, dt
-    above = rest_margin(body, y, rows, pull_at(field, low))
+    above = modes.rest_margin(body, y, rows, forces.pull_at(field, tau))
     if above <= 0:
-        return low
-    below = rest_margin(body, y, rows, pull_at(field, high))
-    side = 0
+        return tau
+    bracket = (tau, above, dt, modes.rest_margin(body, y, rows, forces.pull_at(field, dt)), 0)
     for _ in range(100):
+        low, above, high, below, _ = bracket
         middle = (low * below - high * above) / (below - above)
-        value = rest_margin(body, y, rows, pull_at(field, middle))
-        if value >= 0:
-            low, above = middle, value
-            below *= 0.5 if side > 0 else 1.0
-            side = 1
-        else:
-            high, below = middle, value
-            above *= 0.5 if side < 0 else 1.0
-            side = -1
+        value = modes.rest_margin(body, y, rows, forces.pull_at(field, middle))
+        bracket = narrowed(bracket, middle, value)
         if abs(value) < 1e-14:
             return middle
-        if high - low < 1e-15:
+        if bracket[2] - bracket[0] < 1e-15:
             break
-    return high
+    return bracket[2]
 
 
 @kernel
 def leave_rest(body, y, tau, s):
     """Choose how the body leaves rest: slides, or tips over an edge, a vertex or the rim."""
     rows = rotation(y)
-    pull = pull_at(s.field, tau)
+    pull = forces.pull_at(s.field, tau)
     small = 1e-9 * s.field[6]
     level = norm(pull[0], pull[1])
     s.rests = 0
-    whole = rest_margin(body, y, rows, pull)
+    whole = modes.rest_margin(body, y, rows, pull)
     if -body.static * pull[2] - level < small or whole < -small:
         slide_or_jump(body, y, tau, s, pull, level, whole < -small)
         return
@@ -199,37 +145,37 @@ def leave_rest(body, y, tau, s):
     s.count = 0
     last, first = -1, -1
     for i in range(body.count):
-        if gap(body, y, rows[2], i) <= TOUCH:
+        if modes.gap(body, y, rows[2], i) <= modes.TOUCH:
             if last >= 0:
                 add_edge(body, y, rows, pull, last, i, small, s)
             else:
                 first = i
             last = i
     add_edge(body, y, rows, pull, last, first, small, s)
-    anchor_all(body, y, s)
+    modes.anchor_all(body, y, s)
 
 
 @kernel
 def slide_or_jump(body, y, tau, s, pull, level, jumps):
     """Leave rest by sliding on the whole base, or, after a jump of the ground's acceleration, in any way."""
-    if jumps and choose_mode(body, tau, y, s):
+    if jumps and modes.choose_mode(body, tau, y, s):
         return
-    n = touching(body, y, rotation(y), s)
+    n = modes.touching(body, y, rotation(y), s)
     for i in range(n):
-        s.closed[i], s.slides[i] = s.which[i], SLIDES
+        s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
         s.direction[i, 0], s.direction[i, 1] = pull[0] / level, pull[1] / level
     s.count = n
-    s.counters[SLIDINGS] += 1
+    s.counters[modes.SLIDINGS] += 1
 
 
 @kernel
 def add_edge(body, y, rows, pull, i, j, small, s):
     """Close the ends of an edge that the body tips over; a vertex that two such edges share stays alone."""
-    if edge_margin(body, y, rows, pull, i, j) > small:
+    if modes.edge_margin(body, y, rows, pull, i, j) > small:
         return
     if s.count == 0:
         s.closed[0], s.closed[1] = i, j
-        s.slides[0] = s.slides[1] = STICKS
+        s.slides[0] = s.slides[1] = forces.STICKS
         s.count = 2
     else:
         shared = i if i in (s.closed[0], s.closed[1]) else j
@@ -249,15 +195,15 @@ def start_rolling(body, y, x, z, pull, s):
     tilt_about(body, y, u, RIM_START)
     lifted = (pull[2] + s.field[6]) * (y[2] - c)
     y[WORK] += pull[0] * (y[0] - a) + pull[1] * (y[1] - b) + lifted
-    s.closed[0], s.slides[0] = rim_contact(body), STICKS
+    s.closed[0], s.slides[0] = rim_contact(body), forces.STICKS
     s.count, s.rests = 1, 0
-    settle(body, y, s)
+    modes.settle(body, y, s)
 
 
 @kernel
 def tilt_about(body, y, u, tilt):
     """Give a flat body a small tilt, with its lowest point towards u in the base, where that point was."""
-    lay_flat(body, y)
+    modes.lay_flat(body, y)
     p = (body.centre[0] + body.rim * u[0], body.centre[1] + body.rim * u[1], -body.height)
     before = position_of_base(y, rotation(y), p)
     turn(y, (-tilt * u[1], tilt * u[0], 0.0))
@@ -276,13 +222,13 @@ def pass_flat(body, y, s):
         return
     before = energy(body, y, s.field[6])
     rate = norm(sinking[0], sinking[1])
-    angle = body.slide_turn if s.slides[0] == SLIDES else body.pass_turn
+    angle = body.slide_turn if s.slides[0] == forces.SLIDES else body.pass_turn
     if sinking[0] * u[1] - sinking[1] * u[0] > 0:
         angle = -angle
     d, c = sin_cos(angle)
     new = (c * u[0] - d * u[1], d * u[0] + c * u[1])
     tilt_about(body, y, new, max(2 * FLAT_PASS, sine))
-    s.counters[PASSES] += 1
+    s.counters[modes.PASSES] += 1
     rise(body, y, new, rate, s)
     gained = energy(body, y, s.field[6]) - before
     # a base that is not symmetrical would gain in the new direction
@@ -293,12 +239,12 @@ def pass_flat(body, y, s):
 def rise(body, y, u, rate, s):
     """Let a body that is next to flat tilt up about the rim's point towards u at a rate."""
     y[10], y[11] = -rate * u[1], rate * u[0]
-    if s.slides[0] == SLIDES:
+    if s.slides[0] == forces.SLIDES:
         rows = rotation(y)
         p = arm(body, rows[2], rim_contact(body))
         y[9] -= point_velocity(y, rows, p)[2]
     else:
-        settle(body, y, s)
+        modes.settle(body, y, s)
 
 
 @kernel
@@ -307,8 +253,8 @@ def lowest_open(body, y, s):
     up = rotation(y)[2]
     lowest, found = 1e300, 0
     for i in range(first_candidate(body), last_candidate(body)):
-        if not is_closed(s, i):
-            height = gap(body, y, up, i)
+        if not step.is_closed(s, i):
+            height = modes.gap(body, y, up, i)
             if height < lowest:
                 lowest, found = height, i
     return found
@@ -325,7 +271,7 @@ def rising(body, y, i):
 def guess_landing(body, h, y, below, s):
     """When in a step the point that is lowest after it lands, by the cubic through gaps and velocities."""
     i = lowest_open(body, s.new, s)
-    above, fall = gap(body, y, rotation(y)[2], i), h * rising(body, y, i)
+    above, fall = modes.gap(body, y, rotation(y)[2], i), h * rising(body, y, i)
     end = h * rising(body, s.new, i)
     square = 3.0 * (below - above) - 2.0 * fall - end
     cube = 2.0 * (above - below) + fall + end
@@ -340,7 +286,7 @@ def guess_landing(body, h, y, below, s):
 def go_on(s, h):
     """Let the state at the end of a step go on for a moment."""
     for i in range(SIZE):
-        s.new[i] += h * s.slopes[STAGES - 1, i]
+        s.new[i] += h * s.slopes[forces.STAGES - 1, i]
 
 
 @kernel
@@ -349,46 +295,39 @@ def locate(body, tau, h, y, s):
 
     Returns the step up to there, and what happens.
     """
-    low, high = 0.0, h
-    below, what = margin(body, s.new, s)
-    middle = guess_landing(body, h, y, below, s) if what == LANDS else 0.0
-    rates(body, tau, y, s.slopes[0], s)
-    above, at_once = margin(body, y, s)
+    below, what = step.margin(body, s.new, s)
+    middle = guess_landing(body, h, y, below, s) if what == modes.LANDS else 0.0
+    forces.rates(body, tau, y, s.slopes[0], s)
+    above, at_once = step.margin(body, y, s)
     if above <= 0:
         for i in range(SIZE):
             s.new[i] = y[i]
         return 0.0, at_once
-    side = 0
+    bracket = (0.0, above, h, below, 0)
     for _ in range(80):
+        low, above, high, below, _ = bracket
         if not low < middle < high:
             middle = (low * below - high * above) / (below - above)
         if not low < middle < high:
             middle = 0.5 * (low + high)
-        attempt(body, tau, middle, y, s)
-        value, what = margin(body, s.new, s)
+        step.attempt(body, tau, middle, y, s)
+        value, what = step.margin(body, s.new, s)
         at, middle = middle, 0.0
-        rate = rising(body, s.new, lowest_open(body, s.new, s)) if what == LANDS else 0.0
+        rate = rising(body, s.new, lowest_open(body, s.new, s)) if what == modes.LANDS else 0.0
         if rate < 0.0:
             # a last step of Newton's, so short that the rates at its beginning suffice
             rest = -value / rate
             if abs(rest) < BRIEF and low < at + rest < high:
                 go_on(s, rest)
                 return at + rest, what
-        if value >= 0:
-            low, above = at, value
-            below *= 0.5 if side > 0 else 1.0
-            side = 1
-        else:
-            high, below = at, value
-            above *= 0.5 if side < 0 else 1.0
-            side = -1
+        bracket = narrowed(bracket, at, value)
         if abs(value) < 1e-12:
             return at, what
-        if high - low < 1e-14:
+        if bracket[2] - bracket[0] < 1e-14:
             break
-    attempt(body, tau, high, y, s)
-    _, what = margin(body, s.new, s)
-    return high, what
+    step.attempt(body, tau, bracket[2], y, s)
+    _, what = step.margin(body, s.new, s)
+    return bracket[2], what
 
 
 @kernel
@@ -396,12 +335,12 @@ def stop_slips(body, y, s):
     """Let points whose slip has ended stick, before the mode is chosen anew."""
     rows = rotation(y)
     for i in range(s.count):
-        if s.slides[i] == SLIDES:
+        if s.slides[i] == forces.SLIDES:
             p = arm(body, rows[2], s.closed[i])
             turned = to_world(rows, cross(omega_of(y), p))
-            if norm(y[7] + turned[0], y[8] + turned[1]) < 2 * AT_REST:
-                s.slides[i] = STICKS
-    hold(body, y, rows, s)
+            if norm(y[7] + turned[0], y[8] + turned[1]) < 2 * modes.AT_REST:
+                s.slides[i] = forces.STICKS
+    modes.hold(body, y, rows, s)
 
 
 @kernel
@@ -410,7 +349,7 @@ def rim_instead_of_feet(body, y, pull, s):
     n = s.count
     if body.rim == 0.0 or n == 0 or n > 2 or s.closed[0] == rim_contact(body):
         return
-    x, z, sliding = 0.0, 0.0, STICKS
+    x, z, sliding = 0.0, 0.0, forces.STICKS
     for i in range(n):
         x += body.points[s.closed[i], 0] - body.centre[0]
         z += body.points[s.closed[i], 1] - body.centre[1]
@@ -425,8 +364,8 @@ def tip_over_rim(body, y, x, z, sliding, pull, s):
     velocity = (y[7], y[8], y[9])
     before = energy(body, y, s.field[6]) - y[WORK]
     start_rolling(body, y, x, z, pull, s)
-    if sliding == SLIDES:
-        s.slides[0] = SLIDES
+    if sliding == forces.SLIDES:
+        s.slides[0] = forces.SLIDES
         y[10], y[11], y[12] = omega
         y[7], y[8], y[9] = velocity
     pay(body, y, energy(body, y, s.field[6]) - y[WORK] - before, s)
@@ -446,7 +385,7 @@ def slides_any(s):
     """Whether a closed point slides."""
     found = False
     for i in range(s.count):
-        found = found or s.slides[i] == SLIDES
+        found = found or s.slides[i] == forces.SLIDES
     return found
 
 
@@ -454,33 +393,33 @@ def slides_any(s):
 def happen(body, what, tau, y, cut, stuck, s):
     """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J]."""
     g = s.field[6]
-    pull = pull_at(s.field, tau)
+    pull = forces.pull_at(s.field, tau)
     before = energy(body, y, g) - y[WORK]
-    if what == LANDS:
-        impact(body, y, 0, s)
+    if what == modes.LANDS:
+        modes.impact(body, y, 0, s)
         rows = rotation(y)
-        if body.rim == 0.0 and count_touching(body, y, rows) >= 3:
+        if body.rim == 0.0 and modes.count_touching(body, y, rows) >= 3:
             # the points that open begin with no gap, not with one of rounding
-            lay_flat(body, y)
-        carried = rest_margin(body, y, rows, pull) >= 0
+            modes.lay_flat(body, y)
+        carried = modes.rest_margin(body, y, rows, pull) >= 0
         if carried and energy(body, y, g) < cut * body.barrier:
-            come_to_rest(body, y, s)
-    elif what == SLIP_ENDS:
+            modes.come_to_rest(body, y, s)
+    elif what == modes.SLIP_ENDS:
         stop_slips(body, y, s)
-    if what == OPENS and body.rim > 0 and s.count >= 3:
-        x, z = pressure_centre(body, s)
-        tip_over_rim(body, y, x, z, SLIDES, pull, s)
-    elif stuck > 3 and what in (OPENS, LEAVES_CONE):
-        insist(body, what, s)
-    elif kind_of(s) != REST and not choose_mode(body, tau, y, s):
-        s.counters[JAMS] += 1
+    if what == modes.OPENS and body.rim > 0 and s.count >= 3:
+        x, z = step.pressure_centre(body, s)
+        tip_over_rim(body, y, x, z, forces.SLIDES, pull, s)
+    elif stuck > 3 and what in (modes.OPENS, modes.LEAVES_CONE):
+        modes.insist(body, what, s)
+    elif forces.kind_of(s) != forces.REST and not modes.choose_mode(body, tau, y, s):
+        s.counters[modes.JAMS] += 1
         free = slides_any(s)
         if free:
             # an impact without a collision
-            impact(body, y, 1, s)
-            free = choose_mode(body, tau, y, s)
+            modes.impact(body, y, 1, s)
+            free = modes.choose_mode(body, tau, y, s)
         if not free:
-            jam(body, y, s)
+            modes.jam(body, y, s)
     rim_instead_of_feet(body, y, pull, s)
     return before - (energy(body, y, g) - y[WORK])
 
@@ -517,7 +456,6 @@ def note_peaks(body, y, start, out):
     out[PEAK_SPEED] = max(out[PEAK_SPEED], speed)
     foot = position_of_base(y, rows, (0.0, 0.0, -body.height))
     out[WALK_X], out[WALK_Y] = foot[0] - start[0], foot[1] - start[1]
-    out[PEAK_WALK] = max(out[PEAK_WALK], norm(out[WALK_X], out[WALK_Y]))
     return up[2]
 
 
@@ -559,12 +497,10 @@ def fall_is_certain(body, y, peaks, scale, g):
 
 
 @kernel
-def note_fall(y, s, time, lies, out):
+def note_fall(y, s, time, out):
     """Write down how the body fell, and when it lies or, before that, when its fall is certain."""
     rows = rotation(y)
     out[FELL], out[CERTAIN_TIME] = 1.0, time
-    if lies:
-        out[FALL_TIME] = time
     out[FALL_AZIMUTH] = atan2(rows[1][2], rows[0][2])
     out[FALL_FIRST] = s.closed[0] if s.count > 0 else -1
     out[FALL_SECOND] = s.closed[1] if s.count > 1 else -1
@@ -592,20 +528,20 @@ def cannot_fall(body, y, s, g):
 @kernel
 def small_rim(body, y, tau, cut, s):
     """Let a round body lie flat whose wobble is below the cut-off while the ground would carry it flat."""
-    pull = pull_at(s.field, tau)
+    pull = forces.pull_at(s.field, tau)
     rows = rotation(y)
     if s.count != 1:
         return
     small = cut * body.barrier
     if wobble_energy(body, y, rows, s.field[6]) >= small:
         return
-    if rest_margin(body, y, rows, pull) >= 0 and energy(body, y, s.field[6]) < small:
-        come_to_rest(body, y, s)
-    elif s.slides[0] == SLIDES and body.kinetic * body.height < body.rim:
+    if modes.rest_margin(body, y, rows, pull) >= 0 and energy(body, y, s.field[6]) < small:
+        modes.come_to_rest(body, y, s)
+    elif s.slides[0] == forces.SLIDES and body.kinetic * body.height < body.rim:
         y[9] = y[10] = y[11] = 0.0
-        lay_flat(body, y)
-        if not choose_mode(body, tau, y, s):
-            jam(body, y, s)
+        modes.lay_flat(body, y)
+        if not modes.choose_mode(body, tau, y, s):
+            modes.jam(body, y, s)
 
 
 @kernel
@@ -628,18 +564,18 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     g = s.field[6]
     if s.goes_on:
         for i in range(SIZE):
-            s.slopes[0, i] = s.slopes[STAGES - 1, i]
+            s.slopes[0, i] = s.slopes[forces.STAGES - 1, i]
     else:
-        rates(body, tau, y, s.slopes[0], s)
+        forces.rates(body, tau, y, s.slopes[0], s)
     s.goes_on = 0
-    begin_slips(body, y, s)
+    step.begin_slips(body, y, s)
     h = min(next_step, dt - tau)
     while True:
-        error = attempt(body, tau, h, y, s)
+        error = step.attempt(body, tau, h, y, s)
         out[STEPS] += 1
         if error <= tolerance or h <= SHORTEST:
-            least, what = margin(body, s.new, s)
-            if least >= 0 and h > 1e-7 and dips(body, y, h, s):
+            least, what = step.margin(body, s.new, s)
+            if least >= 0 and h > 1e-7 and step.dips(body, y, h, s):
                 h *= 0.5
                 continue
             break
@@ -649,20 +585,20 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     if least < 0:
         h, what = locate(body, tau, h, y, s)
     else:
-        what = NOTHING
+        what = modes.NOTHING
     for i in range(SIZE):
         y[i] = s.new[i]
     normalise(y)
-    if what != NOTHING:
+    if what != modes.NOTHING:
         out[CONTACT_EVENTS] += 1
         note_loss(happen(body, what, tau + h, y, cut, stuck, s), out)
         return tau + h, dt, h
     before = energy(body, y, g)
-    settle(body, y, s)
+    modes.settle(body, y, s)
     note_loss(before - energy(body, y, g), out)
     if body.rim > 0:
         ahead = look_after_rim(body, y, tau + h, cut, ahead, s, out)
-    elif kind_of(s) in (FLIGHT, PIVOT, HINGE):
+    elif forces.kind_of(s) in (forces.FLIGHT, forces.PIVOT, forces.HINGE):
         # the rates at the end of a step are those at the beginning of the next
         s.goes_on = 1
     return tau + h, ahead, h
@@ -707,13 +643,12 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     start = position_of_base(y, rotation(y), (0.0, 0.0, -body.height))
     before = heading(y)
     s.count = s.rests = s.jammed = s.goes_on = 0
-    for i in range(COUNTERS):
+    for i in range(modes.COUNTERS):
         s.counters[i] = 0
-    choose_mode(body, 0.0, y, s)
-    rim_instead_of_feet(body, y, pull_at(s.field, 0.0), s)
-    anchor_all(body, y, s)
-    out[FIRST_MOTION] = -1.0
-    out[FALL_TIME] = out[CERTAIN_TIME] = math.nan
+    modes.choose_mode(body, 0.0, y, s)
+    rim_instead_of_feet(body, y, forces.pull_at(s.field, 0.0), s)
+    modes.anchor_all(body, y, s)
+    out[CERTAIN_TIME] = math.nan
     last = acceleration.shape[0] - 1
     stuck = lost_track = 0
     ahead = dt
@@ -725,20 +660,18 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
             break
         tau = 0.0
         many, seen = 0, out[CONTACT_EVENTS]
-        s.close = CLOSE
+        s.close = modes.CLOSE
         while dt - tau > 1e-12 * dt:
-            if kind_of(s) == REST:
+            if forces.kind_of(s) == forces.REST:
                 tau = rest_ends(body, y, s.field, tau, dt)
                 if tau < 0:
                     break
-                if out[FIRST_MOTION] < 0:
-                    out[FIRST_MOTION] = k * dt + tau
                 s.goes_on = 0
                 standing = energy(body, y, g) - y[WORK]
                 leave_rest(body, y, tau, s)
                 note_loss(standing - (energy(body, y, g) - y[WORK]), out)
                 ahead = dt
-                if kind_of(s) == REST:
+                if forces.kind_of(s) == forces.REST:
                     break
             hurries = many >= HURRY and slides_any(s)
             allowed = max(tolerance, COARSE) if hurries else tolerance
@@ -746,7 +679,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1
             if out[STEPS] > MOST_STEPS:
-                s.counters[UNSOLVED] += 1
+                s.counters[modes.UNSOLVED] += 1
                 break
             if many % GIVE_UP == 0:
                 s.goes_on = 0
@@ -764,14 +697,13 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
             up = note_peaks(body, y, start, out)
             before = note_turn(y, before, out)
             if up <= 0.0 or fall_is_certain(body, y, peaks[min(k, last)], scale, g):
-                note_fall(y, s, (k + 1) * dt, up <= 0.0, out)
+                note_fall(y, s, (k + 1) * dt, out)
                 break
         if out[FELL] > 0 or lost_track > PATIENCE or out[STEPS] > MOST_STEPS:
             break
         k += 1
     if out[FELL] == 0.0:
         record(history, k, y, out, s)
-    out[END_TIME] = k * dt
     out[ENERGY_BALANCE] = energy(body, y, g) - started - y[WORK] + y[FRICTION] + out[LOST]
 
 
@@ -779,13 +711,13 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
 def give_up(body, tau, y, s):
     """End a wobble that cannot be followed any more; return the energy lost."""
     before = energy(body, y, s.field[6])
-    s.counters[UNSOLVED] += 1
+    s.counters[modes.UNSOLVED] += 1
     up = rotation(y)[2]
     if body.rim > 0 and norm(up[0], up[1]) < 1e-3:
         y[9] = y[10] = y[11] = 0.0
-        lay_flat(body, y)
-    if not choose_mode(body, tau, y, s):
-        jam(body, y, s)
+        modes.lay_flat(body, y)
+    if not modes.choose_mode(body, tau, y, s):
+        modes.jam(body, y, s)
     return before - energy(body, y, s.field[6])
 
 
@@ -794,11 +726,11 @@ def force_step(body, tau, dt, y, s):
     """Take a short step whatever the margins say."""
     h = min(1e-6, dt - tau)
     s.goes_on = 0
-    rates(body, tau, y, s.slopes[0], s)
-    while attempt(body, tau, h, y, s) > COARSE * 1e-3 and h > SHORTEST:
+    forces.rates(body, tau, y, s.slopes[0], s)
+    while step.attempt(body, tau, h, y, s) > COARSE * 1e-3 and h > SHORTEST:
         h *= 0.25
     for i in range(SIZE):
         y[i] = s.new[i]
     normalise(y)
-    s.counters[UNSOLVED] += 1
+    s.counters[modes.UNSOLVED] += 1
     return tau + h

@@ -4,6 +4,7 @@ import math
 
 from rockfrag.elementary import atan2
 from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial._algebra import (
     cross,
     dot,
@@ -26,24 +27,7 @@ from rockfrag.engines.spatial._body import (
     position_of_base,
     rim_contact,
 )
-from rockfrag.engines.spatial._cone import in_set, solve_cones
-from rockfrag.engines.spatial._forces import (
-    GENERAL,
-    HINGE,
-    MOST,
-    PIVOT,
-    SLIDER,
-    SLIDES,
-    SLIP_FLOOR,
-    STICKS,
-    fill_accelerations,
-    fill_delassus,
-    fill_velocities,
-    kind_of,
-    pull_at,
-    push_at,
-    solve_general,
-)
+from rockfrag.engines.spatial._cone import solve_cones
 
 TOUCH = 1e-10
 """Gap below which a point touches [m]."""
@@ -52,7 +36,7 @@ CLOSE = 1e-6
 """Velocity after an impact below which a point that touches stays closed, unless
 there are too many [m/s]."""
 
-AT_REST = SLIP_FLOOR
+AT_REST = forces.SLIP_FLOOR
 """Velocity below which points that touch do not slip when the mode is chosen [m/s]."""
 
 SLOW_SLIP = 30 * AT_REST
@@ -78,12 +62,12 @@ def touching(body, y, rows, s):
         if gap(body, y, rows[2], i) > TOUCH:
             continue
         u = point_velocity(y, rows, arm(body, rows[2], i))[2]
-        if n < MOST:
+        if n < forces.MOST:
             s.which[n], speed[n] = i, u
             n += 1
             continue
         last = 0
-        for k in range(1, MOST):
+        for k in range(1, forces.MOST):
             if speed[k] > speed[last]:
                 last = k
         if u < speed[last] - 1e-14:
@@ -99,11 +83,11 @@ def stand_on_feet(body, y, rows, s):
     if norm(u[0], u[1]) < AT_REST:
         u = (s.field[0], s.field[1], 0.0)
     front = to_body(rows, (u[0], u[1], 0.0))
-    each = body.count // MOST
+    each = body.count // forces.MOST
     part = atan2(front[1], front[0]) / (2 * math.pi)
     first = math.floor(part * body.count + 0.5) % body.count
     n = 0
-    for k in range(MOST):
+    for k in range(forces.MOST):
         i = (first + k * each) % body.count
         if gap(body, y, rows[2], i) <= TOUCH:
             s.which[n] = i
@@ -126,13 +110,13 @@ def fill_edges(body, y, rows, which, n, s):
 @kernel
 def prepare_impact(body, y, rows, n, s):
     """Set up the problem of an impact at the contacts s.which; points that slid keep kinetic friction."""
-    fill_delassus(body, rows, s.which, n, s.delassus)
-    fill_velocities(body, y, rows, s.which, n, s.free)
+    forces.fill_delassus(body, rows, s.which, n, s.delassus)
+    forces.fill_velocities(body, y, rows, s.which, n, s.free)
     for i in range(n):
         s.given[i] = 0
         slid = False
         for k in range(s.count):
-            slid = slid or (s.closed[k] == s.which[i] and s.slides[k] == SLIDES)
+            slid = slid or (s.closed[k] == s.which[i] and s.slides[k] == forces.SLIDES)
         s.friction[i] = body.kinetic if slid else body.static
 
 
@@ -140,7 +124,7 @@ def prepare_impact(body, y, rows, n, s):
 def apply_impulses(body, y, rows, n, s):
     """Change the velocities by the impulses found."""
     for i in range(n):
-        push_at(
+        forces.push_at(
             body, y, rows, s.which[i],
             (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2]),
         )  # fmt: skip
@@ -152,10 +136,10 @@ def hold(body, y, rows, s):
     n = s.count
     if n == 0:
         return
-    fill_velocities(body, y, rows, s.closed, n, s.free)
-    solve_general(body, y, rows, n, 0.0, s)
+    forces.fill_velocities(body, y, rows, s.closed, n, s.free)
+    forces.solve_general(body, y, rows, n, 0.0, s)
     for i in range(n):
-        push_at(body, y, rows, s.closed[i], (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2]))
+        forces.push_at(body, y, rows, s.closed[i], (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2]))
 
 
 @kernel
@@ -184,11 +168,11 @@ def keep_slow_contacts(body, y, rows, n, found, s):
     slow = False
     for i in range(n):
         leaving = s.after[3 * i + 2]
-        if in_set(found, i) or leaving < s.close:
-            slow = slow or not in_set(found, i)
+        if forces.in_set(found, i) or leaving < s.close:
+            slow = slow or not forces.in_set(found, i)
             s.closed[count] = s.which[i]
             slip = norm(s.after[3 * i], s.after[3 * i + 1])
-            s.slides[count] = SLIDES if slip > max(s.close, AT_REST) else STICKS
+            s.slides[count] = forces.SLIDES if slip > max(s.close, AT_REST) else forces.STICKS
             count += 1
     s.count, s.rests = count, 0
     if slow:
@@ -199,7 +183,7 @@ def keep_slow_contacts(body, y, rows, n, found, s):
 def stop_all(body, y, rows, n, s):
     """Last resort where no impact was found: no point that touches approaches or slips any more."""
     for i in range(n):
-        s.closed[i], s.slides[i] = s.which[i], STICKS
+        s.closed[i], s.slides[i] = s.which[i], forces.STICKS
     s.count, s.rests = n, 0
     hold(body, y, rows, s)
 
@@ -266,7 +250,7 @@ def slide_flat(body, y, rows, pull, s):
     for i in range(n):
         u = point_velocity(y, rows, arm(body, rows[2], s.which[i]))
         speed = norm(u[0], u[1])
-        s.closed[i], s.slides[i] = s.which[i], SLIDES
+        s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
         if speed > AT_REST:
             s.direction[i, 0], s.direction[i, 1] = u[0] / speed, u[1] / speed
         else:
@@ -323,7 +307,7 @@ def lay_flat(body, y):
 def choose_mode(body, tau, y, s):
     """Choose the mode that follows for the points that touch and do not leave; return whether one was found."""
     rows = rotation(y)
-    pull = pull_at(s.field, tau)
+    pull = forces.pull_at(s.field, tau)
     lies = still(body, y) and count_touching(body, y, rows) >= 3
     if lies and rest_margin(body, y, rows, pull) >= 0:
         come_to_rest(body, y, s)
@@ -377,8 +361,8 @@ def pick_closed(body, y, rows, slow, s):
 @kernel
 def solve_forces(body, y, rows, pull, n, s):
     """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do."""
-    fill_delassus(body, rows, s.which, n, s.delassus)
-    fill_accelerations(body, y, rows, to_body(rows, pull), s.which, n, s.free)
+    forces.fill_delassus(body, rows, s.which, n, s.delassus)
+    forces.fill_accelerations(body, y, rows, to_body(rows, pull), s.which, n, s.free)
     fill_edges(body, y, rows, s.which, n, s)
     return solve_cones(s, n, 0)
 
@@ -389,20 +373,20 @@ def write_mode(body, y, rows, n, found, s):
     count = 0
     s.rests = 0
     for i in range(n):
-        if not in_set(found, i):
+        if not forces.in_set(found, i):
             continue
         s.closed[count] = s.which[i]
-        s.slides[count] = STICKS
+        s.slides[count] = forces.STICKS
         u, v = s.after[3 * i], s.after[3 * i + 1]
         if s.given[i]:
-            s.slides[count] = SLIDES
+            s.slides[count] = forces.SLIDES
             s.direction[count, 0], s.direction[count, 1] = s.way[i, 0], s.way[i, 1]
         else:
             shear = norm(s.impulse[3 * i], s.impulse[3 * i + 1])
             limit = s.friction[i] * s.impulse[3 * i + 2]
             size = norm(u, v)
             if size > 1e-9 and shear > limit * (1 - 1e-9):
-                s.slides[count] = SLIDES
+                s.slides[count] = forces.SLIDES
                 s.direction[count, 0], s.direction[count, 1] = u / size, v / size
                 s.counters[SLIDINGS] += 1
         p = position_of_base(y, rows, arm(body, rows[2], s.which[i]))
@@ -421,7 +405,7 @@ def insist(body, what, s):
     for i in range(s.count):
         shear = norm(s.lam[i, 0], s.lam[i, 1])
         here = s.lam[i, 2] if what == OPENS else body.static * s.lam[i, 2] - shear
-        if here < value and (what == OPENS or s.slides[i] == STICKS):
+        if here < value and (what == OPENS or s.slides[i] == forces.STICKS):
             worst, value = i, here
     if what == OPENS:
         for i in range(worst, s.count - 1):
@@ -431,7 +415,7 @@ def insist(body, what, s):
         s.count -= 1
     else:
         shear = norm(s.lam[worst, 0], s.lam[worst, 1])
-        s.slides[worst] = SLIDES
+        s.slides[worst] = forces.SLIDES
         for k in range(2):
             s.direction[worst, k] = -s.lam[worst, k] / shear
 
@@ -443,7 +427,7 @@ def jam(body, y, s):
     No finite forces obey Coulomb's law here (Painlevé's paradox); what sticks does no work.
     """
     for i in range(s.count):
-        s.slides[i] = STICKS
+        s.slides[i] = forces.STICKS
     s.jammed = 1
     anchor_all(body, y, s)
     hold(body, y, rotation(y), s)
@@ -462,12 +446,12 @@ def anchor_all(body, y, s):
 def settle(body, y, s):
     """Put a state back on the conditions of its mode, from which steps drift by their error."""
     rows = rotation(y)
-    kind = kind_of(s)
-    if kind in (PIVOT, HINGE):
+    kind = forces.kind_of(s)
+    if kind in (forces.PIVOT, forces.HINGE):
         i = s.closed[0]
         p = arm(body, rows[2], i)
         omega = omega_of(y)
-        if kind == HINGE:
+        if kind == forces.HINGE:
             q = arm(body, rows[2], s.closed[1])
             e = minus(q, p)
             omega = scaled(dot(e, omega) / dot(e, e), e)
@@ -477,7 +461,7 @@ def settle(body, y, s):
         if i != rim_contact(body):
             y[0], y[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
         y[7], y[8], y[9] = to_world(rows, cross(p, omega))
-    elif kind in (GENERAL, SLIDER):
+    elif kind in (forces.GENERAL, forces.SLIDER):
         close_gaps(body, y, rows, s)
         hold(body, y, rotation(y), s)
 
@@ -489,7 +473,7 @@ def close_gaps(body, y, rows, s):
     if n >= 3:
         lay_flat(body, y)
         return
-    fill_delassus(body, rows, s.closed, n, s.delassus)
+    forces.fill_delassus(body, rows, s.closed, n, s.delassus)
     first = gap(body, y, rows[2], s.closed[0])
     if n == 1:
         y[2] -= first

@@ -2,6 +2,7 @@
 
 from rockfrag.engines.kernels.dormand_prince import INSTANTS, WEIGHTS
 from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._algebra import norm, normalise, rotation
 from rockfrag.engines.spatial._body import (
     SIZE,
@@ -12,15 +13,6 @@ from rockfrag.engines.spatial._body import (
     point_velocity,
 )
 from rockfrag.engines.spatial._forces import SLIDES, STAGES, rates
-from rockfrag.engines.spatial._modes import (
-    AT_REST,
-    LANDS,
-    LEAVES_CONE,
-    NOTHING,
-    OPENS,
-    SLIP_ENDS,
-    TOUCH,
-)
 
 BACKWARD = 1e-8
 """Slip against its own direction that is rounding [m/s]."""
@@ -106,7 +98,7 @@ def begin_slips(body, y, s):
             u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
             speed = norm(u[0], u[1])
             s.slip[i, 0], s.slip[i, 1] = s.direction[i, 0], s.direction[i, 1]
-            if speed > 2 * AT_REST:
+            if speed > 2 * modes.AT_REST:
                 s.slip[i, 0], s.slip[i, 1] = u[0] / speed, u[1] / speed
                 s.direction[i, 0], s.direction[i, 1] = s.slip[i, 0], s.slip[i, 1]
                 s.armed[i] = 1
@@ -145,42 +137,42 @@ def face_slip(body, y, rows, s):
         fastest = max(fastest, norm(u[0], u[1]))
         forwards = max(forwards, slip_along(body, y, rows, i, s))
         armed = max(armed, s.armed[i])
-    return fastest - AT_REST if armed else forwards + BACKWARD
+    return fastest - modes.AT_REST if armed else forwards + BACKWARD
 
 
 @kernel
 def margin(body, y, s):
     """Return the least of all that must not be negative, and what it belongs to."""
     rows = rotation(y)
-    least, what = 1e300, NOTHING
+    least, what = 1e300, modes.NOTHING
     for i in range(first_candidate(body), last_candidate(body)):
         if not is_closed(s, i):
-            value = gap(body, y, rows[2], i) + 0.5 * TOUCH
-            if value < 0.5 * TOUCH and not sinks(body, y, rows, i):
-                value += TOUCH
+            value = gap(body, y, rows[2], i) + 0.5 * modes.TOUCH
+            if value < 0.5 * modes.TOUCH and not sinks(body, y, rows, i):
+                value += modes.TOUCH
             if value < least:
-                least, what = value, LANDS
+                least, what = value, modes.LANDS
     small = LEAST_FORCE * s.field[6]
     # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
     passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
     on_face = body.rim > 0 and s.count >= 3
     if on_face:
-        least, what = pressure_margin(body, s), OPENS
+        least, what = pressure_margin(body, s), modes.OPENS
         value = face_slip(body, y, rows, s)
         if value < least:
-            least, what = value, SLIP_ENDS
+            least, what = value, modes.SLIP_ENDS
     for i in range(0 if on_face else s.count):
         value = s.lam[i, 2] + small
         if value < least:
-            least, what = value, OPENS
+            least, what = value, modes.OPENS
         if s.slides[i] == SLIDES:
-            value = slip_along(body, y, rows, i, s) + (-AT_REST if s.armed[i] else BACKWARD)
+            value = slip_along(body, y, rows, i, s) + (-modes.AT_REST if s.armed[i] else BACKWARD)
             if value < least:
-                least, what = value, SLIP_ENDS
+                least, what = value, modes.SLIP_ENDS
         elif not (s.jammed or passes):
             value = body.static * s.lam[i, 2] - norm(s.lam[i, 0], s.lam[i, 1]) + small
             if value < least:
-                least, what = value, LEAVES_CONE
+                least, what = value, modes.LEAVES_CONE
     return least, what
 
 
@@ -196,6 +188,6 @@ def dips(body, y, h, s):
         rising = point_velocity(new, after, arm(body, after[2], i))[2]
         if sinking < 0 < rising:
             lowest = gap(body, y, before[2], i) - 0.5 * h * sinking**2 / (rising - sinking)
-            if lowest - 0.02 * h * (rising - sinking) < -0.5 * TOUCH:
+            if lowest - 0.02 * h * (rising - sinking) < -0.5 * modes.TOUCH:
                 return True
     return False

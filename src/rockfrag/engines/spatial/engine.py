@@ -116,22 +116,15 @@ def _write(
     result: Outcomes, case: tuple[int, int, int], found: SpatialOutcome, least_gravity_ratio: float
 ) -> None:
     """Write one outcome into those of all."""
-    result.overturned[case] = found.overturned
+    for name in ("overturned", "certain_time", "impacts", "flights", "paradoxes"):
+        getattr(result, name)[case] = getattr(found, name)
     result.overturned_body[case] = 1 if found.overturned else 0
-    result.certain_time[case] = found.certain_time
-    result.impacts[case] = found.impacts
-    result.flights[case] = found.flights
     result.several_modes[case] = found.ambiguous
-    result.paradoxes[case] = found.paradoxes
     result.unstable_distance[case] = math.nan
     result.minimum_gravity_ratio[case] = least_gravity_ratio
-    body = (*case, 0)
-    result.peak_rotation[body] = found.peak_rotation
-    result.peak_velocity[body] = found.peak_velocity
-    result.turn[body] = found.turn
-    result.walk[body] = math.hypot(*found.walk)
-    result.fall_direction[body] = found.fall_direction
-    result.fell_over[body] = found.fell_over
+    for name in ("peak_rotation", "peak_velocity", "turn", "fall_direction", "fell_over"):
+        getattr(result, name)[(*case, 0)] = getattr(found, name)
+    result.walk[(*case, 0)] = math.hypot(*found.walk)
 
 
 def run_in_space(

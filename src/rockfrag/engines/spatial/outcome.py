@@ -43,7 +43,6 @@ class SpatialOutcome:
     peak_velocity: float  # largest angular velocity until then [rad/s]
     # displacement of the base's point below the centre of mass, (x, y) at the end [m]
     walk: tuple[float, float]
-    peak_walk: float  # its largest distance [m]
     turn: float  # rotation about the vertical at the end [rad], several turns counted
     impacts: int  # number of impacts
     slidings: int  # number of contacts that began to slide
@@ -112,7 +111,6 @@ def _outcome(body: np.void, out: Array, counters: NDArray[np.int64], y: Array) -
         peak_tilt=float(out[kernel.PEAK_TILT]),
         peak_velocity=float(out[kernel.PEAK_SPEED]),
         walk=(float(out[kernel.WALK_X]), float(out[kernel.WALK_Y])),
-        peak_walk=float(out[kernel.PEAK_WALK]),
         turn=float(out[kernel.TURN]),
         impacts=int(counters[modes.IMPACTS]),
         slidings=int(counters[modes.SLIDINGS]),

@@ -15,8 +15,11 @@ PERTURBATION = 1e-6
 """Size of the perturbation: of vertices over the width of the base, of the direction in radians [-]."""
 
 
-def spread_vertices(system: System, spread: float, rng: np.random.Generator) -> System:
-    """Return a body whose vertices, or centre if it is round, lie up to ``spread`` times its extent beside."""
+def perturbed(system: System, spread: float, rng: np.random.Generator) -> tuple[System, float]:
+    """Return a body with its base moved by up to ``spread``, and an angle within it by which it is turned [rad].
+
+    Vertices, or the centre of a round base, lie up to ``spread`` times its extent beside.
+    """
     body = system.bodies[0]
     if isinstance(body.base, Circle):
         x, y = rng.uniform(-spread, spread, 2) * 2 * body.base.radius
@@ -28,9 +31,5 @@ def spread_vertices(system: System, spread: float, rng: np.random.Generator) -> 
         width = float(np.ptp(vertices, axis=0).max())
         moved = vertices + width * rng.uniform(-spread, spread, vertices.shape)
         base = Polygon(tuple((float(x), float(y)) for x, y in moved))
-    return replace(system, bodies=(replace(body, base=base),))
-
-
-def perturbed(system: System, spread: float, rng: np.random.Generator) -> tuple[System, float]:
-    """Return a body with its vertices spread, and an angle within ± spread by which it is turned [rad]."""
-    return spread_vertices(system, spread, rng), float(rng.uniform(-spread, spread))
+    turned = float(rng.uniform(-spread, spread))
+    return replace(system, bodies=(replace(body, base=base),)), turned

@@ -7,14 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import (
-    BLACK,
-    BLUE,
-    COLUMN_WIDTH,
-    ORANGE,
-    one_panel,
-    plain_log,
-)
+from rockfrag.figure_style import BLACK, BLUE, COLUMN_WIDTH, ORANGE, one_panel, plain_log
 from rockfrag.report.figures.amplitudes import GREY, SIDE_NAME, drawn_tests
 from rockfrag.report.wording import shortened
 

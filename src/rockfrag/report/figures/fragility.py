@@ -37,10 +37,7 @@ GREY = "#777777"
 
 
 def fragility_figure(
-    curves: pd.DataFrame,
-    bands: pd.DataFrame,
-    bins: pd.DataFrame,
-    nonparametric: bool | None = None,
+    curves: pd.DataFrame, bands: pd.DataFrame, bins: pd.DataFrame, nonparametric: bool | None = None
 ) -> Figure:
     """Draw fragility curves of one measure, a panel per configuration, with bands and the outcomes behind them.
 

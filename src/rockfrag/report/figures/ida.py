@@ -9,11 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from rockfrag.figure_style import (
-    CONFIGURATION_COLOURS,
-    WIDEST,
-    one_panel,
-)
+from rockfrag.figure_style import CONFIGURATION_COLOURS, WIDEST, one_panel
 from rockfrag.report.wording import label, shortened
 
 MOST_ROWS = 24

@@ -5,14 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from rockfrag.figure_style import (
-    BLUE,
-    COLUMN_WIDTH,
-    RED,
-    figure_style,
-    letter_panels,
-    new_figure,
-)
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, RED, figure_style, letter_panels, new_figure
 from rockfrag.records.motion import Motion
 from rockfrag.report.wording import shortened
 from rockfrag.units import GRAVITY

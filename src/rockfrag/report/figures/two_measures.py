@@ -5,12 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
-from rockfrag.figure_style import (
-    BLUE,
-    COLUMN_WIDTH,
-    one_panel,
-    plain_log,
-)
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, one_panel, plain_log
 from rockfrag.fragility.observations import name_and_unit
 
 LINES = {0.1: "dotted", 0.5: "solid", 0.9: "dashed"}

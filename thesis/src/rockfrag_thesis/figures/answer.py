@@ -52,9 +52,7 @@ def ratios_figure(effects: pd.DataFrame) -> Figure:
         axes.set_ylim(len(rows) - 0.5, -0.5)
         axes.tick_params(axis="y", length=0)
         ratio_axis(axes, drawn)
-        handles = [
-            Line2D([], [], color=BLUE, marker="o", mfc="white", label="simulated"),
-        ]
+        handles = [Line2D([], [], color=BLUE, marker="o", mfc="white", label="simulated")]
         if has_thesis_floors(effects):
             handles.append(
                 Line2D([], [], color=ORANGE, lw=1.8, marker=">", label="direction in the thesis")

@@ -124,13 +124,7 @@ HYPOTHESES: Mapping[int, Hypothesis] = _HYPOTHESES
 """Hypothesis by number, as far as their modules are loaded; the package loads all 58."""
 
 
-def hypothesis(
-    number: int,
-    *,
-    evidence: str,
-    rule: str,
-    error_rate: str,
-) -> Callable[[Test], Test]:
+def hypothesis(number: int, *, evidence: str, rule: str, error_rate: str) -> Callable[[Test], Test]:
     """Enter the decorated function as the test of a hypothesis, see `Hypothesis`; a number is taken once."""
 
     def enter(test: Test) -> Test:

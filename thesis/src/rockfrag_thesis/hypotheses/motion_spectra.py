@@ -48,12 +48,7 @@ class MotionSpectra:
         """
         if factor not in self._rotation:
             blocks = [uniform_block(a * factor, T) for a in self.alpha for T in SIZES]
-            found = overturns(
-                blocks,
-                self.motions,
-                scales=[1.0],
-                threads=self.threads,
-            )
+            found = overturns(blocks, self.motions, scales=[1.0], threads=self.threads)
             shape = (self.alpha.size, SIZES.size, len(self.motions))
             self._rotation[factor] = np.moveaxis(found.of_top("peak_rotation").reshape(shape), 2, 1)
         return self._rotation[factor]

@@ -48,7 +48,5 @@ def _section(results: Results) -> Section:
 
 
 FLOOR_ORDER = Part(
-    ("building_sensitivity/margins", "building_sensitivity/means"),
-    _section,
-    asked=varies_building,
+    ("building_sensitivity/margins", "building_sensitivity/means"), _section, asked=varies_building
 )

@@ -11,13 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import (
-    BLACK,
-    OKABE_ITO,
-    WIDEST,
-    figure_style,
-    new_figure,
-)
+from rockfrag.figure_style import BLACK, OKABE_ITO, WIDEST, figure_style, new_figure
 from rockfrag.pedestal.multiplicity import benjamini_hochberg
 from rockfrag.report.figures.amplitudes import BAND, GREY, MARKERS
 from rockfrag.report.figures.effects import NONE, ratio_axis
@@ -74,9 +68,7 @@ FACTORS = {
     ),
     "pedestal_width_cm": Factor("the width of the pedestal", "{} cm", "a pedestal {} wide"),
     "pedestal_not_counted": Factor(
-        "the pedestal's mass neglected",
-        "{} kg table",
-        "neglecting the pedestal's mass on a {}",
+        "the pedestal's mass neglected", "{} kg table", "neglecting the pedestal's mass on a {}"
     ),
     "table_not_counted": Factor(
         "the table's mass neglected", "{} kg table", "neglecting the mass of a {}"

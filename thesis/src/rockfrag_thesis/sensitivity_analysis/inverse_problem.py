@@ -159,9 +159,7 @@ def _by_earthquake(
 
 
 def _lines(
-    cells: Mapping[tuple[str, str], pd.DataFrame],
-    ideal: pd.DataFrame,
-    neutral: Mapping[str, float],
+    cells: Mapping[tuple[str, str], pd.DataFrame], ideal: pd.DataFrame, neutral: Mapping[str, float]
 ) -> list[_Line]:
     """Changes along each factor whose levels are numbers and share the ideal model's earthquakes."""
     lines = []

@@ -16,12 +16,7 @@ def _nonnegative(name: str, mass: float) -> None:
 
 
 def ratio_bias(
-    statue: float,
-    pedestal: float,
-    table: float,
-    *,
-    counted_with: float,
-    counted_without: float,
+    statue: float, pedestal: float, table: float, *, counted_with: float, counted_without: float
 ) -> float:
     """Factor on P/NP when a is computed from force over the counted mass [-].
 

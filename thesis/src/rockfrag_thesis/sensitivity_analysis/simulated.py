@@ -212,10 +212,7 @@ def _perturbed(block: Block, tolerance: float, rng: np.random.Generator) -> Bloc
 
 
 def level_amplitudes(
-    systems: Sequence[System],
-    motions: Sequence[Motion],
-    levels_g: Floats,
-    threads: int = 1,
+    systems: Sequence[System], motions: Sequence[Motion], levels_g: Floats, threads: int = 1
 ) -> Floats:
     """Largest amplitude [g] survived before the first overturning, climbing rising levels from rest.
 

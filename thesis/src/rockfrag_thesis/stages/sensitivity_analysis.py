@@ -41,10 +41,7 @@ def run(job: Job[Study]) -> Results:
         )
     levels = effects[["factor", "level"]].drop_duplicates()
     job.log.info(
-        "ratios: %d, levels: %d, factors: %d",
-        len(ratios),
-        len(levels),
-        effects["factor"].nunique(),
+        "ratios: %d, levels: %d, factors: %d", len(ratios), len(levels), effects["factor"].nunique()
     )
 
 

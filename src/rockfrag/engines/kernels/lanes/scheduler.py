@@ -11,26 +11,8 @@ change a bit of them.
 """
 
 from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, lowest_bit
-from rockfrag.engines.kernels.lanes import stack_one, stack_two
+from rockfrag.engines.kernels.lanes import stack_case, stack_one, stack_two
 from rockfrag.engines.kernels.lanes.case import LANES, QUIET, WITHIN, next_samples
-from rockfrag.engines.kernels.lanes.stack_case import (
-    BOTH_ROTATE,
-    NO_CASE,
-    ONE_ROTATES,
-    SLOTS,
-    after_contact_event,
-    contact_event_of_one,
-    contact_event_of_two,
-    find_contact_events_of_two,
-    general_impact,
-    lane_of,
-    next_case,
-    place_one,
-    place_two,
-    rocks_on,
-    store_one,
-    store_two,
-)
 
 
 @entry_kernel
@@ -41,15 +23,15 @@ def integrate_stacks(ensemble, motions, worker, outcomes):
     """
     g = ensemble.bodies[0].gravity
     upward = motions.vertical.size > 0
-    for slot in range(SLOTS):
+    for slot in range(stack_case.SLOTS):
         case = worker.cases[slot]
-        next_case(case, ensemble, motions, worker, outcomes)
+        stack_case.next_case(case, ensemble, motions, worker, outcomes)
         _wait(case, worker)
     steps1, steps2 = 0, 0
     waits, busy = worker.waits, worker.busy
     while busy[0] + waits[0] + busy[1] + waits[1] > 0:
         ones = busy[0] + waits[0] >= min(LANES, busy[1] + waits[1])
-        kind = ONE_ROTATES if ones else BOTH_ROTATE
+        kind = stack_case.ONE_ROTATES if ones else stack_case.BOTH_ROTATE
         if ones:
             steps1 += LANES
             stack_one.advance(worker.one, g, upward)
@@ -58,7 +40,7 @@ def integrate_stacks(ensemble, motions, worker, outcomes):
             steps2 += LANES
             stack_two.advance(worker.two, g, upward)
             stops = next_samples(worker.two, worker.two.factor, LANES, motions)
-            find_contact_events_of_two(stops, worker)
+            stack_case.find_contact_events_of_two(stops, worker)
         while stops != 0:
             i = lowest_bit(stops)
             stops &= stops - 1
@@ -71,20 +53,26 @@ def integrate_stacks(ensemble, motions, worker, outcomes):
                 case.k = worker.one.k[i] if ones else worker.two.k[i]
                 if flag == QUIET:
                     if ones:
-                        store_one(i, case, worker.one)
+                        stack_case.store_one(i, case, worker.one)
                     else:
-                        store_two(i, case, worker.two)
+                        stack_case.store_two(i, case, worker.two)
                 else:
                     if ones:
-                        closes = contact_event_of_one(i, case, worker, ensemble, motions, g)
+                        closes = stack_case.contact_event_of_one(
+                            i, case, worker, ensemble, motions, g
+                        )
                     else:
-                        closes = contact_event_of_two(i, case, worker, ensemble, motions, g)
+                        closes = stack_case.contact_event_of_two(
+                            i, case, worker, ensemble, motions, g
+                        )
                     if closes[0] or closes[1]:
-                        general_impact(case, worker, ensemble.bodies[case.body], closes, motions)
-                    after_contact_event(case)
-                if not rocks_on(case):
-                    next_case(case, ensemble, motions, worker, outcomes)
-                if lane_of(case) != kind:
+                        stack_case.general_impact(
+                            case, worker, ensemble.bodies[case.body], closes, motions
+                        )
+                    stack_case.after_contact_event(case)
+                if not stack_case.rocks_on(case):
+                    stack_case.next_case(case, ensemble, motions, worker, outcomes)
+                if stack_case.lane_of(case) != kind:
                     _wait(case, worker)
                     slot = -1
                     busy[kind] -= 1
@@ -94,17 +82,17 @@ def integrate_stacks(ensemble, motions, worker, outcomes):
                 slot = worker.waiting[kind, waits[kind]]
             if ones:
                 if _hold(worker.one, i, slot, worker.cases):
-                    place_one(i, worker.cases[slot], worker, motions)
+                    stack_case.place_one(i, worker.cases[slot], worker, motions)
             elif _hold(worker.two, i, slot, worker.cases):
-                place_two(i, worker.cases[slot], worker, motions)
+                stack_case.place_two(i, worker.cases[slot], worker, motions)
     return steps1, steps2
 
 
 @inlined_kernel
 def _wait(case, worker):
     """Let a case wait for a lane of the kind that it needs."""
-    kind = lane_of(case)
-    if kind != NO_CASE:
+    kind = stack_case.lane_of(case)
+    if kind != stack_case.NO_CASE:
         worker.waiting[kind, worker.waits[kind]] = case.slot
         worker.waits[kind] += 1
 

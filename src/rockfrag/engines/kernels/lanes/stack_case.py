@@ -10,58 +10,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rockfrag.engines.kernels import chatter, contact_states, equations
 from rockfrag.engines.kernels.by_reference import by_reference
-from rockfrag.engines.kernels.chatter import (
-    OUTCOME,
-    RESTORING,
-    Ahead,
-    Hop,
-    closed,
-    dies_out,
-    fill_restoring,
-    may_close,
-)
-from rockfrag.engines.kernels.contact_states import (
-    GROUND,
-    HALF_TURN,
-    INTERFACE,
-    release,
-    rest_interval,
-    settle,
-    uplift,
-)
-from rockfrag.engines.kernels.equations import (
-    STATE,
-    balance,
-    barrier,
-    kinetic_energy,
-    potential_energy,
-    upper_balance,
-)
 from rockfrag.engines.kernels.impact import ground_impact, interface_impact
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel, lowest_bit, take_next
-from rockfrag.engines.kernels.lanes import stack_one, stack_two
-from rockfrag.engines.kernels.lanes.case import (
-    LANES,
-    QUIET,
-    RELEASE,
-    next_uplift,
-    place_of,
-    weight_of,
-)
-from rockfrag.engines.kernels.lanes.stack_constants import (
-    HOLD,
-    IMPACT,
-    ONE,
-    TWO,
-    fill_constants,
-    number_of,
-)
+from rockfrag.engines.kernels.lanes import case as lanes
+from rockfrag.engines.kernels.lanes import stack_constants, stack_one, stack_two
 from rockfrag.engines.kernels.roots import slope, value
 from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP, resolve_impact
 from rockfrag.engines.kernels.taylor import SERIES, quick_sine_cosine
 
-SLOTS = 2 * LANES  # cases in flight, so that lanes of one kind or the other can always be filled
+SLOTS = (
+    2 * lanes.LANES
+)  # cases in flight, so that lanes of one kind or the other can always be filled
 
 CASE = np.dtype(
     [
@@ -129,12 +90,12 @@ def worker() -> Worker:
         waiting=np.zeros((2, SLOTS), np.int64),
         waits=np.zeros(2, np.int64),
         busy=np.zeros(2, np.int64),
-        ones=np.zeros((SLOTS, 9), ONE),
-        twos=np.zeros((SLOTS, 9), TWO),
-        impacts=np.zeros((SLOTS, 9), IMPACT),
-        restoring=np.zeros(SLOTS, RESTORING),
-        series=np.zeros(LANES, SERIES),
-        state=np.zeros(1, STATE)[0],
+        ones=np.zeros((SLOTS, 9), stack_constants.ONE),
+        twos=np.zeros((SLOTS, 9), stack_constants.TWO),
+        impacts=np.zeros((SLOTS, 9), stack_constants.IMPACT),
+        restoring=np.zeros(SLOTS, chatter.RESTORING),
+        series=np.zeros(lanes.LANES, SERIES),
+        state=np.zeros(1, equations.STATE)[0],
     )
 
 
@@ -179,7 +140,7 @@ def _goes_on(case, ensemble, motions, state):
     if case.c1 == 0 and case.c2 == 0:
         if case.k >= case.last or case.factor == 0.0:
             return False
-        k, tau, ground, weight = next_uplift(
+        k, tau, ground, weight = lanes.next_uplift(
             motions, case.k, case.tau, case.last, case.factor, (case.low, case.high)
         )
         if k < 0:
@@ -187,7 +148,7 @@ def _goes_on(case, ensemble, motions, state):
         case.k, case.tau, case.ground, case.weight = k, tau, ground, weight
         case.theta1, case.omega1, case.theta2, case.omega2 = 0.0, 0.0, 0.0, 0.0
         to_state(case, state)
-        case.c1, case.c2 = uplift(body, state)
+        case.c1, case.c2 = contact_states.uplift(body, state)
         return True
     if case.k < case.last:
         return True
@@ -198,16 +159,16 @@ def _goes_on(case, ensemble, motions, state):
 @kernel
 def _is_safe(body, state, least):
     """Whether nothing can fall once the ground is still: energy cannot grow, and is less than ``least``."""
-    if kinetic_energy(body, state) + potential_energy(body, state) >= least:
+    if equations.kinetic_energy(body, state) + equations.potential_energy(body, state) >= least:
         return False
     # low energy on this side of balance, not beyond it
     c1, c2 = state.c1, state.c2
     if c2 != 0:
-        critical, _, _, _ = upper_balance(body, c2)
+        critical, _, _, _ = equations.upper_balance(body, c2)
         if c2 * state.theta2 >= critical:
             return False
     if c1 != 0:
-        critical, _, _, _ = balance(body, c1, c2)
+        critical, _, _, _ = equations.balance(body, c1, c2)
         if c1 * state.theta1 >= critical:
             return False
     return True
@@ -226,17 +187,17 @@ def _put_down(case, outcome):
 @kernel
 def _take_up(case, number, ensemble, motions, worker):
     """Begin a case in a slot, at rest."""
-    body, motion, scale = place_of(number, ensemble)
+    body, motion, scale = lanes.place_of(number, ensemble)
     h = ensemble.intervals[body, motion]
     slot = case.slot
     if case.body != body or case.interval != h:
         record, scratch = ensemble.bodies[body], worker.state
-        fill_constants(
+        stack_constants.fill_constants(
             record, h, worker.ones[slot], worker.twos[slot], worker.impacts[slot], scratch
         )
-        fill_restoring(record, worker.restoring[slot], scratch)
-        case.low, case.high = rest_interval(record, scratch)
-        case.barrier = barrier(record)
+        chatter.fill_restoring(record, worker.restoring[slot], scratch)
+        case.low, case.high = contact_states.rest_interval(record, scratch)
+        case.barrier = equations.barrier(record)
     case.number, case.body, case.interval = number, body, h
     case.gravity, case.weight = ensemble.bodies[body].gravity, 1.0
     case.part = ensemble.parts[body, motion]
@@ -263,7 +224,9 @@ def to_state(case, state):
 def _ahead(case, motions):
     """The ground from the case's instant on."""
     factor, interval = case.factor, case.interval
-    return Ahead(motions.samples, motions.vertical, factor, case.last, case.k, case.tau, interval)
+    return chatter.Ahead(
+        motions.samples, motions.vertical, factor, case.last, case.k, case.tau, interval
+    )
 
 
 # --------------------------------------------------------------------------- contact events
@@ -276,14 +239,14 @@ def contact_event_of_one(i, case, worker, ensemble, motions, g):
     Returned is whether ground and interface close and ``general_impact`` has to say what comes of it.
     """
     lane, series = worker.one, worker.series[i]
-    if lane.flag[i] == RELEASE and lane.has_before[i] == 1.0:
+    if lane.flag[i] == lanes.RELEASE and lane.has_before[i] == 1.0:
         # it let go in the sample before
         stack_one.go_back(lane, i, g, motions.vertical.size > 0)
         case.k -= 1
     stack_one.take_series(lane, i, series)
     c1, c2 = case.c1, case.c2
     left = lane.was_left[i]
-    constants = worker.ones[case.slot, number_of(c1, c2)]
+    constants = worker.ones[case.slot, stack_constants.number_of(c1, c2)]
     when, fails = stack_one.next_contact_event(constants, lane, i, series, g)
     at = min(1.0, when)
     theta, omega = value(series.one.angle, at), slope(series.one.angle, at) / left
@@ -304,8 +267,8 @@ def contact_event_of_one(i, case, worker, ensemble, motions, g):
     _count_contact_event(case)
     if fails:
         to_state(case, worker.state)
-        contact = GROUND if c1 == 0 else INTERFACE
-        case.c1, case.c2 = release(body, worker.state, contact, at == 0.0)
+        contact = contact_states.GROUND if c1 == 0 else contact_states.INTERFACE
+        case.c1, case.c2 = contact_states.release(body, worker.state, contact, at == 0.0)
         return False, False
     case.impacts += 1
     case.theta1, case.theta2 = 0.0, 0.0
@@ -325,7 +288,7 @@ def find_contact_events_of_two(stops, worker):
     while stops != 0:
         i = lowest_bit(stops)
         stops &= stops - 1
-        if lane.slot[i] >= 0 and lane.flag[i] > QUIET:
+        if lane.slot[i] >= 0 and lane.flag[i] > lanes.QUIET:
             case, series = worker.cases[lane.slot[i]], worker.series[i]
             stack_two.take_series(lane, i, series)
             lane.when[i], lane.closes1[i], lane.closes2[i] = stack_two.next_contact_event(
@@ -375,7 +338,9 @@ def general_impact(case, worker, body, closes, motions):
     to_state(case, state)
     ahead = _ahead(case, motions)
     restoring = worker.restoring[case.slot]
-    _, gave_way = resolve_impact(body, state, closes, restoring, ahead, OUTCOME, _forced(case))
+    _, gave_way = resolve_impact(
+        body, state, closes, restoring, ahead, chatter.OUTCOME, _forced(case)
+    )
     case.given_way += gave_way
     h = case.interval
     case.c1, case.c2 = state.c1, state.c2
@@ -386,13 +351,13 @@ def general_impact(case, worker, body, closes, motions):
 def _impact_alone(case, worker, body, g, motions):
     """Take what rocks alone through its landing by the constants; whether that was possible."""
     slot = case.slot
-    impact_constants = worker.impacts[slot, number_of(case.c1, case.c2)]
+    impact_constants = worker.impacts[slot, stack_constants.number_of(case.c1, case.c2)]
     n1, n2 = impact_constants.next1, impact_constants.next2
     omega = abs(case.omega2)
     v1, v2 = omega * impact_constants.after1, omega * impact_constants.after2
     h = case.interval
     # a contact that comes off slower than this stays closed
-    slow = OUTCOME.closing_speed * h
+    slow = chatter.OUTCOME.closing_speed * h
     slow1 = n1 != 0 and abs(v1) < slow
     slow2 = n2 != 0 and abs(v2 - v1) < slow
     rests = (n1 == 0 or slow1) and (n2 == 0 or slow2)
@@ -402,13 +367,15 @@ def _impact_alone(case, worker, body, g, motions):
     restoring = worker.restoring[slot]
     if not rests and speed < restoring.fastest:
         ahead = _ahead(case, motions)
-        rests = dies_out(speed, impact_constants.fraction, 1.5, restoring, OUTCOME.drop, ahead)
+        rests = chatter.dies_out(
+            speed, impact_constants.fraction, 1.5, restoring, chatter.OUTCOME.drop, ahead
+        )
     if rests:
         n1, n2, v1, v2 = 0, 0, 0.0, 0.0
     if n1 == 0 and n2 == 0:
         settled = case.low * case.weight < case.ground < case.high * case.weight
     elif n1 == 0 or n2 == 0:
-        constants = worker.ones[slot, number_of(n1, n2)]
+        constants = worker.ones[slot, stack_constants.number_of(n1, n2)]
         pull = case.ground, case.weight
         settled = stack_one.least_hold(constants, 0.0, v2, pull, g) > 0.0
     else:
@@ -417,7 +384,7 @@ def _impact_alone(case, worker, body, g, motions):
     case.given_way += impact_constants.gives_way
     if not settled:
         to_state(case, worker.state)
-        case.c1, case.c2 = settle(body, worker.state)
+        case.c1, case.c2 = contact_states.settle(body, worker.state)
     return True
 
 
@@ -425,28 +392,28 @@ def _impact_alone(case, worker, body, g, motions):
 def close_one(case, worker, ground, g, motions):
     """Take two rocking blocks through the closing of one contact by the constants; whether that was possible."""
     c1, c2, omega1, omega2 = case.c1, case.c2, case.omega1, case.omega2
-    constants, number = worker.twos[case.slot], number_of(c1, c2)
+    constants, number = worker.twos[case.slot], stack_constants.number_of(c1, c2)
     before, products = constants[number], worker.impacts[case.slot, number]
     sine, cosine = quick_sine_cosine(case.theta2)
     if ground:
         n1, n2 = -c1, c2
-        after = constants[number_of(n1, n2)]
+        after = constants[stack_constants.number_of(n1, n2)]
         v1, v2 = ground_impact(before, after, products.ground, (cosine, sine), omega1, omega2)
         side, off, old = n1, v1, omega1
         gap, toward = abs(case.theta2), c2 * (v1 - v2)
     else:
         n1, n2 = c1, -c2
-        after = constants[number_of(n1, n2)]
+        after = constants[stack_constants.number_of(n1, n2)]
         v1, v2 = interface_impact(after, products, omega1, omega2)
         side, off, old = n2, v2 - v1, omega2 - omega1
         gap, toward = abs(case.theta1), -c1 * v1
-    if side * off <= OUTCOME.closing_speed * case.interval:
+    if side * off <= chatter.OUTCOME.closing_speed * case.interval:
         return False
     # half the time in which the other contact would close
     longest = 0.5 * gap / toward if toward > 0.0 else math.inf
-    hop = Hop(ground, side, old, cosine, sine, v1, v2)
-    if may_close(hop, before, after, longest, g, _ahead(case, motions)):
-        v1, v2 = closed(hop, after)
+    hop = chatter.Hop(ground, side, old, cosine, sine, v1, v2)
+    if chatter.may_close(hop, before, after, longest, g, _ahead(case, motions)):
+        v1, v2 = chatter.closed(hop, after)
         if ground:
             n1 = 0
         else:
@@ -477,9 +444,9 @@ def after_contact_event(case):
     if case.tau >= 1.0 - 1e-13 or crowded:
         case.tau = 0.0
         case.k += 1
-    if abs(case.theta1) >= HALF_TURN:
+    if abs(case.theta1) >= contact_states.HALF_TURN:
         case.fallen = 1
-    elif max(abs(case.theta2), abs(case.theta2 - case.theta1)) >= HALF_TURN:
+    elif max(abs(case.theta2), abs(case.theta2 - case.theta1)) >= contact_states.HALF_TURN:
         case.fallen = 2
 
 
@@ -489,10 +456,13 @@ def after_contact_event(case):
 @inlined_kernel
 def place_one(i, case, worker, motions):
     """Place a case into lane i of those of one rotation."""
-    lane, constants = worker.one, worker.ones[case.slot, number_of(case.c1, case.c2)]
+    lane, constants = (
+        worker.one,
+        worker.ones[case.slot, stack_constants.number_of(case.c1, case.c2)],
+    )
     lane.gx[i], lane.gy[i] = constants.gx, constants.gy
     lane.per_angle[i], lane.per_speed[i] = constants.per_angle, constants.per_speed
-    for n in range(HOLD):
+    for n in range(stack_constants.HOLD):
         lane.right[n, i], lane.left[n, i] = constants.right[n, 0], constants.left[n, 0]
     lane.side[i] = case.c1 + case.c2
     lane.theta[i], lane.omega[i] = case.theta2, case.omega2
@@ -507,7 +477,7 @@ def place_one(i, case, worker, motions):
 @inlined_kernel
 def place_two(i, case, worker, motions):
     """Place a case into lane i of those of two rotations."""
-    lane, two = worker.two, worker.twos[case.slot, number_of(case.c1, case.c2)]
+    lane, two = worker.two, worker.twos[case.slot, stack_constants.number_of(case.c1, case.c2)]
     lane.v1x[i], lane.v1y[i], lane.v2x[i], lane.v2y[i] = two.v1x, two.v1y, two.v2x, two.v2y
     lane.m11[i], lane.m22[i], lane.e[i], lane.f[i] = two.m11, two.m22, two.e, two.f
     lane.per_angle1[i], lane.per_angle2[i] = two.per_angle1, two.per_angle2
@@ -525,8 +495,8 @@ def place_two(i, case, worker, motions):
 @inlined_kernel
 def _weight(case, motions):
     """Weight at the time of a case and at the end of its sample."""
-    before = weight_of(motions, case.k, case.factor) if case.k <= case.last else 1.0
-    after = weight_of(motions, case.k + 1, case.factor) if case.k < case.last else 1.0
+    before = lanes.weight_of(motions, case.k, case.factor) if case.k <= case.last else 1.0
+    after = lanes.weight_of(motions, case.k + 1, case.factor) if case.k < case.last else 1.0
     return before + case.tau * (after - before), after
 
 

@@ -8,20 +8,7 @@ import math
 import numpy as np
 
 from rockfrag.elementary import hypot
-from rockfrag.engines.kernels.equations import (
-    arm1,
-    arm2,
-    balance,
-    coupling,
-    first_moment1,
-    first_moment2,
-    inertia1,
-    inertia2,
-    kinetic_energy,
-    pivot,
-    reach,
-    upper_balance,
-)
+from rockfrag.engines.kernels import equations
 from rockfrag.engines.kernels.impact import impact
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
@@ -89,17 +76,17 @@ def fill_constants(body, h, lanes_of_one, two, impacts, scratch):
 @kernel
 def _one_rotates(body, c1, c2, hh, lanes_of_one):
     if c1 != 0:
-        critical, vx, vy, inertia = balance(body, c1, c2)
+        critical, vx, vy, inertia = equations.balance(body, c1, c2)
     else:
-        critical, vx, vy, inertia = upper_balance(body, c2)
+        critical, vx, vy, inertia = equations.upper_balance(body, c2)
     for corner in (1.0, -1.0):
         hold = lanes_of_one.right if corner > 0.0 else lanes_of_one.left
         for n in range(HOLD):
             hold[n, 0] = 0.0
         if c1 != 0:
-            _interface_hold(body, pivot(c1), corner, hh, hold)
+            _interface_hold(body, equations.pivot(c1), corner, hh, hold)
         else:
-            _ground_hold(body, corner, pivot(c2), hh, hold)
+            _ground_hold(body, corner, equations.pivot(c2), hh, hold)
     per = hh * body.gravity / inertia
     lanes_of_one.gx, lanes_of_one.gy = per * vx, per * vy
     lanes_of_one.per_angle = (c1 + c2) / critical
@@ -108,15 +95,15 @@ def _one_rotates(body, c1, c2, hh, lanes_of_one):
 
 @kernel
 def _both_rotate(body, c1, c2, hh, two):
-    s1, s2 = pivot(c1), pivot(c2)
-    two.m11, two.m22 = inertia1(body, s1, s2), inertia2(body, s2)
-    two.e, two.f = coupling(body, s1, s2)
+    s1, s2 = equations.pivot(c1), equations.pivot(c2)
+    two.m11, two.m22 = equations.inertia1(body, s1, s2), equations.inertia2(body, s2)
+    two.e, two.f = equations.coupling(body, s1, s2)
     scale = hh * body.gravity
-    critical, vx, vy, inertia = balance(body, c1, c2)
+    critical, vx, vy, inertia = equations.balance(body, c1, c2)
     two.v1x, two.v1y = hh * vx, hh * vy
     two.per_angle1 = c1 / critical
     two.per_speed1 = inertia / (scale * hypot(vx, vy) * critical * critical)
-    critical, vx, vy, inertia = upper_balance(body, c2)
+    critical, vx, vy, inertia = equations.upper_balance(body, c2)
     two.v2x, two.v2y = hh * vx, hh * vy
     two.per_angle2 = c2 / critical
     two.per_speed2 = inertia / (scale * hypot(vx, vy) * critical * critical)
@@ -125,8 +112,8 @@ def _both_rotate(body, c1, c2, hh, two):
 @kernel
 def _ground_hold(body, s1, s2, hh, hold):
     """Moment of the ground on a standing pedestal in pattern 4 (``equations.ground_hold``)."""
-    e, f = coupling(body, s1, s2)
-    vx, vy = first_moment1(body, s1, s2)
+    e, f = equations.coupling(body, s1, s2)
+    vx, vy = equations.first_moment1(body, s1, s2)
     # (e cos θ + f sin θ) θ'' + (f cos θ - e sin θ) θ'² + a vy - g vx
     hold[1, 0], hold[2, 0] = s1 * f, s1 * e
     hold[4, 0], hold[5, 0] = -s1 * e, s1 * f
@@ -137,10 +124,10 @@ def _ground_hold(body, s1, s2, hh, hold):
 @kernel
 def _interface_hold(body, s1, s2, hh, hold):
     """Moment of the interface on the statue that turns with its pedestal (``equations.interface_hold``)."""
-    e, f = coupling(body, s1, s2)
-    vx, vy = first_moment2(body, s2)
+    e, f = equations.coupling(body, s1, s2)
+    vx, vy = equations.first_moment2(body, s2)
     # (e + m22) θ'' - f θ'² + a (vy cos θ - vx sin θ) - g (vx cos θ + vy sin θ)
-    hold[0, 0] = s2 * (e + inertia2(body, s2))
+    hold[0, 0] = s2 * (e + equations.inertia2(body, s2))
     hold[3, 0] = -s2 * f
     weight = s2 * hh * body.gravity
     hold[7, 0], hold[8, 0] = -s2 * hh * vx, s2 * hh * vy
@@ -150,15 +137,15 @@ def _interface_hold(body, s1, s2, hh, hold):
 @kernel
 def _closing(body, c1, c2, products):
     """Closing of one contact while the other stays open."""
-    s1, s2 = pivot(c1), pivot(c2)
-    ax, ay = arm1(body, s1)
-    bx, by = arm1(body, -s1)
-    dx, dy = reach(body, s1, s2)
-    ex, ey = reach(body, -s1, s2)
+    s1, s2 = equations.pivot(c1), equations.pivot(c2)
+    ax, ay = equations.arm1(body, s1)
+    bx, by = equations.arm1(body, -s1)
+    dx, dy = equations.reach(body, s1, s2)
+    ex, ey = equations.reach(body, -s1, s2)
     products.ground = body.i1 + body.m1 * (ax * bx + ay * by) + body.m2 * (dx * ex + dy * ey)
-    ex, ey = reach(body, s1, -s2)
-    rx, ry = arm2(body, s2)
-    sx, sy = arm2(body, -s2)
+    ex, ey = equations.reach(body, s1, -s2)
+    rx, ry = equations.arm2(body, s2)
+    sx, sy = equations.arm2(body, -s2)
     products.both11 = body.i1 + body.m1 * (ax * ax + ay * ay) + body.m2 * (dx * ex + dy * ey)
     products.both12 = body.m2 * (ex * rx + ey * ry)
     products.both21 = body.m2 * (dx * sx + dy * sy)
@@ -171,8 +158,8 @@ def _impact(body, c1, c2, products, scratch):
     scratch.c1, scratch.c2, scratch.theta1, scratch.theta2 = c1, c2, 0.0, 0.0
     scratch.omega1, scratch.omega2 = -1.0 * c1, -1.0 * (c1 + c2)
     n1, n2, w1, w2, gives_way = impact(body, scratch, c1 != 0, c2 != 0)
-    before = kinetic_energy(body, scratch)
+    before = equations.kinetic_energy(body, scratch)
     scratch.c1, scratch.c2, scratch.omega1, scratch.omega2 = n1, n2, w1, w2
-    after = kinetic_energy(body, scratch)
+    after = equations.kinetic_energy(body, scratch)
     products.next1, products.next2, products.after1, products.after2 = n1, n2, w1, w2
     products.fraction, products.gives_way = math.sqrt(after / before), gives_way

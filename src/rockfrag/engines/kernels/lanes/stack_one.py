@@ -6,30 +6,11 @@ samples.
 
 import numpy as np
 
+from rockfrag.engines.kernels import roots, taylor
 from rockfrag.engines.kernels.contact_states import HALF_TURN
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.lanes.case import CLOSES, LANES, NEARS, QUIET, RELEASE
 from rockfrag.engines.kernels.lanes.stack_constants import HOLD
-from rockfrag.engines.kernels.roots import (
-    NEVER,
-    closing_time,
-    crossing_time,
-    dips,
-    guess_between,
-    hops,
-    is_narrow,
-    narrowed,
-    slope,
-    value,
-)
-from rockfrag.engines.kernels.taylor import (
-    ORDER,
-    keep_rates,
-    quick_sine_cosine,
-    rate_at,
-    rates_of_one,
-    travel,
-)
 
 _F = np.float64
 
@@ -60,7 +41,7 @@ LANE = np.dtype(
         ("before_theta", _F, LANES), ("before_omega", _F, LANES), ("before_ground", _F, LANES),
         ("before_weight", _F, LANES), ("before_left", _F, LANES),
         ("has_before", _F, LANES), ("has_step", _F, LANES),
-        ("rates", _F, (ORDER - 1, LANES)),  # Taylor coefficients 1 to 6 of θ'
+        ("rates", _F, (taylor.ORDER - 1, LANES)),  # Taylor coefficients 1 to 6 of θ'
     ],
     align=True,
 )  # fmt: skip
@@ -88,7 +69,7 @@ def _rates(g_over_inertia, turn, w, left, ground, weight):
     ``ground``: over -g, at its beginning, and what it grows by; ``weight`` as in ``taylor.pulled``.
     """
     (gx, gy), (s, c) = g_over_inertia, turn
-    return rates_of_one((gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight)
+    return taylor.rates_of_one((gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight)
 
 
 @kernel
@@ -118,21 +99,21 @@ def _advance(lane, g, upward):
         a_end = lane.ground_end[i]
         per = 1.0 / left
         w = omega * left
-        turn = quick_sine_cosine(theta)
+        turn = taylor.quick_sine_cosine(theta)
         u = lane.weight[i] if upward else 1.0
         u_end = lane.weight_end[i] if upward else 1.0
         ground = a * down, (a_end - a) * down
         weight = u, u_end - u, upward
         rates = _rates((lane.gx[i], lane.gy[i]), turn, w, left, ground, weight)
-        keep_rates(lane.rates, i, rates)
-        end = theta + travel(rates, 1.0)
-        z = rate_at(rates, 1.0)
+        taylor.keep_rates(lane.rates, i, rates)
+        end = theta + taylor.travel(rates, 1.0)
+        z = taylor.rate_at(rates, 1.0)
         # the contact closes, nearly closes, or may close and open again
         side = lane.side[i]
         gap = side * theta
         out = side * w
         out_end = side * z
-        near = dips(gap, out, out_end) | hops(gap, out, out_end, side * rates[1])
+        near = roots.dips(gap, out, out_end) | roots.hops(gap, out, out_end, side * rates[1])
         flag = NEARS if near | (abs(end) >= HALF_TURN) else QUIET
         flag = CLOSES if side * end < 0.0 else flag
         # the closed contact would have to be pulled
@@ -175,9 +156,9 @@ def take_series(lane, i, series):
     angle, gap, side = series.one.angle, series.gap, lane.side[i]
     angle[0] = lane.was_theta[i]
     angle[1] = lane.was_omega[i] * lane.was_left[i]
-    for n in range(ORDER - 1):
+    for n in range(taylor.ORDER - 1):
         angle[2 + n] = lane.rates[n, i] * (1.0 / (n + 2))
-    for n in range(ORDER + 1):
+    for n in range(taylor.ORDER + 1):
         gap[n] = side * angle[n]
 
 
@@ -192,23 +173,23 @@ def go_back(lane, i, g, upward):
     lane.weight_end[i], lane.was_weight[i] = heavy, u
     down = -1.0 / g
     ground = a * down, (end - a) * down
-    turn = quick_sine_cosine(theta)
+    turn = taylor.quick_sine_cosine(theta)
     rates = _rates(
         (lane.gx[i], lane.gy[i]), turn, omega * left, left, ground, (u, heavy - u, upward)
     )
-    keep_rates(lane.rates, i, rates)
+    taylor.keep_rates(lane.rates, i, rates)
 
 
 @inlined_kernel
 def next_contact_event(lanes_of_one, lane, i, series, g):
     """Time in the lane's step of its next contact event, or NEVER; whether the closed contact opens."""
     if lane.flag[i] == CLOSES:
-        when = crossing_time(series.gap)
-        omega = slope(series.one.angle, when) / lane.was_left[i]
+        when = roots.crossing_time(series.gap)
+        omega = roots.slope(series.one.angle, when) / lane.was_left[i]
         if least_hold(lanes_of_one, 0.0, omega, pull_at(lane, i, when), g) >= 0.0:
             return when, False
     else:
-        when = closing_time(series.gap, 1.0)
+        when = roots.closing_time(series.gap, 1.0)
     time = _release_time(lanes_of_one, lane, i, series, min(1.0, when), g)
     if time < when:
         return time, True
@@ -232,7 +213,7 @@ def least_hold(lanes_of_one, theta, omega, pull, g):
     ``pull``: acceleration of the ground, and weight.
     """
     ground, weight = pull
-    turn = quick_sine_cosine(theta)
+    turn = taylor.quick_sine_cosine(theta)
     s, c = turn
     alpha = weight * (lanes_of_one.gx * c + lanes_of_one.gy * s) - ground / g * (
         lanes_of_one.gy * c - lanes_of_one.gx * s
@@ -250,18 +231,18 @@ def _release_time(lanes_of_one, lane, i, series, end, g):
     at_low = least_hold(lanes_of_one, angle[0], angle[1] / left, pull_at(lane, i, 0.0), g)
     if at_low < 0.0:
         return 0.0
-    omega = slope(angle, end) / left
-    at_high = least_hold(lanes_of_one, value(angle, end), omega, pull_at(lane, i, end), g)
+    omega = roots.slope(angle, end) / left
+    at_high = least_hold(lanes_of_one, roots.value(angle, end), omega, pull_at(lane, i, end), g)
     if at_high >= 0.0:
-        return NEVER
+        return roots.NEVER
     bracket = (0.0, at_low, end, at_high, -1)
     for _ in range(200):
-        if is_narrow(bracket):
+        if roots.is_narrow(bracket):
             break
-        tau = guess_between(bracket)
-        omega = slope(angle, tau) / left
-        hold = least_hold(lanes_of_one, value(angle, tau), omega, pull_at(lane, i, tau), g)
-        bracket = narrowed(bracket, tau, hold)
+        tau = roots.guess_between(bracket)
+        omega = roots.slope(angle, tau) / left
+        hold = least_hold(lanes_of_one, roots.value(angle, tau), omega, pull_at(lane, i, tau), g)
+        bracket = roots.narrowed(bracket, tau, hold)
     return bracket[2]
 
 

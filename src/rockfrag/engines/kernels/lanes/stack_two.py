@@ -6,19 +6,12 @@ allowed. Time is counted in samples.
 
 import numpy as np
 
+from rockfrag.engines.kernels import taylor
 from rockfrag.engines.kernels.contact_states import GROUND, HALF_TURN, INTERFACE
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.lanes.case import CLOSES, LANES, NEARS, QUIET, WITHIN
 from rockfrag.engines.kernels.roots import NEVER, crossing_time, dips, hops
 from rockfrag.engines.kernels.single import fill_gap, first_closing
-from rockfrag.engines.kernels.taylor import (
-    ORDER,
-    keep_rates,
-    quick_sine_cosine,
-    rate_at,
-    rates_of_two,
-    travel,
-)
 
 _F = np.float64
 
@@ -52,7 +45,8 @@ LANE = np.dtype(
         ("was_theta2", _F, LANES), ("was_omega2", _F, LANES),
         ("was_ground", _F, LANES), ("was_weight", _F, LANES), ("was_left", _F, LANES),
         ("was_ratio1", _F, LANES), ("was_ratio2", _F, LANES), ("was_fast", _F, LANES), ("was_near", _F, LANES),
-        ("rates1", _F, (ORDER - 1, LANES)), ("rates2", _F, (ORDER - 1, LANES)),  # Taylor coefficients 1 to 6
+        # Taylor coefficients 1 to 6
+        ("rates1", _F, (taylor.ORDER - 1, LANES)), ("rates2", _F, (taylor.ORDER - 1, LANES)),
     ],
     align=True,
 )  # fmt: skip
@@ -102,8 +96,8 @@ def _advance(lane, g, upward):
         u_end = lane.weight_end[i] if upward else 1.0
         rise = (a_end - a) * (span / left)
         lift = (u_end - u) * (span / left)
-        s1, c1 = quick_sine_cosine(t1)
-        s2, c2 = quick_sine_cosine(t2)
+        s1, c1 = taylor.quick_sine_cosine(t1)
+        s2, c2 = taylor.quick_sine_cosine(t2)
         sd = s2 * c1 - c2 * s1
         cd = c2 * c1 + s2 * s1
         e = lane.e[i]
@@ -112,18 +106,18 @@ def _advance(lane, g, upward):
         v1y = scale * lane.v1y[i]
         v2x = scale * lane.v2x[i]
         v2y = scale * lane.v2y[i]
-        rates1, rates2 = rates_of_two(
+        rates1, rates2 = taylor.rates_of_two(
             (lane.m11[i], lane.m22[i], e * cd + f * sd, f * cd - e * sd),
             (v1y * c1 - v1x * s1, v1x * c1 + v1y * s1),
             (v2y * c2 - v2x * s2, v2x * c2 + v2y * s2),
             (w1, w2), (a, rise), (g * u, g * lift, upward),
         )  # fmt: skip
-        n1 = t1 + travel(rates1, 1.0)
-        n2 = t2 + travel(rates2, 1.0)
-        z1 = rate_at(rates1, 1.0)
-        z2 = rate_at(rates2, 1.0)
-        keep_rates(lane.rates1, i, rates1)
-        keep_rates(lane.rates2, i, rates2)
+        n1 = t1 + taylor.travel(rates1, 1.0)
+        n2 = t2 + taylor.travel(rates2, 1.0)
+        z1 = taylor.rate_at(rates1, 1.0)
+        z2 = taylor.rate_at(rates2, 1.0)
+        taylor.keep_rates(lane.rates1, i, rates1)
+        taylor.keep_rates(lane.rates2, i, rates2)
         # a contact closes, nearly closes, or may close and open again
         side1 = lane.side1[i]
         side2 = lane.side2[i]
@@ -177,7 +171,7 @@ def take_series(lane, i, series):
     span = span_of(lane.was_left[i], lane.part[i])
     first[0], first[1] = lane.was_theta1[i], lane.was_omega1[i] * span
     two[0], two[1] = lane.was_theta2[i], lane.was_omega2[i] * span
-    for n in range(ORDER - 1):
+    for n in range(taylor.ORDER - 1):
         first[2 + n] = lane.rates1[n, i] * (1.0 / (n + 2))
         two[2 + n] = lane.rates2[n, i] * (1.0 / (n + 2))
 
