@@ -35,8 +35,6 @@ class GoodnessOfFit:
         large.
     dependence
         What was simulated, see :func:`goodness_of_fit`.
-    replicates
-        Number of simulated data sets.
     brier
         Mean squared difference of outcome and fitted probability.
     calibration
@@ -49,7 +47,6 @@ class GoodnessOfFit:
     deviance: float
     p_value: float
     dependence: str
-    replicates: int
     brier: float
     calibration: pd.DataFrame
     words: str
@@ -146,7 +143,6 @@ def goodness_of_fit(
         deviance,
         p_value,
         dependence,
-        int(simulated.size),
         float(miss.sum() / outcomes.n),
         calibration,
         f"Deviance {deviance:.1f} in {len(calibration)} bins, p = {p_value:.3f} (parametric bootstrap of "
