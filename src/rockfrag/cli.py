@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, TextIO
 from rockfrag import __version__
 from rockfrag.assess.app.commands import add_app_command
 from rockfrag.assess.commands import add_assess_commands
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.record_commands import add_record_commands, read_told
 from rockfrag.survival.commands import add_survival_commands
 from rockfrag.units import GRAVITY, quantity
 
 if TYPE_CHECKING:
+    from rockfrag.engines.spatial import SpatialResponse
     from rockfrag.records.motion import Motion
     from rockfrag.rocking import Block, Body, Response
     from rockfrag.rocking.options import FrictionInput
 
-MOST_CONTACT_EVENTS = 30
-"""Lines of the pattern history that are printed unless all are asked for."""
+MOST_CONTACT_EVENTS = 30  # lines of the pattern history that are printed unless all are asked for
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -127,10 +127,11 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
-    from rockfrag.motions.scaling import scale_to_pga
+    from rockfrag.motions.scaling import scale, scale_to_pga
     from rockfrag.rocking import simulate
 
-    _check_image(options.plot)
+    if options.plot is not None and not options.plot.endswith((".png", ".svg")):
+        raise InputError(f"--plot: expected a name that ends in .png or .svg, got {options.plot}.")
     body, motion = _case(options)
     acceleration, factor = motion.acceleration, 1.0
     if options.pga is not None:
@@ -138,11 +139,12 @@ def _simulate(options: argparse.Namespace) -> int:
             raise InputError(f"--pga: expected a number of g above 0, got {options.pga}.")
         acceleration = scale_to_pga(motion, options.pga).acceleration
         factor = options.pga * GRAVITY / motion.pga
-    if quality_flag := _acceleration_flag(float(abs(acceleration).max()), body):
-        print(f"warning: {options.record}: {quality_flag}", file=sys.stderr)
+    _warn_of_unit(options.record, float(abs(acceleration).max()), body)
     if options.second is not None:
         return _simulate_in_space(options, body, motion, factor)
-    up = _vertical(options, factor)
+    up = None
+    if options.vertical is not None:
+        up = scale(read_told(options.vertical, options, None), factor)
     restitution = options.restitution
     if restitution is not None and options.pedestal:
         restitution = (restitution,) * len(body.blocks)
@@ -167,12 +169,7 @@ def _simulate(options: argparse.Namespace) -> int:
     for line in _contacts(response, options.friction is not None):
         print(line)
     print(_history(response.contact_events, options.all_contact_events))
-    if options.plot:
-        from rockfrag.figure_style import save_figure
-
-        save_figure(response.plot(f"{motion.name}, peak {peak:.3f} g"), options.plot)
-        print(f"drawn in {options.plot}")
-    return 0
+    return _drawn(response, f"{motion.name}, peak {peak:.3f} g", options.plot)
 
 
 def _simulate_in_space(
@@ -205,11 +202,16 @@ def _simulate_in_space(
     print(f"turned about the vertical [°]: {math.degrees(found.turn):.2f}")
     print(f"walked [mm]: {1000 * math.hypot(*found.walk):.1f}")
     print(f"impacts: {found.impacts}")
-    if options.plot:
+    return _drawn(response, motion.name, options.plot)
+
+
+def _drawn(response: "Response | SpatialResponse", title: str, path: str | None) -> int:
+    """Draw a response where that is asked for."""
+    if path:
         from rockfrag.figure_style import save_figure
 
-        save_figure(response.plot(motion.name), options.plot)
-        print(f"drawn in {options.plot}")
+        save_figure(response.plot(title), path)
+        print(f"drawn in {path}")
     return 0
 
 
@@ -226,15 +228,6 @@ def _friction(options: argparse.Namespace) -> "FrictionInput | None":
     return {"ground": given[0], "interface": list(given[1:])}
 
 
-def _vertical(options: argparse.Namespace, factor: float) -> "Motion | None":
-    """Return the vertical component that the options tell, scaled as the record is."""
-    from rockfrag.motions.scaling import scale
-
-    if options.vertical is None:
-        return None
-    return scale(read_told(options.vertical, options, None), factor)
-
-
 def _contacts(response: "Response", loose: bool) -> list[str]:
     """Say how far contacts have slid; in pure rocking what friction they asked, and what that means."""
     if loose:
@@ -242,14 +235,13 @@ def _contacts(response: "Response", loose: bool) -> list[str]:
         return [f"largest slip [mm]: {slips}"]
     demand = response.friction_demand
     lines = ["friction needed: " + ", ".join(f"{value:.3f}" for value in demand)]
-    if response.lost_contact == response.lost_contact:
-        lines.append(
+    said = "on smoother ground it slides first; give --friction to let it"
+    if not math.isnan(response.lost_contact):
+        said = (
             f"at {response.lost_contact:.3f} s a real body would have left the ground, and what follows is no "
             "answer; give --friction to let it fly"
         )
-    else:
-        lines.append("on smoother ground it slides first; give --friction to let it")
-    return lines
+    return [*lines, said]
 
 
 def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
@@ -281,10 +273,8 @@ def _case_in_space(
 
     others = [name for name in (options.second, vertical) if name is not None]
     told = [first, *(read_told(name, options, None) for name in others)]
-    try:
+    with errors_of("--depth"):
         depth = None if options.depth is None else quantity(options.depth, "m", "m")
-    except InputError as error:
-        raise InputError(f"--depth: {error}") from None
     block = replace(body.blocks[0], depth=depth, round=options.round)
     return block, common_time(told, verticals=(2,))
 
@@ -296,8 +286,7 @@ def _play(options: argparse.Namespace) -> int:
     if not options.output.endswith(".html"):
         raise InputError(f"--output: expected a name that ends in .html, got {options.output}.")
     body, motion = _case(options)
-    if quality_flag := _acceleration_flag(motion.pga, body):
-        print(f"warning: {options.record}: {quality_flag}", file=sys.stderr)
+    _warn_of_unit(options.record, motion.pga, body)
     if options.second is None:
         write_play_page(body, motion, options.output)
     else:
@@ -313,7 +302,7 @@ def _block(option: str, given: Sequence[str]) -> "Block":
     from rockfrag.plausibility import STONE, check_density, size_warning
     from rockfrag.rocking import Block
 
-    try:
+    with errors_of(option):
         if len(given) not in (2, 3):
             raise InputError(
                 f"expected width, height and, if known, mass, such as 35cm 120cm 180kg; got {' '.join(given)}."
@@ -324,19 +313,18 @@ def _block(option: str, given: Sequence[str]) -> "Block":
             positive_number(name, value)
         check_density(width, height, mass)
         block = Block(width, height, mass)
-    except InputError as error:
-        raise InputError(f"{option}: {error}") from None
     if quality_flag := size_warning(width, height):
         print(f"warning: {option}: {quality_flag}", file=sys.stderr)
     return block
 
 
-def _acceleration_flag(peak: float, body: "Body") -> str:
-    """Say that the motion looks as if it were in another unit, or return an empty text."""
+def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
+    """Say that a motion looks as if it were in another unit, if it does."""
     from rockfrag.plausibility import peak_warning
     from rockfrag.system.system import uplift_ratios
 
-    return peak_warning(peak, GRAVITY * min(uplift_ratios(body.system())))
+    if quality_flag := peak_warning(peak, GRAVITY * min(uplift_ratios(body.system()))):
+        print(f"warning: {record}: {quality_flag}", file=sys.stderr)
 
 
 def _history(contact_events, everything: bool) -> str:  # type: ignore[no-untyped-def]
@@ -353,11 +341,6 @@ def _history(contact_events, everything: bool) -> str:  # type: ignore[no-untype
     return "\n".join(["pattern history:", *lines])
 
 
-def _check_image(path: str | None) -> None:
-    if path is not None and not path.endswith((".png", ".svg")):
-        raise InputError(f"--plot: expected a name that ends in .png or .svg, got {path}.")
-
-
 def _check_config(options: argparse.Namespace) -> int:
     from rockfrag.stages.running import results_folder
     from rockfrag.study.loading import load_any
@@ -366,16 +349,14 @@ def _check_config(options: argparse.Namespace) -> int:
 
     study = load_any(options.file)
     folder = results_folder(study)
-    quality_flags = (
-        [*study.quality_flags(), *check_records(study)] if isinstance(study, Study) else []
-    )
-    for quality_flag in quality_flags:
-        print(f"warning: {quality_flag}", file=sys.stderr)
-    if options.quiet:
-        return 0
-    print(
-        f"{options.file} is right: study {study.name}, {study.summary}; its report will be {folder}/report.html."
-    )
+    if isinstance(study, Study):
+        for quality_flag in (*study.quality_flags(), *check_records(study)):
+            print(f"warning: {quality_flag}", file=sys.stderr)
+    if not options.quiet:
+        print(
+            f"{options.file} is right: study {study.name}, {study.summary}; its report will be "
+            f"{folder}/report.html."
+        )
     return 0
 
 

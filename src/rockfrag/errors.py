@@ -1,5 +1,8 @@
 """The one exception that users are meant to see."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 LONGEST_MESSAGE = 500
 """Characters of a message; what a file holds may be quoted in it and be of any length."""
 
@@ -14,13 +17,20 @@ class InputError(ValueError):
 
     def __init__(self, message: object) -> None:
         text = str(message)
-        words = text if text.isprintable() else _on_one_line(text)
+        # what would break the line, such as a line feed in a name, is escaped
+        words = text
+        if not text.isprintable():
+            words = "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
         if len(words) > LONGEST_MESSAGE:
             kept = (LONGEST_MESSAGE - 3) // 2
             words = f"{words[:kept]} … {words[-kept:]}"
         super().__init__(words)
 
 
-def _on_one_line(text: str) -> str:
-    """Escape what would break the line, such as a line feed in a name."""
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+@contextmanager
+def errors_of(where: str) -> Iterator[None]:
+    """Begin the messages that come from inside this block with where it is."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error

@@ -12,12 +12,8 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 
-LONGEST_NAME = 80
-"""Characters of a name, and of the file name made of it."""
-
-FORMULA = ("=", "+", "-", "@")
-"""Characters with which a spreadsheet takes a cell for a formula."""
-
+LONGEST_NAME = 80  # characters of a name, and of the file name made of it
+FORMULA = ("=", "+", "-", "@")  # characters with which a spreadsheet takes a cell for a formula
 _RESERVED = {
     "con",
     "prn",
@@ -34,6 +30,12 @@ def is_file(path: Path) -> bool:
         return path.is_file()
     except OSError:
         return False
+
+
+def sha256_of(path: Path) -> str:
+    """Return the SHA-256 of a file, 64 hexadecimal digits in lower case."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def check_name(name: str) -> None:

@@ -9,9 +9,7 @@ from rockfrag.errors import InputError
 
 _WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
-_START = 65_536
-"""Bytes from which the encoding of a table is told."""
-
+_START = 65_536  # bytes from which the encoding of a table is told
 _UNFIT = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
 )

@@ -8,12 +8,8 @@ from rockfrag.units import GRAVITY
 DENSITIES = (20.0, 22_600.0)
 """Least and largest density of a whole object [kg/m³]: packaging foam, and osmium."""
 
-AIR = 1.2
-"""Density of air [kg/m³]."""
-
-STONE = 2500.0
-"""Density of stone [kg/m³], where nobody says how heavy an object is."""
-
+AIR = 1.2  # density of air [kg/m³]
+STONE = 2500.0  # density of stone [kg/m³], where nobody says how heavy an object is
 MEAN_DENSITIES = (100.0, DENSITIES[1])
 """Least and largest density where the volume is known and no depth is guessed: hollow wood, and osmium [kg/m³]."""
 
@@ -24,32 +20,25 @@ strong direction, and a long shelf seen from its end."""
 GYRATIONS = (1e-3, 30.0)
 """Least and largest radius of gyration of a body over the diagonal of its width and height [-]."""
 
-LARGEST_SIZE = 20.0
-"""Free-standing objects are hardly taller [m]."""
-
+LARGEST_SIZE = 20.0  # free-standing objects are hardly taller [m]
 LARGEST_PEAK = 50.0
 """No accelerometer has recorded a larger ground acceleration [m/s²]; floors hardly feel more."""
 
-LARGEST_IN_G = 2.0
-"""Peaks of more than this many g are rare: a number above it is hardly one of g."""
-
+LARGEST_IN_G = 2.0  # peaks of more than this many g are rare: a number above it is hardly one of g
 FLOOR_MASSES = (1e3, 1e9)
 """Least and largest mass of a floor of a building [kg]: a wooden attic, and more than any palace's."""
 
 STOREY_HEIGHTS = (1.0, 30.0)
 """Least and largest height of a storey [m]: a crawl space, and the nave of a cathedral."""
 
-FIRST_PERIODS = (0.01, 20.0)
-"""Shortest and longest first period of a building [s]."""
-
+FIRST_PERIODS = (0.01, 20.0)  # shortest and longest first period of a building [s]
 SHORTEST_STEP = 1e-5
 """Shortest sampling interval [s] of a record; recorders take at most some thousand samples a second."""
 
 LONGEST_STEP = 1.0
 """Longest sampling interval [s] of a record; slower channels are not of strong motion."""
 
-LEAST_PEAK = 0.05
-"""A motion whose peak is below this [m/s²] moves nothing that stands."""
+LEAST_PEAK = 0.05  # a motion whose peak is below this [m/s²] moves nothing that stands
 
 
 def check_density(width: float, height: float, mass: float) -> None:
@@ -135,8 +124,7 @@ def gravity_warning(g: float) -> str:
     return f"an acceleration of gravity of {g:g} m/s² is that of no planet; if it is in cm/s², divide it by 100"
 
 
-LARGEST_GRAVITY = 100.0
-"""Largest acceleration of gravity that is no mistake of unit [m/s²]."""
+LARGEST_GRAVITY = 100.0  # largest acceleration of gravity that is no mistake of unit [m/s²]
 
 
 def interval_warning(dt: float) -> str:

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     Parts = Sequence[Part]
     FirstPage = Callable[[Results], Answer]
 
-GROUP = "rockfrag.study"
-"""Group of entry points that name plugins."""
+GROUP = "rockfrag.study"  # group of entry points that name plugins
 
 
 @dataclass(frozen=True)

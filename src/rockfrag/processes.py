@@ -12,8 +12,7 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 R = TypeVar("R")
 
-LOOK_S = 0.2
-"""How often a process looks whether those it belongs to are still there [s]."""
+LOOK_S = 0.2  # how often a process looks whether those it belongs to are still there [s]
 
 _waiting: tuple[Callable[[Any], Any], Sequence[Any]] = (str, ())
 """What the processes of :func:`in_processes` have to do."""

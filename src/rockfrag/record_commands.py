@@ -23,17 +23,12 @@ def add_record_commands(commands: Any) -> None:
     _add_write(commands)
 
 
-def _add_reading(parser: argparse.ArgumentParser) -> None:
+def _add_reading(parser: argparse.ArgumentParser, force: bool = True) -> None:
     parser.add_argument("--unit", help="unit of files that do not state theirs: g, m/s2, cm/s2, …")
     parser.add_argument("--dt", type=float, help="sampling interval [s] of files without one")
-
-
-def _add_force(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--force",
-        action="store_true",
-        help="take --unit as given although peaks are then above 3 g",
-    )
+    if force:
+        words = "take --unit as given although peaks are then above 3 g"
+        parser.add_argument("--force", action="store_true", help=words)
 
 
 def _add_info(commands: Any) -> None:
@@ -42,7 +37,6 @@ def _add_info(commands: Any) -> None:
         "files", nargs="+", metavar="FILE", help="record, archive or folder of records"
     )
     _add_reading(info)
-    _add_force(info)
     info.add_argument(
         "--format", choices=("table", "csv", "json"), default="table", help="of the output"
     )
@@ -55,12 +49,10 @@ def _add_info(commands: Any) -> None:
 
 
 def _add_catalogue(commands: Any) -> None:
-    catalogue = commands.add_parser(
-        "catalogue",
-        help="make the catalogue of a study from records, an archive or a PEER download",
-    )
+    words = "make the catalogue of a study from records, an archive or a PEER download"
+    catalogue = commands.add_parser("catalogue", help=words)
     catalogue.add_argument("paths", nargs="+", metavar="PATH", help="folder, archive or record")
-    _add_reading(catalogue)
+    _add_reading(catalogue, force=False)
     catalogue.add_argument(
         "--output", metavar="FILE", help="where to write it (files are named from its folder)"
     )
@@ -93,7 +85,6 @@ def _add_write(commands: Any) -> None:
     write.add_argument("--format", help="AT2, CSV, SEISMOSOFT, OPENSEES or MSEED")
     write.add_argument("--in-unit", metavar="UNIT", help="unit of the numbers written")
     _add_reading(write)
-    _add_force(write)
     write.add_argument("--channel", help="channel, where the record has several")
     write.set_defaults(run=_write)
 
@@ -111,29 +102,25 @@ def read_told(file: str, options: argparse.Namespace, channel: str | None) -> "M
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for ObsPy
 def _info(options: argparse.Namespace) -> int:
-    from rockfrag.report.record_info import (
-        READ,
-        UNREADABLE,
-        describe_files,
-        draw_files,
-        draw_record,
-    )
+    from rockfrag.report import record_info
 
-    table = describe_files(options.files, options.unit, options.dt, options.force)
+    told = options.files, options.unit, options.dt, options.force
+    table = record_info.describe_files(*told)
     _print_info(table, options.format)
-    for error in table.loc[table["status"] != READ, "error"]:
+    for error in table.loc[table["status"] != record_info.READ, "error"]:
         print(for_command_line(error), file=sys.stderr)
     if options.picture:
         if len(options.files) != 1:
             raise InputError("--picture draws one record; name one FILE.")
         motion = read_told(options.files[0], options, options.channel)
-        draw_record(motion, options.picture)
+        record_info.draw_record(motion, options.picture)
         print(f"drawn in {options.picture}", file=sys.stderr)
     if options.pictures:
-        drawn = draw_files(options.files, options.pictures, options.unit, options.dt, options.force)
+        drawn = record_info.draw_files(told[0], options.pictures, *told[1:])
         print(f"{len(drawn)} pictures drawn in {options.pictures}", file=sys.stderr)
     named = table["file"].isin([printable(str(Path(file))) for file in options.files])
-    bad = (table["status"] == UNREADABLE) | ((table["status"] != READ) & named)
+    status = table["status"]
+    bad = (status == record_info.UNREADABLE) | ((status != record_info.READ) & named)
     return int(bad.any())
 
 
@@ -147,9 +134,7 @@ def _print_info(table: "pd.DataFrame", form: str) -> None:
     else:
         fine = table[table["status"] == "read"].drop(columns=["error", "status"])
         if len(fine):
-            print(
-                fine.to_string(index=False, na_rep="-", float_format=lambda value: f"{value:.4g}")
-            )
+            print(fine.to_string(index=False, na_rep="-", float_format="{:.4g}".format))
 
 
 def _catalogue(options: argparse.Namespace) -> int:

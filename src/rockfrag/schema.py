@@ -17,7 +17,7 @@ from typing import Any
 from jsonschema import Draft202012Validator, ValidationError
 from jsonschema.validators import extend
 
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.plugins import plugins
 from rockfrag.renamed_keys import renamed
 from rockfrag.units import other_names, quantity, split_name
@@ -47,7 +47,7 @@ def checked(content: object, name: str, where: str) -> dict[str, Any]:
     expected and what was found.
     """
     schema = read_schema(name)
-    try:
+    with errors_of(where):
         plain = _in_usual_units(_with_text_keys(content, ""), schema, "")
         for key, value in _leaves(plain):
             if isinstance(value, float) and not math.isfinite(value):
@@ -56,8 +56,6 @@ def checked(content: object, name: str, where: str) -> dict[str, Any]:
                 raise InputError(
                     f"key {key}: expected a number of at most {LARGEST_WHOLE}, found a larger one."
                 )
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None
     found = sorted(_validator(name).iter_errors(plain), key=_importance)
     if found:
         raise InputError(f"{where}: {_sentence(_deepest(found[0]))}")
@@ -149,10 +147,8 @@ def _converted(value: Any, name: str, unit: str | None, key: str) -> Any:
     usual = split_name(name)[1]
     if not isinstance(value, str) and unit == usual:
         return value  # the schema says what is wrong with it, if anything
-    try:
+    with errors_of(f"key {key}"):
         return quantity(value, usual, unit)
-    except InputError as error:
-        raise InputError(f"key {key}: {error}") from None
 
 
 def _joined(key: str, name: str) -> str:

@@ -7,8 +7,7 @@ import numpy as np
 import pandas as pd
 
 LONGEST_LINE = 100
-FEW = 6
-"""Arrays of so many numbers are shown whole."""
+FEW = 6  # arrays of so many numbers are shown whole
 
 
 def short_repr(result: object) -> str:

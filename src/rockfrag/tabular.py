@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
 DELIMITERS = (",", ";", "\t")
 
-MOST_BYTES = 64 * 2**20
-"""Size of a table that is read at once."""
+MOST_BYTES = 64 * 2**20  # size of a table that is read at once
 
 
 @dataclass(frozen=True)

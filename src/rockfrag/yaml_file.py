@@ -12,9 +12,7 @@ import yaml
 from rockfrag.errors import InputError
 from rockfrag.plain_text import read_text, unfit_character
 
-MOST_BYTES = 256 * 1024
-"""Largest configuration; three thousand names of motions are a third of it."""
-
+MOST_BYTES = 256 * 1024  # largest configuration; three thousand names of motions are a third of it
 MOST_VALUES, DEEPEST = 20_000, 20
 """Values in a configuration, and mappings and lists within each other."""
 

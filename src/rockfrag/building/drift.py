@@ -53,13 +53,9 @@ def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftOut
     -------
     The :class:`DriftOutcome`.
     """
-    if building.model == "elastic":
-        return _judge_elastic(building, response)
-    return _judge_hysteretic(building, response)
-
-
-def _judge_elastic(building: ShearBuilding, response: BuildingResponse) -> DriftOutcome:
     law = building.masonry
+    if building.model != "elastic":
+        return _judge_hysteretic(building, response)
     shear = np.asarray(building.stiffnesses) * np.asarray(building.heights) * response.peak_drift
     fractions = shear / shear_strengths(building)
     worst = int(np.argmax(fractions))
@@ -92,10 +88,8 @@ def _judge_hysteretic(building: ShearBuilding, response: BuildingResponse) -> Dr
     elif drift <= law.yield_drift:
         state, end = "cracked", f"cracked but below yield ({100 * law.yield_drift:.2f} %)"
     elif drift <= law.shear_drift:
-        state, end = (
-            "beyond yield",
-            f"between yield and the shear limit ({100 * law.shear_drift:.2f} %)",
-        )
+        state = "beyond yield"
+        end = f"between yield and the shear limit ({100 * law.shear_drift:.2f} %)"
     elif drift <= law.rocking_drift:
         state = "beyond the shear limit"
         end = f"between the shear and the rocking limit ({100 * law.rocking_drift:.2f} %)"

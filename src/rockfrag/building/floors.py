@@ -61,9 +61,21 @@ def response_motions(
     building: ShearBuilding, motion: Motion, response: BuildingResponse, floors: Sequence[str]
 ) -> list[Motion]:
     """Motions of labelled floors in a response that is known; see :func:`floor_motions`."""
-    return [
-        _floor_motion(building, motion, response, label, building.level(label)) for label in floors
-    ]
+    moved = []
+    for label in floors:
+        level = building.level(label)
+        felt = motion.after(
+            "floor_motion",
+            response.acceleration[level],
+            building=building.name,
+            model=building.model,
+            floor=label,
+            level=level,
+            largest_drift=float(response.peak_drift.max()),
+            outcome=judge_drift(building, response).statement,
+        )
+        moved.append(_named(felt, label, level, ground_motion=motion.name))
+    return moved
 
 
 def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:
@@ -83,22 +95,6 @@ def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:
     if building.model == "elastic":
         return respond_elastically(building, motion)
     return respond_hysteretically(building, motion)
-
-
-def _floor_motion(
-    building: ShearBuilding, motion: Motion, response: BuildingResponse, label: str, level: int
-) -> Motion:
-    moved = motion.after(
-        "floor_motion",
-        response.acceleration[level],
-        building=building.name,
-        model=building.model,
-        floor=label,
-        level=level,
-        largest_drift=float(response.peak_drift.max()),
-        outcome=judge_drift(building, response).statement,
-    )
-    return _named(moved, label, level, ground_motion=motion.name)
 
 
 def _named(moved: Motion, label: str, level: int, **more: str) -> Motion:

@@ -47,14 +47,8 @@ def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
     heights, stiffnesses = np.asarray(building.heights), np.asarray(building.stiffnesses)
     strength = shear_strengths(building)
     cracking = law.cracking * strength
-    displacement = np.column_stack(
-        [
-            cracking / stiffnesses,
-            law.yield_drift * heights,
-            law.shear_drift * heights,
-            law.rocking_drift * heights,
-        ]
-    )
+    limits = (limit * heights for limit in (law.yield_drift, law.shear_drift, law.rocking_drift))
+    displacement = np.column_stack([cracking / stiffnesses, *limits])
     force = np.column_stack([cracking, strength, strength, law.residual * strength])
     soft = np.flatnonzero(strength / stiffnesses > displacement[:, 1])
     if soft.size:

@@ -42,17 +42,9 @@ def respond_hysteretically(
     mass = np.asarray(building.masses)
     viscous = damping_matrix(building, find_modes(building))
     effective = building.stiffness_matrix() + 2 / step * viscous + np.diag(4 / step**2 * mass)
-    total, shift, energy = _integrate(
-        motion.acceleration,
-        step,
-        parts,
-        mass,
-        viscous,
-        np.linalg.inv(effective),
-        corner,
-        strength,
-        law_parameters(building.masonry),
-    )
+    matrices = mass, viscous, np.linalg.inv(effective)
+    law = corner, strength, law_parameters(building.masonry)
+    total, shift, energy = _integrate(motion.acceleration, step, parts, *matrices, *law)
     return BuildingResponse(
         time=motion.time,
         acceleration=np.vstack([motion.acceleration, total]),

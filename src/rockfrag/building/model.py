@@ -146,13 +146,7 @@ class ShearBuilding:
         return sum(self.masses)
 
     def level(self, floor: str) -> int:
-        """Level of a labelled floor, 0 for the ground.
-
-        Raises
-        ------
-        InputError
-            If there is no such label, or the building has no such level.
-        """
+        """Level of a labelled floor, 0 for the ground; InputError if there is none."""
         if floor not in self.floors:
             known = ", ".join(self.floors)
             raise InputError(f"{self.name}: floor {floor!r} is not defined; known are {known}.")

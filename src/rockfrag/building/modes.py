@@ -41,12 +41,16 @@ def find_modes(building: ShearBuilding) -> Modes:
     shape /= shape[-1]
     modal_mass = shape.T**2 @ mass
     excited = shape.T @ mass
+    ratios = np.full(building.storeys, building.damping.ratio)
+    if isinstance(building.damping, RayleighDamping):
+        alpha, beta = rayleigh_factors(building, frequency)
+        ratios = alpha / (2 * frequency) + beta * frequency / 2
     return Modes(
         period=2 * np.pi / frequency,
         shape=shape,
         participation=excited / modal_mass,
         mass_fraction=excited**2 / modal_mass / mass.sum(),
-        damping=_damping_ratios(building, frequency),
+        damping=ratios,
     )
 
 
@@ -68,10 +72,3 @@ def damping_matrix(building: ShearBuilding, modes: Modes) -> Floats:
     weight = 2 * modes.damping * modes.frequency / modal_mass
     massed = mass[:, None] * modes.shape
     return np.asarray((massed * weight) @ massed.T, dtype=np.float64)
-
-
-def _damping_ratios(building: ShearBuilding, frequency: Floats) -> Floats:
-    if not isinstance(building.damping, RayleighDamping):
-        return np.full(building.storeys, building.damping.ratio)
-    alpha, beta = rayleigh_factors(building, frequency)
-    return alpha / (2 * frequency) + beta * frequency / 2

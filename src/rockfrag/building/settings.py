@@ -13,7 +13,7 @@ from rockfrag.building.model import (
     stiffnesses_for_period,
 )
 from rockfrag.building.modes import find_modes
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names
 from rockfrag.plausibility import FIRST_PERIODS, FLOOR_MASSES, STOREY_HEIGHTS
 from rockfrag.schema import checked
@@ -43,10 +43,8 @@ def read_building(path: str | os.PathLike[str]) -> ShearBuilding:
 def make_building(settings: Any, source: str = "building") -> ShearBuilding:
     """Make a building from a mapping such as ``config/building.yaml`` holds."""
     known = checked(settings, "building", source)
-    try:
+    with errors_of(source):
         return _building(known)
-    except InputError as error:
-        raise InputError(f"{source}: {error}") from None
 
 
 def _building(settings: Mapping[str, Any]) -> ShearBuilding:

@@ -32,11 +32,9 @@ def remove_median(motion: Motion) -> Motion:
 def despike(motion: Motion, times: float = 50.0) -> Motion:
     """Replace samples that stand out from their neighbours by the median of their neighbourhood.
 
-    A spike is a sample that differs from the running median of five samples by more than ``times`` the
-    standard deviation of such differences, estimated by the size that 95 % of them do not exceed
-    (Hampel's identifier, Davies and Gather, 1993, J. Am. Stat. Assoc. 88: 782-792, with a quantile that
-    coarse digits and smooth motions do not turn into zero).  Where most samples
-    repeat each other nothing is replaced.
+    A spike differs from the running median of five samples by more than ``times`` the standard deviation of
+    such differences, estimated by the size that 95 % of them do not exceed (Hampel's identifier, Davies and
+    Gather, 1993, J. Am. Stat. Assoc. 88: 782-792).  Where most samples repeat each other nothing is replaced.
     """
     times = positive_number("step despike: times", times, "standard deviations")
     _enough_samples("despike", motion, 5)

@@ -91,19 +91,9 @@ _MEASURES: dict[str, IntensityMeasure] = {}
 def intensity_measure(
     unit: str, *, power: int, label: str, name: str = "", **more: Any
 ) -> Callable[[Function], Function]:
-    """Declare the function below as an intensity measure.
+    """Declare the function below as an intensity measure, whose name is the function's if it is not given.
 
-    Parameters
-    ----------
-    unit
-        Unit in tables: g, cm/s, m/s, cm, s, or empty.
-    power, label, name, more
-        As of :class:`IntensityMeasure`; the name is that of the function if it is not given.
-
-    Raises
-    ------
-    InputError
-        If the name is taken, or the unit is not known.
+    The rest is as of :class:`IntensityMeasure`; the unit that of tables: g, cm/s, m/s, cm, s, or empty.
     """
 
     def declare(function: Function) -> Function:
@@ -143,19 +133,16 @@ def intensity_measures(periods: Sequence[float] = SPECTRAL_PERIODS) -> tuple[Int
     for measure in declared():
         if measure.of_block or measure in spectral[1:]:
             continue
-        found += (
-            [each.at(period) for period in periods for each in spectral]
-            if measure.spectral
-            else [measure]
-        )
+        found += [measure]
+        if measure.spectral:
+            found[-1:] = [each.at(period) for period in periods for each in spectral]
     return tuple(found)
 
 
 def measure_columns(growing: bool = False) -> tuple[str, ...]:
     """Return the columns of the measures of motions; only of those that grow with the amplitude if asked."""
-    return tuple(
-        measure.column for measure in intensity_measures() if measure.power > 0 or not growing
-    )
+    found = (measure for measure in intensity_measures() if measure.power > 0 or not growing)
+    return tuple(measure.column for measure in found)
 
 
 def split_column(column: str) -> tuple[str, str]:

@@ -84,13 +84,7 @@ def components_of_row(row: dict[str, Any], folder: Path, records: Path) -> dict[
 
 
 def pair_of_row(row: dict[str, Any], folder: Path, records: Path) -> tuple[Motion, Motion]:
-    """Read both horizontal components that a row names, with its factor, at common times.
-
-    Raises
-    ------
-    InputError
-        If the row names no second component, a record is wrong, or they have no time in common.
-    """
+    """Read both horizontal components that a row names, with its factor, at common times."""
     if not row.get("second"):
         raise InputError(f"{row['name']}: the catalogue names no second component of it.")
     components = components_of_row({**row, "vertical": ""}, folder, records)
@@ -105,9 +99,8 @@ def measure_records(
 ) -> pd.DataFrame:
     """Measure the records of which both horizontal components are known, whatever their directions.
 
-    Both go through the steps of ``processing`` first (:func:`rockfrag.motions.process`). The columns are ``name``
-    of the row, then the measures of :func:`rockfrag.motions.measure_pair`: RotD50 and RotD100 of PGA, PGV and
-    spectral accelerations. There is no column where no row names a second component.
+    Both are processed first. The columns are ``name`` of the row, then those of
+    :func:`rockfrag.motions.measure_pair`; there is none where no row names a second component.
     """
     # the measures are compiled, which the checks of a study need not wait for
     from rockfrag.motions.measures import measure_pair

@@ -124,12 +124,11 @@ def measure_rocking(
     for motion in motions:
         period = strongest_pulse(motion).period
         for block, (alpha, p) in blocks.items():
-            ratios = {
-                "uplift_ratio": intensity.uplift_ratio(motion, alpha),
-                "velocity_ratio": intensity.velocity_ratio(motion, alpha, p),
-                "frequency_ratio": intensity.frequency_ratio(period, p),
-            }
-            rows.append({"name": motion.name, "block": block, **ratios})
+            uplift = intensity.uplift_ratio(motion, alpha)
+            velocity = intensity.velocity_ratio(motion, alpha, p)
+            rows.append(
+                (motion.name, block, uplift, velocity, intensity.frequency_ratio(period, p))
+            )
     columns = ["name", "block", "uplift_ratio", "velocity_ratio", "frequency_ratio"]
     return pd.DataFrame(rows, columns=columns)
 
@@ -161,19 +160,14 @@ def measure_pair(
     InputError
         If the components do not fit together, a period is not positive or the damping negative.
     """
-
-    def all_measures(motion: Motion) -> dict[str, float]:
+    peaks = [measure for measure in declared() if measure.name in ("pga", "pgv")]
+    rows = []
+    for angle in DIRECTIONS_DEG:
+        motion = rotate(first, second, angle)
         spectral = _spectral(motion, periods, damping)
-        return {
-            **{
-                measure.column: measure.of(motion)
-                for measure in declared()
-                if measure.name in ("pga", "pgv")
-            },
-            **{name: value for name, value in spectral.items() if name.startswith("sa_")},
-        }
-
-    directions = pd.DataFrame([all_measures(rotate(first, second, a)) for a in DIRECTIONS_DEG])
+        row = {measure.column: measure.of(motion) for measure in peaks}
+        rows.append(row | {name: spectral[name] for name in spectral if name.startswith("sa_")})
+    directions = pd.DataFrame(rows)
     return {
         f"rotd{percentile}_{name}": float(np.percentile(directions[name], percentile))
         for name in directions

@@ -89,10 +89,9 @@ def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Moti
     # the motion x has x·e₁ = a₁ and x·e₂ = a₂; its part in the direction wanted follows of both
     parts = math.sin(angles[1] - wanted) / sine, math.sin(wanted - angles[0]) / sine
     turned = parts[0] * first.acceleration + parts[1] * other.acceleration
-    moved = first.after(
-        "rotate to azimuth", turned, second=second.name, azimuth_deg=float(azimuth_deg) % 360
-    )
-    facts = {**moved.metadata, "component": f"{float(azimuth_deg) % 360:g}"}
+    full = float(azimuth_deg) % 360
+    moved = first.after("rotate to azimuth", turned, second=second.name, azimuth_deg=full)
+    facts = {**moved.metadata, "component": f"{full:g}"}
     facts.pop("azimuth_deg", None)
     return replace(moved, metadata=facts)
 

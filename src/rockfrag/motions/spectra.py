@@ -217,20 +217,16 @@ def response_spectrum(
     """
     checked = _checked_periods(periods)
     damping = checked_damping(damping)
-    peaks = np.array([_oscillator_peaks(motion, float(period), damping) for period in checked])
-    return ResponseSpectrum(checked, damping, peaks[:, 0], peaks[:, 1], peaks[:, 2])
-
-
-def _oscillator_peaks(motion: Motion, period: float, damping: float) -> tuple[float, float, float]:
-    omega = 2 * math.pi / period
-    parts = steps_within(motion.dt, period, damping)
-    step = motion.dt / parts
-    # one period of free vibration holds the first peak of either sign, and later ones are smaller
-    quiet = np.zeros(math.ceil(period / motion.dt) + 1)
-    acceleration = np.concatenate([motion.acceleration, quiet])
-    matrix = oscillator_matrix(omega, damping, step)
-    sd, sv, sa = _peaks(acceleration, step, parts, matrix, omega, damping)
-    return sd, sv, sa
+    peaks = np.empty((checked.size, 3))
+    for i, period in enumerate(checked.tolist()):
+        omega = 2 * math.pi / period
+        parts = steps_within(motion.dt, period, damping)
+        step = motion.dt / parts
+        # one period of free vibration holds the first peak of either sign, and later ones are smaller
+        acceleration = np.pad(motion.acceleration, (0, math.ceil(period / motion.dt) + 1))
+        matrix = oscillator_matrix(omega, damping, step)
+        peaks[i] = _peaks(acceleration, step, parts, matrix, omega, damping)
+    return ResponseSpectrum(checked, damping, *peaks.T)
 
 
 def steps_within(dt: float, period: float, damping: float) -> int:

@@ -7,6 +7,7 @@ which model and with which seed.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -106,20 +107,12 @@ def evolutionary(
     # two periods of the oscillator let the motion come to rest
     padded = Motion(np.pad(strong, (0, math.ceil(2 / (corner_hz * dt)))), dt)
     drift = oscillator_response(padded, 1 / corner_hz, damping=1.0)[2]
-    return _synthetic(
-        padded.acceleration - drift,
-        dt,
-        who,
-        "Rezaeian & Der Kiureghian (2008, 2010)",
-        seed,
-        arias_m_s=arias_m_s,
-        d5_95_s=d5_95_s,
-        mid_s=mid_s,
-        mid_hz=mid_hz,
-        slope_hz_s=slope_hz_s,
-        filter_damping=filter_damping,
-        corner_hz=corner_hz,
-    )
+    given = {
+        **{"arias_m_s": arias_m_s, "d5_95_s": d5_95_s, "mid_s": mid_s, "mid_hz": mid_hz},
+        **{"slope_hz_s": slope_hz_s, "filter_damping": filter_damping, "corner_hz": corner_hz},
+    }
+    source = "Rezaeian & Der Kiureghian (2008, 2010)"
+    return _synthetic(padded.acceleration - drift, dt, who, source, seed, given)
 
 
 def spectrum_compatible(
@@ -195,22 +188,12 @@ def spectrum_compatible(
         gain = np.exp(-np.interp(frequency, 1 / control[::-1], error[::-1]))
         corrected = np.fft.irfft(np.fft.rfft(acceleration) * gain * low_cut, count)
         acceleration = _at_rest(corrected * window, window, dt)
-    motion = _synthetic(
-        best,
-        dt,
-        who,
-        "Gasparini & Vanmarcke (1976)",
-        seed,
-        periods_s=given.tolist(),
-        target_g=(wanted / GRAVITY).tolist(),
-        damping=damping,
-        d5_95_s=d5_95_s,
-        mid_s=mid_s,
-    )
+    parameters = {
+        **{"periods_s": given.tolist(), "target_g": (wanted / GRAVITY).tolist()},
+        **{"damping": damping, "d5_95_s": d5_95_s, "mid_s": mid_s},
+    }
     misfit = {"misfit_rms": best_rms, "misfit_max": best_max}
-    return Motion(
-        motion.acceleration, dt, motion.name, {**motion.metadata, **misfit}, motion.provenance
-    )
+    return _synthetic(best, dt, who, "Gasparini & Vanmarcke (1976)", seed, parameters, **misfit)
 
 
 def _envelope(who: str, d5_95_s: float, mid_s: float) -> tuple[float, float]:
@@ -286,12 +269,14 @@ def _low_cut(frequency: Floats, lowest: float) -> Floats:
 
 
 def _synthetic(
-    acceleration: Floats, dt: float, model: str, source: str, seed: int, **parameters: Any
+    acceleration: Floats,
+    dt: float,
+    model: str,
+    source: str,
+    seed: int,
+    given: Mapping[str, Any],
+    **found: float,
 ) -> Motion:
-    return Motion(
-        acceleration,
-        dt,
-        name=f"{model}_{seed}",
-        metadata={"synthetic": True, "kind": model, "source": source, "seed": seed},
-        provenance=({"step": model, "seed": seed, **plain(parameters), "dt": float(dt)},),
-    )
+    facts = {"synthetic": True, "kind": model, "source": source, "seed": seed, **found}
+    step = {"step": model, "seed": seed, **plain(given), "dt": float(dt)}
+    return Motion(acceleration, dt, f"{model}_{seed}", facts, (step,))

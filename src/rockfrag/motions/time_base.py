@@ -25,7 +25,12 @@ def common_time(
     for a vertical. Samples between those of a motion are on the straight line between its neighbours.
     """
     starts = _starts(motions)
-    lead = _leading(motions, verticals)
+    if verticals is None:
+        named = (str(motion.metadata.get("component") or "") for motion in motions)
+        verticals = [place for place, name in enumerate(named) if is_vertical(name)]
+    # whose samples the others follow
+    lying = [i for i in range(len(motions)) if i not in verticals] or range(len(motions))
+    lead = min(lying, key=lambda i: motions[i].dt)
     dt = motions[lead].dt
     after = (max(starts) - starts[lead]) / dt
     first = starts[lead] + math.ceil(after - _WHOLE) * dt
@@ -39,17 +44,6 @@ def common_time(
     return [
         _at(motion, first - start, dt, count) for start, motion in zip(starts, motions, strict=True)
     ]
-
-
-def _leading(motions: Sequence[Motion], verticals: Collection[int] | None) -> int:
-    """Return the place of the motion whose samples the others follow."""
-    upright = (
-        {i for i, m in enumerate(motions) if is_vertical(str(m.metadata.get("component") or ""))}
-        if verticals is None
-        else set(verticals)
-    )
-    lying = [i for i in range(len(motions)) if i not in upright] or range(len(motions))
-    return min(lying, key=lambda i: motions[i].dt)
 
 
 def _starts(motions: Sequence[Motion]) -> list[float]:

@@ -12,9 +12,8 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.files import is_file
+from rockfrag.files import is_file, sha256_of
 from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
-from rockfrag.records.digest import sha256_of
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.parsing.text_file import read_head

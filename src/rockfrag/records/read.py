@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.files import sha256_of
 from rockfrag.keywords import named_keywords
 from rockfrag.plain_text import printable
-from rockfrag.records.digest import sha256_of
 from rockfrag.records.formats import plain
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.headed_formats import HEADED

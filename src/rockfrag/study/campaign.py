@@ -14,8 +14,7 @@ from rockfrag.study.heading import Heading, Steps, beside, checked_steps, headin
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
 """Measures from which the motion of a commanded pulse follows."""
 
-CAMPAIGN_KEY = "campaign"
-"""Key that only a study of a campaign has."""
+CAMPAIGN_KEY = "campaign"  # key that only a study of a campaign has
 
 
 @dataclass(frozen=True)
@@ -92,8 +91,14 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     )
     fetched = {source.path for source in fetch}
 
-    def existing(key: str, name: str | None) -> Path | None:
-        return None if name is None else _existing(source, key, beside(source, name), fetched)
+    def existing(key: str, name: str) -> Path:
+        path = beside(source, name)
+        if not is_file(path) and path not in fetched:
+            raise InputError(
+                f"{source}: key {key}: there is no {path}; put the file there, name yours, or give its address "
+                "and digest under fetch."
+            )
+        return path
 
     _check_object(source, thing, content["unknowns"])
     _check_columns(source, campaign["columns"], isinstance(campaign["motions"], Mapping))
@@ -115,18 +120,17 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     else:
         motions = str(beside(source, campaign["motions"]))
     if motions.endswith(".npz"):
-        _existing(source, "campaign.motions", Path(motions), fetched)
+        existing("campaign.motions", campaign["motions"])
+    tests, other, mesh = campaign["tests"], campaign.get("other_codes"), thing.get("mesh")
     return CampaignStudy(
         **heading_of(content, source),
         fetch=fetch,
-        tests=_existing(source, "campaign.tests", beside(source, campaign["tests"]), fetched),
+        tests=existing("campaign.tests", tests),
         columns=dict(campaign["columns"]),
-        other_codes=existing("campaign.other_codes", campaign.get("other_codes")),
+        other_codes=None if other is None else existing("campaign.other_codes", other),
         motions=motions,
         pulse_cycles=pulse_cycles,
-        unit=campaign.get("unit"),
-        dt_s=campaign.get("dt_s"),
-        channel=campaign.get("channel"),
+        **{key: campaign.get(key) for key in ("unit", "dt_s", "channel")},
         leave_out=campaign.get("without_motion", "refuse") == "leave_out",
         measures={name: tuple(value) for name, value in campaign.get("measures", {}).items()},
         object=thing,
@@ -139,7 +143,7 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         folds=content.get("folds", 5),
         repeats=content.get("repeats", 20),
         confidence=content.get("confidence", 0.9),
-        mesh=existing("object.mesh", thing.get("mesh")),
+        mesh=None if mesh is None else existing("object.mesh", mesh),
     )
 
 
@@ -150,15 +154,6 @@ def _kept(source: Path, number: int, name: str) -> Path:
     if not any(place.is_relative_to(os.path.abspath(home)) for home in (source.parent, ".")):
         raise InputError(
             f"{source}: key fetch[{number}].file: {path} is outside of this folder; name a file in it."
-        )
-    return path
-
-
-def _existing(source: Path, key: str, path: Path, fetched: set[Path]) -> Path:
-    if not is_file(path) and path not in fetched:
-        raise InputError(
-            f"{source}: key {key}: there is no {path}; put the file there, name yours, or give its address "
-            "and digest under fetch."
         )
     return path
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names
 from rockfrag.plausibility import check_density
 from rockfrag.rocking.measured_restitution import Measured, MeasuredRestitution
@@ -40,22 +40,17 @@ def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
 
 
 def _block(row: Row) -> Block:
+    columns = {"width": "width_m", "height": "height_m", "mass": "mass_kg"}
+    stated = {"inertia": "inertia_kg_m2", "cg_height": "cg_height_m"}
+    columns |= {name: column for name, column in stated.items() if row.has(column)}
     values: dict[str, Any] = {
-        "width": row.positive_quantity("width_m"),
-        "height": row.positive_quantity("height_m"),
-        "mass": row.positive_quantity("mass_kg"),
+        name: row.positive_quantity(column) for name, column in columns.items()
     }
-    if row.has("inertia_kg_m2"):
-        values["inertia"] = row.positive_quantity("inertia_kg_m2")
-    if row.has("cg_height_m"):
-        values["cg_height"] = row.positive_quantity("cg_height_m")
     if row.has("cg_offset_m"):
         values["cg_offset"] = row.quantity("cg_offset_m")
-    try:
+    with errors_of(f"{row.path}, line {row.line}"):
         check_density(values["width"], values["height"], values["mass"])
         return Block(**values)
-    except InputError as error:
-        raise InputError(f"{row.path}, line {row.line}: {error}") from error
 
 
 def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) -> list[System]:
@@ -80,11 +75,9 @@ def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) 
                 raise row.error(column, f"expected one of the specimens {known}, found {block}")
         if name in found:
             raise row.error("name", f"{name} is given twice")
-        try:
+        with errors_of(f"{row.path}, line {row.line}"):
             found[name] = configuration_of(name, (*reversed(below), object_name), blocks)
             distinct_file_names([name], checked)
-        except InputError as error:
-            raise InputError(f"{row.path}, line {row.line}: {error}") from error
     return list(found.values())
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.files import is_file
 
 Steps = tuple[Mapping[str, Any], ...]
@@ -56,8 +56,6 @@ def checked_steps(source: Path, key: str, steps: Sequence[Mapping[str, Any]]) ->
         # the steps need SciPy and ObsPy, which a study without any need not wait for
         from rockfrag.motions.processing import check_steps
 
-        try:
+        with errors_of(f"{source}: key {key}"):
             check_steps(steps)
-        except InputError as error:
-            raise InputError(f"{source}: key {key}: {error}") from error
     return tuple(steps)

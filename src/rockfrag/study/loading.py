@@ -13,7 +13,7 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.building.settings import read_building
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names, file_name, is_file
 from rockfrag.laws import law_names
 from rockfrag.plugins import plugins_asked
@@ -76,6 +76,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     source = Path(path)
     content = checked(content, "study", str(source))
     bodies, motions = content["bodies"], content["motions"]
+    measures = content["fragility"]["measures"]
     specimens_file = existing_file(source, "bodies.specimens", bodies["specimens"])
     specimens = read_specimens(specimens_file)
     configurations_file, known = None, each_alone(specimens)
@@ -90,6 +91,11 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     configurations = _measured(
         source, _chosen(source, known, bodies.get("use")), specimens, bodies.get("restitution")
     )
+    with errors_of(f"{source}"):
+        amplitudes = Amplitudes(**content["amplitudes"])
+    if content.get("friction") is not None:
+        with errors_of(f"{source}: key friction"):
+            configurations = tuple(with_friction(c, content["friction"]) for c in configurations)
     shaker_file = _optional_file(source, "shaker", content)
     study = Study(
         **heading_of(content, source),
@@ -101,14 +107,12 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         specimens_file=specimens_file,
         configurations_file=configurations_file,
         specimens=specimens,
-        configurations=_on_surfaces(source, configurations, content.get("friction")),
-        amplitudes=_amplitudes(source, content["amplitudes"]),
+        configurations=configurations,
+        amplitudes=amplitudes,
         protocol_step_percent=float(content["protocol"]["step_percent"]),
         fragility=FragilitySettings(
-            measures=tuple(m for m in content["fragility"]["measures"] if isinstance(m, str)),
-            pairs=tuple(
-                (m[0], m[1]) for m in content["fragility"]["measures"] if isinstance(m, list)
-            ),
+            measures=tuple(measure for measure in measures if isinstance(measure, str)),
+            pairs=tuple((pair[0], pair[1]) for pair in measures if isinstance(pair, list)),
             confidence=content["fragility"]["confidence"],
         ),
         keep_going=content.get("keep_going", False),
@@ -129,7 +133,9 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         study, added={name: plugin.settings(content, study) for name, plugin in asked.items()}
     )
     _check_names(study)
-    _check_records_exist(study)
+    for path in study.own_records:
+        if is_file(path) or not study.keep_going:
+            check_file(path, f"{study.catalogue_file}: column file")
     if study.measured_tests is not None:
         _check_measured_tests(study, study.measured_tests)
     _check_vertical(study)
@@ -138,13 +144,6 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
 
 def _optional_file(source: Path, key: str, content: Mapping[str, Any]) -> Path | None:
     return None if content.get(key) is None else existing_file(source, key, content[key])
-
-
-def _amplitudes(source: Path, content: Mapping[str, float]) -> Amplitudes:
-    try:
-        return Amplitudes(**content)
-    except InputError as error:
-        raise InputError(f"{source}: {error}") from error
 
 
 def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.DataFrame:
@@ -192,22 +191,8 @@ def _measured(
             )
         measured[name] = tuple(value) if isinstance(value, list) else value
     law = content.get("law", law_names()[0])
-    try:
+    with errors_of(key):
         return tuple(with_restitution(configuration, measured, law) for configuration in chosen)
-    except InputError as error:
-        raise InputError(f"{key}: {error}") from error
-
-
-def _on_surfaces(
-    source: Path, configurations: tuple[System, ...], content: Any
-) -> tuple[System, ...]:
-    """Return the configurations with what the study says of friction."""
-    if content is None:
-        return configurations
-    try:
-        return tuple(with_friction(configuration, content) for configuration in configurations)
-    except InputError as error:
-        raise InputError(f"{source}: key friction: {error}") from error
 
 
 def _check_names(study: Study) -> None:
@@ -217,10 +202,8 @@ def _check_names(study: Study) -> None:
         (f"{study.catalogue_file}, column name", motions),
         (f"{study.building_file}: key floors", floors),
     ):
-        try:
+        with errors_of(where):
             distinct_file_names(names)
-        except InputError as error:
-            raise InputError(f"{where}: {error}") from None
     felt: dict[str, str] = {}
     for motion in motions:
         for floor in floors:
@@ -230,13 +213,6 @@ def _check_names(study: Study) -> None:
                     f"{study.catalogue_file}, column name: with the floors' names {motion} and {other} "
                     "become one; rename one."
                 )
-
-
-def _check_records_exist(study: Study) -> None:
-    for path in study.own_records:
-        if study.keep_going and not is_file(path):
-            continue
-        check_file(path, f"{study.catalogue_file}: column file")
 
 
 def _check_vertical(study: Study) -> None:

@@ -12,8 +12,7 @@ from rockfrag.schema import checked
 from rockfrag.study.heading import Heading, beside, heading_of
 from rockfrag.tabular import read_cells
 
-TABLE_KEY = "table"
-"""Key that only a study of a measured table has."""
+TABLE_KEY = "table"  # key that only a study of a measured table has
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,7 @@ from rockfrag.rocking.space_sweep import Sweep
 from rockfrag.schema import checked
 from rockfrag.study.heading import Heading, existing_file, heading_of
 
-SPACE_KEY = "space"
-"""Key that only a study of bodies in space has."""
+SPACE_KEY = "space"  # key that only a study of bodies in space has
 
 
 @dataclass(frozen=True)

@@ -19,15 +19,11 @@ from rockfrag.study.heading import Heading
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
 
-GROUND = "ground"
-"""Label of the only floor of a study without a building."""
-
+GROUND = "ground"  # label of the only floor of a study without a building
 MOST_ROWS = 100_000
 """Most outcomes of a configuration that are kept as rows of a table; more are counted."""
 
-HISTORIES_A_JOB = 1_000_000
-"""Response histories of a job: minutes of one core."""
-
+HISTORIES_A_JOB = 1_000_000  # response histories of a job: minutes of one core
 MOST_JOBS = 200
 """Most jobs of the IDA curves: what Snakemake plans in a second or two. A larger study has larger jobs."""
 

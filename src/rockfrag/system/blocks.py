@@ -461,8 +461,7 @@ def piled(blocks: Sequence[Block], offsets: Sequence[float], names: Sequence[str
 
 Body = Block | Stack | Column
 
-SystemLike = Body | System
-"""What stands, as it may be written."""
+SystemLike = Body | System  # what stands, as it may be written
 
 
 def is_system(thing: object) -> TypeGuard[SystemLike]:

@@ -39,8 +39,7 @@ class ImpactLaw(NamedTuple):
     left: float = math.nan
 
 
-BY_MOMENTUM = ImpactLaw()
-"""Angular momentum about the new pivot is conserved."""
+BY_MOMENTUM = ImpactLaw()  # angular momentum about the new pivot is conserved
 
 
 @dataclass(frozen=True)

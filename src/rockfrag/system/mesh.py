@@ -28,9 +28,7 @@ MESH_ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf")
 Y_UP = (".glb", ".gltf")
 """Formats whose specification says that y points up (glTF 2.0, section 3.4)."""
 
-FEWEST_CARRY = 3
-"""Points that make a polygon to stand on."""
-
+FEWEST_CARRY = 3  # points that make a polygon to stand on
 MOST_CORNERS, FLAT = 48, 1e-3
 """Most corners of a polygon to stand on in space, and distance over its size at which one hardly turns it."""
 

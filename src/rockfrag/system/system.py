@@ -12,8 +12,7 @@ from rockfrag.system import geometry
 from rockfrag.system.body import Circle, Interval, Polygon, RigidBody, Vector3
 from rockfrag.system.contact import Contact
 
-MOST_BODIES = 12
-"""Bodies of a column."""
+MOST_BODIES = 12  # bodies of a column
 
 
 @dataclass(frozen=True)

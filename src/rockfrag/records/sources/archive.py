@@ -14,7 +14,7 @@ from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import IO
 
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.plain_text import printable
 from rockfrag.records.parsing.text_file import MAX_BYTES, read_head
 
@@ -63,10 +63,8 @@ def unpacked(path: str | os.PathLike[str]) -> Iterator[list[Member]]:
         members = _take_out(path, room, "")
         nested = [member for member in members if is_archive(member.path)]
         for member in nested:
-            try:
+            with errors_of(f"{path}: member {member.name}"):
                 members += _take_out(member.path, room, f"{member.name}/")
-            except InputError as error:
-                raise InputError(f"{path}: member {member.name}: {error}") from None
         whole = [member for member in members if member not in nested]
         yield sorted(whole, key=lambda member: _by_number(member.name))
 

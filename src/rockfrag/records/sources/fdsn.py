@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
-from rockfrag.files import whole_file, write_text
-from rockfrag.records.digest import sha256_of
+from rockfrag.files import sha256_of, whole_file, write_text
 
 if TYPE_CHECKING:
     from obspy.clients.fdsn import Client

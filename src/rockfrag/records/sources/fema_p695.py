@@ -10,7 +10,7 @@ import hdf5plugin  # noqa: F401 (its import registers the Blosc filter)
 import numpy as np
 
 from rockfrag.errors import InputError
-from rockfrag.records.digest import sha256_of
+from rockfrag.files import sha256_of
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 

