@@ -74,10 +74,7 @@ def dimension_of(unit: str) -> str:
 
 
 def convert(value: float, unit: str, to: str) -> float:
-    """Express a value in another unit of the same dimension.
-
-    Units written in decimals differ by a division, which rounds once: 12.4 cm are 0.124 m.
-    """
+    """Express a value in another unit of the same dimension."""
     if unit == to:
         return value
     units = DIMENSIONS[dimension_of(to)]

@@ -58,13 +58,11 @@ def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz:
 
 
 def resample(motion: Motion, dt_s: float) -> Motion:
-    """Change the sampling interval of a band-limited signal (SciPy's polyphase filter).
+    """Change the sampling interval of a band-limited signal (SciPy's polyphase filter); nothing is aliased.
 
-    The filter takes out what the coarser of the two samplings cannot carry, so nothing is aliased.
     The values between samples become those of the band-limited signal, not of the straight lines:
     peaks change, as the provenance says; :func:`interpolate` keeps the lines. A motion that does not begin and
-    end at zero is taken off the straight line between its ends first, so that it does not ring there, and
-    nothing is added beyond its last sample.
+    end at zero is taken off the straight line between its ends first, so that it does not ring there.
     """
     dt_s = positive_number("step resample: dt_s", dt_s, "seconds")
     if dt_s >= motion.dt * motion.acceleration.size:

@@ -11,11 +11,7 @@ from rockfrag.system.system import System
 
 
 def perturbed(system: System, size: float, rng: np.random.Generator) -> System:
-    """Return a system whose widths and heights differ by at most ``size``, relative, drawn evenly.
-
-    Masses, offsets and what is known of the contacts stay, and so does the inertia of a planar body that is not
-    that of a uniform rectangle.
-    """
+    """Return a system whose widths and heights differ by at most ``size``, relative, drawn evenly."""
     drawn = [(1 + size * rng.uniform(-1, 1, 2)).tolist() for _ in system.bodies]
     bodies = (_resized(body, *sizes) for body, sizes in zip(system.bodies, drawn, strict=True))
     return replace(system, bodies=tuple(bodies))
