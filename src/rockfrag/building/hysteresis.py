@@ -95,7 +95,7 @@ def _area(corner: Any, strength: Any) -> float:
 
 @cached_njit()
 def move(memory: Any, to: float, corner: Any, strength: Any, law: Any, moved: Any) -> None:
-    """Move a storey from the state ``memory`` to a displacement, seen from the side it moves to; fill ``moved``."""
+    """Move a storey from the state ``memory`` to a displacement, as seen from where it moves; fill ``moved``."""
     moved[:] = memory
     step = to - memory[DISPLACEMENT]
     if step == 0.0:

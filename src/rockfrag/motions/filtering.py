@@ -38,7 +38,15 @@ def bandpass(
 
 
 def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz: float) -> Motion:
-    corners = {name: _corner(kind, name, value, motion) for name, value in corners_hz.items()}
+    corners, nyquist = {}, 0.5 / motion.dt
+    for name, value in corners_hz.items():
+        corner = corners[name] = positive_number(f"step {kind}: {name}", value, "hertz")
+        # ObsPy takes what is within a millionth of Nyquist for Nyquist and changes the filter
+        if corner >= nyquist * (1 - 2e-6):
+            raise InputError(
+                f"step {kind}: {name} {corner} is not below the Nyquist frequency {nyquist:g} Hz of "
+                f"motion {motion.name!r} (dt {motion.dt:g} s)."
+            )
     order = whole(f"step {kind}", "order", order, 1, 10)
     if not isinstance(causal, bool):
         raise InputError(f"step {kind}: causal must be true or false, got {causal!r}.")
@@ -94,15 +102,3 @@ def interpolate(motion: Motion, dt_s: float) -> Motion:
     old = np.arange(motion.acceleration.size) * parts
     samples = np.interp(np.arange(old[-1] + 1), old, motion.acceleration)
     return motion.after("interpolate", samples, dt=dt_s, dt_s=dt_s)
-
-
-def _corner(step: str, name: str, value: float, motion: Motion) -> float:
-    corner = positive_number(f"step {step}: {name}", value, "hertz")
-    nyquist = 0.5 / motion.dt
-    # ObsPy takes what is within a millionth of Nyquist for Nyquist and changes the filter
-    if corner >= nyquist * (1 - 2e-6):
-        raise InputError(
-            f"step {step}: {name} {corner} is not below the Nyquist frequency {nyquist:g} Hz of "
-            f"motion {motion.name!r} (dt {motion.dt:g} s)."
-        )
-    return corner
