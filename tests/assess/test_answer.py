@@ -80,6 +80,10 @@ def test_what_a_pedestal_changes_and_what_helps(on_plinth):
         found.probability.sources
     )
     assert len(five_lines(found)) == 5
+    # in any direction as many topple as along the components, in the worst one more
+    turned = found.directions
+    assert turned.fraction == pytest.approx(found.fraction.value, abs=0.1)
+    assert turned.fraction < turned.worst_fraction
 
 
 def test_without_shaking_it_says_which_amplitude_topples_it(motions):

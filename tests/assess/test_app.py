@@ -159,16 +159,12 @@ def compare(folder, motions, forms) -> int:
 
 
 @needs_node
-def test_the_page_says_what_assess_does(tmp_path, motions):
-    rng = random.Random(5)
-    assert compare(tmp_path, motions, [some_form(rng) for _ in range(4)]) >= 3
-
-
-@pytest.mark.slow
-@needs_node
-def test_the_page_says_what_assess_does_of_200_objects(tmp_path, motions):
-    rng = random.Random(6)
-    assert compare(tmp_path, motions, [some_form(rng) for _ in range(200)]) >= 180
+@pytest.mark.parametrize(
+    ("seed", "objects", "least"), [(5, 4, 3), pytest.param(6, 200, 180, marks=pytest.mark.slow)]
+)
+def test_the_page_says_what_assess_does(tmp_path, motions, seed, objects, least):
+    rng = random.Random(seed)
+    assert compare(tmp_path, motions, [some_form(rng) for _ in range(objects)]) >= least
 
 
 @needs_node
@@ -187,17 +183,15 @@ def few_records(motions) -> MotionSet:
 
 
 @needs_node
-def test_the_page_says_of_round_bodies_on_a_pedestal_what_assess_does(tmp_path, motions):
-    rng = random.Random(11)
-    assert compare(tmp_path, few_records(motions), [some_round_form_on_a_pedestal(rng)]) == 1
-
-
-@pytest.mark.slow
-@needs_node
-def test_the_page_says_of_20_round_bodies_on_a_pedestal_what_assess_does(tmp_path, motions):
-    rng = random.Random(12)
-    forms = [some_round_form_on_a_pedestal(rng) for _ in range(20)]
-    assert compare(tmp_path, few_records(motions), forms) >= 16
+@pytest.mark.parametrize(
+    ("seed", "objects", "least"), [(11, 1, 1), pytest.param(12, 20, 16, marks=pytest.mark.slow)]
+)
+def test_the_page_says_of_round_bodies_on_a_pedestal_what_assess_does(
+    tmp_path, motions, seed, objects, least
+):
+    rng = random.Random(seed)
+    forms = [some_round_form_on_a_pedestal(rng) for _ in range(objects)]
+    assert compare(tmp_path, few_records(motions), forms) >= least
 
 
 def some_round_form_on_a_pedestal(rng: random.Random) -> dict[str, str]:
@@ -237,19 +231,8 @@ def test_hostile_input_gets_a_sentence(tmp_path, motions):
         "level": "0,3 g",
         "years": "475",
     }
-    fields = (
-        "width",
-        "height",
-        "depth",
-        "mass",
-        "cg_height",
-        "cg_offset",
-        "restitution",
-        "pedestal_width",
-        "floor",
-        "level",
-        "years",
-    )
+    fields = ["width", "height", "depth", "mass", "cg_height", "cg_offset", "restitution"]
+    fields += ["pedestal_width", "floor", "level", "years"]
     forms = [usual | {field: text} for field in fields for text in HOSTILE]
     forms += [
         usual | {"years": "", "hazard": text}
@@ -264,13 +247,8 @@ def test_hostile_input_gets_a_sentence(tmp_path, motions):
 
 @needs_node
 def test_a_pasted_curve_is_the_hazard(tmp_path, motions):
-    form = {
-        "width": "20 cm",
-        "height": "1 m",
-        "measure": "PGA",
-        "level": "",
-        "hazard": "pga rate\n0.1; 2e-2\n0.3; 2e-3\n0.9; 1e-4\n",
-    }
+    form = {"width": "20 cm", "height": "1 m", "measure": "PGA", "level": ""}
+    form |= {"hazard": "pga rate\n0.1; 2e-2\n0.3; 2e-3\n0.9; 1e-4\n"}
     (tmp_path / "curve.csv").write_text("pga_g,annual_rate\n0.1,2e-2\n0.3,2e-3\n0.9,1e-4\n")
     settings = {"width": "20 cm", "height": "1 m", "hazard": [str(tmp_path / "curve.csv")]}
     request = make_request(settings, "form")

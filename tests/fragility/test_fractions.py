@@ -63,6 +63,10 @@ def test_limits_are_over_earthquakes_and_not_over_amplitudes_or_motions_of_one()
     item, ten = (fractions_of_outcomes(data, data.earthquake, 0.9) for data in (lone, tenfold))
     assert ten.theta_limits == item.theta_limits
     assert ten.upper[0] == item.upper[0] < 1
+    # where the limits of the curve pass one half (Woodruff 1952)
+    low, high = item.theta_limits
+    assert item.upper[item.im <= low].max() < 0.5 <= item.upper[item.im > low].min()
+    assert item.lower[item.im < high].max() <= 0.5 < item.lower[item.im >= high].min()
     careless = fractions_of_outcomes(tenfold, tenfold.motion, 0.9)
     assert careless.upper[0] < 0.5 * item.upper[0]
 

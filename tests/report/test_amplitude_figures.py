@@ -28,29 +28,19 @@ SLENDERNESS = dict(zip(OBJECTS, (3.0, 4.0), strict=True))
 
 def laboratory(unfinished: int = 0) -> pd.DataFrame:
     """Tests of two objects on two floors by three records, the first ones never overturned."""
-    rng = np.random.default_rng(4)
-    rows = []
-    for earthquake in ("Alpha", "Beta", "Gamma"):
-        for floor in ("cellar", "attic"):
-            for name in OBJECTS:
-                for side in ("P", "NP"):
-                    a = 0.5 * np.exp(0.2 * rng.normal())
-                    censored = len(rows) < unfinished
-                    rows.append(
-                        {
-                            "configuration": f"{name} {side}",
-                            "object": name,
-                            "pedestal": side,
-                            "earthquake": earthquake,
-                            "floor": floor,
-                            "motion": f"{earthquake}_{floor}",
-                            "lower_g": 2.0 if censored else a,
-                            "upper_g": np.nan if censored else 1.05 * a,
-                            "amplitude_g": np.nan if censored else a,
-                            "repetition": 1,
-                        }
-                    )
-    return pd.DataFrame(rows)
+    sides = (("Alpha", "Beta", "Gamma"), ("cellar", "attic"), OBJECTS, ("P", "NP"))
+    names = ["earthquake", "floor", "object", "pedestal"]
+    tests = pd.MultiIndex.from_product(sides, names=names).to_frame(index=False)
+    a = 0.5 * np.exp(0.2 * np.random.default_rng(4).normal(size=len(tests)))
+    censored = tests.index < unfinished
+    return tests.assign(
+        configuration=tests["object"] + " " + tests["pedestal"],
+        motion=tests["earthquake"] + "_" + tests["floor"],
+        lower_g=np.where(censored, 2.0, a),
+        upper_g=np.where(censored, np.nan, 1.05 * a),
+        amplitude_g=np.where(censored, np.nan, a),
+        repetition=1,
+    )
 
 
 def drawn(axes: Axes, arrows: bool = False) -> int:
@@ -125,14 +115,8 @@ def test_the_forest_draws_an_interval_only_where_there_is_one():
 
 
 def ida(amplitudes: list[float], fallen: list[bool]) -> pd.DataFrame:
-    return pd.DataFrame(
-        {
-            "configuration": "vase",
-            "motion": "Alpha",
-            "amplitude_g": amplitudes,
-            "overturned": fallen,
-        }
-    )
+    about = {"configuration": "vase", "motion": "Alpha"}
+    return pd.DataFrame(about | {"amplitude_g": amplitudes, "overturned": fallen})
 
 
 @pytest.mark.parametrize(
@@ -163,31 +147,12 @@ def test_the_shakers_limits_stand_beside_the_objects():
 
 def test_a_configuration_without_a_curve_keeps_its_outcomes():
     x = np.geomspace(0.1, 1, 5)
-    curves = pd.DataFrame(
-        {
-            "configuration": ["vase", "jug"],
-            "im": "PGA",
-            "unit": "g",
-            "theta": [0.4, np.nan],
-            "beta": [0.3, np.nan],
-            "p_fit": [0.5, np.nan],
-        }
-    )
-    bands = pd.concat(
-        [
-            pd.DataFrame(
-                {
-                    "configuration": name,
-                    "x": x,
-                    **dict.fromkeys(("probability", "lower", "upper", "local"), value),
-                }
-            )
-            for name, value in (("vase", 0.5), ("jug", np.nan))
-        ]
-    )
-    bins = pd.DataFrame(
-        {"configuration": ["vase", "jug"], "x": 0.3, "fraction": [0.4, 0.0]}
-    ).assign(fraction_lower=0.0, fraction_upper=0.5)
+    both = pd.DataFrame({"configuration": ["vase", "jug"]})
+    known = {"theta": [0.4, np.nan], "beta": [0.3, np.nan], "p_fit": [0.5, np.nan]}
+    curves = both.assign(im="PGA", unit="g", **known)
+    ends = {name: np.repeat([0.5, np.nan], 5) for name in ("probability", "lower", "upper")}
+    bands = both.loc[[0] * 5 + [1] * 5].assign(x=np.tile(x, 2), **ends)
+    bins = both.assign(x=0.3, fraction=[0.4, 0.0], fraction_lower=0.0, fraction_upper=0.5)
     figure = fragility_figure(curves, bands, bins)
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert titles == ["(a) vase: θ = 0.4 g, β = 0.30", "(b) jug: no median"]

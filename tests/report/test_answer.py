@@ -10,23 +10,14 @@ from rockfrag.report.findings import recorded_found, strength_found
 
 
 def curves(**medians: tuple[float, float, float]) -> pd.DataFrame:
-    rows = [
-        {
-            "configuration": name,
-            "im": "peak base acceleration",
-            "unit": "g",
-            "estimator": "mean_probability",
-            "theta": theta,
-            "theta_lower": lower,
-            "theta_upper": upper,
-            "p_fit": 0.5,
-            "theta_isotonic": 1.1 * theta,
-            "theta_isotonic_lower": 1.1 * lower,
-            "theta_isotonic_upper": 1.1 * upper,
-        }
-        for name, (lower, theta, upper) in medians.items()
-    ]
-    return pd.DataFrame(rows)
+    if not medians:
+        return pd.DataFrame()
+    table = pd.DataFrame(medians.values(), columns=["theta_lower", "theta", "theta_upper"])
+    table = table.join(
+        1.1 * table.rename(columns=lambda name: name.replace("theta", "theta_isotonic"))
+    )
+    about = {"im": "peak base acceleration", "unit": "g", "estimator": "mean_probability"}
+    return table.assign(configuration=list(medians), p_fit=0.5, **about)
 
 
 def numbers(text: str) -> set[str]:

@@ -60,17 +60,9 @@ def test_only_what_stood_on_a_pedestal_can_be_said_to_have_fallen_from_it():
 
 
 def means_of(**objects: float) -> pd.DataFrame:
-    return pd.DataFrame(
-        {
-            "by": "configuration",
-            "configuration": list(objects),
-            "object": list(objects),
-            "pedestal": "NP",
-            "mean_g": list(objects.values()),
-            "motions": 5,
-            "of": 6,
-        }
-    )
+    means = pd.DataFrame({"object": list(objects), "mean_g": list(objects.values())})
+    about = {"by": "configuration", "pedestal": "NP", "motions": 5, "of": 6}
+    return means.assign(configuration=means["object"], **about)
 
 
 def test_slenderness_is_spoken_of_only_where_objects_differ_in_it():
@@ -92,24 +84,10 @@ def test_it_is_said_over_which_motions_means_are_taken():
 
 
 def effects(lower: float, ratio: float, upper: float, **changes: object) -> pd.DataFrame:
-    row = {
-        "definition": "step_protocol",
-        "scope": "whole",
-        "level": "all",
-        "pairs": 36,
-        "unit": "earthquake",
-        "units": 4,
-        "ratio": ratio,
-        "lower": lower,
-        "upper": upper,
-        "equivalent": False,
-        "detectable_ratio": 1.2,
-        "at_bound": 0,
-        "tied": 0,
-        "resolution_ratio": 1.0,
-        **changes,
-    }
-    return pd.DataFrame([row])
+    row = {"definition": "step_protocol", "scope": "whole", "level": "all", "pairs": 36}
+    row |= {"unit": "earthquake", "units": 4, "ratio": ratio, "lower": lower, "upper": upper}
+    row |= {"equivalent": False, "detectable_ratio": 1.2, "at_bound": 0}
+    return pd.DataFrame([row | {"tied": 0, "resolution_ratio": 1.0} | changes])
 
 
 @pytest.mark.parametrize(

@@ -41,16 +41,17 @@ def page(folder: Path) -> str:
     )
 
 
-def test_the_page_loads_nothing_from_outside(tmp_path: Path):
+def test_the_page_loads_nothing_from_outside_and_escapes_what_users_name(tmp_path):
     text = page(tmp_path)
     sources = re.findall(r'(?:src|href)="([^"]*)"', text)
     sources += re.findall(r"url\(([^)]*)\)", text)
     assert sources
     assert all(source.startswith(("data:", "#")) for source in sources)
-
-
-def test_figures_are_part_of_the_page_with_text_and_identifiers_of_their_own(tmp_path: Path):
-    text = page(tmp_path)
+    assert not {"<b>", "<i>", "<u>", "<s>"} & set(re.findall("<[^>]*>", text))
+    assert "&lt;b&gt;" in text
+    # cells carry their title for narrow screens
+    assert '<td class="number" data-title="Value [g]">1.23</td>' in text
+    # figures are part of the page with text and identifiers of their own
     assert text.count('role="img" aria-label="It rises &amp; falls."') == 2
     assert ">P&amp;T1 &lt;i&gt;<" in text
     identifiers = re.findall(r' id="([^"]*)"', text)
@@ -68,17 +69,6 @@ def test_a_long_table_names_the_file_that_has_all():
     shown = table_html(table, [Column("a", "A", 0)], "Many.", "many.csv")
     assert shown.count("<tr>") == MOST_TABLE_ROWS + 1  # and its head
     assert f"The first {MOST_TABLE_ROWS} of {MOST_TABLE_ROWS + 1}; many.csv has all." in shown
-
-
-def test_cells_carry_their_title_for_narrow_screens(tmp_path: Path):
-    assert '<td class="number" data-title="Value [g]">1.23</td>' in page(tmp_path)
-
-
-def test_the_page_escapes_what_users_name(tmp_path: Path):
-    text = page(tmp_path)
-    assert not {"<b>", "<i>", "<u>", "<s>"} & set(re.findall("<[^>]*>", text))
-    assert "&lt;b&gt;" in text
-    assert "P&amp;T1" in text
 
 
 def test_the_page_and_its_figures_are_the_same_bytes_every_time(tmp_path: Path):

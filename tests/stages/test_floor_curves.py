@@ -13,6 +13,17 @@ STATUE = Block(0.2, 0.8, 50.0)
 FLOORS = {"hall": 0, "loft": 2}
 
 
+MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
+
+
+def ida_of(motion, earthquake, floor, **capacities):
+    """The IDA curve of a statue that reaches each state above a capacity."""
+    amplitude = np.geomspace(0.1, 2.0, 60)
+    about = {"configuration": "statue", "motion": motion, "earthquake": earthquake, "floor": floor}
+    reached = {state: amplitude > capacity for state, capacity in capacities.items()}
+    return pd.DataFrame({"amplitude_g": amplitude} | about | reached)
+
+
 @pytest.fixture
 def curves():
     """Eight motions on two floors; the loft shakes twice as long, so bodies fall at lower peaks."""
@@ -22,29 +33,11 @@ def curves():
         for floor in FLOORS:
             name = f"m{k}_{floor}"
             peak = 0.3 * np.exp(0.2 * rng.normal())
-            measures.append(
-                {
-                    "name": name,
-                    "pga_g": peak,
-                    "pgv_cm_s": 60 * peak * np.exp(0.2 * rng.normal()),
-                    "sa_0_3s_g": 2 * peak,
-                    "sa_1_0s_g": peak,
-                    "avgsa_g": peak,
-                }
-            )
+            velocity = 60 * peak * np.exp(0.2 * rng.normal())
+            measures.append((name, peak, velocity, 2 * peak, peak, peak))
             capacity = (0.6 if floor == "hall" else 0.4) * np.exp(0.2 * rng.normal())
-            rows += [
-                {
-                    "configuration": "statue",
-                    "motion": name,
-                    "earthquake": f"e{k}",
-                    "floor": floor,
-                    "amplitude_g": a,
-                    "overturned": a > capacity,
-                }
-                for a in np.geomspace(0.1, 2.0, 60)
-            ]
-    ida, measures = pd.DataFrame(rows), pd.DataFrame(measures)
+            rows.append(ida_of(name, f"e{k}", floor, overturned=capacity))
+    ida, measures = pd.concat(rows), pd.DataFrame(measures, columns=["name", *MEASURES])
     columns = [name for name in measures if name not in ("name", "floor")]
     ida_curves = {
         ("statue", str(floor)): TableIda(with_measures(part, measures, columns))
@@ -77,21 +70,9 @@ def test_what_slides_is_a_state_of_its_own_between_standing_and_falling(tmp_path
     rows = []
     for k in range(8):
         slides, falls = 0.25 * np.exp(0.1 * rng.normal()), 0.6 * np.exp(0.1 * rng.normal())
-        rows += [
-            {
-                "configuration": "statue",
-                "motion": f"m{k}",
-                "earthquake": f"e{k}",
-                "floor": "hall",
-                "amplitude_g": a,
-                "overturned": a > falls,
-                "slides": a > slides,
-            }
-            for a in np.geomspace(0.1, 2.0, 60)
-        ]
-    names = ["pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g"]
-    measures = pd.DataFrame({"name": [f"m{k}" for k in range(8)]} | dict.fromkeys(names, 0.3))
-    ida = with_measures(pd.DataFrame(rows), measures, names)
+        rows.append(ida_of(f"m{k}", f"e{k}", "hall", overturned=falls, slides=slides))
+    measures = pd.DataFrame({"name": [f"m{k}" for k in range(8)]} | dict.fromkeys(MEASURES, 0.3))
+    ida = with_measures(pd.concat(rows), measures, list(MEASURES))
     curves, _ = floor_curves(
         {
             "overturns": {("statue", "hall"): TableIda(ida)},

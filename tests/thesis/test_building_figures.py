@@ -12,20 +12,13 @@ PERIODS = (0.3, 0.5, 0.7)
 @pytest.fixture
 def tests():
     floors = {"GF": [0.4, 0.4, 0.4], "F3": [0.5, 0.3, 0.2], "F5": [0.6, 0.2, 0.3]}
-    return pd.DataFrame(
-        [
-            {
-                "axis": "first_period_s",
-                "value": period,
-                "pedestal": "NP",
-                "floor": floor,
-                "mean_g": values[i],
-                "by": "floor",
-            }
-            for floor, values in floors.items()
-            for i, period in enumerate(PERIODS)
-        ]
-    )
+    rows = [
+        (period, floor, value)
+        for floor, values in floors.items()
+        for period, value in zip(PERIODS, values, strict=True)
+    ]
+    means = pd.DataFrame(rows, columns=["value", "floor", "mean_g"])
+    return means.assign(axis="first_period_s", pedestal="NP", by="floor")
 
 
 @pytest.fixture

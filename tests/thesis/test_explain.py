@@ -9,30 +9,13 @@ from rockfrag_thesis.sensitivity_analysis.explain import explain
 
 
 def sensitivity_analysis_table(effect=0.15):
-    rng = np.random.default_rng(2)
-    rows = []
-    for level, shift in ((0.85, 0.0), (0.80, effect), (0.75, 2 * effect)):
-        for object_name in ("T1", "T2", "T3"):
-            for earthquake in "ABCD":
-                for floor in ("GF", "F3", "F5"):
-                    sign = 1 if floor == "GF" else -0.5
-                    for replicate in range(3):
-                        d = sign * shift + rng.normal(0, 0.02)
-                        rows.append(
-                            (
-                                "restitution",
-                                level,
-                                level == 0.85,
-                                object_name,
-                                earthquake,
-                                floor,
-                                replicate,
-                                d,
-                            )
-                        )
-    names = ["factor", "level", "reference", "object", "earthquake", "floor", "replicate", "d"]
-    table = pd.DataFrame(rows, columns=names)
-    return table.assign(ratio=np.exp(table["d"])).drop(columns="d")
+    names = ["level", "object", "earthquake", "floor", "replicate"]
+    sides = ((0.85, 0.80, 0.75), ("T1", "T2", "T3"), list("ABCD"), ("GF", "F3", "F5"), range(3))
+    table = pd.MultiIndex.from_product(sides, names=names).to_frame(index=False)
+    shift = table["level"].map({0.85: 0.0, 0.80: effect, 0.75: 2 * effect})
+    sign = table["floor"].map({"GF": 1, "F3": -0.5, "F5": -0.5})
+    d = sign * shift + np.random.default_rng(2).normal(0, 0.02, len(table))
+    return table.assign(factor="restitution", reference=table["level"] == 0.85, ratio=np.exp(d))
 
 
 def test_sensitivity_analysis_recovers_the_effect_of_a_level_by_floor():

@@ -25,6 +25,7 @@ def ratios(scatter=0.002):
         "raises_both": (0.02, 0.02),
         "idle": (0.0, 0.0),
     }
+    names = ["factor", "level", "reference", "earthquake", "floor", "ratio"]
     rows = []
     for earthquake in "ABCDEF":
         for place, floor in enumerate(FLOORS):
@@ -32,19 +33,10 @@ def ratios(scatter=0.002):
             for factor, effect in effects.items():
                 for level in ("ideal", "4", "8"):
                     shift = 0.0 if level == "ideal" else effect[place] * float(level)
-                    rows.append(
-                        {
-                            "factor": factor,
-                            "level": level,
-                            "reference": level == "ideal",
-                            "object": "T",
-                            "earthquake": earthquake,
-                            "floor": floor,
-                            "motion": f"{earthquake}-{floor}",
-                            "ratio": np.exp(own + shift),
-                        }
-                    )
-    return pd.DataFrame(rows)
+                    about = (factor, level, level == "ideal", earthquake, floor)
+                    rows.append((*about, np.exp(own + shift)))
+    table = pd.DataFrame(rows, columns=names)
+    return table.assign(object="T", motion=table["earthquake"] + "-" + table["floor"])
 
 
 def test_two_factors_that_make_up_the_effect_are_found_with_their_levels():
@@ -110,26 +102,13 @@ def test_study_without_floors_above_asks_about_the_ground_only():
 
 def tried_friction():
     """P/NP over friction of both interfaces; on a ground of 0.3 the stout one never falls."""
-    rows = []
-    for earthquake in "ABCDEF":
-        for floor in FLOORS:
-            for thing, ideal in (("stout", 0.2), ("slender", -0.1)):
-                for ground in (0.3, np.inf):
-                    for interface in (0.4, np.inf):
-                        d = ideal + 0.05 * (interface < np.inf) - 0.03 * (ground < np.inf)
-                        d = np.nan if thing == "stout" and ground < np.inf else d
-                        rows.append(
-                            {
-                                "object": thing,
-                                "earthquake": earthquake,
-                                "floor": floor,
-                                "motion": f"{earthquake}-{floor}",
-                                "ground": ground,
-                                "interface": interface,
-                                "ratio": np.exp(d),
-                            }
-                        )
-    return pd.DataFrame(rows)
+    names = ["earthquake", "floor", "object", "ground", "interface"]
+    sides = ("ABCDEF", FLOORS, ("stout", "slender"), (0.3, np.inf), (0.4, np.inf))
+    table = pd.MultiIndex.from_product(map(list, sides), names=names).to_frame(index=False)
+    smooth, stout = table["ground"] < np.inf, table["object"] == "stout"
+    d = np.where(stout, 0.2, -0.1) + 0.05 * (table["interface"] < np.inf) - 0.03 * smooth
+    motion = table["earthquake"] + "-" + table["floor"]
+    return table.assign(motion=motion, ratio=np.exp(d.mask(stout & smooth)))
 
 
 def test_friction_of_either_interface_is_a_perturbation_like_others():

@@ -7,7 +7,6 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.records.motion import Motion
 from rockfrag.study.loading import load_any
 from rockfrag.system.blocks import Block, Stack
 from rockfrag_thesis.printed_tables import (
@@ -25,26 +24,23 @@ from rockfrag_thesis.printed_tables import (
 CONFIG = Path(__file__).resolve().parents[2] / "config"
 
 
-def test_table_3_1_comes_out():
+@pytest.fixture
+def computed(four_records):
+    """The quantities of each printed table, from the thesis's study and its records."""
     study = load_any(CONFIG / "thesis.yaml")
-    table = compare(block_properties(study.specimens), TABLE_3_1, FOLDER / "table_3_1.csv")
-    assert len(table) == 16
-    assert table["agrees"].all()
+    names = {name: name.replace("_", " ") for name in four_records}
+    motions = [replace(four_records[file], name=name) for file, name in names.items()]
+    return {
+        "table_3_1": (block_properties(study.specimens), TABLE_3_1),
+        "table_3_3": (ground_measures(motions), TABLE_3_3),
+        "table_4_1": (uplift_table(study.configurations), TABLE_4_1),
+    }
 
 
-def test_table_4_1_comes_out():
-    study = load_any(CONFIG / "thesis.yaml")
-    table = compare(uplift_table(study.configurations), TABLE_4_1, FOLDER / "table_4_1.csv")
-    assert len(table) == 9
-    assert table["agrees"].all()
-
-
-def test_table_3_3_comes_out(four_records: dict[str, Motion]):
-    names = {"Friuli": "Friuli", "Kobe": "Kobe", "Loma Prieta": "Loma_Prieta"}
-    names["Northridge"] = "Northridge"
-    motions = [replace(four_records[file], name=name) for name, file in names.items()]
-    table = compare(ground_measures(motions), TABLE_3_3, FOLDER / "table_3_3.csv")
-    assert len(table) == 12
+@pytest.mark.parametrize(("name", "rows"), [("table_3_1", 16), ("table_3_3", 12), ("table_4_1", 9)])
+def test_the_printed_tables_come_out(computed, name, rows):
+    table = compare(*computed[name], FOLDER / f"{name}.csv")
+    assert len(table) == rows
     assert table["agrees"].all()
 
 

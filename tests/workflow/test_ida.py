@@ -70,21 +70,10 @@ def pairs(earthquakes: str, step: float = 0.01) -> pd.DataFrame:
     rows = []
     for number, earthquake in enumerate(earthquakes):
         for side, amplitude in (("NP", 0.5), ("P", 0.5 + step * number)):
-            rows.append(
-                {
-                    "object": "T1",
-                    "pedestal": side,
-                    "earthquake": earthquake,
-                    "floor": "GF",
-                    "motion": f"motion {number}",
-                    "amplitude_g": amplitude,
-                    "definition": "step_protocol",
-                    "censored": "none",
-                    "lower_g": amplitude,
-                    "upper_g": amplitude,
-                }
-            )
-    return pd.DataFrame(rows)
+            rows.append((side, earthquake, f"motion {number}", *[amplitude] * 3))
+    names = ["pedestal", "earthquake", "motion", "amplitude_g", "lower_g", "upper_g"]
+    about = {"object": "T1", "floor": "GF", "definition": "step_protocol", "censored": "none"}
+    return pd.DataFrame(rows, columns=names).assign(**about)
 
 
 def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():

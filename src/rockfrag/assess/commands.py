@@ -13,15 +13,8 @@ from rockfrag.errors import InputError
 
 _INVENTORY = ".csv"
 _KEYS = (
-    "width",
-    "height",
-    "depth",
-    "mass",
-    "cg_height",
-    "cg_offset",
-    "pga",
-    "pgv",
-    "return_period",
+    *("width", "height", "depth", "mass", "cg_height", "cg_offset"),
+    *("pga", "pgv", "return_period"),
 )
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 

@@ -2,17 +2,8 @@
 
 P(topples | IM, PGV/IM) is fitted to the simulated motions (:func:`rockfrag.fragility.fit_vector`).  A motion whose
 PGV/IM is larger by a factor r topples the object at levels of IM smaller by r^w, with w the effect of ln PGV/IM
-over that of ln IM.  So each motion says what one like it, with the velocity of the site, would do, and fractions
-of motions are still counted; no curve is assumed.
-
-What differs from one earthquake to the next belongs into these fractions: the spread of ln PGV/IM at the site.
-What is not known belongs into the interval: its mean.
-
-- Nothing known: the motions keep their velocities.  The mean at the site may be away from that of the set, by
-  magnitude, distance, ground and site.
-- Magnitude or distance: the mean follows a regression on the records of the set.
-- PGV too: of two hazard curves the mean follows at each level, and only how both occur together is not known; of
-  two levels the ratio is given.
+over that of ln IM: fractions of motions are still counted.  The spread of ln PGV/IM at a site differs from one
+earthquake to the next and belongs into the fractions; its mean is not known and belongs into the interval.
 """
 
 import math
@@ -117,8 +108,9 @@ class Conversion:
         """The same with less and more spread of velocities at a given level; None where that is not open."""
         if not isinstance(self.known, OfTwoCurves):
             return None
+        first, velocity, spread = self.known.first, self.known.velocity, self.known.spread
         lower, upper = (
-            self._moved(outcomes, self.known.with_spread(self.known.spread * factor))
+            self._moved(outcomes, OfTwoCurves.of(first, velocity, spread * factor))
             for factor in (1 - TOGETHER, 1 + TOGETHER)
         )
         return lower, upper
@@ -288,10 +280,6 @@ class OfTwoCurves(SiteVelocity):
             return np.asarray(mean - np.log(levels * VELOCITY_PER_G))
 
         return cls(log_ratio, spread, first, velocity)
-
-    def with_spread(self, spread: float) -> "OfTwoCurves":
-        """What they say with another standard deviation."""
-        return OfTwoCurves.of(self.first, self.velocity, spread)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.outcomes import IntensityLevels, believable_scales, fraction_at, simulated
 from rockfrag.motions.rotation import rotate
-from rockfrag.system.system import System
 
 STEP_DEG = 15
 """Angle between directions that are tried [degrees]."""
@@ -39,7 +38,10 @@ def find_directions(
     if not motions.pairs:
         return None
     system = objects.system_of(objects.body)
-    angles = range(0, 180 if _is_symmetric(system) else 360, STEP_DEG)
+    # opposite directions are alike to a system that is alike on both sides
+    upright = all(contact.tilt == contact.offset[0] == 0 for contact in system.contacts)
+    symmetric = upright and all(shape.x == 0 for shape in system.shapes)
+    angles = range(0, 180 if symmetric else 360, STEP_DEG)
     values = motions.values(intensity_levels.measure)
     shaking, scales = [], []
     for pair in motions.pairs:
@@ -69,9 +71,3 @@ def _half(x: np.ndarray, fraction: np.ndarray) -> float:
         return float("nan")
     i = int(reached[0])
     return float(np.interp(0.5, fraction[i - 1 : i + 1], x[i - 1 : i + 1]))
-
-
-def _is_symmetric(system: System) -> bool:
-    """Whether opposite directions are alike to a system."""
-    level = all(contact.tilt == contact.offset[0] == 0 for contact in system.contacts)
-    return level and all(shape.x == 0 for shape in system.shapes)

@@ -35,17 +35,8 @@ PERIOD_FACTORS = {"steel": 0.085, "concrete": 0.075, "masonry": 0.05}
 (EN 1998-1:2004, 4.3.3.2.2(3))."""
 
 ORDINALS = (
-    "ground",
-    "first",
-    "second",
-    "third",
-    "fourth",
-    "fifth",
-    "sixth",
-    "seventh",
-    "eighth",
-    "ninth",
-    "tenth",
+    *("ground", "first", "second", "third", "fourth", "fifth"),
+    *("sixth", "seventh", "eighth", "ninth", "tenth"),
 )
 """Names of floors."""
 

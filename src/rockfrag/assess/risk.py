@@ -1,22 +1,10 @@
 """From fractions of motions and a hazard curve to a probability with an interval.
 
-The rate of toppling is λ = ∫ P(x) |dH(x)|, with P the fraction of motions that topple the object at level x
-and H the annual rate at which x is exceeded.  P is linear in ln x between levels of the series of levels and H a
-power law, so that each piece is integrated in closed form.  In 50 years the probability is 1 - exp(-50 λ)
-(Poisson).
+The rate of toppling is λ = ∫ P(x) |dH(x)|, with P the fraction of motions that topple the object at level x,
+linear in ln x between levels, and H the annual rate at which x is exceeded, a power law: all in closed form.
 
-Its interval is taken on ln λ (on the logit of a fraction): the variances of its sources are added, each from its
-own calculation, and Student's t has the degrees of freedom of Welch and Satterthwaite.
-
-- motions: jackknife that leaves out an earthquake at a time;
-- body, floor: each property moved by its standard deviation to both sides;
-- model: the median amplitude moved by the error of the planar rocking model;
-- conversion: where hazard in PGA or Sa speaks about velocity, see :mod:`rockfrag.assess.conversion`;
-- hazard: its quantiles, where they are given.
-
-For the widths of a fraction half an earthquake that topples the object and half of one that does not are added
-(Haldane 1956, Anscombe 1956), without which few earthquakes that almost agree would leave the interval without
-bound; for the rate only where one earthquake holds every toppling.
+An interval is taken on ln λ, or on the logit of a fraction: the variances of its sources are added, and
+Student's t has the degrees of freedom of Welch and Satterthwaite. ``docs/assess.md`` has the sources.
 """
 
 import math

@@ -96,12 +96,6 @@ def not_decidable(found: Assessment) -> bool:
     return found.fraction is not None and is_wide(found.fraction)
 
 
-def _ranked(found: Assessment) -> list[tuple[str, float]]:
-    """Arrangements with what is estimated, the safest first."""
-    grows = found.probability is None and found.fraction is None
-    return sorted(found.by_arrangement.items(), key=lambda item: -item[1] if grows else item[1])
-
-
 def _limits(mitigation: Mitigation, sign: int) -> str:
     """Limits of a reduction (1) or a gain (-1) in per cent."""
     if not math.isfinite(mitigation.lower):
@@ -161,7 +155,7 @@ def sentences(template: str = "words.j2") -> Any:
         | {"LEVEL": LEVEL, "MANY": MANY, "FEW": FEW, "SCALE_WORDS": SCALE_WORDS}
         | {"LARGEST_FACTOR": LARGEST_FACTOR, "exp": math.exp, "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS}
         | {"MEASUREMENTS": MEASUREMENTS, "influential": _influential, "limits": _limits}
-        | {"largest_sources": _largest_sources, "ranked": _ranked},
+        | {"largest_sources": _largest_sources},
     )
 
 

@@ -39,22 +39,9 @@ from rockfrag.records.sources.folder import files_of
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 COLUMNS = (
-    "file",
-    "format",
-    "station",
-    "channel",
-    "start_time",
-    "npts",
-    "dt_s",
-    "unit",
-    "pga_g",
-    "pgv_cm_s",
-    "pgd_cm",
-    "duration_s",
-    "dominant_period_s",
-    "quality_flags",
-    "error",
-    "status",
+    *("file", "format", "station", "channel", "start_time", "npts", "dt_s", "unit"),
+    *("pga_g", "pgv_cm_s", "pgd_cm", "duration_s", "dominant_period_s"),
+    *("quality_flags", "error", "status"),
 )
 """Columns of the table; a file that cannot be read has a row with its ``error`` and ``status`` alone."""
 

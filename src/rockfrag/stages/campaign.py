@@ -276,14 +276,9 @@ def _conditioning(
     """What other ways of conditioning the motions would have given, with a part of the trials."""
     study = job.study
     measured = campaign.tests[MEASURED].to_numpy()
-    rows = [
-        {
-            **agreement_row(
-                "as configured", validated.outcomes, measured, groups, study.confidence
-            ),
-            "trials": study.trials,
-        }
-    ]
+    about = (measured, groups, study.confidence)
+    as_configured = agreement_row("as configured", validated.outcomes, *about)
+    rows = [as_configured | {"trials": study.trials}]
     fewer = max(16, study.trials // VARIED_FRACTION)
     trials = sample_trials(thing, study.unknowns, fewer, study.seed)
     for name, steps in {
@@ -292,12 +287,7 @@ def _conditioning(
     }.items():
         outcomes, _ = simulate_tests(trials.systems, _motions(study, campaign, steps), job.threads)
         found = cross_validate(outcomes, measured, groups, **study.division)
-        rows.append(
-            {
-                **agreement_row(name, found.outcomes, measured, groups, study.confidence),
-                "trials": fewer,
-            }
-        )
+        rows.append(agreement_row(name, found.outcomes, *about) | {"trials": fewer})
         job.log.info("conditioning %s", name)
     return pd.DataFrame(rows).rename(columns={"who": "conditioning"})
 
@@ -313,17 +303,8 @@ def _contact(
     measured: Any,
 ) -> pd.DataFrame:
     """How base and outcomes depend on the contact tolerance; the critical angle with scans repeated."""
-    columns = [
-        "contact_tolerance_mm",
-        "worst_direction_deg",
-        "alpha_deg",
-        "alpha_lower_deg",
-        "alpha_upper_deg",
-        "trials",
-        "width_m",
-        "overturned",
-        "right",
-    ]
+    columns = ["contact_tolerance_mm", "worst_direction_deg", "alpha_deg", "alpha_lower_deg"]
+    columns += ["alpha_upper_deg", "trials", "width_m", "overturned", "right"]
     if not isinstance(thing, Shape):
         return pd.DataFrame(columns=columns, dtype=float)
     low, high = study.unknowns["contact_tolerance_mm"]
@@ -346,16 +327,10 @@ def _contact(
         )
         limits = np.degrees(np.nanquantile(angles, [0.05, 0.95]))
         near = nearest == number
-        found = (
-            [
-                near.sum(),
-                width[near].mean(),
-                outcomes[near].mean(),
-                (outcomes[near] == measured).mean(),
-            ]
-            if near.any()
-            else [0, float("nan"), float("nan"), float("nan")]
-        )
+        found = [0, *[float("nan")] * 3]
+        if near.any():
+            right = (outcomes[near] == measured).mean()
+            found = [near.sum(), width[near].mean(), outcomes[near].mean(), right]
         rows.append([tolerance, direction, np.degrees(angle), *limits, *found])
     return pd.DataFrame(rows, columns=columns)
 

@@ -16,27 +16,15 @@ _SHAKING = {"pga": "0.4 g", "return_period": "475"}
 """What stands in the form where no object, and no shaking, is given."""
 
 _FORM = (
-    "name",
-    "width",
-    "height",
-    "mass",
-    "cg_height",
-    "cg_offset",
-    "restitution",
-    "floor",
-    "depth",
+    *("name", "width", "height", "mass", "cg_height", "cg_offset"),
+    *("restitution", "floor", "depth"),
 )
 _LEVELS = ("pga", "pgv", "sa")
 _KEYS = (
     *_FORM,
-    "round",
-    "facing_deg",
-    "pedestal",
-    "building",
+    *("round", "facing_deg", "pedestal", "building"),
     *_LEVELS,
-    "return_period",
-    "hazard",
-    "records",
+    *("return_period", "hazard", "records"),
 )
 """Keys of ``statue.yaml`` that the page has a field for, or is written with."""
 

@@ -99,7 +99,10 @@ def data_of(motions: MotionSet, request: Request | None = None) -> dict[str, Any
         "constants": _constants(),
         "floors": _floors(intervals),
         "own": request and _own(request.place, intervals),
-        "steps": [{"name": step.name, "below": _finite(step.below)} for step in STEPS],
+        "steps": [
+            {"name": step.name, "below": step.below if math.isfinite(step.below) else None}
+            for step in STEPS
+        ],
         "limits": {"storey": STOREY_HEIGHTS, "period": FIRST_PERIODS},
         "units": {
             "dimensions": DIMENSIONS,
@@ -123,10 +126,6 @@ def _measure(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any]:
         "highest": HIGHEST[measure.openquake],
         "damaging": DAMAGING[measure.openquake],
     }
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 def _floors(intervals: Sequence[float]) -> dict[int, Any]:

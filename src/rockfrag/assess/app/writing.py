@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
 from rockfrag.assess.app.contents import computing, data_of, script
@@ -18,7 +17,7 @@ from rockfrag.assess.sources import SOURCES
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import Motion
-from rockfrag.report.live.embedded import base64_text, json_text
+from rockfrag.report.live.embedded import TEMPLATES, base64_text, json_text, scripts_of
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.units import GRAVITY
 
@@ -80,18 +79,16 @@ def page_of(
         "samples": about,
         "packed": base64_text(packed),
     }
-    environment = Environment(
-        loader=PackageLoader("rockfrag.report"),
-        autoescape=select_autoescape(default=True),
-        undefined=StrictUndefined,
-    )
-    style = environment.get_template("style.css").render() + script("app.css")
-    view = environment.get_template("view.js").render()
+    style = TEMPLATES.get_template("style.css").render() + script("app.css")
     parts = ("building", "space", "objects", "words", "lists", "scene", "page")
     scripts = "\n".join(
-        [driver_text("integrate", "space"), view, *(script(f"{name}.js") for name in parts)]
+        [
+            driver_text("integrate", "space"),
+            scripts_of("view"),
+            *(script(f"{name}.js") for name in parts),
+        ]
     )
-    return environment.from_string(script("app.html.j2")).render(
+    return TEMPLATES.from_string(script("app.html.j2")).render(
         title=data["texts"]["en"]["title"],
         style=Markup(style),
         data=json_text(data),

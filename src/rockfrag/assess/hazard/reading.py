@@ -39,7 +39,11 @@ def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
         If a file cannot be read, holds no hazard curve or those of several sites, or two files give the
         same curve.
     """
-    found = [part for path in paths for part in _read_file(Path(path))]
+    found: list[Found] = []
+    for path in paths:
+        text = read_text(Path(path), LARGEST_FILE)
+        read = next(read for recognise, read in KINDS if recognise(text))
+        found += read(text, str(path))
     curves = []
     for measure in dict.fromkeys(part.curve.measure for part in found):
         mine = [part for part in found if part.curve.measure == measure]
@@ -69,11 +73,3 @@ def _assembled(name: str, found: Sequence[Found]) -> HazardCurve:
             "median curve too."
         )
     return replace(main, quantiles={q: c for q, c in sorted(quantiles.items()) if q != 0.5})
-
-
-def _read_file(path: Path) -> list[Found]:
-    text = read_text(path, LARGEST_FILE)
-    for recognise, read in KINDS:
-        if recognise(text):
-            return read(text, str(path))
-    raise AssertionError("the last kind takes any text")

@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from jinja2 import Environment, PackageLoader, select_autoescape
 from markupsafe import Markup
 
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.report.live.embedded import base64_text, json_text
+from rockfrag.report.live.embedded import TEMPLATES, base64_text, json_text, scripts_of
 from rockfrag.report.live.frames import frames_svg
 from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import driver_text, in_page, module_bytes
@@ -87,20 +86,14 @@ def _element(
     frames, words = frames_svg(
         list(bodies.values())[body], motions[motion], list(dict.fromkeys(three.tolist()))
     )
-    environment = Environment(
-        loader=PackageLoader("rockfrag.report"), autoescape=select_autoescape(default=True)
-    )
-    scripts = "\n".join(
-        environment.get_template(f"{name}.js").render() for name in ("canvas", "live")
-    )
     return Markup(
-        environment.get_template("live.html.j2").render(
+        TEMPLATES.get_template("live.html.j2").render(
             left_out=[name for name in asked if name not in bodies],
             frames=frames,
             words=f"{list(bodies)[body]} under {motions[motion].name}: {words}",
             data=json_text(data),
             driver=Markup(driver_text()),
-            script=Markup(scripts),
+            script=scripts_of("canvas", "live"),
         )
     )
 

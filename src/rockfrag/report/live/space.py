@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, select_autoescape
 from markupsafe import Markup
 
 from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.report.live.embedded import base64_text, json_text
+from rockfrag.report.live.embedded import TEMPLATES, base64_text, json_text, scripts_of
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Circle, RigidBody
@@ -49,19 +48,13 @@ def live_in_space(
         "motions": [_motion(motion) for motion in kept],
         "amplitudes": AMPLITUDES_G,
     }
-    environment = Environment(
-        loader=PackageLoader("rockfrag.report"), autoescape=select_autoescape(default=True)
-    )
-    scripts = "\n".join(
-        environment.get_template(f"{name}.js").render() for name in ("canvas", "view", "live_space")
-    )
     return Markup(
-        environment.get_template("live_space.html.j2").render(
+        TEMPLATES.get_template("live_space.html.j2").render(
             left_out=left_out,
             pedestal=any(body.pedestal for body in bodies.values()),
             data=json_text(data),
             driver=Markup(driver_text("space")),
-            script=Markup(scripts),
+            script=scripts_of("canvas", "view", "live_space"),
         )
     )
 
