@@ -60,11 +60,31 @@ def test_workbook_is_refused_with_the_cure(tmp_path):
         read_tests(path, ["pga_g"])
 
 
-def test_doubled_title_is_refused_where_it_is_meant(tmp_path):
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (None, "no such file"),
+        ("", "not a readable CSV"),
+        ("record,pga_g,overturned\n", "no row below the header"),
+        ("record,PGA,overturned\na,1,yes\n", "no column 'pga_g'; the file has record"),
+        ("pga_g,note,note,pga_g,record,overturned\n", "'pga_g' stands over 2 columns; rename"),
+        ("record,pga_g,overturned\na,1,yes\na,,yes\n", "row 3, .*pga_g'.*nothing is not a finite"),
+        ("record,pga_g,overturned\na,1,yes\na,abc,yes\n", "row 3, column 'pga_g'.*'abc' is not"),
+        ("record,pga_g,overturned\na,1,yes\na,0,yes\n", "row 3, column 'pga_g'.*above zero"),
+        ("record,pga_g,overturned\na,1,yes\na,1,0.7\n", "row 3, column 'overturned'.*no outcome"),
+        ("record,pga_g,overturned\na,1,yes\n,1,yes\n", "row 3, column 'record'.*label is missing"),
+    ],
+)
+def test_tables_that_cannot_be_used_are_refused_by_file_row_and_column(tmp_path, content, said):
     path = tmp_path / "t.csv"
-    path.write_text("pga_g,note,note,pga_g,overturned\n0.3,a,b,0.4,1\n")
-    with pytest.raises(InputError, match=r"'pga_g' stands over 2 columns; rename"):
-        read_tests(path, ["pga_g"])
+    if content is not None:
+        path.write_text(content)
+    with pytest.raises(InputError, match=rf"t\.csv.*{said}"):
+        read_tests(path, ["pga_g"], motion="record")
+
+
+def test_titles_may_stand_twice_where_they_are_not_meant(tmp_path):
+    path = tmp_path / "t.csv"
     path.write_text("pga_g,note,note,overturned\n0.3,a,b,1\n")
     assert len(read_tests(path, ["pga_g"])) == 1
 

@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.errors import InputError
 from rockfrag.fragility.user_table import fit_user_table
 
 
@@ -50,38 +49,6 @@ def test_the_measure_that_decides_is_recommended_with_its_reasons(csv):
     assert result.goodness["pgv_cm_s"].p_value > 0.05
     assert set(result.table["measure"]) == {"pga_g", "pgv_cm_s"}
     assert result.bins.groupby("measure").tests.sum().tolist() == [200, 200]
-
-
-@pytest.mark.parametrize(
-    ("line", "row", "column", "words"),
-    [
-        ("r1,,0.1,yes,6", 202, "pga_g", "nothing is not a finite number"),
-        ("r1,abc,0.1,yes,6", 202, "pga_g", "'abc' is not"),
-        ("r1,0,0.1,yes,6", 202, "pga_g", "above zero"),
-        ("r1,0.1,-0.1,yes,6", 202, "ratio_s", "above zero"),
-        ("r1,0.1,0.1,0.7,6", 202, "fell", "no outcome"),
-        (",0.1,0.1,no,6", 202, "Record", "label is missing"),
-    ],
-)
-def test_an_unusable_cell_is_named_by_file_row_and_column(csv, line, row, column, words):
-    with csv.open("a") as handle:
-        handle.write(line + "\n")
-    with pytest.raises(InputError, match=f"rock.csv, row {row}, column '{column}'.*{words}"):
-        fit_user_table(csv, MEASURES, overturned="fell", motion="Record")
-
-
-def test_missing_files_columns_and_rows_are_said(csv, tmp_path):
-    with pytest.raises(InputError, match="no such file"):
-        fit_user_table(tmp_path / "none.csv", ["pga_g"])
-    with pytest.raises(InputError, match="no column 'toppled'; the file has Record"):
-        fit_user_table(csv, ["pga_g"], overturned="toppled")
-    empty = tmp_path / "empty.csv"
-    empty.write_text("pga_g,overturned\n")
-    with pytest.raises(InputError, match="no row below the header"):
-        fit_user_table(empty, ["pga_g"])
-    empty.write_text("")
-    with pytest.raises(InputError, match="not a readable CSV"):
-        fit_user_table(empty, ["pga_g"])
 
 
 def test_a_table_in_which_all_survived_gives_a_bound_and_no_recommendation(tmp_path):

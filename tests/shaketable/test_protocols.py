@@ -8,13 +8,12 @@ from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
 from rockfrag.shaketable.definitions import (
+    DEFINITIONS,
     always_overturning,
     first_overturning,
     step_protocol,
 )
-from rockfrag.shaketable.definitions import (
-    tests_from_ida as read_ida,
-)
+from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.protocols import (
     Accelerometer,
     ForceOverMass,
@@ -24,6 +23,8 @@ from rockfrag.shaketable.protocols import (
 )
 from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
 from rockfrag.shaketable.tests_table import COLUMNS
+
+from .made import ida_table
 
 GRID = np.round(np.arange(0.05, 1.0001, 0.01), 10)
 # overturns from 0.30 to 0.34, survives to 0.50, overturns above: one structural resurrection
@@ -36,13 +37,8 @@ def grid(outcomes):
     return 0.05 + 0.01 * np.arange(len(outcomes))
 
 
-def ida_table(overturned=WINDOW, amplitudes=GRID, **fields):
-    columns = {"configuration": "vase", "object": "vase", "pedestal": "NP", "motion": "Kobe_ground"}
-    columns |= {"earthquake": "Kobe", "floor": "ground"} | fields
-    body = np.where(overturned, "statue", "")
-    return pd.DataFrame(
-        {"amplitude_g": amplitudes, "overturned": overturned, "overturned_body": body, **columns}
-    )
+def vase(overturned=WINDOW):
+    return ida_table(overturned, GRID)
 
 
 def test_level_series_climb_as_their_names_say():
@@ -62,33 +58,29 @@ def test_three_readings_of_one_ida_differ():
 
 def test_repetitions_start_within_a_step_of_each_other():
     protocol = Protocol(LinearSteps(0.05, 0.1), limit_g=1.0, repetitions=2)
-    table = read_ida(ida_table(), protocol, definitions=["step_protocol"])
+    table = read_ida(vase(), protocol, definitions=["step_protocol"])
     assert table["repetition"].tolist() == [1, 2]
     assert table["upper_g"].tolist() == pytest.approx([0.55, 0.30])
 
 
 def test_a_table_of_tests_has_the_schema_of_the_contract():
-    table = read_ida(ida_table(), Protocol(LinearSteps(0.05, 0.05)))
+    table = read_ida(vase(), Protocol(LinearSteps(0.05, 0.05)))
     assert tuple(table.columns) == COLUMNS
-    assert table["definition"].tolist() == [
-        "step_protocol",
-        "first_overturning",
-        "always_overturning",
-    ]
+    assert table["definition"].tolist() == list(DEFINITIONS)
     assert (table["amplitude_g"] == table["lower_g"]).all()
     assert (table["overturned_body"] == "statue").all()
-    assert read_ida(ida_table().iloc[:0], Protocol(LinearSteps(1, 1))).dtypes.equals(table.dtypes)
+    assert read_ida(vase().iloc[:0], Protocol(LinearSteps(1, 1))).dtypes.equals(table.dtypes)
 
 
 def test_at_overturning_reports_the_upper_bound():
     protocol = Protocol(LinearSteps(0.05, 0.05), definition="at")
-    table = read_ida(ida_table(), protocol)
+    table = read_ida(vase(), protocol)
     assert (table["amplitude_g"] == table["upper_g"]).all()
 
 
 def test_the_shakers_limit_censors_the_step_protocol_only():
     table = read_ida(
-        ida_table(), Protocol(LinearSteps(0.05, 0.05)), limits_g={"Kobe_ground": 0.272}
+        vase(), Protocol(LinearSteps(0.05, 0.05)), limits_g={"Kobe_ground": 0.272}
     ).set_index("definition")
     lab = table.loc["step_protocol"]
     assert lab["lower_g"] == pytest.approx(0.25)
@@ -98,7 +90,7 @@ def test_the_shakers_limit_censors_the_step_protocol_only():
 
 
 def test_overturning_at_the_first_step_leaves_nothing_to_report_before_it():
-    table = read_ida(ida_table(np.ones(GRID.size, bool)), Protocol(LinearSteps(0.2, 0.1)))
+    table = read_ida(vase(np.ones(GRID.size, bool)), Protocol(LinearSteps(0.2, 0.1)))
     assert (table["lower_g"] == 0).all()
     assert table["amplitude_g"].isna().all()
     assert (table["censored"] == "none").all()
@@ -133,20 +125,16 @@ def test_the_bounds_hold_a_survival_and_an_overturning(outcomes, step, start):
 
 
 @settings(deadline=None, derandomize=True)
-@given(outcomes=ida_curves)
-def test_fine_steps_find_the_first_overturning(outcomes):
-    amplitudes = grid(outcomes)
-    fine = Protocol(LinearSteps(0.05, 0.002))
-    assert step_protocol(amplitudes, outcomes, fine) == first_overturning(amplitudes, outcomes)
-
-
-@settings(deadline=None, derandomize=True)
 @given(outcomes=ida_curves, step=st.floats(0.003, 0.3))
-def test_no_protocol_overturns_below_the_first_overturning(outcomes, step):
+def test_no_protocol_overturns_below_the_first_overturning_which_fine_steps_find(outcomes, step):
     amplitudes = grid(outcomes)
-    outcome = step_protocol(amplitudes, outcomes, Protocol(LinearSteps(0.05, step)))
-    if not outcome.censored:
-        assert outcome.upper_g >= first_overturning(amplitudes, outcomes).upper_g
+    first = first_overturning(amplitudes, outcomes)
+    fine, outcome = (
+        step_protocol(amplitudes, outcomes, Protocol(LinearSteps(0.05, size)))
+        for size in (0.002, step)
+    )
+    assert fine == first
+    assert outcome.censored or outcome.upper_g >= first.upper_g
 
 
 @settings(deadline=None, derandomize=True)
@@ -179,6 +167,6 @@ def test_protocols_that_make_no_sense_are_refused(make, message):
 def test_ida_curves_with_missing_columns_or_doubled_amplitudes_are_refused():
     protocol = Protocol(LinearSteps(0.1, 0.1))
     with pytest.raises(InputError, match="'earthquake' is missing"):
-        read_ida(ida_table().drop(columns="earthquake"), protocol)
+        read_ida(vase().drop(columns="earthquake"), protocol)
     with pytest.raises(InputError, match="vase Kobe_ground: amplitudes must"):
-        read_ida(pd.concat([ida_table(), ida_table()]), protocol)
+        read_ida(pd.concat([vase(), vase()]), protocol)

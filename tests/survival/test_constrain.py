@@ -1,7 +1,6 @@
 """The command `constrain` as a user meets it: an answer with its files, or one sentence."""
 
 import json
-import math
 import re
 from pathlib import Path
 
@@ -115,28 +114,6 @@ def test_weights_that_are_none_are_refused(tmp_path, weights):
     write_branches(tmp_path / "b.csv", weights)
     with pytest.raises(InputError, match=r"sum to|above 0"):
         read_branches([tmp_path / "b.csv"])
-
-
-def test_branches_of_openquake_are_read_back_with_their_weights(tmp_path):
-    levels = [0.05, 0.1, 0.2, 0.4]
-    header = "lon,lat,depth," + ",".join(f"poe-{x:.7f}" for x in levels)
-    rates = {0: [0.02, 0.006, 0.001, 0.0001], 1: [0.04, 0.01, 0.003, 0.0004]}
-    for number, values in rates.items():
-        poes = ",".join(f"{1 - math.exp(-50 * r):.9e}" for r in values)
-        facts = f"kind='rlz-{number:03d}', investigation_time=50.0, imt='PGA'"
-        (tmp_path / f"hazard_curve-rlz-{number:03d}-PGA_1.csv").write_text(
-            f'#,,,,"{facts}"\n{header}\n10.0,45.0,0.0,{poes}\n'
-        )
-    (tmp_path / "realizations_1.csv").write_text(
-        "rlz_id,branch_path,weight\n0,A~A,0.3\n1,B~A,0.7\n"
-    )
-    paths = sorted(tmp_path.glob("hazard*.csv"))
-    found = read_branches(paths, tmp_path / "realizations_1.csv")
-    assert [branch.weight for branch in found] == pytest.approx([0.3, 0.7])
-    (curve,) = found[1].curves.values()
-    assert curve.rate(0.2).item() == pytest.approx(0.003, rel=1e-5)
-    with pytest.raises(InputError, match="realization 1"):
-        read_branches([paths[0], paths[1], paths[1]], tmp_path / "realizations_1.csv")
 
 
 def test_two_tables_give_two_measures_of_the_same_branches(tmp_path):

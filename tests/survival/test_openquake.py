@@ -14,6 +14,7 @@ from scipy import special
 
 from rockfrag.assess.hazard.measure import PGA, PGV
 from rockfrag.cli import main
+from rockfrag.errors import InputError
 from rockfrag.survival.branches import read_branches
 
 YEARS = 50.0
@@ -226,5 +227,7 @@ def test_samples_of_a_logic_tree_keep_their_numbers(tmp_path):
     exported(tmp_path)
     path = tmp_path / "realizations_7.csv"
     path.write_text(path.read_text().replace("AB~A", "AA~A"))
-    found = read_branches(sorted(tmp_path.glob("hazard_curve-*.csv")), path)
-    assert len({branch.name for branch in found}) == 3
+    curves = sorted(tmp_path.glob("hazard_curve-*.csv"))
+    assert len({branch.name for branch in read_branches(curves, path)}) == 3
+    with pytest.raises(InputError, match="realization 2 is given twice"):
+        read_branches([*curves, curves[-1]], path)

@@ -58,16 +58,13 @@ def test_weights_integrate_what_is_linear_in_the_logarithm_exactly():
     assert weights @ np.log(levels / 0.05) == pytest.approx(expected)
 
 
-def test_no_time_leaves_the_weights_and_long_time_leaves_the_gentlest_branch():
-    branches = made_branches(0.5, 1.0, 2.0, weights=[0.2, 0.5, 0.3])
-    assert reweight(branches, [rock(1e-9)]).weights == pytest.approx([0.2, 0.5, 0.3])
-    assert reweight(branches, [rock(1e6)]).weights == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
-
-
-def test_equal_branches_keep_equal_weights():
+def test_no_time_leaves_the_weights_as_do_equal_branches_and_long_time_leaves_the_gentlest():
     found = reweight(made_branches(1.0, 1.0, 1.0), [rock(3000, sd=0.3)])
     assert found.weights == pytest.approx([1 / 3] * 3)
     assert found.information == pytest.approx(0.0, abs=1e-12)
+    branches = made_branches(0.5, 1.0, 2.0, weights=[0.2, 0.5, 0.3])
+    assert reweight(branches, [rock(1e-9)]).weights == pytest.approx([0.2, 0.5, 0.3])
+    assert reweight(branches, [rock(1e6)]).weights == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
 
 
 def test_independent_objects_multiply_and_identical_ones_with_shared_error_do_not():
@@ -123,9 +120,8 @@ def test_velocity_that_scatters_widens_a_fragility_in_two_measures_as_normal_the
     body = StandingObject("rock", PGA, (10.0, 4.0, 3.0), 0.0, Age(1000, 1000))
     m, s = math.log(0.08), 0.5
     root = math.sqrt(1 + (3.0 * s) ** 2)
-    merged = StandingObject(
-        "merged", PGA, ((10.0 + 3.0 * m) / root, 4.0 / root), 0.0, Age(1000, 1000)
-    )
+    one = ((10.0 + 3.0 * m) / root, 4.0 / root)
+    merged = StandingObject("merged", PGA, one, 0.0, Age(1000, 1000))
     branches = made_branches(0.1, 0.3)
     found = reweight(branches, [body], velocity=VelocityRelation(0.08, s))
     assert found.log_survival == pytest.approx(reweight(branches, [merged]).log_survival, rel=2e-3)

@@ -41,19 +41,11 @@ def simulated(seed: int) -> pd.DataFrame:
                 effect = (
                     EFFECT_SIZE + by_floor + SLOPE * (slenderness - 4) + by_earthquake + by_motion
                 )
+                about = object_name, earthquake, floor, f"{earthquake}-{floor}"
                 for pedestal in ("NP", "P"):
                     ln_a = pair + effect * (pedestal == "P") + rng.normal(0, SD_TEST)
-                    rows.append(
-                        (
-                            object_name,
-                            pedestal,
-                            earthquake,
-                            floor,
-                            f"{earthquake}-{floor}",
-                            math.exp(ln_a),
-                        )
-                    )
-    names = ["object", "pedestal", "earthquake", "floor", "motion", "amplitude_g"]
+                    rows.append((*about, pedestal, math.exp(ln_a)))
+    names = ["object", "earthquake", "floor", "motion", "pedestal", "amplitude_g"]
     table = pd.DataFrame(rows, columns=names).assign(censored="none")
     return table.assign(lower_g=table["amplitude_g"], upper_g=table["amplitude_g"])
 

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.observations import Floats, Observations, positive, read_observations
+from rockfrag.fragility.pooling import cells
 from rockfrag.shaketable.swept import Swept
 
 
@@ -27,25 +28,12 @@ def wilson_interval(
     return np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
 
 
-def bin_codes(outcomes: Observations, bins: int = 10) -> NDArray[np.int64]:
-    """Put rows into numbered bins, shape (n,), with about equally many tests in each bin.
-
-    Equal values share a bin; up to ``bins`` different values keep a bin each.
-    """
-    values, level = np.unique(outcomes.im, return_inverse=True)
-    if values.size <= bins:
-        return np.asarray(level, dtype=np.int64)
-    trials = np.bincount(level, outcomes.trials)
-    middle = np.cumsum(trials) - 0.5 * trials
-    return np.asarray(middle[level] / outcomes.n * bins, dtype=np.int64)
-
-
 def fraction_in_bins(outcomes: Observations, bins: int = 10, level: float = 0.90) -> pd.DataFrame:
     """Fraction of overturned tests in bins of about equal numbers of tests; up to ``bins`` levels keep a bin each.
 
     ``im`` is the geometric mean of a bin. In the binomial limits several rows of one motion in a bin count once.
     """
-    code = bin_codes(outcomes, bins)
+    code = cells(outcomes.im, bins, outcomes.trials)[0]
     rows, independent = [], []
     for k in np.unique(code):
         inside = code == k

@@ -53,22 +53,8 @@ class Fractions:
     beta_limits: Limits
 
     def knots(self) -> tuple[Floats, Floats]:
-        """Points between which the curve is straight in the logarithm: both rise, the fraction from 0.
-
-        Values of equal fraction become one point in their middle, at 0 and 1 the one nearest to the others. Where
-        the lowest value already has a fraction above 0, half that value is given none.
-        """
-        first = np.flatnonzero(np.diff(self.fraction, prepend=-1.0) > ROUNDING)
-        last = np.append(first[1:], self.im.size) - 1
-        at = np.sqrt(self.im[first] * self.im[last])
-        fraction = self.fraction[first]
-        at = np.where(fraction <= 0.0, self.im[last], np.where(fraction >= 1.0, self.im[first], at))
-        if fraction[0] > 0:
-            at, fraction = np.append(0.5 * self.im[0], at), np.append(0.0, fraction)
-        # of points at one value, but for rounding, the last; the fraction of 0 is kept, a hair below
-        at[0] *= 1.0 - 10.0 * ROUNDING
-        apart = np.append(at[1:] > at[:-1] * (1.0 + ROUNDING), True)
-        return at[apart], fraction[apart]
+        """See :func:`knots_of`."""
+        return knots_of(self.im, self.fraction)
 
     def at(self, im: ArrayLike) -> tuple[Floats, Floats, Floats]:
         """Share and its limits at any values > 0, three arrays of shape (n,)."""
@@ -82,6 +68,25 @@ class Fractions:
         if np.isnan(self.lower).any():
             lower, upper = np.full(x.shape, np.nan), np.full(x.shape, np.nan)
         return np.asarray(value), np.minimum(lower, value), np.maximum(upper, value)
+
+
+def knots_of(im: Floats, fraction: Floats) -> tuple[Floats, Floats]:
+    """Points between which the curve is straight in the logarithm: both rise, the fraction from 0.
+
+    Values of equal fraction become one point in their middle, at 0 and 1 the one nearest to the others. Where
+    the lowest value already has a fraction above 0, half that value is given none.
+    """
+    first = np.flatnonzero(np.diff(fraction, prepend=-1.0) > ROUNDING)
+    last = np.append(first[1:], im.size) - 1
+    at = np.sqrt(im[first] * im[last])
+    fraction = fraction[first]
+    at = np.where(fraction <= 0.0, im[last], np.where(fraction >= 1.0, im[first], at))
+    if fraction[0] > 0:
+        at, fraction = np.append(0.5 * im[0], at), np.append(0.0, fraction)
+    # of points at one value, but for rounding, the last; the fraction of 0 is kept, a hair below
+    at[0] *= 1.0 - 10.0 * ROUNDING
+    apart = np.append(at[1:] > at[:-1] * (1.0 + ROUNDING), True)
+    return at[apart], fraction[apart]
 
 
 def fractions_of_outcomes(
@@ -141,27 +146,31 @@ def _fractions(
     """
     groups = len(fell)
     fraction = _rising(fell.sum(axis=0), total.sum(axis=0))
-    theta, beta = _median(log_im, fraction), _dispersion(middle, fraction, motions)
+    im, theta = np.exp(log_im), float("nan")
+    if fraction[0] <= 0.5 <= fraction[-1]:
+        at, value = knots_of(im, fraction)
+        theta = float(np.exp(np.interp(0.5, value, np.log(at))))
+    beta = _dispersion(middle, fraction, motions)
     nothing = np.full(fraction.shape, np.nan)
     if groups < 2:
-        return Fractions(np.exp(log_im), fraction, nothing, nothing, theta, UNKNOWN, beta, UNKNOWN)
+        return Fractions(im, fraction, nothing, nothing, theta, UNKNOWN, beta, UNKNOWN)
     weights = all_but_one(groups, 0)
     left_out = np.array(
         [_rising(f, t) for f, t in zip(weights @ fell, weights @ total, strict=True)]
     )
-    seen = (
-        _witnesses(fraction, total)
-        if witnesses is None
-        else np.full(fraction.shape, float(witnesses))
-    )
+    seen = np.full(fraction.shape, float(witnesses or 0))
+    if witnesses is None:
+        seen = _witnesses(fraction, total)
     lower, upper = _limits(fraction, jackknife_error(left_out), seen, motions, level)
     theta_limits = UNKNOWN
     if np.isfinite(theta):
-        theta_limits = _median_limits(np.exp(log_im), lower, upper, theta)
+        # values between which the limits of the curve hold one half
+        low, high = im[upper < 0.5].max(initial=0.0), im[lower > 0.5].min(initial=np.inf)
+        theta_limits = min(float(low), theta), max(float(high), theta)
     fewer = motions * weights.mean(axis=1)
     betas = np.array([_dispersion(middle, *pair) for pair in zip(left_out, fewer, strict=True)])
     beta_limits = _dispersion_limits(beta, betas, level)
-    return Fractions(np.exp(log_im), fraction, lower, upper, theta, theta_limits, beta, beta_limits)
+    return Fractions(im, fraction, lower, upper, theta, theta_limits, beta, beta_limits)
 
 
 def _rising(fell: Floats, total: Floats) -> Floats:
@@ -202,24 +211,6 @@ def _limits(
     upper = np.where(fraction >= 1.0, 1.0, np.maximum(upper, fraction))
     # limits of a curve that never falls do not fall, the cautious way round
     return np.minimum.accumulate(lower[::-1])[::-1], np.maximum.accumulate(upper)
-
-
-def _median(log_im: Floats, fraction: Floats) -> float:
-    if not fraction[0] <= 0.5 <= fraction[-1]:
-        return float("nan")
-    plain = Fractions(
-        np.exp(log_im), fraction, fraction, fraction, np.nan, UNKNOWN, np.nan, UNKNOWN
-    )
-    knots, value = plain.knots()
-    return float(np.exp(np.interp(0.5, value, np.log(knots))))
-
-
-def _median_limits(im: Floats, lower: Floats, upper: Floats, theta: float) -> Limits:
-    """Values between which the limits of the curve hold one half."""
-    below, above = im[upper < 0.5], im[lower > 0.5]
-    low = float(below[-1]) if below.size else 0.0
-    high = float(above[0]) if above.size else np.inf
-    return min(low, theta), max(high, theta)
 
 
 def _dispersion(middle: Floats, fraction: Floats, motions: float) -> float:

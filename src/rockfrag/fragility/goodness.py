@@ -11,12 +11,13 @@ from scipy import special
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import Link, fit_batch
 from rockfrag.fragility.curve_facts import REJECTED
-from rockfrag.fragility.empirical import bin_codes, wilson_interval
+from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.pooling import cells
 from rockfrag.short_repr import short_repr
 
+BINS = 10  # bins of about equal numbers of tests in which observed and fitted numbers are compared
 CELLS = 60
 """Cells of the measure in which simulated outcomes are refitted; finer ones move p values by one replicate."""
 
@@ -34,8 +35,6 @@ class GoodnessOfFit:
         large.
     dependence
         What was simulated, see :func:`goodness_of_fit`.
-    replicates
-        Number of simulated data sets.
     brier
         Mean squared difference of outcome and fitted probability.
     calibration
@@ -48,7 +47,6 @@ class GoodnessOfFit:
     deviance: float
     p_value: float
     dependence: str
-    replicates: int
     brier: float
     calibration: pd.DataFrame
     words: str
@@ -92,7 +90,7 @@ def goodness_of_fit(
         raise InputError(f"goodness of fit: there is no curve to judge ({fit.method}).")
     if dependence is None:
         dependence = "motions" if outcomes.is_swept else "tests"
-    code = np.unique(bin_codes(outcomes), return_inverse=True)[1]
+    code = cells(outcomes.im, BINS, outcomes.trials)[0]
     probability = fit.probability(outcomes.im)
 
     def by_bin(values: Floats) -> Floats:
@@ -145,7 +143,6 @@ def goodness_of_fit(
         deviance,
         p_value,
         dependence,
-        int(simulated.size),
         float(miss.sum() / outcomes.n),
         calibration,
         f"Deviance {deviance:.1f} in {len(calibration)} bins, p = {p_value:.3f} (parametric bootstrap of "

@@ -9,19 +9,22 @@ MOST_VALUES = 1000
 """Different values of a measure that are kept apart; more fall into as many cells of equal counts."""
 
 
-def cells(log_im: Floats, most: int = MOST_VALUES) -> tuple[NDArray[np.intp], Floats]:
+def cells(
+    measure: Floats, most: int = MOST_VALUES, tests: Floats | None = None
+) -> tuple[NDArray[np.intp], Floats]:
     """Put each row into a cell of equal or neighbouring values; its number, (n,), and the mean of each cell.
 
-    Means rise.  Up to ``most`` different values have a cell each.
+    Means rise.  Up to ``most`` different values have a cell each; of more, cells have about equally many rows, or
+    ``tests`` where their number in each row is given.
     """
-    values, cell = np.unique(log_im, return_inverse=True)
+    values, cell = np.unique(measure, return_inverse=True)
     if values.size <= most:
         return cell, values
-    count = np.bincount(cell)
+    count = np.bincount(cell, tests)
     middle = np.cumsum(count) - 0.5 * count
-    coarse = np.unique((middle / log_im.size * most).astype(np.intp), return_inverse=True)[1]
+    coarse = np.unique((middle / count.sum() * most).astype(np.intp), return_inverse=True)[1]
     cell = coarse[cell]
-    return cell, np.bincount(cell, log_im) / np.bincount(cell)
+    return cell, np.bincount(cell, measure) / np.bincount(cell)
 
 
 def counts(group: NDArray[np.intp], cell: NDArray[np.intp], weight: Floats) -> Floats:

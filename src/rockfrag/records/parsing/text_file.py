@@ -54,10 +54,7 @@ def _opened(path: str | os.PathLike[str]) -> Any:
 
 
 def read_head(source: Source, size: int = HEAD_BYTES) -> bytes:
-    """Return the first bytes of a file, or nothing if it cannot be read; never raises.
-
-    A file object is left where it was.
-    """
+    """Return the first bytes of a file, or nothing if it cannot be read; leave a file object where it was."""
     try:
         if isinstance(source, (str, os.PathLike)):
             if not os.path.isfile(source):
@@ -305,11 +302,7 @@ def _tokens_by_line(body: bytes) -> NDArray[np.int64]:
 
 
 def read_text(source: Source, encoding: str = "") -> TextFile:
-    """Read a text file within the bounds of size and line length.
-
-    A file whose name ends in ``.gz`` is unpacked. Lines that are not UTF-8 are of ``encoding``,
-    where one is given.
-    """
+    """Read a text file within the bounds of size and line length; lines that are not UTF-8 are of ``encoding``."""
     name = name_of(source)
     data = read_bytes(source)
     if b"\n" not in data[:HEAD_BYTES] and b"\r" in data[:HEAD_BYTES]:
