@@ -144,9 +144,7 @@ def _integrate(
             stretches[count, i], stretches[count, LANES + i] = x[_U + i], x[_V + i]
             x[_HIGHEST + i] = abs(x[_U + i])
         steps = _fill_ground(acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground)
-        for j in range(0, steps - 3, 4):
-            _advance_four(x, ground, j)
-        for j in range(steps - steps % 4, steps):
+        for j in range(steps):
             _advance(x, ground[0, j], ground[1, j])
         for i in range(LANES):
             stretches[count, 2 * LANES + i] = x[_HIGHEST + i]
@@ -224,34 +222,12 @@ def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
 def _advance(x: Floats, a: float, s: float) -> None:
     """One step of all lanes."""
     for i in range(LANES):
-        u, v = _stepped(x, i, x[_U + i], x[_V + i], a, s)
+        u0, v0 = x[_U + i], x[_V + i]
+        u = x[_UU + i] * u0 + x[_UV + i] * v0 + x[_UA + i] * a + x[_US + i] * s
+        v = x[_VU + i] * u0 + x[_VV + i] * v0 + x[_VA + i] * a + x[_VS + i] * s
         # the zero keeps the compiler from storing under a condition, for which the next load would wait
         x[_HIGHEST + i] = max(x[_HIGHEST + i], abs(u)) + 0.0
         x[_U + i], x[_V + i] = u, v
-
-
-@cached_njit(error_model="numpy")
-def _advance_four(x: Floats, ground: Floats, j: int) -> None:
-    """Four steps of all lanes from step j on, whose table is read and written once."""
-    a0, a1, a2, a3 = ground[0, j], ground[0, j + 1], ground[0, j + 2], ground[0, j + 3]
-    s0, s1, s2, s3 = ground[1, j], ground[1, j + 1], ground[1, j + 2], ground[1, j + 3]
-    for i in range(LANES):
-        u0, v0 = _stepped(x, i, x[_U + i], x[_V + i], a0, s0)
-        u1, v1 = _stepped(x, i, u0, v0, a1, s1)
-        u2, v2 = _stepped(x, i, u1, v1, a2, s2)
-        u3, v3 = _stepped(x, i, u2, v2, a3, s3)
-        highest = max(max(abs(u0), abs(u1)), max(abs(u2), abs(u3)))
-        x[_HIGHEST + i] = max(x[_HIGHEST + i], highest) + 0.0
-        x[_U + i], x[_V + i] = u3, v3
-
-
-@cached_njit(error_model="numpy", inline="always")
-def _stepped(x: Floats, i: int, u: float, v: float, a: float, s: float) -> tuple[float, float]:
-    """Displacement and velocity of lane i one step after u and v."""
-    return (
-        x[_UU + i] * u + x[_UV + i] * v + x[_UA + i] * a + x[_US + i] * s,
-        x[_VU + i] * u + x[_VV + i] * v + x[_VA + i] * a + x[_VS + i] * s,
-    )
 
 
 @cached_njit(error_model="numpy")
