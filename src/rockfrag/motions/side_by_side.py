@@ -2,8 +2,8 @@
 
 Every oscillator takes the steps and finds the peaks between them as :func:`rockfrag.motions.response_spectrum`
 does, to the last bit.  What is saved is the look between two steps: a peak there is worth it only if it can be
-the largest of all.  So all steps are taken without a look first, and those stretches of them alone are gone
-through again that may hold the peak.  Where u turns, u'' is bounded by the ground's and the spring's share,
+the largest so far.  So a stretch of steps is taken without a look first, and gone through again if it may hold
+such a peak.  Where u turns, u'' is bounded by the ground's and the spring's share,
 |u''| (1 - ch) ≤ PGA + k |u| with c = 2ζω, k = ω² and step h.  One end of the step is within h/2 of the turn, so
 that the peak exceeds the larger of the two ends by q (PGA/k + |u|) at most, with q = k (h/2)²/2/(1 - ch).
 
@@ -69,11 +69,7 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
     for which, parts, step, quiet, table in _groups(periods.tobytes(), damping, motion.dt):
         x = table.copy()
         x[_ADDED : _ADDED + LANES] *= to_come[0]
-        stretches = np.empty((-(-(motion.acceleration.size - 1 + quiet) // LOOK_EVERY), 3 * LANES))
-        ground = np.empty((2, LOOK_EVERY * parts))
-        steps = (quiet, step, parts, x, ground)
-        count = _integrate(motion.acceleration, to_come, *steps, stretches)
-        _look(motion.acceleration, *steps, stretches[:count])
+        _integrate(motion.acceleration, to_come, quiet, step, parts, x)
         peaks[which] = x[_LARGEST : _LARGEST + which.size]
     return peaks
 
@@ -121,65 +117,30 @@ def _sample(acceleration: Floats, i: int) -> float:
 
 @cached_njit(error_model="numpy")
 def _integrate(
-    acceleration: Floats,
-    to_come: Floats,
-    quiet: int,
-    step: float,
-    parts: int,
-    x: Floats,
-    ground: Floats,
-    stretches: Floats,
-) -> int:
-    """Take all lanes through a motion and ``quiet`` samples after it; return the number of stretches.
-
-    The largest displacements at the steps are in the table then; ``stretches`` has each one's state at its
-    beginning and largest displacement, of all lanes, and ``ground`` is room for what shakes the steps of one.
-    """
+    acceleration: Floats, to_come: Floats, quiet: int, step: float, parts: int, x: Floats
+) -> None:
+    """Take all lanes through a motion and ``quiet`` samples after it; the peaks are in the table then."""
     end = acceleration.size - 1 + quiet
-    count = 0
+    ground, begin = np.empty((2, LOOK_EVERY * parts)), np.empty(2 * LANES)
     for first in range(0, end, LOOK_EVERY):
         if _settled(x, _sample(to_come, first)):
             break
-        for i in range(LANES):
-            stretches[count, i], stretches[count, LANES + i] = x[_U + i], x[_V + i]
-            x[_HIGHEST + i] = abs(x[_U + i])
         steps = _fill_ground(acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground)
+        begin[:] = x[_U : _U + 2 * LANES]
+        for i in range(LANES):
+            x[_HIGHEST + i] = abs(x[_U + i])
         for j in range(steps):
             _advance(x, ground[0, j], ground[1, j])
-        for i in range(LANES):
-            stretches[count, 2 * LANES + i] = x[_HIGHEST + i]
-            x[_LARGEST + i] = max(x[_LARGEST + i], x[_HIGHEST + i])
-        count += 1
-    return count
-
-
-@cached_njit(error_model="numpy")
-def _look(
-    acceleration: Floats,
-    quiet: int,
-    step: float,
-    parts: int,
-    x: Floats,
-    ground: Floats,
-    stretches: Floats,
-) -> None:
-    """Go through those stretches again that may hold a peak between steps; the peaks are in the table then."""
-    end = acceleration.size - 1 + quiet
-    for number in range(len(stretches)):
-        if _may_hold_the_peak(x, stretches[number]):
+        if not _may_hold_the_peak(x):
+            continue
+        x[_U : _U + 2 * LANES] = begin
+        for j in range(steps):
             for i in range(LANES):
-                x[_U + i], x[_V + i] = stretches[number, i], stretches[number, LANES + i]
-            first = number * LOOK_EVERY
-            steps = _fill_ground(
-                acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground
-            )
-            for j in range(steps):
-                for i in range(LANES):
-                    x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
-                _advance(x, ground[0, j], ground[1, j])
-                if _turns_high(x):
-                    for lane in range(LANES):
-                        _look_between(x, lane, ground[0, j], ground[1, j], step)
+                x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
+            _advance(x, ground[0, j], ground[1, j])
+            if _turns_high(x):
+                for lane in range(LANES):
+                    _look_between(x, lane, ground[0, j], ground[1, j], step)
 
 
 @cached_njit(error_model="numpy")
@@ -210,11 +171,12 @@ def _settled(x: Floats, to_come: float) -> bool:
 
 
 @cached_njit(error_model="numpy")
-def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
-    """Whether a peak between two steps of a stretch can be the largest displacement of a lane."""
+def _may_hold_the_peak(x: Floats) -> bool:
+    """Count the largest displacements of a stretch in; whether a peak between its steps can be larger."""
     may = False
     for i in range(LANES):
-        may |= stretch[2 * LANES + i] + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]
+        x[_LARGEST + i] = max(x[_LARGEST + i], x[_HIGHEST + i])
+        may |= x[_HIGHEST + i] + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]
     return may
 
 
