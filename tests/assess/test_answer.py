@@ -17,12 +17,10 @@ from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.rocking import Block
 
+from .conftest import asked
+
 FIGURE = {"width": "35 cm", "height": "120 cm", "mass": "180 kg"}
 ON_PLINTH = FIGURE | {"pedestal": {"width": "50cm", "height": "90cm", "mass": "400kg"}}
-
-
-def asked(**settings):
-    return make_request(settings, "test")
 
 
 @pytest.fixture(scope="module")

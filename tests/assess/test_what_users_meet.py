@@ -18,7 +18,7 @@ from rockfrag.assess.narrowing import is_wide, narrowed
 from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.page import page_of
 from rockfrag.assess.place import PERIOD_FACTORS
-from rockfrag.assess.request import make_request, read_request
+from rockfrag.assess.request import read_request
 from rockfrag.assess.risk import Estimate, estimate, fraction_target
 from rockfrag.assess.scale import step_of
 from rockfrag.assess.words import assumptions, five_lines, helps, range_words
@@ -27,11 +27,9 @@ from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.outcomes.limit_states import forget_limit_state, limit_state
 
+from .conftest import asked
+
 STATUE = {"width": "42 cm", "height": "1.65 m", "mass": "410 kg", "cg_height": "0.75 m"}
-
-
-def asked(**settings):
-    return make_request(settings, "test")
 
 
 def refused(capsys, *options: str) -> str:

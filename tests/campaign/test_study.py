@@ -207,21 +207,6 @@ def test_a_bad_campaign_ends_in_one_sentence_before_anything_runs(
     assert len(str(caught.value)) < 500
 
 
-@pytest.mark.slow
-def test_the_granite_rock_is_simulated_better_than_by_any_rival(tmp_path, shared):
-    tables = run(granite(tmp_path, shared, trials=512, varied_conditioning={}), tmp_path)
-    agreement = tables["agreement"].set_index("who")
-    assert agreement.loc["rockfrag", "tests"] == 490
-    assert agreement.loc["rockfrag", "right"] >= 0.90
-    assert (agreement["better"].dropna() > 0).all()
-    # facts of the campaign's own publication, in sample
-    assert agreement.loc["code kn10_ks1", "right"] == pytest.approx(0.876, abs=0.002)
-    fragility = tables["fragility"].set_index(["measure", "who"]).loc["pgv_cm_s"]
-    assert fragility.loc["measured", "theta"] == pytest.approx(13.9, abs=0.05)
-    assert fragility.loc["rockfrag", "theta_ratio"] == pytest.approx(1, abs=0.10)
-    assert fragility.loc["rockfrag", "beta_ratio"] == pytest.approx(1, abs=0.25)
-
-
 IN_SPACE = {
     "direction_deg": [0, 360],
     "contact_tolerance_mm": [0.5, 4],
@@ -285,11 +270,17 @@ def test_the_granite_rock_in_space_under_few_guesses(tmp_path, shared):
 
 
 @pytest.mark.slow
-def test_the_granite_rock_fitted(tmp_path, shared):
+def test_the_granite_rock_is_simulated_better_than_by_any_rival(tmp_path, shared):
     """Seen: 92.4 % right; medians 1.04 and by votes 1.06, dispersions 1.08 and by votes 1.32 times."""
     tables = run(granite(tmp_path, shared, varied_conditioning={}), tmp_path)
-    assert tables["agreement"].set_index("who").loc["rockfrag", "right"] >= 0.92
+    agreement = tables["agreement"].set_index("who")
+    assert agreement.loc["rockfrag", "tests"] == 490
+    assert agreement.loc["rockfrag", "right"] >= 0.92
+    assert (agreement["better"].dropna() > 0).all()
+    # facts of the campaign's own publication, in sample
+    assert agreement.loc["code kn10_ks1", "right"] == pytest.approx(0.876, abs=0.002)
     fragility = tables["fragility"].set_index(["measure", "who"]).loc["pgv_cm_s"]
+    assert fragility.loc["measured", "theta"] == pytest.approx(13.9, abs=0.05)
     for who, beta in (("rockfrag", 0.2), ("rockfrag by votes", 0.4)):
         assert fragility.loc[who, "theta_ratio"] == pytest.approx(1, abs=0.10)
         # a planar block scatters more in PGV than the rock did, and votes add what is not known of it

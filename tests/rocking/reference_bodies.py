@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rockfrag.rocking import Block
+from rockfrag.rocking.spectra import uniform_block
 
 # the thesis's specimens (Table 3.1)
 T1 = Block(0.124, 0.372, 2.172)
@@ -16,8 +17,7 @@ TOWERS = (T1, T2, T3)
 
 def uniform(p: float, alpha: float, g: float = 9.81) -> Block:
     """Uniform block with this frequency parameter [1/s] and critical angle [rad]."""
-    radius = 3 * g / (4 * p**2)
-    return Block(2 * radius * math.sin(alpha), 2 * radius * math.cos(alpha), 100.0)
+    return uniform_block(alpha, 2 * math.pi / p, g)
 
 
 def random_motion(rng: np.random.Generator, samples: int = 300, dt: float = 0.01) -> np.ndarray:

@@ -87,13 +87,6 @@ def test_each_side_starts_to_rock_at_its_own_acceleration(pivot: int) -> None:
     assert np.sign(above.theta[3, 0]) == pivot
 
 
-def test_a_lower_centre_of_gravity_makes_it_harder_to_topple() -> None:
-    heavy_foot = Block(0.5, 1.6, 400.0, cg_height=0.5)
-    uniform = Block(0.5, 1.6, 400.0)
-    assert heavy_foot.alpha > uniform.alpha
-    assert heavy_foot.slenderness == uniform.slenderness
-
-
 def test_the_stack_as_one_body_has_the_thesis_s_inertia() -> None:
     # I_o = I_O1 + I_C2 + m2 r², r² = (2h1 + h2)² + b1² (thesis eq. 2.67, 2.84)
     stack = Stack(P, T2)

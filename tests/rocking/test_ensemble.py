@@ -145,15 +145,6 @@ def test_single_simulations_of_stacks_agree_in_outcomes_and_peaks():
     assert checked > 10
 
 
-def test_nothing_happens_below_the_static_threshold():
-    block = LONE[0]
-    scale = 0.999 * np.tan(block.alpha)
-    result = overturns(block, MOTIONS, benchmark_cases.DT, [scale])
-    assert not result.overturned.any()
-    assert (result.impacts == 0).all()
-    assert (result.peak_rotation == 0).all()
-
-
 def test_an_ensemble_of_motions_gives_a_table():
     motions = [
         Motion(values, benchmark_cases.DT, name=str(i)) for i, values in enumerate(MOTIONS[:2])

@@ -12,6 +12,7 @@ from rockfrag.rocking.thresholds import find_thresholds
 from rockfrag.system.blocks import Block
 
 from ..oracle import cases as benchmark_cases
+from .reference_bodies import uniform
 
 G = 9.81
 
@@ -19,14 +20,12 @@ G = 9.81
 def one_sine() -> tuple[Block, np.ndarray, float]:
     """Block of p = 2.14, α = .25 and a sine pulse of ωp = 5 p whose peak is αg."""
     p, alpha = 2.14, 0.25
-    radius = 0.75 * G / p**2
-    width, height = 2 * radius * math.sin(alpha), 2 * radius * math.cos(alpha)
     dt = 0.001
     period = 2 * math.pi / (5 * p)
     time = np.arange(math.ceil(period / dt)) * dt
     quiet = np.zeros(8000)
     pulse = alpha * G * np.sin(5 * p * time)
-    return Block(width, height, 1000.0), np.concatenate([pulse, quiet]), dt
+    return uniform(p, alpha), np.concatenate([pulse, quiet]), dt
 
 
 def test_the_survival_window_of_a_sine_pulse_between_its_two_modes_of_overturning():
@@ -111,18 +110,6 @@ def test_both_ends_of_every_window_survive_and_it_overturns_just_outside(ensembl
         assert fallen[3] or row.upper == 1.5
     counts = found.resurrections.groupby(["body", "motion"]).size().sum()
     assert counts == found.table["resurrections"].sum()
-
-
-def test_thresholds_do_not_depend_on_threads(ensemble):
-    bodies, motions = ensemble
-    first, two = (
-        find_thresholds(
-            bodies, motions, 0.01, 1.0, tolerance=1e-3, narrowest_resurrection=0.05, threads=threads
-        )
-        for threads in (1, 2)
-    )
-    assert first.table.equals(two.table)
-    assert first.resurrections.equals(two.resurrections)
 
 
 def test_a_block_that_nothing_topples_has_no_threshold():

@@ -30,6 +30,10 @@ def simulated(body=T2, motion=SHAKE, dt=0.01, **more):
     return lambda: simulate(body, motion, dt, **more)
 
 
+def stacked(**more):
+    return simulated(STACK, **more)
+
+
 def swept(bodies=T2, motions=SHAKE, dt=0.01, scales=(1.0,), **more):
     return lambda: overturns(bodies, motions, dt, scales, **more)
 
@@ -95,7 +99,7 @@ UNUSABLE = [
     (simulated(theta0=(0.1, 0.1)), "theta0: expected 1 finite number(s), got (0.1, 0.1)"),
     (simulated(theta0="far"), "theta0: expected numbers, got 'far'"),
     (simulated(theta0=2.0), "theta0: a block turned by π/2 or more lies on its side already"),
-    (simulated(STACK, omega0=(0.1, math.inf)), "omega0: expected 2 finite number(s)"),
+    (stacked(omega0=(0.1, math.inf)), "omega0: expected 2 finite number(s)"),
     (simulated(linear="yes"), "linear: expected True or False, got 'yes'"),
     (simulated(g=-9.81), "g: expected a positive number of m/s², got -9.81"),
     (simulated(g="9.81"), "g: expected a positive number of m/s², got '9.81'"),
@@ -105,24 +109,15 @@ UNUSABLE = [
         simulated(restitution=(0.9, 0.9, 0.9)),
         "restitution of the block: expected one ratio, or two",
     ),
-    (simulated(STACK, restitution=0.9), "restitution: a stack takes a pair (ground, interface)"),
-    (
-        simulated(STACK, restitution=("a", 0.9)),
-        "restitution of the ground: expected a finite number",
-    ),
-    (
-        simulated(STACK, restitution={"floor": 0.9}),
-        "restitution: 'floor' is no contact of a system of 2",
-    ),
-    (
-        simulated(STACK, restitution=(0.9, 1.2)),
-        "restitution of the interface: 1.2 would gain energy",
-    ),
+    (stacked(restitution=0.9), "restitution: a stack takes a pair (ground, interface)"),
+    (stacked(restitution=("a", 0.9)), "restitution of the ground: expected a finite number"),
+    (stacked(restitution={"floor": 0.9}), "restitution: 'floor' is no contact of a system of 2"),
+    (stacked(restitution=(0.9, 1.2)), "restitution of the interface: 1.2 would gain energy"),
     (simulated(friction=-0.1), "friction of the ground: a coefficient is 0 or more, got -0.1"),
     (simulated(friction="rough"), "friction of the ground: expected a coefficient or a pair"),
     (simulated(friction=math.nan), "friction of the ground: a coefficient is 0 or more, got nan"),
     (simulated(friction=(0.3, 0.4)), "the static coefficient 0.3 is less than the kinetic one 0.4"),
-    (simulated(STACK, friction=(0.3,)), "friction: a stack takes (ground, interface)"),
+    (stacked(friction=(0.3,)), "friction: a stack takes (ground, interface)"),
     (simulated(friction=True), "friction of the ground: a coefficient is 0 or more, got True"),
     (
         simulated(friction=0.4, linear=True),

@@ -24,6 +24,8 @@ from rockfrag.shaketable.protocols import (
 from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
 from rockfrag.shaketable.tests_table import COLUMNS
 
+from .made import ida_table
+
 GRID = np.round(np.arange(0.05, 1.0001, 0.01), 10)
 # overturns from 0.30 to 0.34, survives to 0.50, overturns above: one structural resurrection
 WINDOW = ((GRID > 0.295) & (GRID < 0.345)) | (GRID > 0.505)
@@ -35,13 +37,8 @@ def grid(outcomes):
     return 0.05 + 0.01 * np.arange(len(outcomes))
 
 
-def ida_table(overturned=WINDOW, amplitudes=GRID, **fields):
-    columns = {"configuration": "vase", "object": "vase", "pedestal": "NP", "motion": "Kobe_ground"}
-    columns |= {"earthquake": "Kobe", "floor": "ground"} | fields
-    body = np.where(overturned, "statue", "")
-    return pd.DataFrame(
-        {"amplitude_g": amplitudes, "overturned": overturned, "overturned_body": body, **columns}
-    )
+def vase(overturned=WINDOW):
+    return ida_table(overturned, GRID)
 
 
 def test_level_series_climb_as_their_names_say():
@@ -61,29 +58,29 @@ def test_three_readings_of_one_ida_differ():
 
 def test_repetitions_start_within_a_step_of_each_other():
     protocol = Protocol(LinearSteps(0.05, 0.1), limit_g=1.0, repetitions=2)
-    table = read_ida(ida_table(), protocol, definitions=["step_protocol"])
+    table = read_ida(vase(), protocol, definitions=["step_protocol"])
     assert table["repetition"].tolist() == [1, 2]
     assert table["upper_g"].tolist() == pytest.approx([0.55, 0.30])
 
 
 def test_a_table_of_tests_has_the_schema_of_the_contract():
-    table = read_ida(ida_table(), Protocol(LinearSteps(0.05, 0.05)))
+    table = read_ida(vase(), Protocol(LinearSteps(0.05, 0.05)))
     assert tuple(table.columns) == COLUMNS
     assert table["definition"].tolist() == list(DEFINITIONS)
     assert (table["amplitude_g"] == table["lower_g"]).all()
     assert (table["overturned_body"] == "statue").all()
-    assert read_ida(ida_table().iloc[:0], Protocol(LinearSteps(1, 1))).dtypes.equals(table.dtypes)
+    assert read_ida(vase().iloc[:0], Protocol(LinearSteps(1, 1))).dtypes.equals(table.dtypes)
 
 
 def test_at_overturning_reports_the_upper_bound():
     protocol = Protocol(LinearSteps(0.05, 0.05), definition="at")
-    table = read_ida(ida_table(), protocol)
+    table = read_ida(vase(), protocol)
     assert (table["amplitude_g"] == table["upper_g"]).all()
 
 
 def test_the_shakers_limit_censors_the_step_protocol_only():
     table = read_ida(
-        ida_table(), Protocol(LinearSteps(0.05, 0.05)), limits_g={"Kobe_ground": 0.272}
+        vase(), Protocol(LinearSteps(0.05, 0.05)), limits_g={"Kobe_ground": 0.272}
     ).set_index("definition")
     lab = table.loc["step_protocol"]
     assert lab["lower_g"] == pytest.approx(0.25)
@@ -93,7 +90,7 @@ def test_the_shakers_limit_censors_the_step_protocol_only():
 
 
 def test_overturning_at_the_first_step_leaves_nothing_to_report_before_it():
-    table = read_ida(ida_table(np.ones(GRID.size, bool)), Protocol(LinearSteps(0.2, 0.1)))
+    table = read_ida(vase(np.ones(GRID.size, bool)), Protocol(LinearSteps(0.2, 0.1)))
     assert (table["lower_g"] == 0).all()
     assert table["amplitude_g"].isna().all()
     assert (table["censored"] == "none").all()
@@ -170,6 +167,6 @@ def test_protocols_that_make_no_sense_are_refused(make, message):
 def test_ida_curves_with_missing_columns_or_doubled_amplitudes_are_refused():
     protocol = Protocol(LinearSteps(0.1, 0.1))
     with pytest.raises(InputError, match="'earthquake' is missing"):
-        read_ida(ida_table().drop(columns="earthquake"), protocol)
+        read_ida(vase().drop(columns="earthquake"), protocol)
     with pytest.raises(InputError, match="vase Kobe_ground: amplitudes must"):
-        read_ida(pd.concat([ida_table(), ida_table()]), protocol)
+        read_ida(pd.concat([vase(), vase()]), protocol)

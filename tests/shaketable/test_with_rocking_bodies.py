@@ -1,4 +1,5 @@
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,8 @@ from rockfrag.shaketable.steps import GeometricSteps
 from rockfrag.study.configurations import configuration_of, each_alone
 from rockfrag.system.blocks import Block
 from rockfrag_thesis.building_sensitivity import building_sensitivity, building_variants
+
+from .made import ida_table
 
 BUILDING = Path(__file__).resolve().parents[2] / "config" / "building.yaml"
 TOWERS = {
@@ -39,28 +42,17 @@ def ida(motions, values):
         [motion.dt for motion in motions],
         [values * 9.81 / motion.pga for motion in motions],
     )
+    curves = product(enumerate(TOWERS), enumerate(motions))
     return pd.concat(
-        pd.DataFrame(
-            {
-                "configuration": object_name,
-                "object": object_name,
-                "pedestal": "NP",
-                "motion": motion.name,
-                "earthquake": motion.name,
-                "floor": "GF",
-                "amplitude_g": values,
-                "overturned": result.overturned[i, j],
-                "overturned_body": np.where(result.overturned[i, j], "statue", ""),
-            }
-        )
-        for i, object_name in enumerate(TOWERS)
-        for j, motion in enumerate(motions)
+        ida_table(result.overturned[i, j], values, name, earthquake=motion.name)
+        for (i, name), (j, motion) in curves
     )
 
 
 def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
     motions = list(records.values())
-    limits = shaker_table(Shaker(), motions).set_index("motion")["limit_g"]
+    table = shaker_table(Shaker(), motions).set_index("motion")
+    limits = {f"{name}_ground": limit for name, limit in table["limit_g"].items()}
     tests = read_ida(
         ida(motions, amplitudes(0.2, 0.7, 0.01)),
         Protocol(GeometricSteps(0.2, 0.01)),
@@ -68,7 +60,7 @@ def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
         limits_g=limits,
     )
     censored = tests[tests["censored"] == "right"]
-    assert censored[["object", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta"]]
+    assert censored[["object", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta_ground"]]
     assert censored["lower_g"].iloc[0] == pytest.approx(0.40, abs=0.005)
 
 
@@ -92,8 +84,11 @@ def test_a_variant_equal_to_the_reference_gives_the_same_tests(settings):
         amplitudes(0.2, 1.2, 0.05),
         Protocol(GeometricSteps(0.2, 0.05), limit_g=1.2),
     )
-    by_label = {label: table.drop(columns=["axis", "value", "label", "credible"]).reset_index(drop=True)
-                for label, table in tests.groupby("label")}  # fmt: skip
+    same = tests.drop(columns=["axis", "value", "credible"])
+    by_label = {
+        label: table.drop(columns="label").reset_index(drop=True)
+        for label, table in same.groupby("label")
+    }
     pd.testing.assert_frame_equal(by_label["reference"], by_label["first period 0.35 s"])
     assert not by_label["reference"].equals(by_label["first period 0.9 s"])
     # the ground floor does not know the building

@@ -127,7 +127,7 @@ def ways_to_stand(
             f"under none of {count} guesses of what was not measured could the object stand at "
             f"{LEAST_ANGLE_DEG:g}° or more; check that it stands as its mesh does, and its unit."
         )
-    return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows))
+    return Trials(pd.DataFrame(rows), tuple(systems))
 
 
 def kind_of(thing: Shape | Block) -> str:

@@ -40,7 +40,6 @@ class Trials:
     # ``alpha_deg`` (the smaller critical angle); of blocks on each other those of the uppermost
     table: pd.DataFrame
     systems: tuple[System, ...]  # what stood on the table in each trial
-    refused: int  # guesses under which the object could not have stood
     # the planar block of each, where both friction and restitution are unknown
     planar: tuple[System, ...] = ()
 
@@ -86,7 +85,7 @@ def sample_trials(
             f"unknowns: under none of {count} guesses could the object have stood; widen contact_tolerance_mm "
             "or lower edge_retreat_mm."
         )
-    return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows), tuple(planar))
+    return Trials(pd.DataFrame(rows), tuple(systems), tuple(planar))
 
 
 def _in_plane(planar: Block | Column, guess: Mapping[str, float]) -> System:

@@ -30,7 +30,6 @@ class Validated:
     # fraction of plausible trials under which the object overturns in each test, chosen by tests with other
     # motions, shape (repeats, tests)
     votes: Floats
-    plausible: NDArray[np.int64]  # number of trials that voted, shape (repeats, folds)
 
     __repr__ = short_repr
 
@@ -104,12 +103,10 @@ def cross_validate(
     right = outcomes == measured
     answers = outcomes if asked is None else asked
     votes = np.empty((repeats, len(measured)))
-    plausible = np.empty((repeats, folds), dtype=np.int64)
     for repeat in range(repeats):
         fold = folds_by_group(groups, folds, rng)
         for number in range(folds):
             chosen_by = fold != number
             voters = plausible_trials(right[:, chosen_by], groups[chosen_by])
-            plausible[repeat, number] = voters.sum()
             votes[repeat, ~chosen_by] = answers[voters][:, ~chosen_by].mean(axis=0)
-    return Validated(votes, plausible)
+    return Validated(votes)

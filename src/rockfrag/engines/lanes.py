@@ -112,10 +112,13 @@ def refined(values: Array, times: int) -> Array:
     return np.asarray(np.interp(at, np.arange(closed.size), closed))
 
 
-def write_rocking(into: Outcomes, rows: Sequence[int], found: NDArray[np.void]) -> None:
+def write_rocking(
+    into: Outcomes, rows: Sequence[int], found: NDArray[np.void], peaks: str = "peak"
+) -> None:
     """Write what the kernels of pure rocking tell of cases into outcomes of one or two bodies.
 
-    ``found`` has the ``OUTCOME`` of each case of the systems in these rows, which all have as many bodies.
+    ``found`` has the ``OUTCOME`` (or ``SUMMARY``, whose ``peaks`` are its ratios) of each case of the systems in
+    these rows, which all have as many bodies.
     """
     count, place = into.counts[rows[0]], np.asarray(rows, dtype=np.intp)
     # a lone body is the kernels' block 2
@@ -123,7 +126,7 @@ def write_rocking(into: Outcomes, rows: Sequence[int], found: NDArray[np.void]) 
     into.overturned[place] = fell > 0
     into.overturned_body[place] = fell
     for k in range(count):
-        peak = found["peak2" if k == count - 1 else "peak1"]
+        peak = found[peaks + ("2" if k == count - 1 else "1")]
         into.peak_rotation[place, ..., k] = np.where(fell == k + 1, np.inf, peak)
         into.slip[place, ..., k] = into.peak_slip[place, ..., k] = 0.0
     into.impacts[place] = found["impacts"]

@@ -70,13 +70,12 @@ class LoneBlocks(PureRocking):
         from rockfrag.engines.kernels.lanes import block
         from rockfrag.engines.kernels.lanes.case import Ensemble
         from rockfrag.engines.lanes import sampled
-        from rockfrag.engines.records import body_record
 
         g = cases.request.g
         motions, rows, intervals = sampled(cases, 1.0)
         pivots = np.empty((*intervals.shape, 2), block.PIVOT)
         for i, system in enumerate(cases.systems):
-            pivots[i] = _pivots(body_record(system, g=g), block.PIVOT)
+            pivots[i] = _pivots(system, g, block.PIVOT)
         pivots["swing"] *= intervals[:, :, np.newaxis] ** 2
         pivots["per_swing"] /= intervals[:, :, np.newaxis] ** 2
         ensemble = Ensemble(
@@ -92,20 +91,19 @@ class LoneBlocks(PureRocking):
         return self._by_lanes(cases, block.integrate_blocks, block.worker, ensemble, motions)
 
 
-def _pivots(body: np.void, dtype: np.dtype[np.void]) -> NDArray[np.void]:
-    """Constants of a body's right and left pivot from its record, with p² where p² dt² belongs."""
+def _pivots(system: System, g: float, dtype: np.dtype[np.void]) -> NDArray[np.void]:
+    """Constants of a lone body's right and left pivot, with p² where p² dt² belongs."""
     pivots = np.empty(2, dtype)
-    shape = geometry.Shape(*(float(body[name]) for name in ("b2", "m2", "i2", "c2x", "c2y")))
-    g = float(body["gravity"])
+    shape, law = system.shapes[0], system.contacts[0].law
     # of the impact that ends rocking on a pivot and comes down on the other
-    for at, pivot, after in ((0, +1, body["after2l"]), (1, -1, body["after2r"])):
+    for at, pivot, measured in ((0, +1, law.left), (1, -1, law.right)):
         p, alpha = geometry.frequency(shape, pivot, g), geometry.critical_angle(shape, pivot)
         if not p * p * alpha * alpha > 0:
             raise InputError(
                 "body: lengths, mass and inertia are too far apart; check their units."
             )
         by_momentum = geometry.momentum_restitution(shape, -pivot)
-        e = float(after["value"]) if body["measured"] else by_momentum
+        e = by_momentum if law.name == "momentum" else measured
         pivots[at] = geometry.pivot_constants(shape, pivot, e, g)
     return pivots
 

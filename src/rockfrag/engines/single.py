@@ -30,7 +30,6 @@ class Single(PureRocking):
 
     def run(self, cases: Cases) -> Outcomes:
         """Return the outcomes of cases, whose histories are not kept."""
-        from rockfrag.engines.kernels.lanes.case import OUTCOME
         from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE, SUMMARY
         from rockfrag.engines.lanes import write_rocking
         from rockfrag.engines.records import body_record
@@ -38,7 +37,6 @@ class Single(PureRocking):
         g, linear = cases.request.g, cases.request.linear
         records = [body_record(system, linear, g) for system in cases.systems]
         starts = [initial_state(system) for system in cases.systems]
-        found = np.zeros(cases.shape, OUTCOME)
         summaries = np.zeros(cases.shape, SUMMARY)
         nothing = np.empty(0, SAMPLE), np.empty(0, CONTACT_EVENT)
 
@@ -47,20 +45,14 @@ class Single(PureRocking):
             case = Case(
                 cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request
             )
-            done, summary = run_integration(records[i], shaking_of(case), starts[i], *nothing)
-            found[place] = (
-                summary["fallen"], done - 1, summary["ratio1"], summary["ratio2"],
-                summary["speed2"] * case.motion.dt, summary["unstable_distance"], summary["impacts"],
-                summary["given_way"],
-            )  # fmt: skip
-            summaries[place] = summary
+            summaries[place] = run_integration(records[i], shaking_of(case), starts[i], *nothing)[1]
 
         with ThreadPoolExecutor(cases.threads) as pool:
             list(pool.map(work, np.ndindex(*cases.shape)))
         outcomes = empty_outcomes(cases.names, cases.scales, (self.name,))
         for count in sorted(set(outcomes.counts)):
             rows = [i for i, system in enumerate(cases.systems) if system.count == count]
-            write_rocking(outcomes, rows, found[rows])
+            write_rocking(outcomes, rows, summaries[rows], "ratio")
             _write_summaries(outcomes, rows, summaries[rows], cases.request.forces)
         return outcomes
 

@@ -35,8 +35,6 @@ class GoodnessOfFit:
         large.
     dependence
         What was simulated, see :func:`goodness_of_fit`.
-    replicates
-        Number of simulated data sets.
     brier
         Mean squared difference of outcome and fitted probability.
     calibration
@@ -49,7 +47,6 @@ class GoodnessOfFit:
     deviance: float
     p_value: float
     dependence: str
-    replicates: int
     brier: float
     calibration: pd.DataFrame
     words: str
@@ -67,27 +64,9 @@ def goodness_of_fit(
 ) -> GoodnessOfFit:
     """Compare the deviance with that of data simulated from the curve (parametric bootstrap).
 
-    Parameters
-    ----------
-    outcomes, fit
-        The outcomes and the curve fitted to them.
-    dependence
-        ``tests`` simulates each outcome by itself; ``motions`` gives each motion one capacity from
-        the curve, so that its outcomes hang together as in an incremental dynamic analysis. None takes
-        ``motions`` where motions have more than one row.
-    replicates
-        Number of simulated data sets.
-    seed
-        Seed of the simulation.
-
-    Returns
-    -------
-    The :class:`GoodnessOfFit`.
-
-    Raises
-    ------
-    InputError
-        If there is no curve.
+    ``dependence``: ``tests`` simulates each outcome by itself; ``motions`` gives each motion one capacity from the
+    curve, so that its outcomes hang together as in an incremental dynamic analysis. None takes ``motions`` where
+    motions have more than one row.
     """
     if not np.isfinite(fit.theta):
         raise InputError(f"goodness of fit: there is no curve to judge ({fit.method}).")
@@ -146,7 +125,6 @@ def goodness_of_fit(
         deviance,
         p_value,
         dependence,
-        int(simulated.size),
         float(miss.sum() / outcomes.n),
         calibration,
         f"Deviance {deviance:.1f} in {len(calibration)} bins, p = {p_value:.3f} (parametric bootstrap of "

@@ -48,19 +48,16 @@ class Interaction:
         three earthquakes.
     likelihood_ratio
         2 ln (L with / L without) [-]; tests counted as independent, for comparison with other programs.
-    score_gain
-        Gain of the mean log score of held-out earthquakes [-]; NaN with one earthquake.
     kept
-        Whether the fit has the interaction: p below ``INTERACTION_LEVEL`` and a gain of the score.
+        Whether the fit has the interaction: p below ``INTERACTION_LEVEL``, and held-out earthquakes score better.
     """
 
     p: float
     likelihood_ratio: float
-    score_gain: float
     kept: bool
 
 
-NOT_TRIED = Interaction(np.nan, np.nan, np.nan, kept=False)
+NOT_TRIED = Interaction(np.nan, np.nan, kept=False)
 """Of tests that allow no test of an interaction, or where none was asked for."""
 
 
@@ -128,7 +125,10 @@ class VectorFragility:
             np.array([self.coefficients]), probability, other, of, self.interaction.kept
         )[0]
         left_out = _log_contour(self.replicates, probability, other, of, self.interaction.kept)
-        half = self._half_width(left_out)
+        half = np.full(other.shape, np.inf)
+        if len(left_out) > 1:
+            half = student(self.level, len(left_out)) * jackknife_error(left_out)
+            half = np.where(np.isfinite(half), half, np.inf)
         return np.exp(centre), np.exp(centre - half), np.exp(centre + half)
 
     def mean_over(self, first: ArrayLike, second: ArrayLike, weights: ArrayLike = 1.0) -> Floats:
@@ -141,13 +141,6 @@ class VectorFragility:
         y = np.asarray(second, dtype=np.float64)
         w = np.broadcast_to(np.asarray(weights, dtype=np.float64), y.shape[-1:])
         return np.asarray(self.probability(x, y) @ w / w.sum())
-
-    def _half_width(self, left_out: Floats) -> Floats:
-        """Half the width of limits, from values without one earthquake each; infinite where there are none."""
-        if len(left_out) < 2:
-            return np.full(left_out.shape[1], np.inf)
-        half = student(self.level, len(left_out)) * jackknife_error(left_out)
-        return np.where(np.isfinite(half), half, np.inf)
 
 
 def _log_contour(
@@ -309,9 +302,9 @@ def _interaction(
     p = interaction_p(plain.coefficients, design, outcome, group)
     ratio = 2.0 * (full.log_likelihood - plain.log_likelihood)
     tests = (design[:, 1:], outcome, np.ones(outcome.size), group)
-    gain = (outcome_scores(*tests) - outcome_scores(*tests, fitted=2)).sum() / outcome.size
+    gain = (outcome_scores(*tests) - outcome_scores(*tests, fitted=2)).sum()
     kept = bool(p < INTERACTION_LEVEL and gain > 0 and "penalised" not in full.method)
-    return Interaction(p, ratio, float(gain), kept)
+    return Interaction(p, ratio, kept)
 
 
 def interaction_p(

@@ -2,8 +2,7 @@
 
 A block that rocks freely loses energy at impacts only.  With x the square of the angular velocity just
 after an impact, e² x is that after the next (Housner, 1963), and x gives both the peak between them and
-the time between them.  So peaks, impact times and whole histories all speak about e.  For the slender
-linearised equation (2.9) the peaks obey φ' = 1 - √(1 - e² (1 - (1 - φ)²)) with φ = θ/θc (Housner 1963).
+the time between them.  So peaks, impact times and whole histories all speak about e.
 """
 
 from __future__ import annotations
@@ -54,32 +53,20 @@ class RestitutionFit:
     computed: float
 
 
-def peak_after(
-    block: Block, speed: float, pivot: int = 1, *, linear: bool = False, g: float = GRAVITY
-) -> float:
-    """Peak rotation [rad] of a block that leaves its base with ``speed`` [rad/s]; NaN if it would go over.
-
-    ``linear`` uses the slender linearised equation (Housner, 1963).
-    """
+def peak_after(block: Block, speed: float, pivot: int = 1, g: float = GRAVITY) -> float:
+    """Peak rotation [rad] of a block that leaves its base with ``speed`` [rad/s]; NaN if it would go over."""
     alpha, x = block.critical_angle(pivot), speed**2 / block.frequency(pivot, g) ** 2
-    # written so that small speeds keep their digits
-    if linear:
-        y = x / alpha**2
-        return alpha * y / (1 + math.sqrt(1 - y)) if y < 1 else math.nan
     sine, cosine = math.sin(alpha), math.cos(alpha)
     gain = x * cosine + x**2 / 4  # sin²α - sin²(α - θ)
     if cosine + x / 2 >= 1 or gain >= sine**2:
         return math.nan
+    # written so that small speeds keep their digits
     return math.asin(x * sine / 2 + cosine * gain / (sine + math.sqrt(sine**2 - gain)))
 
 
-def speed_before(
-    block: Block, peak: float, pivot: int = 1, *, linear: bool = False, g: float = GRAVITY
-) -> float:
+def speed_before(block: Block, peak: float, pivot: int = 1, g: float = GRAVITY) -> float:
     """Angular velocity [rad/s] with which a block comes down from rest at a rotation [rad]."""
     alpha, p = block.critical_angle(pivot), block.frequency(pivot, g)
-    if linear:
-        return p * math.sqrt(peak * (2 * alpha - peak))
     # cos(α - θ) - cos α as a product, which keeps its digits for small rotations
     return p * math.sqrt(4 * math.sin(alpha - peak / 2) * math.sin(peak / 2))
 
@@ -106,7 +93,6 @@ def restitution_from_peaks(
     block: Block,
     peaks: ArrayLike,
     *,
-    linear: bool = False,
     confidence: float = 0.95,
     g: float = GRAVITY,
 ) -> RestitutionFit:
@@ -119,8 +105,6 @@ def restitution_from_peaks(
     peaks
         Peak rotations in their order [rad], shape (n,), n ≥ 2; alternating in sign, or magnitudes.
         They alternate between the corners; the first is on that of the first peak's sign.
-    linear
-        Use the slender linearised equation (Housner, 1963).
     confidence
         Level of the interval.
     g
@@ -140,17 +124,16 @@ def restitution_from_peaks(
 
     def model(parameters: Floats) -> Floats:
         first, e = parameters
-        speed = speed_before(block, first, pivots[0], linear=linear, g=g)
+        speed = speed_before(block, first, pivots[0], g)
         found = [first]
         for pivot in pivots[1:]:
             speed *= e
-            found.append(peak_after(block, speed, pivot, linear=linear, g=g))
+            found.append(peak_after(block, speed, pivot, g))
         return np.array(found)
 
     # the ratio of the first and the last speed is already an estimate
     speeds = [
-        speed_before(block, peak, pivot, linear=linear, g=g)
-        for peak, pivot in zip(values, pivots, strict=True)
+        speed_before(block, peak, pivot, g) for peak, pivot in zip(values, pivots, strict=True)
     ]
     start = (speeds[-1] / speeds[0]) ** (1 / (len(values) - 1))
     ceiling = min(block.critical_angle(pivot) for pivot in pivots)
@@ -167,7 +150,6 @@ def restitution_from_impacts(
     times: ArrayLike,
     *,
     first_pivot: int = 1,
-    linear: bool = False,
     confidence: float = 0.95,
     g: float = GRAVITY,
 ) -> RestitutionFit:
@@ -181,7 +163,7 @@ def restitution_from_impacts(
         Times of successive impacts [s], shape (n,), n ≥ 3, rising; none may be left out.
     first_pivot
         Corner the block rocks on between the first two.
-    linear, confidence, g
+    confidence, g
         As for :func:`restitution_from_peaks`.
 
     Returns
@@ -203,10 +185,10 @@ def restitution_from_impacts(
     pivots = [first_pivot * (-1) ** k for k in range(len(intervals))]
 
     def flight(speed: float, pivot: int) -> float:
-        peak = peak_after(block, speed, pivot, linear=linear, g=g)
+        peak = peak_after(block, speed, pivot, g)
         if math.isnan(peak):
             return math.nan
-        return 2 * quarter_period(block, peak, pivot, linear=linear, g=g)
+        return 2 * quarter_period(block, peak, pivot, g=g)
 
     def model(parameters: Floats) -> Floats:
         begin, speed, e = parameters
@@ -217,8 +199,7 @@ def restitution_from_impacts(
         return np.array(found)
 
     largest = min(
-        speed_before(block, block.critical_angle(pivot), pivot, linear=linear, g=g)
-        for pivot in (+1, -1)
+        speed_before(block, block.critical_angle(pivot), pivot, g) for pivot in (+1, -1)
     ) * (1 - 1e-12)
 
     def speed_of(interval: float, pivot: int) -> float:

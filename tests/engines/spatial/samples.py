@@ -5,7 +5,8 @@ import math
 import numpy as np
 from scipy.signal import butter, sosfilt
 
-from rockfrag.engines.spatial.body import polygon_body, round_body
+from rockfrag.engines.spatial.body import solid_body
+from rockfrag.system.body import Circle, Polygon
 from rockfrag.units import GRAVITY
 
 DT = 0.01
@@ -27,10 +28,9 @@ def turned(vectors, angle):
 def box(width, depth, height, friction=20.0):
     """A uniform box."""
     x, y = width / 2, depth / 2
-    corners = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
-    return polygon_body(
-        corners, box_inertia(width, depth, height), height / 2, (friction, friction)
-    )
+    base = Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
+    inertia = box_inertia(width, depth, height)
+    return solid_body(base, inertia, (0.0, 0.0, height / 2), (friction, friction))
 
 
 def cylinder_inertia(radius, height):
@@ -41,12 +41,12 @@ def cylinder_inertia(radius, height):
 
 def cylinder(radius, height, friction=20.0, sides=0):
     """A uniform cylinder, on its rim or on a regular polygon in it."""
-    inertia = cylinder_inertia(radius, height)
-    if not sides:
-        return round_body(radius, np.zeros(2), inertia, height / 2, (friction, friction))
-    angle = 2 * math.pi * np.arange(sides) / sides
-    corners = radius * np.column_stack([np.cos(angle), np.sin(angle)])
-    return polygon_body(corners, inertia, height / 2, (friction, friction))
+    base = Circle(radius)
+    if sides:
+        angle = 2 * math.pi * np.arange(sides) / sides
+        base = Polygon(tuple(zip(radius * np.cos(angle), radius * np.sin(angle), strict=True)))
+    centre = (0.0, 0.0, height / 2)
+    return solid_body(base, cylinder_inertia(radius, height), centre, (friction, friction))
 
 
 def synthetic_motion(rng, components=2, seconds=20.0, dt=DT):

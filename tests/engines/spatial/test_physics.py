@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from rockfrag.engines.spatial._body import SIZE
-from rockfrag.engines.spatial.body import round_body
+from rockfrag.engines.spatial.body import solid_body
 from rockfrag.engines.spatial.outcome import history_table, run_case
 from rockfrag.rocking import Block, simulate
+from rockfrag.system.body import Circle
 from rockfrag.units import GRAVITY
 
 from .samples import DT, box, cylinder, synthetic_motion, turned
@@ -114,7 +115,7 @@ def test_near_flat_pass_turns_the_contact_and_keeps_the_tilt(disk, speed, expect
     tilt, radius, g = 0.05, 0.3, 9.81
     if disk:
         inertia = np.diag([radius**2 / 4, radius**2 / 4, radius**2 / 2])
-        body = round_body(radius, np.zeros(2), inertia, 1e-12, (1e6, 1e6), g)
+        body = solid_body(Circle(radius), inertia, (0.0, 0.0, 1e-12), (1e6, 1e6), g)
     else:
         body = cylinder(radius, radius, friction=1e6)
     # sideways: the lowest point goes round at this speed times the tilt

@@ -25,13 +25,7 @@ class PlanarContact:
     name = "planar contact"
     meets = frozenset(
         {
-            *(
-                Wish.TWO_BODIES,
-                Wish.MANY_BODIES,
-                Wish.VERTICAL,
-                Wish.FRICTION,
-                Wish.RESTITUTION,
-            ),
+            *(Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.VERTICAL, Wish.FRICTION, Wish.RESTITUTION),
             *(Wish.START, Wish.HISTORY),
         }
     )

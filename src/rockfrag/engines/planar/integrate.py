@@ -112,7 +112,6 @@ def integrate_cases(numbers, cases, closing, book, w, outcome):
         out.time = fall
         out.impacts = w.impacts
         out.paradoxes = w.paradoxes
-        out.forced = w.forced
         out.several = w.several
         out.given_way = w.given_way
         out.parted = w.parted
@@ -123,7 +122,6 @@ def integrate_cases(numbers, cases, closing, book, w, outcome):
             out.peak_slip[k] = w.peak_slip[k]
             out.slid[k] = w.slid[k]
             out.flights[k] = w.flights[k]
-            out.hits[k] = w.hits[k]
             out.slip[k] = slip(cases.bodies[b], w, k)
 
 
@@ -300,9 +298,9 @@ def _begin(p, w, start):
     w.work = w.rubbed = w.struck = 0.0
     for k in range(p.count):
         w.peak[k] = w.peak_speed[k] = w.peak_slip[k] = 0.0
-        w.slid[k] = w.flights[k] = w.hits[k] = 0
-    w.impacts = w.slips = w.paradoxes = w.forced = w.fallen = w.parted = w.resting = 0
-    w.met = w.several = w.searches = w.given_way = 0
+        w.slid[k] = w.flights[k] = 0
+    w.impacts = w.paradoxes = w.forced = w.fallen = w.parted = w.resting = 0
+    w.met = w.several = w.given_way = 0
 
 
 @kernel
@@ -406,7 +404,6 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
         for end in range(2):
             if w.touching[k, end] == 1 and approach(p, w, k, end) < -1e-13 * p.speed:
                 hit = True
-                w.hits[k] += 1
     if hit:
         strike(p, w, now.ah, now.av, closing * p.speed, False)
         _touch_closed(p, w)
@@ -419,8 +416,6 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
         settle(p, w, now.ah, now.av, False)
         kind = PARADOX
     for k in range(p.count):
-        if w.slides[k] != 0 and w.old_slides[k] == 0:
-            w.slips += 1
         if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
             w.flights[k] += 1
     return _note(p, w, now.time, kind, contact_events, count)

@@ -49,6 +49,21 @@ BODY = np.dtype(
     ]
 )
 
+TOLD = [
+    ("peak", F, (MOST,)),  # largest |θ| over the critical angle of its sign, and ...
+    ("peak_speed", F, (MOST,)),  # ... largest |θ'| [rad/s] of each body
+    ("peak_slip", F, (MOST,)),  # largest |slip| of each interface [m]
+    ("slid", INT, (MOST,)),  # whether an interface has ever reached its limit, in impacts too
+    ("flights", INT, (MOST,)),  # times that an interface opened at both ends
+    ("impacts", INT),
+    ("paradoxes", INT),
+    ("several", INT),  # times that more than one mode was found consistent
+    ("given_way", INT),  # impacts in which a law would have gained energy
+    ("fallen", INT),  # 0 none, or the body that fell first, from 1 below
+    ("parted", INT),  # 0 none, or the interface that is open furthest as a body falls, from 1 below
+]
+"""What is told of a case."""
+
 WORK = np.dtype(
     [
         ("q", F, (3 * MOST,)),  # x, y, θ of each body relative to the ground
@@ -113,45 +128,14 @@ WORK = np.dtype(
         ("work", F),
         ("rubbed", F),  # lost to friction
         ("struck", F),  # lost in impacts
-        ("peak", F, (MOST,)),  # largest |θ| over the critical angle of its sign, and ...
-        ("peak_speed", F, (MOST,)),  # ... largest |θ'| [rad/s] of each body
-        ("peak_slip", F, (MOST,)),  # largest |slip| of each interface [m]
-        ("impacts", INT),
-        ("slips", INT),  # times that an interface began to slide
-        ("flights", INT, (MOST,)),  # times that an interface opened at both ends
-        ("hits", INT, (MOST,)),  # impacts of each interface
-        ("slid", INT, (MOST,)),  # whether an interface has ever reached its limit, in impacts too
-        ("paradoxes", INT),
+        *TOLD,
         ("forced", INT),
         ("met", INT),  # contact events within the sample
-        ("several", INT),  # times that more than one mode was found consistent
-        ("searches", INT),
-        ("given_way", INT),  # impacts in which a law would have gained energy
-        ("fallen", INT),
-        ("parted", INT),  # interface that is open furthest as a body falls, from 1
         ("resting", INT),
     ]
 )
 
-OUTCOME = np.dtype(
-    [
-        ("fallen", INT),  # 0 none, or the body that fell first, from 1 below
-        ("parted", INT),  # 0 none, or the interface at which the column parted, from 1 below
-        ("time", F),  # of the fall [s]
-        ("impacts", INT),
-        ("paradoxes", INT),
-        ("forced", INT),
-        ("several", INT),
-        ("given_way", INT),
-        ("peak", F, (MOST,)),
-        ("peak_speed", F, (MOST,)),
-        ("peak_slip", F, (MOST,)),
-        ("slip", F, (MOST,)),
-        ("slid", INT, (MOST,)),
-        ("flights", INT, (MOST,)),
-        ("hits", INT, (MOST,)),
-    ]
-)
+OUTCOME = np.dtype([*TOLD, ("time", F), ("slip", F, (MOST,))])  # time of the fall [s]
 
 
 class Part(NamedTuple):

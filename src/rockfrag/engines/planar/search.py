@@ -408,7 +408,6 @@ def search(p, w, ah, av, impact, force, motion, exclude):
     of a mode that has just failed, -1 for none.
     """
     weigh(p, w, ah, av, impact)
-    w.searches += 1
     _only_touching(p, w)
     if not impact:
         for k in range(p.count):

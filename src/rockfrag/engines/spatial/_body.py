@@ -63,11 +63,7 @@ def arm(body, up, i):
     """Point i from the centre of mass, in the body, where ``up`` is the vertical as the body sees it."""
     if i == rim_contact(body):
         u, _ = rim_direction(up)
-        return (
-            body.centre[0] + body.rim * u[0],
-            body.centre[1] + body.rim * u[1],
-            -body.height,
-        )
+        return (body.centre[0] + body.rim * u[0], body.centre[1] + body.rim * u[1], -body.height)
     return (body.points[i, 0], body.points[i, 1], body.points[i, 2])
 
 

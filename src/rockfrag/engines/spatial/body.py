@@ -1,6 +1,7 @@
 """Bodies as the kernels know them, made of a system of one body in space."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,65 +25,38 @@ def kernel_body(system: System, g: float = GRAVITY) -> np.void:
     static, kinetic = NEVER_SLIDES, NEVER_SLIDES
     if contact.friction is not None:
         static, kinetic = (min(value, NEVER_SLIDES) for value in contact.friction)
-    x, y, height = body.centre
-    inertia = body.tensor / body.mass
-    if isinstance(body.base, Circle):
-        centre = np.array(body.base.centre) - (x, y)
-        return round_body(body.base.radius, centre, inertia, height, (static, kinetic), g)
-    assert isinstance(body.base, Polygon)
-    vertices = np.array(body.base.vertices) - (x, y)
-    return polygon_body(vertices, inertia, height, (static, kinetic), g)
+    assert isinstance(body.base, (Circle, Polygon))
+    return solid_body(body.base, body.tensor / body.mass, body.centre, (static, kinetic), g)
 
 
-def polygon_body(
-    vertices: Array,
+def solid_body(
+    base: Circle | Polygon,
     inertia: Array,
-    height: float,
+    centre: Sequence[float],
     friction: tuple[float, float],
     g: float = GRAVITY,
 ) -> np.void:
-    """Return a body on a convex polygon, whose corners come anticlockwise from below the centre of mass [m]."""
-    count = len(vertices)
-    if count > MOST_VERTICES:
-        raise InputError(
-            f"base: {count} vertices are more than the {MOST_VERTICES} that a body in space may have; "
-            "leave out those that hardly turn the outline, or give a circle."
-        )
-    body = np.zeros(1, BODY)
-    body["count"], body["points"][0, :count, :2] = count, vertices
-    return _filled(body, inertia, height, friction, g)
-
-
-def round_body(
-    radius: float,
-    centre: Array,
-    inertia: Array,
-    height: float,
-    friction: tuple[float, float],
-    g: float = GRAVITY,
-) -> np.void:
-    """Return a body on a round base, whose centre counts from below the centre of mass [m]."""
-    body = np.zeros(1, BODY)
-    body["rim"], body["centre"] = radius, centre
-    return _filled(body, inertia, height, friction, g)
-
-
-def _filled(
-    body: NDArray[np.void],
-    inertia: Array,
-    height: float,
-    friction: tuple[float, float],
-    g: float,
-) -> np.void:
-    """Complete the record of a body whose base is in it."""
-    body["height"], body["inertia"] = height, inertia
+    """Return a body on a base, with its tensor over its mass [m²] and its centre of mass over the base [m]."""
+    made = np.zeros(1, BODY)
+    body: np.void = made[0]
+    below = np.array(centre[:2])
+    if isinstance(base, Circle):
+        body["rim"], body["centre"] = base.radius, np.array(base.centre) - below
+    else:
+        count = len(base.vertices)
+        if count > MOST_VERTICES:
+            raise InputError(
+                f"base: {count} vertices are more than the {MOST_VERTICES} that a body in space may have; "
+                "leave out those that hardly turn the outline, or give a circle."
+            )
+        body["count"], body["points"][:count, :2] = count, np.array(base.vertices) - below
+    body["height"], body["inertia"] = centre[2], inertia
     body["static"], body["kinetic"] = friction
-    if not fill_body(body.view(np.recarray)[0], g):
+    if not fill_body(made.view(np.recarray)[0], g):
         raise InputError(
             "base: the centre of mass is not above the base, so the body cannot stand."
         )
-    made: np.void = body[0]
-    return made
+    return body
 
 
 def standing(body: np.void, turned: float = 0.0) -> Array:

@@ -134,13 +134,7 @@ def integrate_call(call, samples, vertical, history, contact_events):
     """Integrate the body of a call; see ``single.integrate``."""
     shaking = Shaking(samples, vertical, call.scale, call.dt, call.substeps, call.free_samples)
     scratch = Scratch(
-        call.state,
-        call.before,
-        call.trial,
-        call.series,
-        call.restoring,
-        call.balances,
-        call.beyond,
+        call.state, call.before, call.trial, call.series, call.restoring, call.balances, call.beyond
     )
     call.done = _integrate(
         call.body, shaking, call.initial, history, contact_events, call.summary, scratch
