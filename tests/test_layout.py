@@ -53,7 +53,7 @@ def test_subpackage_imports_from_the_left_only(subpackage):
         beyond = (imported_subpackages(path) & set(SUBPACKAGES)) - allowed
         assert not beyond, f"{path.relative_to(SOURCE)} imports from {', '.join(sorted(beyond))}"
         looked_at += 1
-    assert looked_at > 3
+    assert looked_at > 2
 
 
 @pytest.mark.parametrize("subpackage", LIBRARY)

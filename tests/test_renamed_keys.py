@@ -1,5 +1,7 @@
 """An old study or table is told the new name of a key or a column in one sentence."""
 
+from pathlib import Path
+
 import pandas as pd
 import pytest
 
@@ -21,30 +23,27 @@ def test_a_name_that_is_known_here_is_no_old_one():
     check_names("table", ["event"], ["motion"])
 
 
-def test_a_catalogue_with_the_old_column_is_told_the_new_one(tmp_path):
-    path = tmp_path / "motions.csv"
-    path.write_text("name,event,file\nA,Friuli,a.txt\n", encoding="utf-8")
-    with pytest.raises(
-        InputError, match=r"motions\.csv: event is now called earthquake; rename it\.$"
-    ):
-        read_catalogue(path)
+def table(folder: Path, text: str) -> Path:
+    path = folder / "motions.csv"
+    path.write_text(text, encoding="utf-8")
+    return path
 
 
-def test_a_table_with_the_old_column_is_told_the_new_one(tmp_path):
-    path = tmp_path / "table.csv"
-    path.write_text("event,value\nFriuli,1\n", encoding="utf-8")
-    with pytest.raises(InputError, match="event is now called earthquake"):
-        read_rows(path, ["earthquake", "value"])
+TESTS = pd.DataFrame({"pga_g": [0.1, 0.2], "overturned": [0, 1], "event": ["a", "b"]})
 
 
-def test_a_study_with_an_old_key_is_told_the_new_one():
-    with pytest.raises(InputError, match=r"my.yaml: key columns: event is now called earthquake"):
-        checked({"table": "t.csv", "columns": {"event": "quake"}}, "measured_table", "my.yaml")
-
-
-def test_a_data_frame_with_the_old_column_is_told_the_new_one():
-    table = pd.DataFrame({"pga_g": [0.1, 0.2], "overturned": [0, 1], "event": ["a", "b"]})
-    with pytest.raises(InputError, match="event is now called earthquake"):
-        observations_from_table(table, "pga_g", motion=None, earthquake="earthquake")
-    with pytest.raises(InputError, match="event is now called earthquake"):
-        check_tests(pd.DataFrame({"event": ["a"], "object": ["b"]}))
+@pytest.mark.parametrize(
+    "read",
+    [
+        lambda folder: read_catalogue(table(folder, "name,event,file\nA,Friuli,a.txt\n")),
+        lambda folder: read_rows(table(folder, "event,value\nA,1\n"), ["earthquake", "value"]),
+        lambda _: checked(
+            {"table": "t.csv", "columns": {"event": "x"}}, "measured_table", "a.yaml"
+        ),
+        lambda _: observations_from_table(TESTS, "pga_g", motion=None, earthquake="earthquake"),
+        lambda _: check_tests(pd.DataFrame({"event": ["a"], "object": ["b"]})),
+    ],
+)
+def test_what_has_an_old_name_is_told_the_new_one(tmp_path, read):
+    with pytest.raises(InputError, match=r"event is now called earthquake; rename it\.$"):
+        read(tmp_path)

@@ -39,10 +39,7 @@ def sha256_of(path: Path) -> str:
 
 
 def check_name(name: str) -> None:
-    """Check that a name which a user gave can stand in tables, figures and file names.
-
-    It is short and printable, holds a letter or digit, and does not begin as a formula does.
-    """
+    """Check that a name which a user gave can stand in tables, figures and file names."""
     if len(name) > LONGEST_NAME or not name.isprintable() or not any(c.isalnum() for c in name):
         raise InputError(
             f"expected a name with a letter or digit and of at most {LONGEST_NAME} characters, "
@@ -76,10 +73,7 @@ def file_name(name: str) -> str:
 
 
 def distinct_file_names(names: Iterable[str], found: dict[str, str] | None = None) -> None:
-    """Check that names can be used, and made into files that stay apart where case is ignored too.
-
-    They are added to ``found``, names that were checked before, by what they are compared as.
-    """
+    """Check that names, and those ``found`` before, can be used and make files that stay apart in any case."""
     found = {} if found is None else found
     for name in names:
         check_name(name)
@@ -114,11 +108,7 @@ def write_text(text: str, path: str | os.PathLike[str]) -> None:
 
 
 def csv_text(table: pd.DataFrame) -> str:
-    """Text of a table as CSV with Unix line ends.
-
-    A text that a spreadsheet would take for a formula (what a record's header says may be anything) gets
-    an apostrophe before it, which spreadsheets take as the sign of a text.
-    """
+    """Text of a table as CSV with Unix line ends; what a spreadsheet would take for a formula becomes text."""
     safe = table.copy(deep=False)
     for column in table.select_dtypes(exclude=["number", "bool", "datetime"]):
         if any(_as_text(value) is not value for value in table[column].unique()):
@@ -138,11 +128,7 @@ def _as_text(value: Any) -> Any:
 
 
 def write_table(table: pd.DataFrame, *paths: str | os.PathLike[str]) -> None:
-    """Write a table to each path, by its ending as ``.csv`` or ``.parquet``, without the index.
-
-    Floats are written with their shortest exact text, so a CSV carries the same numbers as a Parquet
-    file and two runs give the same bytes.
-    """
+    """Write a table to each path, by its ending as ``.csv`` or ``.parquet``, without the index."""
     for path in paths:
         ending = Path(path).suffix
         with whole_file(path) as part:

@@ -21,10 +21,7 @@ def shown(value: object) -> str:
 
 
 def real_number(name: str, value: object, unit: str = "") -> float:
-    """Return a finite number as it is, or say in one sentence why it is none.
-
-    Text, booleans, None, arrays, complex and infinite numbers are none.
-    """
+    """Return a finite number as it is, or say in one sentence why it is none."""
     return _checked(name, value, f"a finite number{_of(unit)}", lambda _: True)
 
 
@@ -62,10 +59,7 @@ def _of(unit: str) -> str:
 
 
 def real_array(name: str, data: object, unit: str = "") -> NDArray[np.float64]:
-    """Return data as an array of floats, or say in one sentence why they cannot be used.
-
-    Text, booleans, complex numbers, sets, mappings, ragged lists and arrays with a mask cannot.
-    """
+    """Return data as an array of floats, or say in one sentence why they cannot be used."""
     wanted = f"{name}: expected numbers{f' [{unit}]' if unit else ''}"
     if isinstance(data, np.ma.MaskedArray):
         raise InputError(f"{wanted}, got a masked array; fill its gaps first.")

@@ -18,11 +18,10 @@ _LOOK_S = 0.05
 
 @contextmanager
 def locked(path: Path, patience_s: float = 0.0) -> Iterator[bool]:
-    """Hold the lock of a file while the block lasts, if it can be had within some seconds.
+    """Hold the lock of a file, which is made if it is not there, while the block lasts.
 
-    The kernel frees the lock when the process that holds it ends, however it ends; the file is made if it is not
-    there, and stays. Tells whether no other process holds the lock; also true where the system or the folder
-    knows no locks (on some network drives), as nothing is known of another process there.
+    The kernel frees it when its process ends, however it ends. Tells whether no other process holds the lock; also
+    true where the system or the folder knows no locks (on some network drives).
     """
     file = None
     free = True

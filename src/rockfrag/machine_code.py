@@ -53,10 +53,7 @@ def _whole_or_nothing(
 
 
 def _loading_alone(cache: Any) -> Callable[[Any, Any], Any]:
-    """Read machine code that allocates nothing without what numba does first: it gets ready to compile.
-
-    That takes ten times as long as the reading, and imports scipy's linear algebra; a compiler does it by itself.
-    """
+    """Read machine code that allocates nothing without what numba does first: it gets ready to compile."""
 
     def load(signature: Any, target: Any) -> Any:
         with cache._guard_against_spurious_io_errors():

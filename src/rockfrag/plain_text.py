@@ -16,11 +16,7 @@ _UNFIT = re.compile(
 
 
 def unfit_character(text: str) -> str:
-    """First character that no line of a page or a table can show, or an empty text.
-
-    These are control characters, marks that turn the direction of writing, and codes that stand for
-    nothing.
-    """
+    """First character that no line of a page or a table can show, or an empty text."""
     found = _UNFIT.search(text)
     return found[0] if found else ""
 
@@ -31,10 +27,7 @@ def printable(text: str) -> str:
 
 
 def read_text(path: str | os.PathLike[str], most_bytes: int) -> str:
-    """Read a file of text in UTF-8, or in UTF-16 with a byte order mark.
-
-    A file that is too large, a workbook, in another encoding, or with characters that no text has is refused.
-    """
+    """Read a file of text in UTF-8, or in UTF-16 with a byte order mark."""
     file = Path(path)
     try:
         if file.exists() and not file.is_file():

@@ -63,11 +63,7 @@ def check_density(width: float, height: float, mass: float) -> None:
 
 
 def light_giant_warning(width: float, height: float, mass: float) -> str:
-    """Say that a block is as large as a house and lighter than air, or return an empty text.
-
-    So looks a block whose sizes are given in centimetres or millimetres. One that is only heavy or light may be an
-    ideal one: an immovable pedestal, or a lone block, whose mass matters to nothing.
-    """
+    """Say that a block is as large as a house and lighter than air, as one in centimetres, or return nothing."""
     # the depth is not known; the thinnest that is admitted
     densest = mass / width / width / height / DEPTHS[0]
     if max(width, height) <= LARGEST_SIZE or densest >= AIR:

@@ -21,10 +21,8 @@ _waiting: tuple[Callable[[Any], Any], Sequence[Any]] = (str, ())
 def in_processes(function: Callable[[T], R], things: Iterable[T], processes: int) -> list[R]:
     """Call a function for each of several things and return the results in their order, whatever the processes.
 
-    The function may be a local one, as the processes are copies of this one. Things are taken one at a time by
-    one process, all at once by several. Results should be small: a process that was killed while it handed over
-    more than a pipe takes at once would leave this one waiting for the rest. One that was killed otherwise raises
-    ``BrokenProcessPool``.
+    The function may be a local one. Results should be small: a process that was killed while it handed over more
+    than a pipe takes at once would leave this one waiting; one killed otherwise raises ``BrokenProcessPool``.
     """
     if processes == 1 or "fork" not in multiprocessing.get_all_start_methods():
         return [function(thing) for thing in things]

@@ -42,9 +42,8 @@ def read_schema(name: str) -> dict[str, Any]:
 def checked(content: object, name: str, where: str) -> dict[str, Any]:
     """Check the content of a YAML file against a schema, and return it with quantities in usual units.
 
-    In the schema (:func:`read_schema`) the ``description`` of a key says in words what is expected, and a key
-    with ``quantity`` may be given in any unit of its dimension. The message names the file, the key, what was
-    expected and what was found.
+    In the schema the ``description`` of a key says in words what is expected, and a key with ``quantity`` may be
+    given in any unit of its dimension.
     """
     schema = read_schema(name)
     with errors_of(where):

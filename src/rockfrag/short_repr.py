@@ -11,10 +11,7 @@ FEW = 6  # arrays of so many numbers are shown whole
 
 
 def short_repr(result: object) -> str:
-    """Return a text that fits a screen, a line for each field of a dataclass.
-
-    A result is printed by its whole arrays otherwise, and a table by all of its columns.
-    """
+    """Return a text that fits a screen, a line for each field of a dataclass."""
     fields = [field.name for field in dataclasses.fields(result) if field.repr]  # type: ignore[arg-type]
     lines = [f"    {name}={_shown(getattr(result, name))}" for name in fields]
     lines = [line if len(line) < LONGEST_LINE else f"{line[: LONGEST_LINE - 2]}…" for line in lines]

@@ -74,10 +74,7 @@ def dimension_of(unit: str) -> str:
 
 
 def convert(value: float, unit: str, to: str) -> float:
-    """Express a value in another unit of the same dimension.
-
-    Units written in decimals differ by a division, which rounds once: 12.4 cm are 0.124 m.
-    """
+    """Express a value in another unit of the same dimension."""
     if unit == to:
         return value
     units = DIMENSIONS[dimension_of(to)]
@@ -109,19 +106,15 @@ def quantity(given: object, to: str, unit: str | None) -> float:
         raise InputError(f"{expected}, found {given!r:.60}.")
     if not math.isfinite(value):
         raise InputError(f"{expected}, found {given!r:.60}.")
-    found = _as_in_names(written) if written else unit
+    # kg m², kg·m^2 and kg*m2 are kg_m2, cm/s² is cm_s2
+    plain = written.replace("²", "2").replace("^", "").strip()
+    found = "_".join(re.split(r"[\s·*_/]+", plain)) if written else unit
     if found is None:
         raise InputError(f"{expected}, found {given!r:.60} without a unit.")
     if found not in units:
         known = ", ".join(_as_written(unit) for unit in units)
         raise InputError(f"{expected} in one of the units {known}, found {given!r:.60}.")
     return convert(value, found, to)
-
-
-def _as_in_names(written: str) -> str:
-    """``kg m²``, ``kg·m^2`` and ``kg*m2`` are ``kg_m2``, ``cm/s²`` is ``cm_s2``."""
-    plain = written.replace("²", "2").replace("^", "")
-    return "_".join(re.split(r"[\s·*_/]+", plain.strip()))
 
 
 def _as_written(unit: str) -> str:

@@ -23,10 +23,7 @@ class _StrictLoader(yaml.SafeLoader):
     values, depth = 0, 0
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """Compose a value, unless there are too many or too deep ones.
-
-        Aliases are refused: no configuration needs them, and they can stand for millions of values.
-        """
+        """Compose a value, unless there are too many or too deep ones; an alias can stand for millions."""
         self.values += 1
         coming = self.peek_event()
         if self.values > MOST_VALUES or self.depth > DEEPEST:

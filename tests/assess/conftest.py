@@ -1,9 +1,12 @@
 """Motions of assessments: made ones, which need no network, and the default set."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.request import Request, make_request
 
 
 @pytest.fixture(scope="session")
@@ -11,6 +14,18 @@ def motions(made_motions) -> MotionSet:
     """Twenty-four made motions of six earthquakes, two components a record."""
     made = made_motions(24)
     return MotionSet(made, made, tuple((i, i + 1) for i in range(0, len(made), 2)), "made motions")
+
+
+@pytest.fixture(scope="session")
+def few(motions) -> MotionSet:
+    """Four records of two components."""
+    ground, base = motions.ground[:8], motions.base[:8]
+    return replace(motions, ground=ground, base=base, pairs=motions.pairs[:4])
+
+
+def asked(**settings) -> Request:
+    """A request of these keys of ``statue.yaml``."""
+    return make_request(settings, "test")
 
 
 @pytest.fixture

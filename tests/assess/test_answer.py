@@ -17,12 +17,10 @@ from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.rocking import Block
 
+from .conftest import asked
+
 FIGURE = {"width": "35 cm", "height": "120 cm", "mass": "180 kg"}
 ON_PLINTH = FIGURE | {"pedestal": {"width": "50cm", "height": "90cm", "mass": "400kg"}}
-
-
-def asked(**settings):
-    return make_request(settings, "test")
 
 
 @pytest.fixture(scope="module")
@@ -141,6 +139,14 @@ def test_answers_are_json_with_all_that_an_independent_computation_needs(on_plin
         (FIGURE | {"hazard": ["absent.csv"]}, "absent.csv"),
         ({"mesh": {"file": "absent.stl"}}, "absent.stl"),
         ({"mesh": {"file": "a.stl"}, "width": "1 m"}, "follows from the mesh"),
+        (FIGURE | {"tolerances": {"mass": 0.1}}, "without a pedestal"),
+        (FIGURE | {"tolerances": {"period": 0.1}}, "stands on the ground"),
+        (FIGURE | {"round": True, "depth": "30 cm"}, "diameter"),
+        (FIGURE | {"cg_offset": "5 cm", "restitution": 0.999}, "gain energy"),
+        (
+            FIGURE | {"records": {"paths": ["a"]}, "distance_km": 10},
+            "chooses among the default motions",
+        ),
     ],
 )
 def test_what_makes_no_sense_is_refused_in_a_sentence(settings, words):

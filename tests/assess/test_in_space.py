@@ -1,7 +1,6 @@
 """A base whose width and depth are given is answered in space, beside the answer in one plane."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,26 +8,15 @@ import pytest
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.as_json import as_json
 from rockfrag.assess.objects import Objects
-from rockfrag.assess.request import make_request
 from rockfrag.assess.words import five_lines
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.errors import InputError
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.system import Block
 
+from .conftest import asked
+
 BOX = {"width": "35 cm", "depth": "50 cm", "height": "120 cm", "mass": "180 kg"}
-
-
-def asked(**settings):
-    return make_request(settings, "test")
-
-
-@pytest.fixture(scope="module")
-def few(motions):
-    """Four records of two components."""
-    return replace(
-        motions, ground=motions.ground[:8], base=motions.base[:8], pairs=motions.pairs[:4]
-    )
 
 
 @pytest.fixture(scope="module")

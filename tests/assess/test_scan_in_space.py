@@ -20,14 +20,6 @@ MEASURED = {"contact_tolerance": "1 mm", "edge_retreat": "0 mm"}
 
 
 @pytest.fixture(scope="module")
-def few(motions):
-    """Four records of two components."""
-    return replace(
-        motions, ground=motions.ground[:8], base=motions.base[:8], pairs=motions.pairs[:4]
-    )
-
-
-@pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     trimesh = pytest.importorskip("trimesh")
     made = tmp_path_factory.mktemp("scans")

@@ -11,13 +11,11 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.conversion import OF_THE_SITE, UNKNOWN, VelocityRelation
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.page import page_of
-from rockfrag.assess.request import Records, make_request
+from rockfrag.assess.request import Records
 from rockfrag.assess.sources import SOURCES, SPACE, parts_of
 from rockfrag.assess.words import five_lines
 
-
-def asked(**settings):
-    return make_request(settings, "test")
+from .conftest import asked
 
 
 def set_of(records: int, rng: np.random.Generator, noise) -> tuple[MotionSet, np.ndarray]:

@@ -18,7 +18,7 @@ from rockfrag.assess.narrowing import is_wide, narrowed
 from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.page import page_of
 from rockfrag.assess.place import PERIOD_FACTORS
-from rockfrag.assess.request import make_request, read_request
+from rockfrag.assess.request import read_request
 from rockfrag.assess.risk import Estimate, estimate, fraction_target
 from rockfrag.assess.scale import step_of
 from rockfrag.assess.words import assumptions, five_lines, helps, range_words
@@ -27,11 +27,9 @@ from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.outcomes.limit_states import forget_limit_state, limit_state
 
+from .conftest import asked
+
 STATUE = {"width": "42 cm", "height": "1.65 m", "mass": "410 kg", "cg_height": "0.75 m"}
-
-
-def asked(**settings):
-    return make_request(settings, "test")
 
 
 def refused(capsys, *options: str) -> str:
@@ -381,21 +379,6 @@ def test_an_italian_table_is_read(tmp_path):
     path.write_text("PGA (g);Tr (anni)\n0,05;30\n0,13;475\n0,2;2475\n")
     (curve,) = read_hazard([path])
     assert curve.level(1 / 475) == pytest.approx(0.13)
-
-
-@pytest.mark.parametrize(
-    ("settings", "words"),
-    [
-        ({"tolerances": {"mass": 0.1}}, "without a pedestal"),
-        ({"tolerances": {"period": 0.1}}, "stands on the ground"),
-        ({"round": True, "depth": "30 cm"}, "diameter"),
-        ({"cg_offset": "5 cm", "restitution": 0.999}, "gain energy"),
-        ({"records": {"paths": ["a"]}, "distance_km": 10}, "chooses among the default motions"),
-    ],
-)
-def test_what_would_have_no_effect_or_no_sense_is_refused(settings, words):
-    with pytest.raises(InputError, match=words):
-        asked(**STATUE, **settings)
 
 
 def test_a_centre_of_gravity_off_the_middle_is_answered(motions):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
 from rockfrag.fragility.observations import Observations
 
@@ -95,17 +94,6 @@ def test_points_rise_strictly_even_where_values_differ_by_rounding():
     at, value = Fractions(x, fraction, fraction, fraction, 0.6, nan, 0.3, nan).knots()
     assert (np.diff(at) > 1e-7).all() and (np.diff(value) > 1e-7).all()
     assert value[0] == 0 and value[-1] == 1
-
-
-def test_rejected_curve_says_the_median_and_dispersion_to_use_with_their_limits():
-    rng = np.random.default_rng(RNG)
-    low, high = np.log(0.1) + 0.05 * rng.normal(size=20), 0.05 * rng.normal(size=22)
-    data = swept(np.append(low, high), np.arange(42), np.geomspace(0.05, 2, 80))
-    found = fragility_of(data)
-    assert found.checks.rejected
-    (said,) = [note for note in found.warnings if "is rejected" in note]
-    assert "whose median is" in said and said.count("90 % limits") == 2
-    assert found.checks.fractions.theta == pytest.approx(1.0, rel=0.15)
 
 
 def test_many_groups_are_left_out_in_blocks_with_the_same_curve():

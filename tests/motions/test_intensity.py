@@ -59,12 +59,6 @@ def test_mean_period_weighs_periods_with_squared_amplitudes():
     assert intensity.mean_period(Motion(two, 0.01)) == pytest.approx((0.5 + 4 * 0.1) / 5, rel=1e-6)
 
 
-def test_spectral_measures_are_points_of_the_spectrum(noise):
-    motion = noise(1, tapered=True)
-    spectrum = m.response_spectrum(motion, [0.3], 0.1)
-    assert intensity.spectral_acceleration(motion, 0.3, 0.1) == spectrum.pseudo_acceleration[0]
-
-
 def test_housner_intensity_of_a_short_pulse_is_its_impulse_times_the_range_of_periods():
     # an undamped oscillator keeps the pseudo-velocity that the impulse gave it
     pulse = m.rectangular(100.0, 0.002, dt=0.001)
@@ -115,19 +109,6 @@ def test_compressed_time_follows_similitude(noise, seed, factor):
     assert intensity.significant_duration(model) == pytest.approx(duration / factor, rel=1e-9)
     sa = intensity.spectral_acceleration(motion, 0.5)
     assert intensity.spectral_acceleration(model, 0.5 / factor) == pytest.approx(sa, rel=1e-9)
-
-
-def test_motion_of_zeros_has_no_durations_and_no_periods():
-    nothing = Motion(np.zeros(100), 0.01)
-    assert intensity.arias(nothing) == intensity.cav(nothing) == intensity.pgd(nothing) == 0.0
-    assert housner_and_average(nothing)[0] == 0.0
-    for measure in (
-        intensity.pgv_over_pga,
-        intensity.significant_duration,
-        intensity.mean_period,
-        intensity.predominant_period,
-    ):
-        assert math.isnan(measure(nothing))
 
 
 @pytest.mark.parametrize("alpha", [0.0, -0.1, math.nan])

@@ -76,6 +76,7 @@ def test_motion_of_zeros_has_nan_where_nothing_is_defined():
         *("pgv_over_pga_s", "d5_75_s", "d5_95_s", "mean_period_s", "predominant_period_s"),
         *("pulse_period_s", "pulse_velocity_cm_s", "pulse_explained"),
     }
+    assert row["arias_m_s"] == row["cav_m_s"] == row["pgd_cm"] == row["housner_cm"] == 0.0
 
 
 def test_motion_of_one_sample_is_measured():

@@ -30,13 +30,6 @@ def tied(tests_table, step=0.05):
     return on_levels(tests_table(1, effect=0, sd_earthquake=0, sd_motion=0, sd_pair=0), step)
 
 
-def test_pairs_that_agree_leave_a_change_of_one_step_open(tests_table):
-    effect = mean_effect(pair_tests(tied(tests_table)).table)
-    assert effect.mean == 0
-    assert effect.upper >= math.log(1.05) - 1e-12
-    assert effect.lower <= -math.log(1.05) + 1e-12
-
-
 @pytest.mark.parametrize(
     ("step", "margin", "shown"),
     [(0.05, 0.10, True), (0.05, 0.05, False), (0.05, 0.01, False), (0.005, 0.01, True)],

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,15 @@ class Built:
     def dt_to_give(self) -> float | None:
         """The interval that a user has to name, None where the file states it."""
         return None if self.stated_dt else self.dt
+
+
+def variant(built: Built, name: str, change: Callable[[bytes], bytes], **facts: Any) -> Built:
+    """Write a record once more, changed and under another name."""
+    content = change(built.path.read_bytes())
+    built.path.unlink()
+    path = built.path.with_name(name)
+    path.write_bytes(content)
+    return replace(built, path=path, **facts)
 
 
 def wave(seed: int, scale: float, digits: int) -> NDArray[np.float64]:
@@ -135,9 +145,7 @@ def cosmos_header(azimuth: int, step_ms: float, comments: int) -> str:
         "Recorder: SSA-2  s/n 1238 ( 1 Chns of 12  at Sta) Sensor:FBA-11  s/n 1889",
         "Rcrd start time:06/16/2005, 20:53:04.400 UTC (Q=2) RcrdId: none",
         f"Sta Chan  1: {azimuth} deg (Rcrdr Chan  1) Location: free field",
-        "Raw record length = 70.000  sec, Uncor max =   -.167 g  at   27.850 sec",
         "Processed: 06/17/2005, 12:01:00 PDT      Max =  -161.962 cm/sec2",
-        "Record filtered below 0.30  Hz and above 40.0 Hz",
         "Values used when parameter or data value is unknown/unspecified:   -999, -999.0",
         " 100 Integer-header values follow on  10 lines, Format= (10I8)",
     ]
@@ -498,16 +506,13 @@ def cwa(folder: Path) -> Built:
     lines = [
         "#Earthquake Information",
         "#Origin Time(GMT+08): 2018/02/06-23:50:42",
-        "#EpicenterLongitude(E): 121.69",
         "#Magnitude(Ml): 6.0",
-        "#Station Information",
         "#StationCode: ECU",
         "#StationName: Chulu",
         "#StartTime(GMT+08): 2018/02/06-23:50:29.000",
         "#RecordLength(sec): 1",
         "#SampleRate(Hz): 50",
         "#AmplitudeUnit:  gal. DCoffset(corr)",
-        "#AmplitudeMAX. U:  1.000~ -1.017",
         "#DataSequence: Time U(+); N(+); E(+)",
         "#Data: 4F10.3",
         *("".join(f"{value:10.3f}" for value in (i * 0.02, *values[:, i])) for i in range(N)),
@@ -568,7 +573,6 @@ def afad(folder: Path) -> Built:
         f"NUMBER OF DATA          : {N}",
         "SAMPLING INTERVAL (sec) : 0.01",
         "RAW PGA VALUES (gal)    : (N-S) 58.542232 (E-W) 59.994425 (U-D) 25.542791",
-        "Copyright EARTHQUAKE DEPARTMENT",
         "       N-S          E-W          U-D",
         *("".join(f"{value:13.6f}" for value in values[:, i]) for i in range(N)),
     ]
@@ -615,9 +619,7 @@ def unam(folder: Path) -> Built:
     values = np.array([wave(seed, 40.0, 3) for seed in (46, 47, 48)])
     ruler = "---------+---------+---------+"
     lines = [
-        "*" * 40,
         "ARCHIVO ESTANDAR DE ACELERACION:",
-        "VERSION DEL FORMATO                    : 2.0",
         "NOMBRE DE LA ESTACION                  : IDEI PATIO 5",
         "CLAVE DE LA ESTACION                   : CUP5",
         "LOCALIZACION DE LA ESTACION            : Ingeniería,",
@@ -625,9 +627,7 @@ def unam(folder: Path) -> Built:
         "COORDENADAS DE LA ESTACION             : 19.33024 LAT. N",
         "                                       : 99.181076 LONG. W",
         "ORIENTACION C1-C6 (rumbo;orientacion)  : /V/N90E/N00E",
-        "ORIENTACION C7-C12 (rumbo;orientacion) :",
         "INTERVALO DE MUESTREO, C1-C6 (s)       : /0.004/0.004/0.004",
-        "INTERVALO DE MUESTREO, C7-C12 (s)      :",
         "FECHA DEL SISMO [GMT]                  : 2004/01/01",
         "HORA EPICENTRO (GMT)                   : 23:58:02.7",
         "MAGNITUD(ES)                           : /Mb=5.2/Ms=5.8",
@@ -746,44 +746,35 @@ def opensees(folder: Path) -> Built:
 
 def esm_tadas(folder: Path) -> Built:
     """As AFAD's TADAS delivers: a first line without a key."""
-    built = esm_turkish(folder)
-    path = folder / "20230206011732_0118_ap_AAD_Acc_E.asc"
     head = (
-        "AAD_Filtered_TADAS_FILE\nAAD_FILTER_TYPE: BUTTERWORTH\nAAD_LOW_CUT_FREQUENCY_HZ: 0.025\n"
+        b"AAD_Filtered_TADAS_FILE\nAAD_FILTER_TYPE: BUTTERWORTH\nAAD_LOW_CUT_FREQUENCY_HZ: 0.025\n"
     )
-    path.write_text(head + built.path.read_text(encoding="utf-8"), encoding="utf-8")
-    built.path.unlink()
-    return replace(built, path=path)
+    name = "20230206011732_0118_ap_AAD_Acc_E.asc"
+    return variant(esm_turkish(folder), name, lambda content: head + content)
 
 
 def cwa_1999(folder: Path) -> Built:
     """As the CWB wrote the Chi-Chi earthquake: from the station's code on, in UTC."""
-    built = cwa(folder)
-    path = folder / "cx921.txt"
-    text = built.path.read_text()
-    text = text[text.index("#StationCode") :].replace("#StationName: Chulu\n", "")
-    path.write_text(text.replace("(GMT+08): 2018/02/06-23:50:29", ": 1999/09/20-17:47:04"))
-    built.path.unlink()
-    return replace(built, path=path, start_time="1999-09-20T17:47:04.000000Z")
+
+    def change(content: bytes) -> bytes:
+        text = content[content.index(b"#StationCode") :].replace(b"#StationName: Chulu\n", b"")
+        return text.replace(b"(GMT+08): 2018/02/06-23:50:29", b": 1999/09/20-17:47:04")
+
+    return variant(cwa(folder), "cx921.txt", change, start_time="1999-09-20T17:47:04.000000Z")
 
 
 def unam_senses(folder: Path) -> Built:
     """Orientations with their sense behind them, in another order of channels."""
-    built = unam(folder)
-    path = folder / "RAC_04042010222544.dat"
-    text = built.path.read_text(encoding="latin-1")
-    path.write_text(text.replace(": /V/N90E/N00E", ": /N90E;/N00E;/V;+"), encoding="latin-1")
-    built.path.unlink()
-    return replace(built, path=path, components=("N90E", "N00E", "V"))
+    names = b": /V/N90E/N00E", b": /N90E;/N00E;/V;+"
+    components = ("N90E", "N00E", "V")
+    name = "RAC_04042010222544.dat"
+    return variant(unam(folder), name, lambda text: text.replace(*names), components=components)
 
 
 def smc_surplus(folder: Path) -> Built:
     """A line of scattered points below the last pair that the header counts, which fills no whole line."""
-    built = smc_uneven(folder)
-    path = folder / "surplus.smc"
-    path.write_bytes(built.path.read_bytes() + b" 3.0000E-1 1.0000E+1 4.0000E-1 2.0000E+1\r\n")
-    built.path.unlink()
-    return replace(built, path=path)
+    line = b" 3.0000E-1 1.0000E+1 4.0000E-1 2.0000E+1\r\n"
+    return variant(smc_uneven(folder), "surplus.smc", lambda content: content + line)
 
 
 def eerl_volume_2(folder: Path) -> Built:

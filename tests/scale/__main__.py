@@ -24,7 +24,7 @@ import yaml
 
 from rockfrag.files import write_table
 from rockfrag.motions.synthetic import evolutionary
-from rockfrag.study.amplitudes import Amplitudes
+from rockfrag.study.study import Amplitudes
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES, DT = 2000, 0.01

@@ -125,15 +125,8 @@ def _true_place(place: Place, random: np.random.Generator) -> Place:
 def world(seed: int, kind: str, outside: float = 1.0) -> tuple[bool, ...]:
     """Whether the intervals of the median and of the fraction at a level hold the truth in one world.
 
-    Parameters
-    ----------
-    seed
-        Of everything that is drawn.
-    kind
-        ``scan`` or ``cut block``.
-    outside
-        Factor by which one spread is larger in the world than is assumed: that of the contact tolerance of a scan,
-        of the model's error of a cut block.
+    ``outside`` is the factor by which one spread is larger in the world than is assumed: that of the contact
+    tolerance of a scan, of the model's error of a cut block.
     """
     random = np.random.default_rng([seed, kind == SCAN])
     request, truth, place, error = _drawn(

@@ -9,7 +9,7 @@ import pytest
 from rockfrag.records.motion import Motion
 from rockfrag.stages.ida import as_recorded, ida_table
 from rockfrag.stages.pedestal import pedestal_tables
-from rockfrag.study.amplitudes import Amplitudes
+from rockfrag.study.study import Amplitudes
 from rockfrag.system.blocks import Block, Stack
 
 TOWER = Block(0.124, 0.372, 2.172)

@@ -1,6 +1,10 @@
-"""What was not given and had to be assumed, with what depends on it."""
+"""What was not given and had to be assumed, with what depends on it; the words stand in ``assumed.j2``."""
 
 from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from rockfrag.report.wording import PART, macros, one_line
 
 
 @dataclass(frozen=True)
@@ -12,3 +16,14 @@ class Assumption:
     words: str  # The same in a sentence, with its reason
     # Names of the sources of uncertainty that stand for it; empty where the answer does not depend on it
     sources: tuple[str, ...] = ()
+
+
+@cache
+def _sentences() -> Any:
+    return macros("rockfrag.assess", "assumed.j2", {})
+
+
+def assume(what: str, *sources: str, **about: object) -> Assumption:
+    """Return an assumption as a macro says it, shortly and in a sentence; see :class:`Assumption`."""
+    short, words = getattr(_sentences(), what)(**about).split(PART)
+    return Assumption(one_line(short), one_line(words), sources)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.assess.assumed import Assumption
+from rockfrag.assess.assumed import Assumption, assume
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.assess.scan import Scan, make_scan
 from rockfrag.errors import InputError
@@ -309,10 +309,11 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
     for each in (block, *pedestals):
         if quality_flag := size_warning(each.width, each.height):
             quality_flags.append(quality_flag + ".")
-    first = [_of_the_base(is_round, "mesh" in settings, depth is not None)]
-    if not is_round and "restitution" not in settings:
-        first.append(_ON_POINTS if scan else _RESTITUTION)
+    planar = "scanned" if scan else "box" if depth is not None else "planar"
+    first = [assume(f"{'round' if is_round else planar}_base")]
     on_points = scan is not None and not is_round and "restitution" not in settings
+    if not is_round and "restitution" not in settings:
+        first.append(assume("on_points" if scan else "restitution", "restitution"))
     objects = Objects(
         block=block,
         pedestals=pedestals,
@@ -337,22 +338,6 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         raise InputError("key pad_friction: is not simulated under a round base; leave it out.")
     _check_restitution(objects)
     return objects
-
-
-_RESTITUTION = Assumption(
-    "impacts lose what conservation of momentum takes",
-    "Each impact takes as much energy as conservation of momentum does (Housner 1963); the restitution was not "
-    "measured.",
-    ("restitution",),
-)
-
-
-_ON_POINTS = Assumption(
-    "impacts on few points take more than conservation of momentum does",
-    "In one plane each impact leaves 0.7 to 1 times the velocity that conservation of momentum does, 0.85 in the "
-    "middle; the restitution was not measured.",
-    ("restitution",),
-)
 
 
 def _facing_mesh(settings: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -380,34 +365,6 @@ def _in_plan(settings: Mapping[str, Any]) -> tuple[float | None, float]:
     # the plane is across the narrower side
     across = depth < width
     return max(width, depth), facing + 90.0 * across
-
-
-def _of_the_base(is_round: bool, is_mesh: bool, is_box: bool) -> Assumption:
-    if is_round:
-        return Assumption(
-            "the round base rolls on its rim in space and loses no energy",
-            "The base is round: it is simulated in space under both components of each record, where it rolls on "
-            "its rim, which takes no energy; planar impacts that conserve momentum would overstate by a factor of "
-            "about two the shaking that a round object survives.",
-        )
-    if is_mesh:
-        return Assumption(
-            "it stands on the polygon of the points that carry",
-            "It stands on the polygon of the points that carry, and is simulated in space under both components "
-            "of each record, where impacts are plastic; with a measured restitution, a pad, or records of one "
-            "component it rocks in one plane. What carries and how it faces are sources of the interval.",
-        )
-    if is_box:
-        return Assumption(
-            "the base is rectangular",
-            "The base is taken as rectangular with sharp corners, and simulated in space under both components of "
-            "each record, where it turns and walks too; with a measured restitution or a pad it rocks in a plane.",
-        )
-    return Assumption(
-        "the base is rectangular",
-        "The base is taken as rectangular and rocks in one plane, as no depth was given; in space a square one "
-        "falls at seven eighths of the shaking, a round one (round) at about half.",
-    )
 
 
 def _tolerances(settings: Mapping[str, Any], on_points: bool) -> Mapping[str, float]:
@@ -463,34 +420,17 @@ def _from_dimensions(
         width, depth = depth, width
     elif "depth_m" not in settings and not is_round:
         # the mass that follows counts only on a pedestal
-        assumed.append(
-            Assumption(
-                f"its depth is {100 * depth:.4g} cm",
-                f"Its depth is {100 * depth:.4g} cm, as its width.",
-            )
-        )
+        assumed.append(assume("depth", depth=depth))
     mass = settings.get("mass_kg")
     if mass is None:
         mass = STONE * width * depth * height * (math.pi / 4 if is_round else 1.0)
         solid = "cylinder" if is_round else "box"
-        assumed.append(
-            Assumption(
-                f"its mass is {mass:.3g} kg",
-                f"Its mass is {mass:.3g} kg, that of a {solid} of stone ({STONE:g} kg/m³).",
-                ("mass",),
-            )
-        )
+        assumed.append(assume("mass", "mass", mass=mass, solid=solid, density=STONE))
     check_density(width, height, float(mass))
     if "depth_m" in settings:
         quality_flags += _density_flags(float(mass), width * depth * height)
     if "cg_height_m" not in settings:
-        assumed.append(
-            Assumption(
-                "its centre of gravity is at half the height",
-                "Its centre of gravity is at half the height.",
-                ("cg_height",),
-            )
-        )
+        assumed.append(assume("cg_height", "cg_height"))
     cg_height = settings.get("cg_height_m")
     if cg_height is not None and cg_height >= height:
         raise InputError(
@@ -533,18 +473,9 @@ def _from_mesh(
         raise InputError(f"key {needless[0]} follows from the mesh; leave it out.")
     mass = settings.get("mass_kg")
     if mass is None:
-        assumed.append(
-            Assumption("it is solid stone", f"It is solid stone of {STONE:g} kg/m³.", ("mass",))
-        )
+        assumed.append(assume("solid", "mass", density=STONE))
     if mesh.get("hull"):
-        assumed.append(
-            Assumption(
-                "its convex hull stands for it",
-                "Its convex hull stands for it, which fills hollows and undercuts; the centre of gravity moves "
-                "with them.",
-                ("cg_height",),
-            )
-        )
+        assumed.append(assume("hull", "cg_height"))
     try:
         scan, of_scan = make_scan(
             _shape(mesh, folder, mass), mesh, settings.get("tolerances", {}).get("contact")
@@ -605,13 +536,7 @@ def _pedestal(
     mass = given.get("mass_kg")
     if mass is None:
         mass = STONE * width * depth * height
-        assumed.append(
-            Assumption(
-                f"{name} weighs {mass:.3g} kg",
-                f"{name[0].upper()}{name[1:]} weighs {mass:.3g} kg, as a box of stone ({STONE:g} kg/m³).",
-                ("mass",),
-            )
-        )
+        assumed.append(assume("pedestal", "mass", name=name, mass=mass, density=STONE))
     try:
         check_density(width, height, float(mass))
     except InputError as error:

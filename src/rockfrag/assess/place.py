@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.assumed import Assumption
+from rockfrag.assess.assumed import Assumption, assume
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
@@ -124,14 +124,13 @@ def make_place(settings: Mapping[str, Any], folder: Path) -> Place:
                 "key building: records of the floor itself need no building; leave it out."
             )
         _refuse_unused_tolerances(settings, "records of the floor itself need no building")
-        said = Assumption("", "The records are those of the floor itself.")
-        return Place(label="" if floor is None else str(floor), assumed=(said,))
+        label = "" if floor is None else str(floor)
+        return Place(label=label, assumed=(assume("on_floor"),))
     if "building" in settings:
         return _given(settings, floor, folder)
     if floor is None:
         _refuse_unused_tolerances(settings, "the object stands on the ground")
-        said = Assumption("it stands on the ground", "It stands on the ground; no floor was given.")
-        return Place(assumed=(said,))
+        return Place(assumed=(assume("on_ground"),))
     return _sketched(str(floor), {}, settings)
 
 
@@ -182,11 +181,7 @@ def _described(
         building = replace(building, floors={**building.floors, label: int(level)})
     building.level(label)
     name = "" if found or label.isdecimal() else label
-    said = Assumption(
-        "the building stays elastic",
-        "The building is taken as given; it stays elastic.",
-        ("period", "damping"),
-    )
+    said = assume("building", "period", "damping")
     return Place(building, label, tolerances, name, (said,))
 
 
@@ -207,28 +202,13 @@ def _sketched(floor: str, known: Mapping[str, Any], settings: Mapping[str, Any])
         floors={"floor": level},
         name=f"building of {storeys} storeys",
     )
-    of = f" of {material}" if "material" in known else ""
-    rule = (
-        "as given" if "first_period_s" in known else f"{factor:g} H³ᐟ⁴ with H in metres, EN 1998-1"
-    )
-    said = Assumption(
-        f"an elastic building {total:.3g} m high with a first period of {period:.2g} s",
-        f"An elastic building{of} with {storeys} equal floors, {total:.3g} m high "
-        f"({_of_storeys(known, heights)}), with a "
-        f"first period of {period:.2f} s ({rule}) and {building.damping.ratio:.3g} of critical damping.",
-        ("period", "damping"),
-    )
+    about = {"known": known, "heights": heights, "total": total, "period": period}
+    about |= {"factor": factor, "damping": building.damping.ratio}
+    said = assume("sketched", "period", "damping", **about)
     usual = TOLERANCES | (
         {"period": TOLERANCE_OF_KNOWN_PERIOD} if "first_period_s" in known else {}
     )
     return Place(building, "floor", _tolerances(settings, usual), assumed=(said,))
-
-
-def _of_storeys(known: Mapping[str, Any], heights: tuple[float, ...]) -> str:
-    if "storey_heights_m" in known:
-        return "storeys of " + ", ".join(f"{height:g}" for height in heights) + " m"
-    assumed = "" if "storey_height_m" in known else ", assumed"
-    return f"storeys of {heights[0]:g} m{assumed}"
 
 
 def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:

@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 from scipy.stats import norm
 
-from rockfrag.assess.assumed import Assumption
+from rockfrag.assess.assumed import Assumption, assume
 from rockfrag.campaign.standing import (
     LEAST_ANGLE_DEG,
     Unknown,
@@ -111,11 +111,7 @@ def make_scan(
     ways = ways_to_stand(shape, open_ones, WAYS, 1, exact).table
     ways["least_deg"] = [_least_angle_deg(shape, way) for way in ways.to_dict("records")]
     assumed = [
-        Assumption(
-            f"{quantity.words} was not measured",
-            f"{quantity.words.capitalize()}: {quantity.source}.",
-            (SOURCE_OF[name],),
-        )
+        assume("unmeasured", SOURCE_OF[name], quantity=quantity)
         for name, quantity in open_ones.items()
         if name != "contact_tolerance_mm" or tolerance is None
     ]

@@ -164,11 +164,6 @@ def headline(found: Assessment) -> str:
     return one_line(sentences().headline(found))
 
 
-def helps(found: Assessment) -> str:
-    """Changes that help, most helpful first."""
-    return one_line(sentences().helps(found))
-
-
 def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
     """A change and what it does to the risk, or to the shaking that the object bears."""
     return one_line(sentences().mitigation(found, mitigation))

@@ -41,11 +41,7 @@ def floor_motions(
 
 
 def vertical_motions(building: ShearBuilding, vertical: Motion) -> list[Motion]:
-    """Vertical accelerations of all labelled floors: that of the ground times the building's factors.
-
-    Storeys are taken as stiff in the vertical where the building gives no factor. The motions are named as those
-    of :func:`floor_motions` where ``vertical`` has the name of the motion.
-    """
+    """Vertical accelerations of all labelled floors: that of the ground times the building's factors."""
     moved = []
     for label in building.floors:
         factor = float(building.vertical_factors.get(label, 1.0))

@@ -31,11 +31,7 @@ MEMORY = 8
 
 
 def shear_strengths(building: ShearBuilding) -> Floats:
-    """Shear strength of each storey [N], shape (storeys,).
-
-    The strength of a storey over that of the ground storey is the ratio of the products of stiffness
-    and height: the same walls have the same strength in every storey.
-    """
+    """Shear strength of each storey [N], shape (storeys,): the same walls have the same everywhere."""
     section = np.asarray(building.stiffnesses) * np.asarray(building.heights)
     base = building.masonry.base_shear * building.mass * GRAVITY
     return np.asarray(base * section / section[0])
@@ -99,10 +95,7 @@ def _area(corner: Any, strength: Any) -> float:
 
 @cached_njit()
 def move(memory: Any, to: float, corner: Any, strength: Any, law: Any, moved: Any) -> None:
-    """Move a storey from the state ``memory`` to a displacement; its new state is ``moved``.
-
-    Everything is seen from the side it moves to, so that one set of rules serves both directions.
-    """
+    """Move a storey from the state ``memory`` to a displacement, as seen from where it moves; fill ``moved``."""
     moved[:] = memory
     step = to - memory[DISPLACEMENT]
     if step == 0.0:

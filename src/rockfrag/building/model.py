@@ -210,10 +210,7 @@ def stiffnesses_for_period(
 
 
 def check_positive(owner: str, what: str, unit: str, values: Sequence[float]) -> None:
-    """Raise an InputError unless there are one to ``MOST_STOREYS`` values, each positive.
-
-    Limits beyond all buildings keep their frequencies finite.
-    """
+    """Raise an InputError unless there are one to ``MOST_STOREYS`` values, each positive."""
     if not 1 <= len(values) <= MOST_STOREYS:
         raise InputError(
             f"{owner}: {what} has {len(values)} entries, but a building has 1 to {MOST_STOREYS} storeys."

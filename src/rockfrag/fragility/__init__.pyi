@@ -1,4 +1,3 @@
-from .empirical import find_resurrections as find_resurrections
 from .estimators import (
     Fragility as Fragility,
     IncrementalFragility as IncrementalFragility,
@@ -6,10 +5,6 @@ from .estimators import (
     fit_incremental as fit_incremental,
     fit_step_tests as fit_step_tests,
     fit_stripes as fit_stripes,
-)
-from .goodness import (
-    GoodnessOfFit as GoodnessOfFit,
-    goodness_of_fit as goodness_of_fit,
 )
 from .intervals import (
     Interval as Interval,
@@ -24,17 +19,13 @@ from .measure_selection import (
     area_under_curve as area_under_curve,
     recommend_measure as recommend_measure,
 )
-from .measure_selection_ida import recommend_ida_measure as recommend_ida_measure
 from .nrml import write_nrml as write_nrml
 from .observations import (
     Observations as Observations,
     observations_from_table as observations_from_table,
 )
 from .simcenter import write_simcenter as write_simcenter
-from .ida_curves import (
-    fragility_table as fragility_table,
-    record_set_hash as record_set_hash,
-)
+from .ida_curves import fragility_table as fragility_table
 from .user_table import (
     UserFragility as UserFragility,
     fit_user_table as fit_user_table,

@@ -17,7 +17,6 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.intervals import (
     MOST_BLOCKS,
     Interval,
-    WeightedFit,
     population,
     resampled_interval,
     step_limits,
@@ -136,27 +135,22 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
     )
 
 
-def bracket_fitter(brackets: Brackets, over: Over = "motion") -> tuple[WeightedFit, int]:
-    """Make the function that refits θ and β to reweighted motions or earthquakes."""
-    codes, names = pd.factorize(pd.Series(brackets.groups(over)))
-    low, high = _logs(brackets)
-
-    def fit(weights: Floats) -> Floats:
-        each = weights[:, codes]
-        if len(names) > MOST_BLOCKS and len(weights) > 1 and (each.max(), each.min()) == (1, 0):
-            return _without_a_block(low, high, each)
-        return _fit_weighted(low, high, each)[0]
-
-    return fit, len(names)
-
-
 def bracket_interval(
     brackets: Brackets, *, over: Over | None = None, level: float = 0.90
 ) -> Interval:
     """Confidence limits of a curve fitted to brackets, by leaving out whole motions or earthquakes."""
     over, notes = population(brackets, over)
-    fit, groups = bracket_fitter(brackets, over)
-    found = resampled_interval(fit, groups, over=over, notes=notes, level=level)
+    codes, names = pd.factorize(pd.Series(brackets.groups(over)))
+    low, high = _logs(brackets)
+    groups = len(names)
+
+    def refit(weights: Floats) -> Floats:
+        each = weights[:, codes]
+        if groups > MOST_BLOCKS and len(weights) > 1 and (each.max(), each.min()) == (1, 0):
+            return _without_a_block(low, high, each)
+        return _fit_weighted(low, high, each)[0]
+
+    found = resampled_interval(refit, groups, over=over, notes=notes, level=level)
     if found.method == "none" and groups > 1 and brackets.n_overturned:
         # neighbouring steps touch, so the brackets may share no more than a point: all of them count
         return step_limits(found, float(brackets.lower.min()), float(brackets.upper.max()))

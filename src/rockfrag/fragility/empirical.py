@@ -86,31 +86,14 @@ def local_fraction(outcomes: Observations, im: ArrayLike, bandwidth: float | Non
 def find_resurrections(
     ida: pd.DataFrame, *, amplitude: str = "amplitude_g", by: str | list[str] = "motion"
 ) -> pd.DataFrame:
-    """Find where each motion first overturns, where it always does, and the windows between.
+    """Find where each motion first overturns, where it always does, and the windows between, a row an IDA curve.
 
-    Parameters
-    ----------
-    ida
-        One row per motion and amplitude, with ``overturned``.
-    amplitude
-        Column of the amplitude.
-    by
-        Column or columns that tell the IDA curves apart.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row per IDA curve: the columns ``by``; ``first_lower``, ``first_upper``: the largest
-        amplitude below the first overturning and that overturning; ``always_lower``,
-        ``always_upper``: the largest amplitude survived and the next one; ``resurrections``: number of
-        ranges survived above the first overturning; ``window_width``: sum of their widths in ln
-        amplitude, each counted between the middles of its bounding steps. Lower bounds are 0 where
-        nothing lower was tried, upper ones NaN where nothing overturned.
-
-    Raises
-    ------
-    InputError
-        If an amplitude is not above zero, an outcome is not 0 or 1, or an IDA curve repeats an amplitude.
+    ``ida`` has a row per motion and amplitude, with ``overturned``; ``by`` are the columns that tell IDA curves
+    apart. Columns: ``by``; ``first_lower``, ``first_upper``: the largest amplitude below the first overturning
+    and that overturning; ``always_lower``, ``always_upper``: the largest amplitude survived and the next one;
+    ``resurrections``: number of ranges survived above the first overturning; ``window_width``: sum of their
+    widths in ln amplitude, each counted between the middles of its bounding steps. Lower bounds are 0 where
+    nothing lower was tried, upper ones NaN where nothing overturned.
     """
     keys = [by] if isinstance(by, str) else by
     values = positive(ida, amplitude)

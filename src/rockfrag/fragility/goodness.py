@@ -64,27 +64,9 @@ def goodness_of_fit(
 ) -> GoodnessOfFit:
     """Compare the deviance with that of data simulated from the curve (parametric bootstrap).
 
-    Parameters
-    ----------
-    outcomes, fit
-        The outcomes and the curve fitted to them.
-    dependence
-        ``tests`` simulates each outcome by itself; ``motions`` gives each motion one capacity from
-        the curve, so that its outcomes hang together as in an incremental dynamic analysis. None takes
-        ``motions`` where motions have more than one row.
-    replicates
-        Number of simulated data sets.
-    seed
-        Seed of the simulation.
-
-    Returns
-    -------
-    The :class:`GoodnessOfFit`.
-
-    Raises
-    ------
-    InputError
-        If there is no curve.
+    ``dependence``: ``tests`` simulates each outcome by itself; ``motions`` gives each motion one capacity from the
+    curve, so that its outcomes hang together as in an incremental dynamic analysis. None takes ``motions`` where
+    motions have more than one row.
     """
     if not np.isfinite(fit.theta):
         raise InputError(f"goodness of fit: there is no curve to judge ({fit.method}).")

@@ -58,17 +58,7 @@ def with_measures(
 
 
 def record_set_hash(motions: Iterable[Motion]) -> str:
-    """SHA-256 of the names, intervals and samples of a set of motions, whatever their order.
-
-    Parameters
-    ----------
-    motions
-        Motions, in any order.
-
-    Returns
-    -------
-    The digest, in hexadecimal digits.
-    """
+    """SHA-256 of names, intervals and samples of a set of motions, whatever their order, in hexadecimal digits."""
     digest = hashlib.sha256()
     for motion in sorted(motions, key=lambda motion: motion.name):
         samples = np.ascontiguousarray(motion.acceleration, dtype="<f8")

@@ -43,34 +43,11 @@ def recommend_ida_measure(
 ) -> MeasureSelection:
     """Compare measures on the IDA curves of one body and recommend one, in words.
 
-    Parameters
-    ----------
-    ida
-        One row per motion and amplitude of one body, with ``motion``, ``amplitude_g``,
-        ``overturned``; or IDA curves in another form that know the measures.
-    measures
-        One row per motion as recorded, with ``name`` and ``pga_g``.
-    columns
-        Measures to compare; they must grow with the amplitude.
-    given
-        Further columns of ``measures`` against which sufficiency is tested, for example
-        ``d5_95_s``, ``mean_period_s``, magnitude.
-    earthquake
-        Column of the earthquake in ``ida``; None resamples motions.
-    level, replicates, seed
-        Of the limits and of the bootstrap.
-
-    Returns
-    -------
-    MeasureSelection
-        Its table has also ``beta_amplitude``: β over the power with which the measure grows with
-        the amplitude, which compares Arias intensity fairly with peaks.
-
-    Raises
-    ------
-    InputError
-        As :func:`rockfrag.fragility.ida_curves.with_measures`, and if a measure does not grow with the
-        amplitude.
+    ``ida`` has one row per motion and amplitude of one body, with ``motion``, ``amplitude_g``, ``overturned``,
+    or is IDA curves in another form that know the measures; ``measures`` one row per motion as recorded, with
+    ``name`` and ``pga_g``. ``columns`` are compared, and must grow with the amplitude; sufficiency is tested
+    against ``given`` ones, such as ``d5_95_s`` or magnitude. The table has also ``beta_amplitude``: β over the
+    power with which the measure grows with the amplitude, which compares Arias intensity fairly with peaks.
     """
     if not columns:
         raise InputError("columns: name at least one intensity measure.")

@@ -4,7 +4,6 @@ import math
 import os
 import re
 from collections.abc import Mapping, Sequence
-from itertools import starmap
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -49,12 +48,6 @@ def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
             f"NRML: {name} in {unit or 'no unit'} cannot be converted; use {' or '.join(factors)}."
         )
     return measure.imt, factors[unit]
-
-
-def lognormal_moments(theta: float, beta: float) -> tuple[float, float]:
-    """Return mean and standard deviation, linear as NRML wants them, from median θ and β."""
-    mean = theta * math.exp(0.5 * beta**2)
-    return mean, mean * math.sqrt(math.expm1(beta**2))
 
 
 def write_nrml(
@@ -171,13 +164,18 @@ def _function(taxonomy: str, states: Mapping[str, StateCurve], by: str) -> dict[
     if lowered > CROSSING or any(curve.levels.size for curve in states.values()):
         by_state = {state: chance.tolist() for state, chance in chances.items()}
         return {"imt": imt, "levels": levels.tolist(), "chances": by_state}
-    parameters = [(curve.theta * factor, curve.beta) for curve in states.values()]
+    parameters = {state: (curve.theta * factor, curve.beta) for state, curve in states.items()}
+    # mean and standard deviation, linear as NRML wants them, from median θ and β
+    means = {state: theta * math.exp(0.5 * beta**2) for state, (theta, beta) in parameters.items()}
     return {
         "imt": imt,
         # the range in which OpenQuake may evaluate it: from a chance of 3e-5 to one of 1 - 3e-5
-        "low": min(theta * math.exp(-4.0 * beta) for theta, beta in parameters),
-        "high": max(theta * math.exp(4.0 * beta) for theta, beta in parameters),
-        "moments": dict(zip(states, starmap(lognormal_moments, parameters), strict=True)),
+        "low": min(theta * math.exp(-4.0 * beta) for theta, beta in parameters.values()),
+        "high": max(theta * math.exp(4.0 * beta) for theta, beta in parameters.values()),
+        "moments": {
+            state: (mean, mean * math.sqrt(math.expm1(parameters[state][1] ** 2)))
+            for state, mean in means.items()
+        },
     }
 
 

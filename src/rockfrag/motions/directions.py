@@ -39,10 +39,7 @@ def motion_of_row(row: dict[str, Any], folder: Path, records: Path) -> Motion:
 
 
 def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tuple[Motion, Motion]:
-    """Read the motion of a row, and the vertical one that its column ``vertical`` names.
-
-    Both are over the time that they have in common; the vertical one has name and factor of the other.
-    """
+    """Read the motion of a row and the vertical one that it names, over the time that they have in common."""
     if not row.get("vertical"):
         raise InputError(f"{row['name']}: the catalogue names no vertical component of it.")
     direction = str(row.get("direction") or "")

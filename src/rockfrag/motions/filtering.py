@@ -38,7 +38,15 @@ def bandpass(
 
 
 def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz: float) -> Motion:
-    corners = {name: _corner(kind, name, value, motion) for name, value in corners_hz.items()}
+    corners, nyquist = {}, 0.5 / motion.dt
+    for name, value in corners_hz.items():
+        corner = corners[name] = positive_number(f"step {kind}: {name}", value, "hertz")
+        # ObsPy takes what is within a millionth of Nyquist for Nyquist and changes the filter
+        if corner >= nyquist * (1 - 2e-6):
+            raise InputError(
+                f"step {kind}: {name} {corner} is not below the Nyquist frequency {nyquist:g} Hz of "
+                f"motion {motion.name!r} (dt {motion.dt:g} s)."
+            )
     order = whole(f"step {kind}", "order", order, 1, 10)
     if not isinstance(causal, bool):
         raise InputError(f"step {kind}: causal must be true or false, got {causal!r}.")
@@ -58,13 +66,11 @@ def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz:
 
 
 def resample(motion: Motion, dt_s: float) -> Motion:
-    """Change the sampling interval of a band-limited signal (SciPy's polyphase filter).
+    """Change the sampling interval of a band-limited signal (SciPy's polyphase filter); nothing is aliased.
 
-    The filter takes out what the coarser of the two samplings cannot carry, so nothing is aliased.
     The values between samples become those of the band-limited signal, not of the straight lines:
     peaks change, as the provenance says; :func:`interpolate` keeps the lines. A motion that does not begin and
-    end at zero is taken off the straight line between its ends first, so that it does not ring there, and
-    nothing is added beyond its last sample.
+    end at zero is taken off the straight line between its ends first, so that it does not ring there.
     """
     dt_s = positive_number("step resample: dt_s", dt_s, "seconds")
     if dt_s >= motion.dt * motion.acceleration.size:
@@ -96,15 +102,3 @@ def interpolate(motion: Motion, dt_s: float) -> Motion:
     old = np.arange(motion.acceleration.size) * parts
     samples = np.interp(np.arange(old[-1] + 1), old, motion.acceleration)
     return motion.after("interpolate", samples, dt=dt_s, dt_s=dt_s)
-
-
-def _corner(step: str, name: str, value: float, motion: Motion) -> float:
-    corner = positive_number(f"step {step}: {name}", value, "hertz")
-    nyquist = 0.5 / motion.dt
-    # ObsPy takes what is within a millionth of Nyquist for Nyquist and changes the filter
-    if corner >= nyquist * (1 - 2e-6):
-        raise InputError(
-            f"step {step}: {name} {corner} is not below the Nyquist frequency {nyquist:g} Hz of "
-            f"motion {motion.name!r} (dt {motion.dt:g} s)."
-        )
-    return corner

@@ -86,10 +86,13 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
     The pulse; of NaN for a motion of zeros or one too short to hold a pulse.
     """
     velocity, _ = integrate(motion.acceleration, motion.dt)
-    periods = _periods(motion)
     energy = _energy(velocity)
-    if energy[-1] <= 0 or periods.size == 0:
+    shortest = max(SHORTEST_PERIOD, 10 * motion.dt)
+    longest = min(LONGEST_PERIOD, float(motion.time[-1]))
+    if energy[-1] <= 0 or longest < shortest:
         return NO_PULSE
+    count = math.ceil(math.log(longest / shortest) / math.log(PERIOD_RATIO)) + 1
+    periods = np.geomspace(shortest, longest, count)
     gain, period, cycles = _best_of(velocity, motion.dt, periods)
     step = math.log(PERIOD_RATIO)
     longest = motion.time[-1] / cycles
@@ -110,15 +113,6 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
         time=middle * motion.dt,
         explained=gain / float(energy[-1]),
     )
-
-
-def _periods(motion: Motion) -> Floats:
-    shortest = max(SHORTEST_PERIOD, 10 * motion.dt)
-    longest = min(LONGEST_PERIOD, float(motion.time[-1]))
-    if longest < shortest:
-        return np.empty(0)
-    count = math.ceil(math.log(longest / shortest) / math.log(PERIOD_RATIO)) + 1
-    return np.geomspace(shortest, longest, count)
 
 
 def _best_of(velocity: Floats, dt: float, periods: Floats) -> tuple[float, float, float]:

@@ -24,7 +24,12 @@ def common_time(
     together. The times are those of the horizontal component of the shortest interval, which is not moved
     for a vertical. Samples between those of a motion are on the straight line between its neighbours.
     """
-    starts = _starts(motions)
+    # of the first samples after the earliest [s]
+    starts = [0.0] * len(motions)
+    stated = [motion.metadata.get("start_time") for motion in motions]
+    if all(stated):
+        times = [UTCDateTime(str(time)) for time in stated]
+        starts = [float(time - min(times)) for time in times]
     if verticals is None:
         named = (str(motion.metadata.get("component") or "") for motion in motions)
         verticals = [place for place, name in enumerate(named) if is_vertical(name)]
@@ -44,16 +49,6 @@ def common_time(
     return [
         _at(motion, first - start, dt, count) for start, motion in zip(starts, motions, strict=True)
     ]
-
-
-def _starts(motions: Sequence[Motion]) -> list[float]:
-    """Return the times of the first samples [s] after the earliest; zeros where one is not stated."""
-    stated = [motion.metadata.get("start_time") for motion in motions]
-    if not all(stated):
-        return [0.0] * len(motions)
-    times = [UTCDateTime(str(time)) for time in stated]
-    earliest = min(times)
-    return [float(time - earliest) for time in times]
 
 
 def _at(motion: Motion, begin: float, dt: float, count: int) -> Motion:

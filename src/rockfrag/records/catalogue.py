@@ -172,11 +172,9 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
 def load_motions(
     path: str | os.PathLike[str], records: str | os.PathLike[str] = "resources/records"
 ) -> list[Motion]:
-    """Read every motion [m/s²] of a catalogue, in its order, fetching what is not there yet.
+    """Read every motion [m/s²] of a catalogue, in its order, fetching what is not there yet below ``records``.
 
-    Files of the source ``folder`` are named from the folder of the catalogue; others lie below ``records``, where
-    they are put if absent. The facts of the catalogue go over those of the file. All that is wrong is refused at
-    once.
+    The facts of the catalogue go over those of the file. All that is wrong is refused at once.
     """
     table, lines = _checked(path)
     motions, problems = [], []
@@ -214,10 +212,7 @@ def scaled(motion: Motion, row: dict[str, Any]) -> Motion:
 
 
 def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) -> Motion:
-    """Read one component of a row's record: that of ``file``, of its ``second`` or its ``vertical``.
-
-    All are of the row's source, unit and interval; the SHA-256 is that of ``file`` alone.
-    """
+    """Read one component of a row's record: that of ``file``, of its ``second`` or its ``vertical``."""
     source = row["source"]
     name, _, channel = file.rpartition("#")
     # what stands behind the only mark of an archive is a member

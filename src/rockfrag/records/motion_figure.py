@@ -12,10 +12,7 @@ Floats = NDArray[np.float64]
 
 
 def motion_figure(acceleration: Floats, dt: float, title: str) -> Figure:
-    """Draw acceleration [g], velocity [cm/s] and displacement [cm]; a dot marks the largest sample of each.
-
-    The ground starts at rest.
-    """
+    """Draw acceleration [g], velocity [cm/s] and displacement [cm]; a dot marks the largest sample of each."""
     velocity, displacement = integrate(acceleration, dt)
     drawn = (
         ("Acceleration [g]", acceleration / GRAVITY),

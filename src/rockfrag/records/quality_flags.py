@@ -21,10 +21,7 @@ _DOUBLED = 0.9  # fraction of the samples that repeat the one before in a record
 
 
 def quality_flags(motion: Motion) -> list[str]:
-    """Return what looks wrong in a motion, one phrase each; none for a record in order.
-
-    Nothing is changed or refused for it: a record may be strange and right.
-    """
+    """Return what looks wrong in a motion, one phrase each; none for a record in order."""
     a, peak = motion.acceleration, motion.pga
     if peak == 0:
         return ["all samples are zero"]

@@ -7,10 +7,7 @@ _FORCED = " with force=True or in the file"
 
 
 def for_command_line(message: object, force: bool = True) -> str:
-    """Return a message that names arguments of functions with the options of ``rockfrag`` instead.
-
-    ``force`` tells whether the command has the option ``--force``.
-    """
+    """Return a message that names arguments of functions with the options of ``rockfrag`` instead."""
     words = str(message) if force else str(message).replace(_FORCED, " in the file")
     return _OPTION.sub(lambda found: f"--{found[1].replace('_', '-')}", words)
 

@@ -68,7 +68,16 @@ def write_motion(
         if name == "MSEED":
             _write_mseed(motion, Path(path))
         else:
-            WRITERS[name][1](Stream([_trace(motion, stored)]), path)
+            facts = motion.metadata
+            described = {
+                "unit": stored,
+                "earthquake": str(facts.get("earthquake") or motion.name),
+                "component": str(facts.get("component") or ""),
+                "source": str(facts.get("source") or "rockfrag"),
+            }
+            header = {"delta": motion.dt, "station": str(facts.get("station") or "")}
+            trace = Trace(motion.acceleration / TO_SI[stored], {**header, "rockfrag": described})
+            WRITERS[name][1](Stream([trace]), path)
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror or error}).") from error
     return Path(path)
@@ -105,18 +114,6 @@ def _format(path: str | os.PathLike[str], format: str | None) -> str:
         what = f"{format!r} is" if format else f"the ending {Path(path).suffix!r} names"
         raise InputError(f"{path}: {what} no format that is written: {', '.join(FORMATS)}.")
     return name
-
-
-def _trace(motion: Motion, unit: str) -> Trace:
-    facts = motion.metadata
-    described = {
-        "unit": unit,
-        "earthquake": str(facts.get("earthquake") or motion.name),
-        "component": str(facts.get("component") or ""),
-        "source": str(facts.get("source") or "rockfrag"),
-    }
-    header = {"delta": motion.dt, "station": str(facts.get("station") or ""), "rockfrag": described}
-    return Trace(motion.acceleration / TO_SI[unit], header)
 
 
 def _write_mseed(motion: Motion, path: Path) -> None:

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED
 from rockfrag.report.figures.amplitudes import BAND, GREY
 from rockfrag.report.glossary import terms_used
+from rockfrag.report.live.embedded import TEMPLATES
 from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.report.wording import number
 
@@ -78,21 +79,22 @@ def table_html(
     if file and len(table) > MOST_TABLE_ROWS:
         caption += f" The first {MOST_TABLE_ROWS} of {len(table)}; {file} has all."
         table = table.iloc[:MOST_TABLE_ROWS]
-    head = Markup("").join(
-        Markup('<th scope="col" class="{}">{}</th>').format(_kind(table, c), c.title)
-        for c in columns
-    )
-    kinds = {c.name: _kind(table, c) for c in columns}
-    rows = Markup("").join(
-        Markup("<tr>{}</tr>").format(
-            Markup("").join(
-                cell_html(cell(row[c.name], c.digits), c.title, kinds[c.name]) for c in columns
-            )
-        )
+    head = [(column.title, _kind(table, column)) for column in columns]
+    rows = [
+        [cell(row[column.name], column.digits) for column in columns]
         for row in table.to_dict("records")
-    )
-    room = len(columns) + _LONG_COLUMN * list(kinds.values()).count("long")
+    ]
+    room = len(columns) + _LONG_COLUMN * [kind for _, kind in head].count("long")
     return framed(caption, head, rows, room)
+
+
+def framed(
+    caption: str, head: Sequence[tuple[str, str]], rows: Sequence[Sequence[str | Markup]], room: int
+) -> Markup:
+    """A table of titles and kinds of columns; the more room they need, the sooner its rows become lists."""
+    size = "few" if room <= 4 else "some" if room <= 7 else "many"
+    template = TEMPLATES.get_template("table.html.j2")
+    return Markup(template.render(caption=caption, head=head, rows=rows, room=size).strip())
 
 
 def text_table(
@@ -101,20 +103,6 @@ def text_table(
     """Render texts by the titles of their columns; those that are of numbers stand to the right."""
     columns = [Column(title, title, numeric=title in numeric) for title in texts]
     return table_html(pd.DataFrame(dict(texts)), columns, caption)
-
-
-def cell_html(content: str | Markup, title: str, kind: str) -> Markup:
-    """One cell, which carries the title of its column to narrow screens."""
-    return Markup('<td class="{}" data-title="{}">{}</td>').format(kind, title, content)
-
-
-def framed(caption: str, head: Markup, rows: Markup, columns: int) -> Markup:
-    """A table with its caption; the more room its columns need, the sooner its rows become lists."""
-    kind = "few" if columns <= 4 else "some" if columns <= 7 else "many"
-    return Markup(
-        '<figure class="table"><figcaption>{}</figcaption><table class="{}">'
-        "<thead><tr>{}</tr></thead><tbody>{}</tbody></table></figure>"
-    ).format(caption, kind, head, rows)
 
 
 def _kind(table: pd.DataFrame, column: Column) -> str:

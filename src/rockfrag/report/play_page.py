@@ -2,7 +2,9 @@
 
 import os
 from collections.abc import Sequence
+from functools import cache
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -13,8 +15,8 @@ from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.report.live import AMPLITUDES_G, live_kernel, space
 from rockfrag.report.page import render
-from rockfrag.report.part import Answer, Finding
-from rockfrag.report.wording import counted, number, sentence
+from rockfrag.report.part import Answer, Finding, finding_of
+from rockfrag.report.wording import macros, one_line
 from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import in_page
 from rockfrag.system.blocks import SystemLike, as_system
@@ -24,6 +26,12 @@ from rockfrag.units import GRAVITY
 
 MOST_SAMPLES = 20_000
 """Times of a record for which the page stays below 400 kB, and below 700 kB with two components."""
+
+
+@cache
+def _sentences() -> Any:
+    """The macros of ``play_page.j2``."""
+    return macros("rockfrag.report", "play_page.j2", {})
 
 
 def write_play_page(
@@ -48,13 +56,12 @@ def write_play_page(
     *fell, recorded = found.overturned.ravel().tolist()
     page = render(
         title=f"{name} under {motion.name}",
-        lead=f"{counted(samples, 'sample')} of {motion.dt:.4g} s, as recorded with a peak of "
-        f"{number(peak / GRAVITY, 3)} g.",
+        lead=one_line(_sentences().lead(samples, motion.dt, peak / GRAVITY)),
         answer=Answer(
             asked="How strong must this motion be to overturn it?",
             sentences=[
                 _strength(amplitudes.tolist(), fell),
-                _recorded(recorded, int(found.impacts.flat[-1])),
+                finding_of(_sentences().recorded(recorded, int(found.impacts.flat[-1]))),
             ],
             rests_on=rests_on,
         ),
@@ -106,29 +113,7 @@ def _in_plane(name: str, system: System, motion: Motion) -> Markup:
 
 def _strength(amplitudes: Sequence[float], fell: Sequence[bool]) -> Finding:
     """Say which of the amplitudes tried [g] overturn."""
-    apart = 100 * (amplitudes[1] / amplitudes[0] - 1)
-    tried = f"amplitudes from {amplitudes[0]:g} to {amplitudes[-1]:g} g, {apart:.1f} % apart"
-    if not any(fell):
-        return Finding("It does not overturn", f"It survives all {tried}.")
-    first = fell.index(True)
-    later = len(fell) - first - sum(fell[first:])
-    resurrections = (
-        f" {later} stronger {'one is' if later == 1 else 'ones are'} survived again: the response is not monotone."
-        if later
-        else " All stronger ones overturn it too."
-    )
-    return Finding(
-        f"It first overturns at a peak of {number(amplitudes[first], 3)} g",
-        f"{sentence(tried)} were tried.{resurrections}",
-    )
-
-
-def _recorded(overturned: bool, impacts: int) -> Finding:
-    """Say what the motion does as it was recorded."""
-    words = "overturns it" if overturned else "does not overturn it"
-    return Finding(
-        f"The motion as recorded {words}",
-        f"It has {counted(impacts, 'impact')} before its fall is certain."
-        if overturned
-        else f"It rocks with {counted(impacts, 'impact')}.",
-    )
+    apart = amplitudes[1] / amplitudes[0] - 1
+    first = fell.index(True) if any(fell) else None
+    later = 0 if first is None else len(fell) - first - sum(fell[first:])
+    return finding_of(_sentences().strength(amplitudes, apart, first, later))

@@ -1,7 +1,9 @@
 """The report of a study of bodies in space: medians over planar ones, and what they come from."""
 
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 from markupsafe import Markup
@@ -11,20 +13,18 @@ from rockfrag.records.motion import Motion
 from rockfrag.report.figures.space import WORDS, fractions_figure, ratios_figure, words_of
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.part import Answer, Finding, Section, figure_of, finding_of
 from rockfrag.report.provenance import provenance
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import counted, estimates
+from rockfrag.report.wording import estimates, macros, one_line, said
 from rockfrag.rocking.space_medians import LOSS, PLANAR, body_of
 from rockfrag.study.space import SpaceStudy
 
-_RATIOS = (
-    "Level at which half of the records topple a uniform body in space over that of planar rocking, by base, "
-    "height over the narrow side or diameter, and height; lines hold 90 % of resampled earthquakes."
-)
-_FRACTIONS = (
-    "Fraction of the records that topple each body, in space and in the plane, by the level."
-)
+
+@cache
+def _sentences() -> Any:
+    """The macros of ``space_page.j2``."""
+    return macros("rockfrag.report", "space_page.j2", {})
 
 
 def write_space_report(
@@ -38,36 +38,27 @@ def write_space_report(
 
     ``ground`` are the components of its records, both of each in turn.
     """
-    ratios = FigureSpec("ratios", _RATIOS, _RATIOS, lambda: ratios_figure(medians))
-    levels = FigureSpec("fractions", _FRACTIONS, _FRACTIONS, lambda: fractions_figure(fractions))
+    says = _sentences()
+    ratios = figure_of(says.ratios_figure(), "ratios", lambda: ratios_figure(medians))
+    levels = figure_of(says.fractions_figure(), "fractions", lambda: fractions_figure(fractions))
     findings = [_finding(base, medians) for base in study.bases]
     answer = Answer(
         asked="At which shaking does a body topple under both components, beside planar rocking under one?",
         sentences=findings[:3],
         figure=ratios,
-        rests_on=[
-            "A level is the geometric mean of the peaks of both components; nothing slides, bodies are uniform."
-        ],
-        could_change=[
-            f"A perturbation of 1e-6 changes up to {100 * medians['flip_rate'].max():.0f} % of the outcomes in "
-            "space next to the median."
-        ],
+        rests_on=said(says.rests_on()),
+        could_change=said(says.could_change(medians["flip_rate"].max())),
     )
     sections = [
         Section("medians", "Medians", f"{findings[0].headline}.", [], [_table(medians), ratios]),
         Section("fractions", "Fractions by level", "What the medians come from.", [], [levels]),
     ]
-    if study.catalogue_file is not None:
-        records = f"the records of {study.catalogue_file.name}"
-    else:
-        records = f"{'all' if study.every == 1 else f'one in {study.every}'} records of FEMA P-695"
     write_page(
         folder,
         answer,
         sections,
         title=study.title,
-        lead=f"{counted(len(study.bodies), 'body', 'bodies')} under "
-        f"both components of {records} at {study.sweep.levels} levels.",
+        lead=one_line(says.lead(study)),
         provenance=provenance(study, {}),
         live=_live(study, ground),
     )
@@ -89,12 +80,8 @@ def _live(study: SpaceStudy, ground: Sequence[Motion]) -> Markup:
 def _finding(base: str, medians: pd.DataFrame) -> Finding:
     """What the second component does to one base, as the range of its rows."""
     rows = medians[(medians["base"] == base) & (medians["planar_impacts"] == LOSS)]
-    said = {name: f"{rows[name].min():.2f} to {rows[name].max():.2f}" for name in PLANAR}
-    return Finding(
-        f"Base {base}: in space {said['one_component']} times the level of one component",
-        f"Over the mean of directions {said['mean_direction']}, over the worst direction "
-        f"{said['worst_direction']}.",
-    )
+    spans = {name: f"{rows[name].min():.2f} to {rows[name].max():.2f}" for name in PLANAR}
+    return finding_of(_sentences().finding(base, spans))
 
 
 def _table(medians: pd.DataFrame) -> Markup:

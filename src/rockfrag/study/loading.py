@@ -20,7 +20,6 @@ from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.schema import checked
 from rockfrag.shaketable.shaker import read_shaker
-from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.campaign import CAMPAIGN_KEY, CampaignStudy, campaign_from
 from rockfrag.study.configurations import (
     each_alone,
@@ -37,7 +36,7 @@ from rockfrag.study.measured_table import (
     measured_table_from,
 )
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
-from rockfrag.study.study import FragilitySettings, Study
+from rockfrag.study.study import Amplitudes, FragilitySettings, Study
 from rockfrag.system.blocks import Block
 from rockfrag.system.system import System
 from rockfrag.yaml_file import read_yaml

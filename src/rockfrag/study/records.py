@@ -15,9 +15,7 @@ _FOUND: dict[tuple[object, ...], list[str]] = {}
 def check_records(study: Study) -> list[str]:
     """Read every record that lies in a folder of the user's own, once in a process as long as none changes.
 
-    Returns warnings about accelerations that look as if they were in another unit, and about records that a study
-    which keeps going will leave out. Otherwise a file that cannot be read as a record, or is not the one of its
-    SHA-256, is refused.
+    Returns warnings: of accelerations that look as if in another unit, of records that will be left out.
     """
     rows = study.catalogue[study.catalogue["source"] == "folder"]
     files = [

@@ -6,15 +6,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from rockfrag.building.model import ShearBuilding
+from rockfrag.errors import InputError
 from rockfrag.files import file_name, is_file
 from rockfrag.plausibility import size_warning
 from rockfrag.records.catalogue import own_records
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.shaketable.shaker import Shaker
-from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.heading import Heading
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
@@ -29,6 +31,30 @@ MOST_JOBS = 200
 
 RECORDS_FOLDER = "resources/records"
 """Where fetched records are kept, from the folder in which the workflow runs."""
+
+
+@dataclass(frozen=True)
+class Amplitudes:
+    """Peaks of the input motion from the lowest to the highest in steps of equal ratio."""
+
+    # First amplitude and the one not to be exceeded [g]
+    lowest_g: float
+    highest_g: float
+    step_percent: float  # Step from one to the next [%]
+
+    def __post_init__(self) -> None:
+        if self.highest_g <= self.lowest_g:
+            raise InputError(
+                f"key amplitudes.highest_g: expected more than lowest_g = {self.lowest_g}, "
+                f"found {self.highest_g}."
+            )
+
+    @property
+    def values_g(self) -> NDArray[np.float64]:
+        """Amplitudes [g], shape (n,), increasing."""
+        ratio = 1 + self.step_percent / 100
+        steps = math.floor(math.log(self.highest_g / self.lowest_g) / math.log(ratio) + 1e-9)
+        return np.asarray(self.lowest_g * ratio ** np.arange(steps + 1))
 
 
 @dataclass(frozen=True)

@@ -62,22 +62,19 @@ def shaking_rates(
         return ShakingRates({measure: levels}, rates)
     if wanted <= {PGA, PGV} and PGA in measures and velocity is not None:
         levels, rates = _on_grid([curves[PGA] for curves in branches], reach)
-        return _with_velocity(levels, rates, velocity)
+        nodes, weight = np.polynomial.hermite_e.hermegauss(NODES)
+        ratio = velocity.median_s * np.exp(velocity.sd_ln * nodes)
+        pgv = VELOCITY_PER_G * (levels[:, np.newaxis] * ratio).ravel()
+        spread = rates[:, :, np.newaxis] * (weight / weight.sum())
+        return ShakingRates(
+            {PGA: np.repeat(levels, NODES), PGV: pgv}, spread.reshape(len(rates), -1)
+        )
     missing = sorted(measure.imt for measure in wanted - measures) or ["PGV that comes with PGA"]
     raise InputError(
         f"hazard: an object's fragility needs {' and '.join(missing)}, but the branches give "
         f"{', '.join(sorted(measure.imt for measure in measures))}; give velocity: {{median_s: …, sd_ln: …}}, "
         "the PGV/PGA of the site, or a fragility in that measure."
     )
-
-
-def _with_velocity(levels: Floats, rates: Floats, velocity: VelocityRelation) -> ShakingRates:
-    nodes, weight = np.polynomial.hermite_e.hermegauss(NODES)
-    ratio = velocity.median_s * np.exp(velocity.sd_ln * nodes)
-    pga = np.repeat(levels, NODES)
-    pgv = VELOCITY_PER_G * (levels[:, np.newaxis] * ratio).ravel()
-    spread = rates[:, :, np.newaxis] * (weight / weight.sum())
-    return ShakingRates({PGA: pga, PGV: pgv}, spread.reshape(len(rates), -1))
 
 
 def _on_grid(curves: Sequence[HazardCurve], reach: tuple[float, float]) -> tuple[Floats, Floats]:

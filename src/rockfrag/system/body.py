@@ -121,10 +121,7 @@ class RigidBody:
         return unknown
 
     def seen_along(self, direction_deg: float = 0.0) -> "RigidBody":
-        """Return the planar body that moves in the vertical plane of a direction, from x towards y [degrees].
-
-        A planar body is known in its own plane only, direction 0.
-        """
+        """Return the planar body that moves in the vertical plane of a direction, from x towards y [degrees]."""
         if self.planar:
             if direction_deg % 360:
                 raise InputError(

@@ -140,10 +140,7 @@ def largest_restitution(shape: Shape, pivot: int) -> float:
 
 
 def scaled_restitution(shape: Shape, pivot: int, measured: float, factor: float) -> float:
-    """Ratio of an impact on this pivot, measured or, where that is NaN, of momentum, times a factor [-].
-
-    No impact gains energy.
-    """
+    """Ratio of an impact on this pivot, measured or else of momentum, times a factor [-]; none gains energy."""
     e = momentum_restitution(shape, pivot) if math.isnan(measured) else measured
     return min(max(e, 0.0) * factor, largest_restitution(shape, pivot))
 
@@ -215,10 +212,7 @@ def overhang(pile: Pile, pivot: int) -> float:
 
 
 def lowest_edge(pile: Pile, pivot: int) -> float:
-    """How low the pedestal's upper edge can come before anything has fallen [m].
-
-    It is lowest where the pedestal, or both as one, balance on their pivot.
-    """
+    """How low the pedestal's upper edge comes where it, or both as one, balance on their pivot [m]."""
     x, y = reach(pile, pivot, pivot)
     wx, wy = common_arm(pile, pivot)
     furthest = max(critical_angle(pile.lower, pivot), atan2(-pivot * wx, wy))

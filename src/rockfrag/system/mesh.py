@@ -116,10 +116,7 @@ class Shape:
         return float(-along.min()), float(along.max())
 
     def scanned_again(self, scan_tolerance: float, rng: np.random.Generator) -> "Shape":
-        """Return the shape as another scan of the same accuracy might have seen it.
-
-        ``scan_tolerance`` is the standard deviation of the height of a point of the surface [m].
-        """
+        """Return the shape as another scan might have seen it, of this standard deviation of heights [m]."""
         points = self.points.copy()
         points[:, 2] += scan_tolerance * rng.standard_normal(len(points))
         return replace(self, points=points)
@@ -187,10 +184,7 @@ def _outward(corners: Array) -> Array:
 
 
 def edge_distances(corners: Array) -> Array:
-    """Return the distances of a polygon's edges from the origin, negative where that is outside [m], shape (n,).
-
-    Corners of a convex polygon are given anticlockwise, shape (n, 2) [m].
-    """
+    """Distances of a convex polygon's edges from the origin, negative where that is outside [m], shape (n,)."""
     return np.asarray(np.einsum("ni,ni->n", _outward(corners), corners))
 
 

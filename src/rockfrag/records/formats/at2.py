@@ -155,10 +155,7 @@ def _parse(text: TextFile) -> list[Channel]:
 
 
 def _samples(text: TextFile, start: int, npts: int) -> NDArray[np.float64]:
-    """Return the samples: separated numbers, or PEER's columns of 15 where neighbours touch.
-
-    A line of asterisks, such as ``*** End Data ***``, ends them.
-    """
+    """Return the samples: separated numbers, or PEER's columns of 15 where neighbours touch."""
     stop = last_row(text, start)
     try:
         return text.counted(start, stop, npts)
@@ -199,11 +196,7 @@ FORMAT = Format("AT2", _recognise, _parse)
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
-    """Write one trace of acceleration as an AT2 file that reads back to the same samples.
-
-    The unit is ``stats.rockfrag.unit``. Values have the digits that tell every float64 from its
-    neighbours.
-    """
+    """Write one trace of acceleration as an AT2 file that reads back to the same samples."""
     trace, samples = one_trace(stream, filename)
     unit = stated_unit(trace, filename)
     facts = trace.stats.rockfrag

@@ -483,10 +483,7 @@ FORMAT = Format("PLAINTEXT", _recognise, _parse, wants_dt=True, encoding="latin-
 
 
 def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
-    """Write one trace as CSV, time and acceleration, that read back to the same samples.
-
-    The titles state the unit where ``stats.rockfrag.unit`` has it.
-    """
+    """Write one trace as CSV, time and acceleration, that read back to the same samples."""
     trace, samples = one_trace(stream, filename)
     unit = trace.stats.get("rockfrag", {}).get("unit", "")
     dt = float(f"{trace.stats.delta:.12g}")

@@ -54,10 +54,7 @@ def _opened(path: str | os.PathLike[str]) -> Any:
 
 
 def read_head(source: Source, size: int = HEAD_BYTES) -> bytes:
-    """Return the first bytes of a file, or nothing if it cannot be read; never raises.
-
-    A file object is left where it was.
-    """
+    """Return the first bytes of a file, or nothing if it cannot be read; leave a file object where it was."""
     try:
         if isinstance(source, (str, os.PathLike)):
             if not os.path.isfile(source):
@@ -305,11 +302,7 @@ def _tokens_by_line(body: bytes) -> NDArray[np.int64]:
 
 
 def read_text(source: Source, encoding: str = "") -> TextFile:
-    """Read a text file within the bounds of size and line length.
-
-    A file whose name ends in ``.gz`` is unpacked. Lines that are not UTF-8 are of ``encoding``,
-    where one is given.
-    """
+    """Read a text file within the bounds of size and line length; lines that are not UTF-8 are of ``encoding``."""
     name = name_of(source)
     data = read_bytes(source)
     if b"\n" not in data[:HEAD_BYTES] and b"\r" in data[:HEAD_BYTES]:
@@ -343,21 +336,6 @@ def check_file(path: str | os.PathLike[str]) -> None:
         raise InputError(
             f"{path}: {size / 2**20:.0f} MiB are too many for a record (at most {MAX_BYTES // 2**20})."
         )
-
-
-def check_unpacked(path: Path) -> None:
-    """Check that a ``.gz`` file unpacks to no more than a record can have."""
-    if path.suffix.lower() != ".gz":
-        return
-    total = 0
-    try:
-        with gzip.open(path, "rb") as unpacked:
-            while block := unpacked.read(_BLOCK):
-                total += len(block)
-                if total > MAX_BYTES:
-                    raise InputError(f"{path}: unpacks to more than {MAX_BYTES // 2**20} MiB.")
-    except (OSError, EOFError, zlib.error) as error:
-        raise InputError(f"{path}: cannot be unpacked ({error}).") from None
 
 
 def read_bytes(source: Source) -> bytes:

@@ -81,11 +81,7 @@ def step_of_times(
 
 
 def even_step(times: NDArray[np.float64]) -> float:
-    """Return the interval [s] to interpolate unevenly digitised points to.
-
-    The coarsest of 200, 500, 1000 and 2000 Hz that has about as many samples as there are points, so
-    that peaks between samples of a coarser one are not lost.
-    """
+    """Return the interval [s] to interpolate unevenly digitised points to: about as many samples as points."""
     mean = float(times[-1] - times[0]) / max(times.size - 1, 1)
     return next((step for step in _EVEN_STEPS if step <= _COARSEST * mean), _EVEN_STEPS[-1])
 
@@ -111,10 +107,7 @@ def resolution_of(times: NDArray[np.float64]) -> float:
 
 
 def _printed_resolution(times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the decimal unit [s] that each time is printed to, shape (n,).
-
-    Times of a fixed number of significant digits lose decimals from one power of ten to the next.
-    """
+    """Return the decimal unit [s] that each time is printed to, shape (n,)."""
     decades = np.floor(np.log10(np.maximum(np.abs(times), 1.0)))
     resolution = np.empty_like(times)
     for decade in np.unique(decades):
@@ -135,10 +128,7 @@ def _shortest_decimal(value: float, tolerance: float) -> float:
 def clock_time(
     year: str, month: str, day: str, hour: str, minute: str, second: str, zone: str = "UTC"
 ) -> UTCDateTime | None:
-    """Return a date and time as UTC, or None if it is no time or its zone is not known.
-
-    Years of two digits are those of 1931 to 2030.
-    """
+    """Return a date and time as UTC, or None if it is no time or its zone is not known."""
     behind = _HOURS_BEHIND.get(zone.strip().upper() or "UTC")
     if behind is None:
         return None

@@ -54,10 +54,7 @@ def is_archive(path: str | os.PathLike[str]) -> bool:
 
 @contextmanager
 def unpacked(path: str | os.PathLike[str]) -> Iterator[list[Member]]:
-    """Give the files of an archive, in order of name, unpacked into a folder that is then removed.
-
-    An archive within the archive is unpacked as well, one within that is not.
-    """
+    """Give the files of an archive, in order of name, unpacked into a folder that is then removed."""
     with TemporaryDirectory(prefix="rockfrag.") as scratch:
         room = _Room(Path(scratch))
         members = _take_out(path, room, "")

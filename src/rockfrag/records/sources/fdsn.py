@@ -84,11 +84,7 @@ def parse_request(words: str) -> FdsnRequest:
 
 
 def fetch_fdsn(words: str, records: Path) -> Path:
-    """Put what a request gives into ``records/fdsn/…`` and return the MiniSEED file there.
-
-    A request that has been answered is not sent again. The records lie beside the StationXML of their
-    channels, so that they are read like a user's own.
-    """
+    """Put what a request gives into ``records/fdsn/…``, if it is not there, and return the MiniSEED file."""
     request = parse_request(words)
     folder = Path(records) / "fdsn" / request.folder
     found, stations = folder / RECORDS, folder / STATIONS

@@ -20,10 +20,7 @@ SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")
 
 
 def read_component(path: str | os.PathLike[str], member: str) -> Motion:
-    """Read one component, ``record/component`` such as ``1/a``, as recorded and unscaled.
-
-    The files store acceleration in g and the time of every sample.
-    """
+    """Read one component, ``record/component`` such as ``1/a``, as recorded and unscaled."""
     file = Path(path)
     digest = sha256_of(file)
     try:

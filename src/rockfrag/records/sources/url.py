@@ -16,9 +16,7 @@ _BLOCK = 2**20
 def fetch_url(url: str, sha256: str, path: str | os.PathLike[str]) -> None:
     """Put what an address gives at ``path``, if its SHA-256 is the one wanted.
 
-    A file that is already there with the right digest is left alone, without network; one with
-    another digest is left alone as well, and an error. Messages name the path, where the file may also be
-    put by hand.
+    A file that is there is left alone, without network; one with another digest is an error.
     """
     file = Path(path)
     if not url.startswith(("http://", "https://")):

@@ -95,10 +95,8 @@ def fetch_wheel(
 ) -> Path:
     """Put the data files of a pinned wheel into ``records/<name>/`` and return that folder.
 
-    The bytes are those of the wheel, line ends included (gmspy's are CRLF). ``provenance.json``
-    beside them has package, version and every SHA-256. A folder that already has them all is left
-    alone, without network, and may be read-only. Each file appears whole, and other files in the folder
-    are never touched, so that several processes may fetch at once.
+    A folder that has them all is left alone, without network, and may be read-only. Each file appears whole, and
+    others are never touched, so that several processes may fetch at once.
     """
     if name not in WHEELS:
         raise InputError(f"no pinned wheel is called {name!r}; there are {', '.join(WHEELS)}.")

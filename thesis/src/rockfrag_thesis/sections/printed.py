@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.report.page import cell_html, framed
+from rockfrag.report.page import framed
 from rockfrag.report.part import Part, Results, Section, section_of
 from rockfrag.report.wording import number
 from rockfrag_thesis.sections.words import sentences
@@ -44,19 +44,11 @@ def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:
     rows: dict[tuple[str, str], Any] = {
         (r["name"], r["quantity"]): r for r in comparison.to_dict("records")
     }
-    head = Markup('<th scope="col">Name</th>') + Markup("").join(
-        Markup('<th scope="col" class="number">{}</th>').format(title) for title in titles.values()
-    )
-    body = Markup("").join(
-        Markup("<tr>{}{}</tr>").format(
-            cell_html(name, "Name", "short"),
-            Markup("").join(
-                cell_html(_compared(rows.get((name, quantity))), title, "number")
-                for quantity, title in titles.items()
-            ),
-        )
+    body = [
+        [name, *(_compared(rows.get((name, quantity))) for quantity in titles)]
         for name in dict.fromkeys(comparison["name"])
-    )
+    ]
+    head = [("Name", ""), *((title, "number") for title in titles.values())]
     return framed(caption, head, body, 1 + len(titles))
 
 
