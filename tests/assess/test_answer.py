@@ -139,6 +139,14 @@ def test_answers_are_json_with_all_that_an_independent_computation_needs(on_plin
         (FIGURE | {"hazard": ["absent.csv"]}, "absent.csv"),
         ({"mesh": {"file": "absent.stl"}}, "absent.stl"),
         ({"mesh": {"file": "a.stl"}, "width": "1 m"}, "follows from the mesh"),
+        (FIGURE | {"tolerances": {"mass": 0.1}}, "without a pedestal"),
+        (FIGURE | {"tolerances": {"period": 0.1}}, "stands on the ground"),
+        (FIGURE | {"round": True, "depth": "30 cm"}, "diameter"),
+        (FIGURE | {"cg_offset": "5 cm", "restitution": 0.999}, "gain energy"),
+        (
+            FIGURE | {"records": {"paths": ["a"]}, "distance_km": 10},
+            "chooses among the default motions",
+        ),
     ],
 )
 def test_what_makes_no_sense_is_refused_in_a_sentence(settings, words):

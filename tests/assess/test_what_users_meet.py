@@ -381,21 +381,6 @@ def test_an_italian_table_is_read(tmp_path):
     assert curve.level(1 / 475) == pytest.approx(0.13)
 
 
-@pytest.mark.parametrize(
-    ("settings", "words"),
-    [
-        ({"tolerances": {"mass": 0.1}}, "without a pedestal"),
-        ({"tolerances": {"period": 0.1}}, "stands on the ground"),
-        ({"round": True, "depth": "30 cm"}, "diameter"),
-        ({"cg_offset": "5 cm", "restitution": 0.999}, "gain energy"),
-        ({"records": {"paths": ["a"]}, "distance_km": 10}, "chooses among the default motions"),
-    ],
-)
-def test_what_would_have_no_effect_or_no_sense_is_refused(settings, words):
-    with pytest.raises(InputError, match=words):
-        asked(**STATUE, **settings)
-
-
 def test_a_centre_of_gravity_off_the_middle_is_answered(motions):
     request = asked(width="20 cm", height="1.2 m", cg_offset="5 cm", pga="0.2 g")
     found = assess_with(request, motions, brief=True)

@@ -17,6 +17,8 @@ MOST_CELLS = 12  # cells of each measure in the non-parametric surface
 TOLERANCE = 1e-9
 """Change of a probability at which the alternating projections of the surface end [-]."""
 
+MOST_DRAWN = 4_000_000  # outcomes that are drawn at once, which bounds the memory
+
 MOST_CYCLES = 5_000  # cycles of alternating projections; some hundreds are usual
 
 
@@ -77,13 +79,18 @@ def check_vector(
     bins = bins if values.size > 1 else np.zeros(eta.size, dtype=np.intp)
     motions = pd.factorize(pd.Series(labels(table, motion, "table")))[0]
     capacity = np.random.default_rng(seed).normal(size=(replicates, int(motions.max()) + 1))
-    drawn = (eta > capacity[:, motions]).astype(np.float64)
     fell, expected, trials = (
         np.asarray(np.bincount(bins, values), dtype=np.float64)
         for values in (outcome, special.ndtr(eta), np.ones(eta.size))
     )
     own = binned_deviance(fell, expected, trials)
-    simulated = refitted_deviance(design, drawn, np.ones(eta.size), bins)
+    at_once = max(MOST_DRAWN // eta.size, 1)
+    simulated = np.concatenate(
+        [
+            refitted_deviance(design, 1.0 * (eta > part[:, motions]), np.ones(eta.size), bins)
+            for part in np.split(capacity, range(at_once, replicates, at_once))
+        ]
+    )
     p_fit = float((1 + np.sum(simulated >= own - 1e-9)) / (1 + simulated.size))
     return VectorChecks(p_fit, _surface_table(fit, logs, outcome))
 

@@ -2,8 +2,8 @@
 
 Every oscillator takes the steps and finds the peaks between them as :func:`rockfrag.motions.response_spectrum`
 does, to the last bit.  What is saved is the look between two steps: a peak there is worth it only if it can be
-the largest of all.  So all steps are taken without a look first, and those stretches of them alone are gone
-through again that may hold the peak.  Where u turns, u'' is bounded by the ground's and the spring's share,
+the largest so far.  So a stretch of steps is taken without a look first, and gone through again if it may hold
+such a peak.  Where u turns, u'' is bounded by the ground's and the spring's share,
 |u''| (1 - ch) ≤ PGA + k |u| with c = 2ζω, k = ω² and step h.  One end of the step is within h/2 of the turn, so
 that the peak exceeds the larger of the two ends by q (PGA/k + |u|) at most, with q = k (h/2)²/2/(1 - ch).
 
@@ -69,11 +69,7 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
     for which, parts, step, quiet, table in _groups(periods.tobytes(), damping, motion.dt):
         x = table.copy()
         x[_ADDED : _ADDED + LANES] *= to_come[0]
-        stretches = np.empty((-(-(motion.acceleration.size - 1 + quiet) // LOOK_EVERY), 3 * LANES))
-        ground = np.empty((2, LOOK_EVERY * parts))
-        steps = (quiet, step, parts, x, ground)
-        count = _integrate(motion.acceleration, to_come, *steps, stretches)
-        _look(motion.acceleration, *steps, stretches[:count])
+        _integrate(motion.acceleration, to_come, quiet, step, parts, x)
         peaks[which] = x[_LARGEST : _LARGEST + which.size]
     return peaks
 
@@ -121,67 +117,30 @@ def _sample(acceleration: Floats, i: int) -> float:
 
 @cached_njit(error_model="numpy")
 def _integrate(
-    acceleration: Floats,
-    to_come: Floats,
-    quiet: int,
-    step: float,
-    parts: int,
-    x: Floats,
-    ground: Floats,
-    stretches: Floats,
-) -> int:
-    """Take all lanes through a motion and ``quiet`` samples after it; return the number of stretches.
-
-    The largest displacements at the steps are in the table then; ``stretches`` has each one's state at its
-    beginning and largest displacement, of all lanes, and ``ground`` is room for what shakes the steps of one.
-    """
+    acceleration: Floats, to_come: Floats, quiet: int, step: float, parts: int, x: Floats
+) -> None:
+    """Take all lanes through a motion and ``quiet`` samples after it; the peaks are in the table then."""
     end = acceleration.size - 1 + quiet
-    count = 0
+    ground, begin = np.empty((2, LOOK_EVERY * parts)), np.empty(2 * LANES)
     for first in range(0, end, LOOK_EVERY):
         if _settled(x, _sample(to_come, first)):
             break
-        for i in range(LANES):
-            stretches[count, i], stretches[count, LANES + i] = x[_U + i], x[_V + i]
-            x[_HIGHEST + i] = abs(x[_U + i])
         steps = _fill_ground(acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground)
-        for j in range(0, steps - 3, 4):
-            _advance_four(x, ground, j)
-        for j in range(steps - steps % 4, steps):
-            _advance(x, ground[0, j], ground[1, j])
+        begin[:] = x[_U : _U + 2 * LANES]
         for i in range(LANES):
-            stretches[count, 2 * LANES + i] = x[_HIGHEST + i]
-            x[_LARGEST + i] = max(x[_LARGEST + i], x[_HIGHEST + i])
-        count += 1
-    return count
-
-
-@cached_njit(error_model="numpy")
-def _look(
-    acceleration: Floats,
-    quiet: int,
-    step: float,
-    parts: int,
-    x: Floats,
-    ground: Floats,
-    stretches: Floats,
-) -> None:
-    """Go through those stretches again that may hold a peak between steps; the peaks are in the table then."""
-    end = acceleration.size - 1 + quiet
-    for number in range(len(stretches)):
-        if _may_hold_the_peak(x, stretches[number]):
+            x[_HIGHEST + i] = abs(x[_U + i])
+        for j in range(steps):
+            _advance(x, ground[0, j], ground[1, j])
+        if not _may_hold_the_peak(x):
+            continue
+        x[_U : _U + 2 * LANES] = begin
+        for j in range(steps):
             for i in range(LANES):
-                x[_U + i], x[_V + i] = stretches[number, i], stretches[number, LANES + i]
-            first = number * LOOK_EVERY
-            steps = _fill_ground(
-                acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground
-            )
-            for j in range(steps):
-                for i in range(LANES):
-                    x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
-                _advance(x, ground[0, j], ground[1, j])
-                if _turns_high(x):
-                    for lane in range(LANES):
-                        _look_between(x, lane, ground[0, j], ground[1, j], step)
+                x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
+            _advance(x, ground[0, j], ground[1, j])
+            if _turns_high(x):
+                for lane in range(LANES):
+                    _look_between(x, lane, ground[0, j], ground[1, j], step)
 
 
 @cached_njit(error_model="numpy")
@@ -212,11 +171,12 @@ def _settled(x: Floats, to_come: float) -> bool:
 
 
 @cached_njit(error_model="numpy")
-def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
-    """Whether a peak between two steps of a stretch can be the largest displacement of a lane."""
+def _may_hold_the_peak(x: Floats) -> bool:
+    """Count the largest displacements of a stretch in; whether a peak between its steps can be larger."""
     may = False
     for i in range(LANES):
-        may |= stretch[2 * LANES + i] + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]
+        x[_LARGEST + i] = max(x[_LARGEST + i], x[_HIGHEST + i])
+        may |= x[_HIGHEST + i] + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]
     return may
 
 
@@ -224,34 +184,12 @@ def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
 def _advance(x: Floats, a: float, s: float) -> None:
     """One step of all lanes."""
     for i in range(LANES):
-        u, v = _stepped(x, i, x[_U + i], x[_V + i], a, s)
+        u0, v0 = x[_U + i], x[_V + i]
+        u = x[_UU + i] * u0 + x[_UV + i] * v0 + x[_UA + i] * a + x[_US + i] * s
+        v = x[_VU + i] * u0 + x[_VV + i] * v0 + x[_VA + i] * a + x[_VS + i] * s
         # the zero keeps the compiler from storing under a condition, for which the next load would wait
         x[_HIGHEST + i] = max(x[_HIGHEST + i], abs(u)) + 0.0
         x[_U + i], x[_V + i] = u, v
-
-
-@cached_njit(error_model="numpy")
-def _advance_four(x: Floats, ground: Floats, j: int) -> None:
-    """Four steps of all lanes from step j on, whose table is read and written once."""
-    a0, a1, a2, a3 = ground[0, j], ground[0, j + 1], ground[0, j + 2], ground[0, j + 3]
-    s0, s1, s2, s3 = ground[1, j], ground[1, j + 1], ground[1, j + 2], ground[1, j + 3]
-    for i in range(LANES):
-        u0, v0 = _stepped(x, i, x[_U + i], x[_V + i], a0, s0)
-        u1, v1 = _stepped(x, i, u0, v0, a1, s1)
-        u2, v2 = _stepped(x, i, u1, v1, a2, s2)
-        u3, v3 = _stepped(x, i, u2, v2, a3, s3)
-        highest = max(max(abs(u0), abs(u1)), max(abs(u2), abs(u3)))
-        x[_HIGHEST + i] = max(x[_HIGHEST + i], highest) + 0.0
-        x[_U + i], x[_V + i] = u3, v3
-
-
-@cached_njit(error_model="numpy", inline="always")
-def _stepped(x: Floats, i: int, u: float, v: float, a: float, s: float) -> tuple[float, float]:
-    """Displacement and velocity of lane i one step after u and v."""
-    return (
-        x[_UU + i] * u + x[_UV + i] * v + x[_UA + i] * a + x[_US + i] * s,
-        x[_VU + i] * u + x[_VV + i] * v + x[_VA + i] * a + x[_VS + i] * s,
-    )
 
 
 @cached_njit(error_model="numpy")

@@ -1,7 +1,7 @@
 """What a report is made of: parts, each with its words, tables and figures in one file.
 
-To add a part, write a module in ``report/sections/`` with one :class:`Part`, and name it in
-``report/sections/__init__.py`` where it should stand.
+To add a part, write a module in ``report/sections/`` with one :class:`Part`, its words into ``sections.j2`` there,
+and name it in ``report/sections/__init__.py`` where it should stand.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -5,6 +5,7 @@ import gzip
 import math
 import os
 import tempfile
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache, lru_cache
@@ -26,9 +27,9 @@ from rockfrag.records.parsing.number_table import first_odd_row
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import (
     HEAD_BYTES,
+    MAX_BYTES,
     MAX_LINE,
     NotAcceleration,
-    check_unpacked,
     read_head,
 )
 
@@ -64,7 +65,6 @@ def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Chann
         raise InputError(
             f"{path}, line 1: the line is longer than {MAX_LINE} characters, which no record format has."
         )
-    check_unpacked(path)
     with _unpacked(path) as plain:
         name = _format_of(plain)
         if not name:
@@ -77,14 +77,20 @@ def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Chann
 
 @contextmanager
 def _unpacked(path: Path) -> Iterator[Path]:
-    """Give the file itself, or what a ``.gz`` file holds."""
+    """Give the file itself, or what a ``.gz`` file holds, if that is no more than a record can have."""
     if path.suffix.lower() != ".gz":
         yield path
         return
     with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
         plain = Path(scratch) / path.stem
-        with gzip.open(path, "rb") as packed:
-            plain.write_bytes(packed.read())
+        try:
+            with gzip.open(path, "rb") as packed, plain.open("wb") as out:
+                while block := packed.read(2**20):
+                    out.write(block)
+                    if out.tell() > MAX_BYTES:
+                        raise InputError(f"{path}: unpacks to more than {MAX_BYTES // 2**20} MiB.")
+        except (OSError, EOFError, zlib.error) as error:
+            raise InputError(f"{path}: cannot be unpacked ({error}).") from None
         yield plain
 
 

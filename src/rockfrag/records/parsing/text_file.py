@@ -338,21 +338,6 @@ def check_file(path: str | os.PathLike[str]) -> None:
         )
 
 
-def check_unpacked(path: Path) -> None:
-    """Check that a ``.gz`` file unpacks to no more than a record can have."""
-    if path.suffix.lower() != ".gz":
-        return
-    total = 0
-    try:
-        with gzip.open(path, "rb") as unpacked:
-            while block := unpacked.read(_BLOCK):
-                total += len(block)
-                if total > MAX_BYTES:
-                    raise InputError(f"{path}: unpacks to more than {MAX_BYTES // 2**20} MiB.")
-    except (OSError, EOFError, zlib.error) as error:
-        raise InputError(f"{path}: cannot be unpacked ({error}).") from None
-
-
 def read_bytes(source: Source) -> bytes:
     """Read all bytes of a text file, refusing early what is too large or has too long a line."""
     name = name_of(source)
