@@ -4,7 +4,6 @@ Base 0.1-1.0 m, H/B 3-6, peak ground acceleration 0.1-1.05 g, 40 s at 0.01 s.  E
 one seed; the ranges are filled evenly (one draw from each of as many equal fractions as there are values).
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,9 +32,7 @@ class Cases:
         """Number of histories."""
         return len(self.bodies) * self.scales.size
 
-    def each(
-        self, count: int, seed: int = 0
-    ) -> Iterator[tuple[tuple[int, int, int], Body, NDArray[np.float64]]]:
+    def each(self, count, seed=0):
         """Yield index, body and scaled acceleration of ``count`` cases drawn without repetition."""
         shape = (len(self.bodies), *self.scales.shape)
         chosen = np.random.default_rng(seed).choice(self.count, count, replace=False)

@@ -111,14 +111,7 @@ def mujoco_model(body: Body | Column, timestep: float, stiff: bool, friction: fl
 </mujoco>""")
 
 
-def mujoco_outcome(
-    body: Body | Column,
-    acceleration: Array,
-    dt: float,
-    timestep: float = 1e-3,
-    stiff: bool = True,
-    friction: float = 3.0,
-) -> bool:
+def mujoco_outcome(body, acceleration, dt, timestep=0.001, stiff=True, friction=3.0):
     """MuJoCo, the ground's acceleration as a force on each body, rolled out in compiled code by the second.
 
     ``stiff`` takes contacts as stiff as the step allows; MuJoCo's default is softer.  With the friction of the
@@ -154,9 +147,7 @@ def mujoco_outcome(
     return False
 
 
-def numpy_lone(
-    bodies: list[Body], accelerations: list[Array], scales: Array, dt: float
-) -> NDArray[np.bool_]:
+def numpy_lone(bodies, accelerations, scales, dt):
     """Advance all cases together by Runge-Kutta steps of one sample; impacts and uplift at its end."""
     shape = (len(bodies), *scales.shape)
     i, j, k = (index.ravel() for index in np.indices(shape))

@@ -148,15 +148,7 @@ class Model:
 
     # --------------------------------------------------------------- solving
 
-    def solve(
-        self,
-        q: Array,
-        v: Array,
-        mode: Mode,
-        contacts: dict[End, Contact],
-        load: list[float] | None,
-        rough: bool = True,
-    ) -> Solution:
+    def solve(self, q, v, mode, contacts, load, rough=True):
         """Accelerations and forces of a mode under the ground's acceleration; impulses if there is none.
 
         An impact has M v⁺ = M v + (impulses) and closed ends that no longer move apart; between impacts

@@ -5,16 +5,15 @@ the fast kernels.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from rockfrag.system import Block, Column, Stack, System, as_system
+from rockfrag.system import as_system
 from rockfrag.units import GRAVITY
 
 from .contact_model import AT_EDGE, FULL, OPEN, Contact, End, InterfaceMode, Mode, Model, Solution
-from .integrator import SLACK, Array, Integrator, Key, Response
+from .integrator import SLACK, Array, Integrator, Key
 
 # lengths over b and speeds over √(g b) by which what has just begun is not taken for its end [-]
 TOUCH = 1e-13
@@ -30,15 +29,7 @@ Load = list[float]
 LONGEST_TAIL = 200.0  # free motion after the last sample, over √(b/g)
 
 
-def simulate_reference(
-    body: Block | Stack | Column | System,
-    acceleration: ArrayLike,
-    dt: float,
-    *,
-    friction: Sequence[float],
-    vertical: ArrayLike | None = None,
-    duration: float | None = None,
-) -> Response:
+def simulate_reference(body, acceleration, dt, *, friction, vertical=None, duration=None):
     """Rock, slide and fly bodies on each other on a shaken ground, slowly and accurately.
 
     Accelerations [m/s²] are linear between samples and zero one sample after the last.  ``friction`` is of
@@ -209,14 +200,7 @@ class _Run(Integrator):
         for end in touching:
             self.kind.setdefault(end, model.contact(self.q, *end).on_face)
 
-    def _scored(
-        self,
-        modes: Iterable[Mode],
-        touching: list[End],
-        contacts: dict[End, Contact],
-        units: tuple[float, float],
-        load: Load | None,
-    ) -> list[tuple[float, Mode, Solution]]:
+    def _scored(self, modes, touching, contacts, units, load):
         """How far each mode is from being consistent; ``units`` of force (or impulse) and of rates."""
         scored = []
         for mode in modes:
@@ -228,15 +212,7 @@ class _Run(Integrator):
             scored.append((max(0.0, *violations), mode, solution))
         return scored
 
-    def _violations(
-        self,
-        mode: Mode,
-        solution: Solution,
-        contacts: dict[End, Contact],
-        touching: list[End],
-        units: tuple[float, float],
-        load: Load | None,
-    ) -> Iterator[float]:
+    def _violations(self, mode, solution, contacts, touching, units, load):
         model = self.model
 
         def rate(k: int, c: Contact, direction: Array) -> float:
@@ -292,14 +268,7 @@ class _Run(Integrator):
         self.v = solution.rates
         self._turn_to(mode)
 
-    def _weak(
-        self,
-        t: float,
-        touching: list[End],
-        mode: Mode,
-        solution: Solution,
-        contacts: dict[End, Contact],
-    ) -> list[End]:
+    def _weak(self, t, touching, mode, solution, contacts):
         """Ends that part so slowly that they would only chatter."""
         model, found = self.model, []
         parting = []

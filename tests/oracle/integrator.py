@@ -203,9 +203,7 @@ class Integrator(ABC):
             if early < 0 < late:
                 yield brentq(lambda t, i=i: self.approaches(at(t))[i], t0, t1, xtol=1e-15)
 
-    def _root(
-        self, at: Callable[[float], Array], key: Key, t0: float, t1: float, first: float
-    ) -> float:
+    def _root(self, at, key, t0, t1, first):
         if first <= 0:
             return t0
         return float(brentq(lambda t: self.watched(t, at(t))[key], t0, t1, xtol=1e-16))

@@ -6,13 +6,10 @@ Nothing is shared with the fast kernel but the bodies.
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.system.blocks import Block, Stack
 from rockfrag.units import GRAVITY
 
-from .integrator import SLACK, Array, Integrator, Key, Response
+from .integrator import SLACK, Array, Integrator, Key
 from .rocking_model import NEGLIGIBLE_SPEED, LinearModel, Model, Pair, State
 
 # A contact that would part at less than this speed after an impact is closed, if it would fall shut
@@ -27,16 +24,16 @@ LONGEST_TAIL = 1000.0
 
 
 def simulate_reference(
-    body: Block | Stack,
-    acceleration: ArrayLike,
-    dt: float,
+    body,
+    acceleration,
+    dt,
     *,
-    restitution: Restitution = None,
-    linear: bool = False,
-    vertical: ArrayLike | None = None,
-    duration: float | None = None,
-    chatter: float = CHATTER,
-) -> Response:
+    restitution=None,
+    linear=False,
+    vertical=None,
+    duration=None,
+    chatter=CHATTER,
+):
     """Rock a block or a stack on a shaken ground, slowly and accurately.
 
     Accelerations [m/s²] are linear between samples and zero after the last.  ``restitution`` is a number of a
@@ -152,9 +149,7 @@ class _Run(Integrator):
         pivots = (float(new[0] or 1), float(new[1] or 1))
         return new, self.model.projected(pivots, new, old, self.theta, before)
 
-    def _too_weak(
-        self, time: float, new: State, after: Pair, old: State, closing: State
-    ) -> set[int]:
+    def _too_weak(self, time, new, after, old, closing):
         """List contacts that part so slowly after an impact that they would only chatter."""
         parting = _gaps(after)
         pull = _gaps(self.model.accelerations(new, self.theta, after, self._pull(time)))

@@ -87,9 +87,7 @@ class Model:
         d = Vector(self._rise.x + r1.x - r2.x, self._rise.y + r1.y - r2.y)
         return r1.turned(theta[0]), d.turned(theta[0]), r2.turned(theta[1])
 
-    def terms(
-        self, pivots: State, theta: Pair, omega: Pair, pull: Pair
-    ) -> tuple[float, float, float, float, float]:
+    def terms(self, pivots, theta, omega, pull):
         """Return M11, M12, M22, f1, f2 of M θ'' + f = τ (Spanos, Roussis and Politis, 2001).
 
         ``pull`` is the acceleration of the ground, and gravity with its upward one [m/s²].  Plain floats: every
@@ -135,9 +133,7 @@ class Model:
 
     # ----------------------------------------------------------- persistence
 
-    def margins(
-        self, state: State, theta: Pair, omega: Pair, pull: Pair
-    ) -> dict[tuple[int, int], float]:
+    def margins(self, state, theta, omega, pull):
         """How firmly each full contact presses about each corner, {(contact, pivot): margin} [-].
 
         The contact moment s τ(s), over weight times half width; below zero the contact would have
@@ -201,9 +197,7 @@ class Model:
 
     # ---------------------------------------------------------------- impact
 
-    def products(
-        self, test: Pair, field: State, theta: Pair
-    ) -> tuple[tuple[float, float], tuple[float, float]]:
+    def products(self, test, field, theta):
         """Kinetic-metric products of the fields about ``test`` with those about ``field``."""
         r1t, dt, r2t = self.fields(test, theta)
         r1, d, r2 = self.fields(field, theta)
@@ -212,9 +206,7 @@ class Model:
             (self.m2 * _dot(r2t, d), self.i2 + self.m2 * _dot(r2t, r2)),
         )
 
-    def impulses(
-        self, test: Pair, new: State, old: State, theta: Pair, after: Pair, before: Pair
-    ) -> Pair:
+    def impulses(self, test, new, old, theta, after, before):
         """Generalised impulses about ``test``: momenta after less momenta before."""
         late = self.products(test, (new[0] or 1, new[1] or 1), theta)
         early = self.products(test, (old[0] or 1, old[1] or 1), theta)
@@ -246,9 +238,7 @@ class Model:
             (p2 * left[0][0] - p1 * left[1][0]) / det,
         )
 
-    def impact(
-        self, old: State, closing: State, theta: Pair, before: Pair
-    ) -> tuple[State, Pair, bool]:
+    def impact(self, old, closing, theta, before):
         """Contact state and angular velocities after an impact (Spanos, Roussis and Politis, 2001).
 
         ``closing`` holds the old pivot of each contact that closes, 0 for the others.  Last comes
@@ -284,9 +274,7 @@ class Model:
             return *shared(1.0), moves and moved is None
         return *shared(float(brentq(spare, 0.0, 1.0, xtol=1e-15))), True
 
-    def _wanted(
-        self, contact: int, closing: State, before: Pair, plain: Pair, moved: Pair | None
-    ) -> float:
+    def _wanted(self, contact, closing, before, plain, moved):
         """Rate at which a contact comes off, by its law if it closes and never on its old pivot.
 
         ``plain`` and ``moved`` are the velocities after it by momentum, and with impulses where position has them.
@@ -302,9 +290,7 @@ class Model:
             rate = _rates(moved or plain)[contact]
         return rate if rate * closing[contact] < 0 else 0.0
 
-    def _coming_off(
-        self, old: State, closing: State, theta: Pair, before: Pair, given: list[bool], rates: Pair
-    ) -> tuple[State, Pair]:
+    def _coming_off(self, old, closing, theta, before, given, rates):
         """State and velocities after an impact whose closing contacts come off at given rates.
 
         The impulses of the contact whose rate is given do no work on a motion that does not change
@@ -340,17 +326,13 @@ class Model:
             return (0, parted[1]), (0.0, rates[1])
         return (parted[0], 0), (rates[0], rates[0])
 
-    def _together(
-        self, old: State, closing: State, theta: Pair, before: Pair
-    ) -> tuple[State, Pair]:
+    def _together(self, old, closing, theta, before):
         """Keep together what met, where no other outcome is possible."""
         new = (0 if closing[0] else old[0], 0 if closing[1] else old[1])
         pivots = (float(new[0] or 1), float(new[1] or 1))
         return new, self.projected(pivots, new, old, theta, before)
 
-    def admissible_impacts(
-        self, old: State, closing: State, theta: Pair, before: Pair, moved: bool = False
-    ) -> Iterator[tuple[State, Pair]]:
+    def admissible_impacts(self, old, closing, theta, before, moved=False):
         """List every outcome of an impact that separates and presses as it must.
 
         Impulses act at the pivots, or, if ``moved``, where the law of position has them.
@@ -374,9 +356,7 @@ class Model:
             return law.number
         return float(new[contact] or 1)
 
-    def _presses(
-        self, new: State, old: State, places: Pair, theta: Pair, after: Pair, before: Pair
-    ) -> bool:
+    def _presses(self, new, old, places, theta, after, before):
         """Whether the impulses push at every contact that is full after the impact."""
         slack = -NEGLIGIBLE_SPEED * math.hypot(*before)
         for s in (1, -1):
@@ -407,9 +387,7 @@ class LinearModel(Model):
         """Vectors r1, d and r2 of the standing blocks [m]."""
         return super().fields(places, (0.0, 0.0))
 
-    def terms(
-        self, pivots: State, theta: Pair, omega: Pair, pull: Pair
-    ) -> tuple[float, float, float, float, float]:
+    def terms(self, pivots, theta, omega, pull):
         """Return M11, M12, M22, f1, f2 of the linearised equations."""
         r1, d, r2 = self.fields(pivots, theta)
         m11 = self.i1 + self.m1 * _dot(r1, r1) + self.m2 * _dot(d, d)

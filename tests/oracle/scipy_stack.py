@@ -15,7 +15,7 @@ from rockfrag.system.blocks import Body, Stack
 
 from .competitors import SLOWEST_IMPACT, Array, G
 from .rocking_integrator import LONGEST_TAIL
-from .rocking_model import Model, Pair, State
+from .rocking_model import Model, State
 
 Ground = Callable[[float], float]
 Watch = Callable[[float, Array], float]
@@ -70,9 +70,7 @@ def watches(model: Model, state: State, start: float, ground: Ground) -> list[Wa
     return [*contact_events, falls]
 
 
-def landed(
-    model: Model, state: State, shut: list[int], theta: Pair, omega: Pair, a: float
-) -> tuple[State, Pair]:
+def landed(model, state, shut, theta, omega, a):
     """Contact state and velocities after the contacts ``shut`` have closed, without chatter."""
     closing = (state[0] if 0 in shut else 0, state[1] if 1 in shut else 0)
     new, after, _ = model.impact(state, closing, theta, omega)

@@ -13,7 +13,7 @@ import math
 import numba
 import numpy as np
 
-from rockfrag.system import Block, Column, Stack, System, as_system
+from rockfrag.system import System, as_system
 
 from .standing import standing
 
@@ -284,17 +284,7 @@ def _apart(table, q, above):
     return ends[1, 0] > ends[0, 1] or ends[1, 1] < ends[0, 0]
 
 
-def time_stepping(
-    body: Block | Stack | Column | System,
-    acceleration: np.ndarray,
-    dt: float,
-    friction: tuple[float, ...],
-    *,
-    step: float = 2e-5,
-    vertical: np.ndarray | None = None,
-    tail: float = 8.0,
-    g: float = 9.81,
-) -> tuple[bool, int, float, np.ndarray]:
+def time_stepping(body, acceleration, dt, friction, *, step=2e-05, vertical=None, tail=8.0, g=9.81):
     """Whether, which and when a body fell, and q, v at the samples."""
     table = body_table(as_system(body))
     n = len(table)

@@ -4,8 +4,6 @@ The forces follow from the absolute accelerations of the centres of gravity: N2 
 T2 = m2 x2'', and the sums over both blocks at the ground.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,22 +15,6 @@ from rockfrag.system.system import System
 
 Array = NDArray[np.float64]
 Pair = tuple[float, float]
-
-
-class _Turning(NamedTuple):
-    """A rotation at some samples: its sine and cosine, rate and acceleration."""
-
-    sine: Array
-    cosine: Array
-    omega: Array
-    alpha: Array
-
-
-def _acceleration(arm: Pair, turning: _Turning) -> tuple[Array, Array]:
-    """Acceleration of the tip of ``arm`` that turns clockwise about its foot [m/s²]."""
-    sine, cosine, omega, alpha = turning
-    x, y = arm[0] * cosine + arm[1] * sine, -arm[0] * sine + arm[1] * cosine
-    return alpha * y - omega * omega * x, -alpha * x - omega * omega * y
 
 
 def centres(system: System, state: NDArray[np.int64], theta: Array) -> Array:
@@ -90,14 +72,19 @@ def contact_forces(
     friction = np.zeros_like(theta)
     sine, cosine = _sines(theta)
 
-    def turning(rows: NDArray[np.bool_], block: int) -> _Turning:
-        return _Turning(*(values[rows, block] for values in (sine, cosine, omega, alpha)))
+    signs = np.where(state == 0, 1, state)
+
+    def acceleration(arm: Pair, rows: NDArray[np.bool_], block: int) -> tuple[Array, Array]:
+        """Acceleration of the tip of ``arm`` that turns clockwise about its foot [m/s²]."""
+        s, c, w, q = (values[rows, block] for values in (sine, cosine, omega, alpha))
+        x, y = arm[0] * c + arm[1] * s, -arm[0] * s + arm[1] * c
+        return q * y - w * w * x, -q * x - w * w * y
 
     lowest = system.shapes[0]
     if system.count == 1:
         for pivot in (+1, -1):
-            rows = (state[:, 0] == pivot) | (state[:, 0] == 0) & (pivot == 1)
-            ax, ay = _acceleration(geometry.arm(lowest, pivot), turning(rows, 0))
+            rows = signs[:, 0] == pivot
+            ax, ay = acceleration(geometry.arm(lowest, pivot), rows, 0)
             friction[rows, 0] = lowest.mass * (ground[rows] + ax)
             normal[rows, 0] = lowest.mass * (gravity[rows] + ay)
         return normal, friction
@@ -105,12 +92,10 @@ def contact_forces(
     m1, m2 = pile.lower.mass, pile.upper.mass
     for side in (+1, -1):
         for two in (+1, -1):
-            rows = (state[:, 0] == side) | (state[:, 0] == 0) & (side == 1)
-            rows &= (state[:, 1] == two) | (state[:, 1] == 0) & (two == 1)
-            first, second = turning(rows, 0), turning(rows, 1)
-            x1, y1 = _acceleration(geometry.arm(lowest, side), first)
-            xd, yd = _acceleration(geometry.reach(pile, side, two), first)
-            x2, y2 = _acceleration(geometry.upper_arm(pile, two), second)
+            rows = (signs[:, 0] == side) & (signs[:, 1] == two)
+            x1, y1 = acceleration(geometry.arm(lowest, side), rows, 0)
+            xd, yd = acceleration(geometry.reach(pile, side, two), rows, 0)
+            x2, y2 = acceleration(geometry.upper_arm(pile, two), rows, 1)
             friction[rows, 1] = m2 * (ground[rows] + xd + x2)
             normal[rows, 1] = m2 * (gravity[rows] + yd + y2)
             friction[rows, 0] = friction[rows, 1] + m1 * (ground[rows] + x1)

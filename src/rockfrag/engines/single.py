@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 from rockfrag.engines.contract import Case, Cases, Wish
 from rockfrag.engines.pure_rocking import PureRocking
 from rockfrag.engines.response import Response, contact_event_table, energy_table
+from rockfrag.engines.steps import MOST_SAMPLES, free_samples, step_count
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.system.system import System
 
 Array = NDArray[np.float64]
+Records = NDArray[np.void]
 
 
 class Single(PureRocking):
@@ -58,58 +60,45 @@ class Single(PureRocking):
 
     def history(self, case: Case) -> Response:
         """Return the response of a case."""
-        from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
-        from rockfrag.engines.records import body_record
-        from rockfrag.engines.steps import MOST_SAMPLES
-
-        record = body_record(case.system, case.request.linear, case.request.g)
-        initial, shaking = initial_state(case.system), shaking_of(case)
-        most = case.motion.x.acceleration.size + shaking.free_samples
-        if most > MOST_SAMPLES:
-            raise InputError(
-                f"motion: {most} samples, with the free rocking after it, are more than the {MOST_SAMPLES} "
-                "allowed."
-            )
-        history = np.zeros(most, SAMPLE)
-        capacity = 4096
-        while True:
-            contact_events = np.zeros(capacity, CONTACT_EVENT)
-            done, summary = run_integration(record, shaking, initial, history, contact_events)
-            if summary["contact_events"] <= capacity:
-                break
-            capacity = int(summary["contact_events"])
-        return _response(
-            case.system,
-            record,
-            shaking,
-            history[:done],
-            contact_events[: summary["contact_events"]],
-            summary,
-        )
+        found = _integrated(case, 4096)
+        needed = int(found[-1]["contact_events"])
+        if needed > 4096:
+            found = _integrated(case, needed)
+        record, shaking, history, contact_events, summary = found
+        return _response(case.system, record, shaking, history, contact_events[:needed], summary)
 
 
 def samples_of(case: Case) -> tuple[Array, Array, Array, NDArray[Any]]:
     """Return times [s], (n,), and rotations, velocities and contact states of a case as of :class:`Response`."""
+    _, _, rows, _, _ = _integrated(case, 0)
+    blocks = BLOCKS[-case.system.count :]
+    theta, omega, state = (
+        np.column_stack([rows[name + block] for block in blocks])
+        for name in ("theta", "omega", "c")
+    )
+    return np.arange(len(rows), dtype=np.float64) * case.motion.dt, theta, omega, state
+
+
+def _integrated(case: Case, capacity: int) -> tuple[np.void, Any, Records, Records, np.void]:
+    """Integrate a case: its record, its shaking, its samples, as many contact events as fit, and the summary."""
     from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
     from rockfrag.engines.records import body_record
 
     record = body_record(case.system, case.request.linear, case.request.g)
     shaking = shaking_of(case)
-    rows = np.empty(case.motion.x.acceleration.size + shaking.free_samples, SAMPLE)
-    done, _ = run_integration(
-        record, shaking, initial_state(case.system), rows, np.empty(0, CONTACT_EVENT)
-    )
-    blocks = BLOCKS[-case.system.count :]
-    theta, omega, state = (
-        np.column_stack([rows[name + block][:done] for block in blocks])
-        for name in ("theta", "omega", "c")
-    )
-    return np.arange(done, dtype=np.float64) * case.motion.dt, theta, omega, state
+    most = case.motion.x.acceleration.size + shaking.free_samples
+    if most > MOST_SAMPLES:
+        raise InputError(
+            f"motion: {most} samples, with the free rocking after it, are more than the {MOST_SAMPLES} "
+            "allowed."
+        )
+    history, contact_events = np.zeros(most, SAMPLE), np.zeros(capacity, CONTACT_EVENT)
+    initial = initial_state(case.system)
+    done, summary = run_integration(record, shaking, initial, history, contact_events)
+    return record, shaking, history[:done], contact_events, summary
 
 
-def _write_summaries(
-    into: Outcomes, rows: list[int], summaries: NDArray[np.void], forces: bool
-) -> None:
+def _write_summaries(into: Outcomes, rows: list[int], summaries: Records, forces: bool) -> None:
     """Write what single histories tell beside what lanes do."""
     count = into.counts[rows[0]]
     into.overturning_time[rows] = summaries["fall_time"]
@@ -140,7 +129,6 @@ def initial_state(system: System) -> np.void:
 def shaking_of(case: Case) -> Any:
     """Return what a system is shaken with (``kernels.single.Shaking``), in steps that follow from the system."""
     from rockfrag.engines.kernels.single import Shaking
-    from rockfrag.engines.steps import free_samples, step_count
 
     motion, request = case.motion, case.request
     return Shaking(
@@ -154,11 +142,7 @@ def shaking_of(case: Case) -> Any:
 
 
 def run_integration(
-    record: np.void,
-    shaking: Any,
-    initial: np.void,
-    history: NDArray[np.void],
-    contact_events: NDArray[np.void],
+    record: np.void, shaking: Any, initial: np.void, history: Records, contact_events: Records
 ) -> tuple[int, np.void]:
     """Integrate one system; return the number of samples done and the summary."""
     from rockfrag.engines.kernels.jit import compiling_alone
@@ -175,8 +159,8 @@ def _response(
     system: System,
     record: np.void,
     shaking: Any,
-    history: NDArray[np.void],
-    contact_events: NDArray[np.void],
+    history: Records,
+    contact_events: Records,
     summary: np.void,
 ) -> Response:
     """Put the response of a system together."""
@@ -227,7 +211,7 @@ def _response(
     )
 
 
-def _contact_events(contact_events: NDArray[np.void], blocks: list[str]) -> pd.DataFrame:
+def _contact_events(contact_events: Records, blocks: list[str]) -> pd.DataFrame:
     """Make the table of contact events of a response."""
     from rockfrag.engines.kernels.record import CHATTER, CLOSING, LIFTING, OPENING
 
@@ -247,11 +231,7 @@ def _contact_events(contact_events: NDArray[np.void], blocks: list[str]) -> pd.D
 
 
 def _energies(
-    record: np.void,
-    time: Array,
-    history: NDArray[np.void],
-    contact_events: NDArray[np.void],
-    contacts: int,
+    record: np.void, time: Array, history: Records, contact_events: Records, contacts: int
 ) -> pd.DataFrame:
     """Balance of energy by cause over time [J]."""
     from rockfrag.engines.kernels.equations import STATE

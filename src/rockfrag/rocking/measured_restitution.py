@@ -43,13 +43,7 @@ class MeasuredRestitution:
     law: str = "position"
 
     def __post_init__(self) -> None:
-        """Refuse a law that does not exist.
-
-        Raises
-        ------
-        InputError
-            If there is no such law.
-        """
+        """Refuse a law that does not exist."""
         if self.law not in law_names():
             raise InputError(
                 f"restitution: the law {shown(self.law)} is none of {', '.join(law_names())}."

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial._algebra import (
     cross,
     dot,
@@ -19,15 +20,6 @@ from rockfrag.engines.spatial._algebra import (
     times,
     to_body,
     to_world,
-)
-from rockfrag.engines.spatial._body import (
-    SIZE,
-    arm,
-    bias,
-    free_spin,
-    omega_of,
-    point_velocity,
-    rim_contact,
 )
 
 MOST = 4
@@ -78,8 +70,8 @@ CASE = np.dtype(
         ("order", np.int64, (3 * MOST,)),
         ("member", np.int64, (MOST,)),  # contacts of a set
         # a step: rates at its stages, the state at its end, slip at its beginning
-        ("slopes", np.float64, (STAGES, SIZE)),
-        ("new", np.float64, (SIZE,)),
+        ("slopes", np.float64, (STAGES, solid.SIZE)),
+        ("new", np.float64, (solid.SIZE,)),
         ("slip", np.float64, (MOST, 2)),
         ("armed", np.int64, (MOST,)),
         ("counters", np.int64, (8,)),
@@ -125,10 +117,10 @@ def fill_delassus(body, rows, which, n, delassus):
     """Fill in what impulses at the contacts do to their velocities, in world components."""
     up = rows[2]
     for j in range(n):
-        q = arm(body, up, which[j])
+        q = solid.arm(body, up, which[j])
         for axis in range(3):
             for i in range(n):
-                u = response(body, rows, arm(body, up, which[i]), q, axis)
+                u = response(body, rows, solid.arm(body, up, which[i]), q, axis)
                 for k in range(3):
                     delassus[3 * i + k, 3 * j + axis] = u[k]
 
@@ -137,7 +129,7 @@ def fill_delassus(body, rows, which, n, delassus):
 def fill_velocities(body, y, rows, which, n, out):
     """Fill in the velocities of contacts."""
     for i in range(n):
-        u = point_velocity(y, rows, arm(body, rows[2], which[i]))
+        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], which[i]))
         for k in range(3):
             out[3 * i + k] = u[k]
 
@@ -148,11 +140,11 @@ def fill_accelerations(body, y, rows, weight, which, n, out):
 
     ``weight`` is the effective gravity as the body sees it.
     """
-    omega = omega_of(y)
-    spin = free_spin(body, omega)
+    omega = solid.omega_of(y)
+    spin = solid.free_spin(body, omega)
     for i in range(n):
-        p = arm(body, rows[2], which[i])
-        b = bias(body, rows[2], omega, p, which[i])
+        p = solid.arm(body, rows[2], which[i])
+        b = solid.bias(body, rows[2], omega, p, which[i])
         u = to_world(rows, plus(plus(weight, cross(spin, p)), b))
         for k in range(3):
             out[3 * i + k] = u[k]
@@ -170,11 +162,11 @@ def slip_direction(s, i, u, v):
 @kernel
 def pivot_acceleration(body, up, omega, weight, i):
     """Angular acceleration about a sticking point, the force at it, both in the body."""
-    p = arm(body, up, i)
-    b = bias(body, up, omega, p, i)
+    p = solid.arm(body, up, i)
+    b = solid.bias(body, up, omega, p, i)
     load = plus(b, weight)
     moment = minus(scaled(-1.0, cross(omega, times(body.inertia, omega))), cross(p, load))
-    if i == rim_contact(body):
+    if i == solid.rim_contact(body):
         m = body.inertia
         square = dot(p, p)
         alpha = solve_symmetric(
@@ -191,23 +183,23 @@ def pivot_acceleration(body, up, omega, weight, i):
 def slider_force(body, y, rows, omega, spin, weight, s):
     """Force at the one contact, which slides; in the body."""
     i = s.closed[0]
-    p = arm(body, rows[2], i)
-    u = point_velocity(y, rows, p)
+    p = solid.arm(body, rows[2], i)
+    u = solid.point_velocity(y, rows, p)
     way = slip_direction(s, 0, u[0], u[1])
     d = to_body(rows, (-body.kinetic * way[0], -body.kinetic * way[1], 1.0))
     gives = plus(d, cross(times(body.inverse, cross(p, d)), p))
-    free = plus(plus(weight, cross(spin, p)), bias(body, rows[2], omega, p, i))
+    free = plus(plus(weight, cross(spin, p)), solid.bias(body, rows[2], omega, p, i))
     return scaled(-dot(rows[2], free) / dot(rows[2], gives), d), p, u
 
 
 @kernel
 def hinge_acceleration(body, rows, omega, weight, i, j):
     """Angular acceleration about the edge from point i to j, force at both ends, and the edge's direction."""
-    p, q = arm(body, rows[2], i), arm(body, rows[2], j)
+    p, q = solid.arm(body, rows[2], i), solid.arm(body, rows[2], j)
     edge = minus(q, p)
     length = math.sqrt(dot(edge, edge))
     e = scaled(1.0 / length, edge)
-    b = bias(body, rows[2], omega, p, i)
+    b = solid.bias(body, rows[2], omega, p, i)
     load = plus(b, weight)
     gyroscopic = cross(omega, times(body.inertia, omega))
     moment = minus(scaled(-1.0, gyroscopic), cross(p, load))
@@ -218,7 +210,7 @@ def hinge_acceleration(body, rows, omega, weight, i, j):
 @kernel
 def far_force(body, rows, omega, alpha, whole, e, i, j):
     """Force at the far end j of the edge from point i but for its part along the edge, by the moment about i."""
-    p, q = arm(body, rows[2], i), arm(body, rows[2], j)
+    p, q = solid.arm(body, rows[2], i), solid.arm(body, rows[2], j)
     gyroscopic = cross(omega, times(body.inertia, omega))
     left = minus(plus(times(body.inertia, alpha), gyroscopic), cross(p, whole))
     return scaled(1.0 / dot(minus(q, p), e), cross(left, e))
@@ -308,7 +300,7 @@ def solve_general(body, y, rows, n, friction, s):
     """Solve for the forces (or impulses) that undo s.free in a mode; fill ``lam`` in world components."""
     fill_delassus(body, rows, s.closed, n, s.delassus)
     for i in range(n):
-        u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
+        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.closed[i]))
         s.way[i, 0], s.way[i, 1] = slip_direction(s, i, u[0], u[1])
         s.given[i], s.friction[i] = s.slides[i], friction
     stick_together(s, n, (1 << n) - 1, SOFTNESS * largest_compliance(s, n))
@@ -334,7 +326,7 @@ def rates(body, tau, y, dy, s, share=True):
     at rest; ``tau`` counts from there.
     """
     rows = rotation(y)
-    omega = omega_of(y)
+    omega = solid.omega_of(y)
     pull = pull_at(s.field, tau)
     weight = to_body(rows, pull)
     kind = kind_of(s)
@@ -354,7 +346,7 @@ def rates(body, tau, y, dy, s, share=True):
             fraction_along(pushed, to_world(rows, far), to_world(rows, e), body.static, s)
         acceleration = plus(pull, pushed)
     elif kind == SLIDER:
-        spin = free_spin(body, omega)
+        spin = solid.free_spin(body, omega)
         force, p, u = slider_force(body, y, rows, omega, spin, weight, s)
         pushed = to_world(rows, force)
         for k in range(3):
@@ -363,7 +355,7 @@ def rates(body, tau, y, dy, s, share=True):
         alpha = plus(spin, times(body.inverse, cross(p, force)))
         lost = -pushed[0] * u[0] - pushed[1] * u[1]
     else:
-        alpha = free_spin(body, omega)
+        alpha = solid.free_spin(body, omega)
         acceleration = pull
         n = s.count
         if n > 0:
@@ -371,11 +363,11 @@ def rates(body, tau, y, dy, s, share=True):
             solve_general(body, y, rows, n, body.kinetic, s)
             for i in range(n):
                 push = (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2])
-                p = arm(body, rows[2], s.closed[i])
+                p = solid.arm(body, rows[2], s.closed[i])
                 acceleration = plus(acceleration, push)
                 alpha = plus(alpha, times(body.inverse, cross(p, to_body(rows, push))))
                 if s.slides[i]:
-                    u = point_velocity(y, rows, p)
+                    u = solid.point_velocity(y, rows, p)
                     lost -= push[0] * u[0] + push[1] * u[1]
     fill_rates(y, omega, alpha, acceleration, dy)
     dy[13] = pull[0] * y[7] + pull[1] * y[8] + (pull[2] + s.field[6]) * y[9]
@@ -399,7 +391,7 @@ def fill_rates(y, omega, alpha, acceleration, dy):
 @kernel
 def push_at(body, y, rows, i, impulse):
     """Change the velocities in ``y`` by an impulse [N s], in axes of the ground, at contact i."""
-    p = arm(body, rows[2], i)
+    p = solid.arm(body, rows[2], i)
     turned = times(body.inverse, cross(p, to_body(rows, impulse)))
     for k in range(3):
         y[7 + k] += impulse[k]

@@ -5,6 +5,7 @@ import math
 from rockfrag.elementary import atan2, sin_cos
 from rockfrag.engines.kernels.jit import entry_kernel, kernel
 from rockfrag.engines.kernels.roots import narrowed
+from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _step as step
@@ -16,20 +17,6 @@ from rockfrag.engines.spatial._algebra import (
     to_body,
     to_world,
     turn,
-)
-from rockfrag.engines.spatial._body import (
-    FRICTION,
-    SIZE,
-    WORK,
-    arm,
-    energy,
-    first_candidate,
-    last_candidate,
-    omega_of,
-    point_velocity,
-    position_of_base,
-    rim_contact,
-    rim_direction,
 )
 
 RIM_START = 1e-7
@@ -145,7 +132,7 @@ def leave_rest(body, y, tau, s):
     s.count = 0
     last, first = -1, -1
     for i in range(body.count):
-        if modes.gap(body, y, rows[2], i) <= modes.TOUCH:
+        if solid.gap(body, y, rows[2], i) <= modes.TOUCH:
             if last >= 0:
                 add_edge(body, y, rows, pull, last, i, small, s)
             else:
@@ -194,8 +181,8 @@ def start_rolling(body, y, x, z, pull, s):
     a, b, c = y[0], y[1], y[2]
     tilt_about(body, y, u, RIM_START)
     lifted = (pull[2] + s.field[6]) * (y[2] - c)
-    y[WORK] += pull[0] * (y[0] - a) + pull[1] * (y[1] - b) + lifted
-    s.closed[0], s.slides[0] = rim_contact(body), forces.STICKS
+    y[solid.WORK] += pull[0] * (y[0] - a) + pull[1] * (y[1] - b) + lifted
+    s.closed[0], s.slides[0] = solid.rim_contact(body), forces.STICKS
     s.count, s.rests = 1, 0
     modes.settle(body, y, s)
 
@@ -205,9 +192,9 @@ def tilt_about(body, y, u, tilt):
     """Give a flat body a small tilt, with its lowest point towards u in the base, where that point was."""
     modes.lay_flat(body, y)
     p = (body.centre[0] + body.rim * u[0], body.centre[1] + body.rim * u[1], -body.height)
-    before = position_of_base(y, rotation(y), p)
+    before = solid.position_of_base(y, rotation(y), p)
     turn(y, (-tilt * u[1], tilt * u[0], 0.0))
-    after = position_of_base(y, rotation(y), p)
+    after = solid.position_of_base(y, rotation(y), p)
     y[0] += before[0] - after[0]
     y[1] += before[1] - after[1]
 
@@ -216,11 +203,11 @@ def tilt_about(body, y, u, tilt):
 def pass_flat(body, y, s):
     """Let a rim pass through flat: its contact turns by a fixed angle and the body tilts up again."""
     up = rotation(y)[2]
-    u, sine = rim_direction(up)
-    sinking = cross(up, omega_of(y))
+    u, sine = solid.rim_direction(up)
+    sinking = cross(up, solid.omega_of(y))
     if sinking[0] * up[0] + sinking[1] * up[1] >= 0.0:
         return
-    before = energy(body, y, s.field[6])
+    before = solid.energy(body, y, s.field[6])
     rate = norm(sinking[0], sinking[1])
     angle = body.slide_turn if s.slides[0] == forces.SLIDES else body.pass_turn
     if sinking[0] * u[1] - sinking[1] * u[0] > 0:
@@ -230,7 +217,7 @@ def pass_flat(body, y, s):
     tilt_about(body, y, new, max(2 * FLAT_PASS, sine))
     s.counters[modes.PASSES] += 1
     rise(body, y, new, rate, s)
-    gained = energy(body, y, s.field[6]) - before
+    gained = solid.energy(body, y, s.field[6]) - before
     # a base that is not symmetrical would gain in the new direction
     pay(body, y, gained, s)
 
@@ -241,8 +228,8 @@ def rise(body, y, u, rate, s):
     y[10], y[11] = -rate * u[1], rate * u[0]
     if s.slides[0] == forces.SLIDES:
         rows = rotation(y)
-        p = arm(body, rows[2], rim_contact(body))
-        y[9] -= point_velocity(y, rows, p)[2]
+        p = solid.arm(body, rows[2], solid.rim_contact(body))
+        y[9] -= solid.point_velocity(y, rows, p)[2]
     else:
         modes.settle(body, y, s)
 
@@ -252,9 +239,9 @@ def lowest_open(body, y, s):
     """Number of the lowest open point."""
     up = rotation(y)[2]
     lowest, found = 1e300, 0
-    for i in range(first_candidate(body), last_candidate(body)):
+    for i in range(solid.first_candidate(body), solid.last_candidate(body)):
         if not step.is_closed(s, i):
-            height = modes.gap(body, y, up, i)
+            height = solid.gap(body, y, up, i)
             if height < lowest:
                 lowest, found = height, i
     return found
@@ -264,14 +251,14 @@ def lowest_open(body, y, s):
 def rising(body, y, i):
     """Velocity upwards of point i."""
     rows = rotation(y)
-    return point_velocity(y, rows, arm(body, rows[2], i))[2]
+    return solid.point_velocity(y, rows, solid.arm(body, rows[2], i))[2]
 
 
 @kernel
 def guess_landing(body, h, y, below, s):
     """When in a step the point that is lowest after it lands, by the cubic through gaps and velocities."""
     i = lowest_open(body, s.new, s)
-    above, fall = modes.gap(body, y, rotation(y)[2], i), h * rising(body, y, i)
+    above, fall = solid.gap(body, y, rotation(y)[2], i), h * rising(body, y, i)
     end = h * rising(body, s.new, i)
     square = 3.0 * (below - above) - 2.0 * fall - end
     cube = 2.0 * (above - below) + fall + end
@@ -285,7 +272,7 @@ def guess_landing(body, h, y, below, s):
 @kernel
 def go_on(s, h):
     """Let the state at the end of a step go on for a moment."""
-    for i in range(SIZE):
+    for i in range(solid.SIZE):
         s.new[i] += h * s.slopes[forces.STAGES - 1, i]
 
 
@@ -300,7 +287,7 @@ def locate(body, tau, h, y, s):
     forces.rates(body, tau, y, s.slopes[0], s)
     above, at_once = step.margin(body, y, s)
     if above <= 0:
-        for i in range(SIZE):
+        for i in range(solid.SIZE):
             s.new[i] = y[i]
         return 0.0, at_once
     bracket = (0.0, above, h, below, 0)
@@ -336,8 +323,8 @@ def stop_slips(body, y, s):
     rows = rotation(y)
     for i in range(s.count):
         if s.slides[i] == forces.SLIDES:
-            p = arm(body, rows[2], s.closed[i])
-            turned = to_world(rows, cross(omega_of(y), p))
+            p = solid.arm(body, rows[2], s.closed[i])
+            turned = to_world(rows, cross(solid.omega_of(y), p))
             if norm(y[7] + turned[0], y[8] + turned[1]) < 2 * modes.AT_REST:
                 s.slides[i] = forces.STICKS
     modes.hold(body, y, rows, s)
@@ -347,7 +334,7 @@ def stop_slips(body, y, s):
 def rim_instead_of_feet(body, y, pull, s):
     """Replace the feet of a round base by its lowest point as soon as fewer than three of them carry."""
     n = s.count
-    if body.rim == 0.0 or n == 0 or n > 2 or s.closed[0] == rim_contact(body):
+    if body.rim == 0.0 or n == 0 or n > 2 or s.closed[0] == solid.rim_contact(body):
         return
     x, z, sliding = 0.0, 0.0, forces.STICKS
     for i in range(n):
@@ -360,21 +347,21 @@ def rim_instead_of_feet(body, y, pull, s):
 @kernel
 def tip_over_rim(body, y, x, z, sliding, pull, s):
     """Tilt a flat body towards a direction of the base, with the velocities that it has if it slides."""
-    omega = omega_of(y)
+    omega = solid.omega_of(y)
     velocity = (y[7], y[8], y[9])
-    before = energy(body, y, s.field[6]) - y[WORK]
+    before = solid.energy(body, y, s.field[6]) - y[solid.WORK]
     start_rolling(body, y, x, z, pull, s)
     if sliding == forces.SLIDES:
         s.slides[0] = forces.SLIDES
         y[10], y[11], y[12] = omega
         y[7], y[8], y[9] = velocity
-    pay(body, y, energy(body, y, s.field[6]) - y[WORK] - before, s)
+    pay(body, y, solid.energy(body, y, s.field[6]) - y[solid.WORK] - before, s)
 
 
 @kernel
 def pay(body, y, gained, s):
     """Take energy that was gained from the velocities, as far as there is any."""
-    moving = energy(body, y, s.field[6]) - s.field[6] * (y[2] - body.height)
+    moving = solid.energy(body, y, s.field[6]) - s.field[6] * (y[2] - body.height)
     if gained > 0.0 and moving > 0.0:
         for k in range(7, 13):
             y[k] *= math.sqrt(max(1.0 - gained / moving, 0.0))
@@ -394,7 +381,7 @@ def happen(body, what, tau, y, cut, stuck, s):
     """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J]."""
     g = s.field[6]
     pull = forces.pull_at(s.field, tau)
-    before = energy(body, y, g) - y[WORK]
+    before = solid.energy(body, y, g) - y[solid.WORK]
     if what == modes.LANDS:
         modes.impact(body, y, 0, s)
         rows = rotation(y)
@@ -402,7 +389,7 @@ def happen(body, what, tau, y, cut, stuck, s):
             # the points that open begin with no gap, not with one of rounding
             modes.lay_flat(body, y)
         carried = modes.rest_margin(body, y, rows, pull) >= 0
-        if carried and energy(body, y, g) < cut * body.barrier:
+        if carried and solid.energy(body, y, g) < cut * body.barrier:
             modes.come_to_rest(body, y, s)
     elif what == modes.SLIP_ENDS:
         stop_slips(body, y, s)
@@ -421,13 +408,13 @@ def happen(body, what, tau, y, cut, stuck, s):
         if not free:
             modes.jam(body, y, s)
     rim_instead_of_feet(body, y, pull, s)
-    return before - (energy(body, y, g) - y[WORK])
+    return before - (solid.energy(body, y, g) - y[solid.WORK])
 
 
 @kernel
 def critical_tangent(body, up):
     """Tangent of the tilt at which the centre of mass is over the base's outline in the direction of the tilt."""
-    u, _ = rim_direction(up)
+    u, _ = solid.rim_direction(up)
     if body.rim > 0:
         reach = body.rim + body.centre[0] * u[0] + body.centre[1] * u[1]
     else:
@@ -454,7 +441,7 @@ def note_peaks(body, y, start, out):
             out[PEAK_TILT] = max(out[PEAK_TILT], atan2(sine, up[2]))
     speed = math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
     out[PEAK_SPEED] = max(out[PEAK_SPEED], speed)
-    foot = position_of_base(y, rows, (0.0, 0.0, -body.height))
+    foot = solid.position_of_base(y, rows, (0.0, 0.0, -body.height))
     out[WALK_X], out[WALK_Y] = foot[0] - start[0], foot[1] - start[1]
     return up[2]
 
@@ -492,7 +479,7 @@ def fall_is_certain(body, y, peaks, scale, g):
     within = up[2] * body.height + sine * body.furthest
     if beyond * (g - scale * peaks[1]) <= within * scale * peaks[0]:
         return False
-    turning = cross(up, omega_of(y))
+    turning = cross(up, solid.omega_of(y))
     return up[0] * turning[0] + up[1] * turning[1] > 0
 
 
@@ -522,7 +509,7 @@ def record(history, k, y, out, s):
 @kernel
 def cannot_fall(body, y, s, g):
     """Whether, on a ground at rest, the body stands or has too little energy left to fall."""
-    return s.rests == 1 or energy(body, y, g) < body.barrier
+    return s.rests == 1 or solid.energy(body, y, g) < body.barrier
 
 
 @kernel
@@ -535,7 +522,7 @@ def small_rim(body, y, tau, cut, s):
     small = cut * body.barrier
     if wobble_energy(body, y, rows, s.field[6]) >= small:
         return
-    if modes.rest_margin(body, y, rows, pull) >= 0 and energy(body, y, s.field[6]) < small:
+    if modes.rest_margin(body, y, rows, pull) >= 0 and solid.energy(body, y, s.field[6]) < small:
         modes.come_to_rest(body, y, s)
     elif s.slides[0] == forces.SLIDES and body.kinetic * body.height < body.rim:
         y[9] = y[10] = y[11] = 0.0
@@ -563,7 +550,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     """Take one step of an interval, up to its end or to what happens first; return the time and the next step."""
     g = s.field[6]
     if s.goes_on:
-        for i in range(SIZE):
+        for i in range(solid.SIZE):
             s.slopes[0, i] = s.slopes[forces.STAGES - 1, i]
     else:
         forces.rates(body, tau, y, s.slopes[0], s)
@@ -586,16 +573,16 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         h, what = locate(body, tau, h, y, s)
     else:
         what = modes.NOTHING
-    for i in range(SIZE):
+    for i in range(solid.SIZE):
         y[i] = s.new[i]
     normalise(y)
     if what != modes.NOTHING:
         out[CONTACT_EVENTS] += 1
         note_loss(happen(body, what, tau + h, y, cut, stuck, s), out)
         return tau + h, dt, h
-    before = energy(body, y, g)
+    before = solid.energy(body, y, g)
     modes.settle(body, y, s)
-    note_loss(before - energy(body, y, g), out)
+    note_loss(before - solid.energy(body, y, g), out)
     if body.rim > 0:
         ahead = look_after_rim(body, y, tau + h, cut, ahead, s, out)
     elif forces.kind_of(s) in (forces.FLIGHT, forces.PIVOT, forces.HINGE):
@@ -616,13 +603,13 @@ def look_after_rim(body, y, tau, cut, ahead, s, out):
     """Pass a rolling rim through flat, or let it rest."""
     up = rotation(y)[2]
     if s.count == 1 and norm(up[0], up[1]) < FLAT_PASS:
-        before = energy(body, y, s.field[6])
+        before = solid.energy(body, y, s.field[6])
         pass_flat(body, y, s)
-        note_loss(before - energy(body, y, s.field[6]), out)
+        note_loss(before - solid.energy(body, y, s.field[6]), out)
         return 1e-9
-    before = energy(body, y, s.field[6])
+    before = solid.energy(body, y, s.field[6])
     small_rim(body, y, tau, cut, s)
-    note_loss(before - energy(body, y, s.field[6]), out)
+    note_loss(before - solid.energy(body, y, s.field[6]), out)
     return ahead
 
 
@@ -639,8 +626,8 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     for i in range(OUTCOME):
         out[i] = 0.0
     set_field(s.field, acceleration, 0, scale, dt, g)
-    started = energy(body, y, g)
-    start = position_of_base(y, rotation(y), (0.0, 0.0, -body.height))
+    started = solid.energy(body, y, g)
+    start = solid.position_of_base(y, rotation(y), (0.0, 0.0, -body.height))
     before = heading(y)
     s.count = s.rests = s.jammed = s.goes_on = 0
     for i in range(modes.COUNTERS):
@@ -667,9 +654,9 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
                 if tau < 0:
                     break
                 s.goes_on = 0
-                standing = energy(body, y, g) - y[WORK]
+                standing = solid.energy(body, y, g) - y[solid.WORK]
                 leave_rest(body, y, tau, s)
-                note_loss(standing - (energy(body, y, g) - y[WORK]), out)
+                note_loss(standing - (solid.energy(body, y, g) - y[solid.WORK]), out)
                 ahead = dt
                 if forces.kind_of(s) == forces.REST:
                     break
@@ -704,13 +691,15 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
         k += 1
     if out[FELL] == 0.0:
         record(history, k, y, out, s)
-    out[ENERGY_BALANCE] = energy(body, y, g) - started - y[WORK] + y[FRICTION] + out[LOST]
+    out[ENERGY_BALANCE] = (
+        solid.energy(body, y, g) - started - y[solid.WORK] + y[solid.FRICTION] + out[LOST]
+    )
 
 
 @kernel
 def give_up(body, tau, y, s):
     """End a wobble that cannot be followed any more; return the energy lost."""
-    before = energy(body, y, s.field[6])
+    before = solid.energy(body, y, s.field[6])
     s.counters[modes.UNSOLVED] += 1
     up = rotation(y)[2]
     if body.rim > 0 and norm(up[0], up[1]) < 1e-3:
@@ -718,7 +707,7 @@ def give_up(body, tau, y, s):
         modes.lay_flat(body, y)
     if not modes.choose_mode(body, tau, y, s):
         modes.jam(body, y, s)
-    return before - energy(body, y, s.field[6])
+    return before - solid.energy(body, y, s.field[6])
 
 
 @kernel
@@ -729,7 +718,7 @@ def force_step(body, tau, dt, y, s):
     forces.rates(body, tau, y, s.slopes[0], s)
     while step.attempt(body, tau, h, y, s) > COARSE * 1e-3 and h > SHORTEST:
         h *= 0.25
-    for i in range(SIZE):
+    for i in range(solid.SIZE):
         y[i] = s.new[i]
     normalise(y)
     s.counters[modes.UNSOLVED] += 1

@@ -4,6 +4,7 @@ import math
 
 from rockfrag.elementary import atan2
 from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial._algebra import (
     cross,
@@ -16,16 +17,6 @@ from rockfrag.engines.spatial._algebra import (
     to_body,
     to_world,
     turn,
-)
-from rockfrag.engines.spatial._body import (
-    arm,
-    first_candidate,
-    gap,
-    last_candidate,
-    omega_of,
-    point_velocity,
-    position_of_base,
-    rim_contact,
 )
 from rockfrag.engines.spatial._cone import solve_cones
 
@@ -58,10 +49,10 @@ def touching(body, y, rows, s):
     speed = s.vector
     if body.rim > 0 and norm(rows[2][0], rows[2][1]) < 1e-9:
         return stand_on_feet(body, y, rows, s)
-    for i in range(first_candidate(body), last_candidate(body)):
-        if gap(body, y, rows[2], i) > TOUCH:
+    for i in range(solid.first_candidate(body), solid.last_candidate(body)):
+        if solid.gap(body, y, rows[2], i) > TOUCH:
             continue
-        u = point_velocity(y, rows, arm(body, rows[2], i))[2]
+        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], i))[2]
         if n < forces.MOST:
             s.which[n], speed[n] = i, u
             n += 1
@@ -79,7 +70,7 @@ def touching(body, y, rows, s):
 def stand_on_feet(body, y, rows, s):
     """Fill in s.which with four points of a flat rim, the first where the body would tip; return their number."""
     p = (body.centre[0], body.centre[1], -body.height)
-    u = point_velocity(y, rows, p)
+    u = solid.point_velocity(y, rows, p)
     if norm(u[0], u[1]) < AT_REST:
         u = (s.field[0], s.field[1], 0.0)
     front = to_body(rows, (u[0], u[1], 0.0))
@@ -89,7 +80,7 @@ def stand_on_feet(body, y, rows, s):
     n = 0
     for k in range(forces.MOST):
         i = (first + k * each) % body.count
-        if gap(body, y, rows[2], i) <= TOUCH:
+        if solid.gap(body, y, rows[2], i) <= TOUCH:
             s.which[n] = i
             n += 1
     return n
@@ -99,9 +90,9 @@ def stand_on_feet(body, y, rows, s):
 def fill_edges(body, y, rows, which, n, s):
     """Fill in the directions between contacts in the plan."""
     for i in range(n):
-        p = position_of_base(y, rows, arm(body, rows[2], which[i]))
+        p = solid.position_of_base(y, rows, solid.arm(body, rows[2], which[i]))
         for j in range(n):
-            q = position_of_base(y, rows, arm(body, rows[2], which[j]))
+            q = solid.position_of_base(y, rows, solid.arm(body, rows[2], which[j]))
             length = max(norm(q[0] - p[0], q[1] - p[1]), 1e-300)
             s.edge[i, j, 0] = (q[0] - p[0]) / length
             s.edge[i, j, 1] = (q[1] - p[1]) / length
@@ -208,7 +199,7 @@ def rest_margin(body, y, rows, pull):
     last = -1
     first = -1
     for i in range(body.count):
-        if gap(body, y, rows[2], i) > TOUCH:
+        if solid.gap(body, y, rows[2], i) > TOUCH:
             continue
         if last >= 0:
             margin = min(margin, edge_margin(body, y, rows, pull, last, i))
@@ -248,7 +239,7 @@ def slide_flat(body, y, rows, pull, s):
     level = max(norm(pull[0], pull[1]), 1e-300)
     n = touching(body, y, rows, s)
     for i in range(n):
-        u = point_velocity(y, rows, arm(body, rows[2], s.which[i]))
+        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.which[i]))
         speed = norm(u[0], u[1])
         s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
         if speed > AT_REST:
@@ -269,8 +260,8 @@ def edge_margin(body, y, rows, pull, i, j):
 @kernel
 def edge_normal(body, y, rows, i, j):
     """Outward normal of an edge in the plan, and its distance from the centre of mass."""
-    p = position_of_base(y, rows, arm(body, rows[2], i))
-    q = position_of_base(y, rows, arm(body, rows[2], j))
+    p = solid.position_of_base(y, rows, solid.arm(body, rows[2], i))
+    q = solid.position_of_base(y, rows, solid.arm(body, rows[2], j))
     length = norm(q[0] - p[0], q[1] - p[1])
     normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
     return normal, normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
@@ -281,7 +272,7 @@ def count_touching(body, y, rows):
     """Number of points of the base that touch, as if a round base had its four feet."""
     n = 0
     for i in range(body.count):
-        n += gap(body, y, rows[2], i) <= TOUCH
+        n += solid.gap(body, y, rows[2], i) <= TOUCH
     return n
 
 
@@ -344,7 +335,7 @@ def pick_closed(body, y, rows, slow, s):
     n = touching(body, y, rows, s)
     kept, slipping = 0, 0
     for i in range(n):
-        u = point_velocity(y, rows, arm(body, rows[2], s.which[i]))
+        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.which[i]))
         if u[2] > LEAVES:
             continue
         s.which[kept] = s.which[i]
@@ -389,7 +380,7 @@ def write_mode(body, y, rows, n, found, s):
                 s.slides[count] = forces.SLIDES
                 s.direction[count, 0], s.direction[count, 1] = u / size, v / size
                 s.counters[SLIDINGS] += 1
-        p = position_of_base(y, rows, arm(body, rows[2], s.which[i]))
+        p = solid.position_of_base(y, rows, solid.arm(body, rows[2], s.which[i]))
         s.anchor[count, 0], s.anchor[count, 1] = p[0], p[1]
         count += 1
     s.count = count
@@ -438,7 +429,7 @@ def anchor_all(body, y, s):
     """Note where the closed points are in the plan."""
     rows = rotation(y)
     for k in range(s.count):
-        p = position_of_base(y, rows, arm(body, rows[2], s.closed[k]))
+        p = solid.position_of_base(y, rows, solid.arm(body, rows[2], s.closed[k]))
         s.anchor[k, 0], s.anchor[k, 1] = p[0], p[1]
 
 
@@ -449,16 +440,16 @@ def settle(body, y, s):
     kind = forces.kind_of(s)
     if kind in (forces.PIVOT, forces.HINGE):
         i = s.closed[0]
-        p = arm(body, rows[2], i)
-        omega = omega_of(y)
+        p = solid.arm(body, rows[2], i)
+        omega = solid.omega_of(y)
         if kind == forces.HINGE:
-            q = arm(body, rows[2], s.closed[1])
+            q = solid.arm(body, rows[2], s.closed[1])
             e = minus(q, p)
             omega = scaled(dot(e, omega) / dot(e, e), e)
             y[10], y[11], y[12] = omega
         moved = to_world(rows, p)
         y[2] = -moved[2]
-        if i != rim_contact(body):
+        if i != solid.rim_contact(body):
             y[0], y[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
         y[7], y[8], y[9] = to_world(rows, cross(p, omega))
     elif kind in (forces.GENERAL, forces.SLIDER):
@@ -474,11 +465,11 @@ def close_gaps(body, y, rows, s):
         lay_flat(body, y)
         return
     forces.fill_delassus(body, rows, s.closed, n, s.delassus)
-    first = gap(body, y, rows[2], s.closed[0])
+    first = solid.gap(body, y, rows[2], s.closed[0])
     if n == 1:
         y[2] -= first
         return
-    second = gap(body, y, rows[2], s.closed[1])
+    second = solid.gap(body, y, rows[2], s.closed[1])
     a, b, c = s.delassus[2, 2], s.delassus[2, 5], s.delassus[5, 5]
     whole = a * c - b * b
     lift_at(body, y, rows, s.closed[0], -(c * first - b * second) / whole)
@@ -488,6 +479,6 @@ def close_gaps(body, y, rows, s):
 @kernel
 def lift_at(body, y, rows, i, size):
     """Displace the body as a small vertical impulse at point i would."""
-    p = arm(body, rows[2], i)
+    p = solid.arm(body, rows[2], i)
     y[2] += size
     turn(y, scaled(size, times(body.inverse, cross(p, rows[2]))))

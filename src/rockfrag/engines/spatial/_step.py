@@ -2,16 +2,9 @@
 
 from rockfrag.engines.kernels.dormand_prince import INSTANTS, WEIGHTS
 from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._algebra import norm, normalise, rotation
-from rockfrag.engines.spatial._body import (
-    SIZE,
-    arm,
-    first_candidate,
-    gap,
-    last_candidate,
-    point_velocity,
-)
 from rockfrag.engines.spatial._forces import SLIDES, STAGES, rates
 
 BACKWARD = 1e-8
@@ -32,14 +25,14 @@ def attempt(body, tau, h, y, s):
     """
     k, new = s.slopes, s.new
     for stage in range(1, STAGES):
-        for i in range(SIZE):
+        for i in range(solid.SIZE):
             new[i] = WEIGHTS[stage, 0] * k[0, i]
         for early in range(1, stage):
             weight = WEIGHTS[stage, early]
             if weight != 0.0:
-                for i in range(SIZE):
+                for i in range(solid.SIZE):
                     new[i] += weight * k[early, i]
-        for i in range(SIZE):
+        for i in range(solid.SIZE):
             new[i] = y[i] + h * new[i]
         last = stage == STAGES - 1
         if last:
@@ -75,7 +68,7 @@ def attitude_weight(body, y):
 @kernel
 def slip_along(body, y, rows, i, s):
     """Slip velocity of closed point i along a direction of the plan."""
-    u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
+    u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.closed[i]))
     return u[0] * s.slip[i, 0] + u[1] * s.slip[i, 1]
 
 
@@ -95,7 +88,7 @@ def begin_slips(body, y, s):
     for i in range(s.count):
         s.armed[i] = 0
         if s.slides[i] == SLIDES:
-            u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
+            u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.closed[i]))
             speed = norm(u[0], u[1])
             s.slip[i, 0], s.slip[i, 1] = s.direction[i, 0], s.direction[i, 1]
             if speed > 2 * modes.AT_REST:
@@ -107,7 +100,7 @@ def begin_slips(body, y, s):
 @kernel
 def sinks(body, y, rows, i):
     """Whether an open point moves down, and not by rounding alone."""
-    return point_velocity(y, rows, arm(body, rows[2], i))[2] < -1e-10
+    return solid.point_velocity(y, rows, solid.arm(body, rows[2], i))[2] < -1e-10
 
 
 @kernel
@@ -133,7 +126,7 @@ def face_slip(body, y, rows, s):
     """By how much the fastest point of a face slips; one that has not begun to may not slip backwards [m/s]."""
     fastest, forwards, armed = 0.0, -1.0, 0
     for i in range(s.count):
-        u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
+        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.closed[i]))
         fastest = max(fastest, norm(u[0], u[1]))
         forwards = max(forwards, slip_along(body, y, rows, i, s))
         armed = max(armed, s.armed[i])
@@ -145,9 +138,9 @@ def margin(body, y, s):
     """Return the least of all that must not be negative, and what it belongs to."""
     rows = rotation(y)
     least, what = 1e300, modes.NOTHING
-    for i in range(first_candidate(body), last_candidate(body)):
+    for i in range(solid.first_candidate(body), solid.last_candidate(body)):
         if not is_closed(s, i):
-            value = gap(body, y, rows[2], i) + 0.5 * modes.TOUCH
+            value = solid.gap(body, y, rows[2], i) + 0.5 * modes.TOUCH
             if value < 0.5 * modes.TOUCH and not sinks(body, y, rows, i):
                 value += modes.TOUCH
             if value < least:
@@ -181,13 +174,13 @@ def dips(body, y, h, s):
     """Whether a point that is open at both ends of a step may have touched inside it."""
     new = s.new
     before, after = rotation(y), rotation(new)
-    for i in range(first_candidate(body), last_candidate(body)):
+    for i in range(solid.first_candidate(body), solid.last_candidate(body)):
         if is_closed(s, i):
             continue
-        sinking = point_velocity(y, before, arm(body, before[2], i))[2]
-        rising = point_velocity(new, after, arm(body, after[2], i))[2]
+        sinking = solid.point_velocity(y, before, solid.arm(body, before[2], i))[2]
+        rising = solid.point_velocity(new, after, solid.arm(body, after[2], i))[2]
         if sinking < 0 < rising:
-            lowest = gap(body, y, before[2], i) - 0.5 * h * sinking**2 / (rising - sinking)
+            lowest = solid.gap(body, y, before[2], i) - 0.5 * h * sinking**2 / (rising - sinking)
             if lowest - 0.02 * h * (rising - sinking) < -0.5 * modes.TOUCH:
                 return True
     return False
