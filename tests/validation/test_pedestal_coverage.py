@@ -47,9 +47,7 @@ CAUTIOUS = [*TIES, "heteroscedastic: one earthquake scatters three times as much
 CAUTIOUS += ["series of 5 %, scatter of one step"]
 
 
-def simulated(
-    name: str, rng: np.random.Generator, effect: float = 0.0
-) -> tuple[np.ndarray, float, float]:
+def simulated(name, rng, effect=0.0):
     """d of one data set, its true mean, and the resolution of one pair."""
     design = DESIGNS[name]
     earthquake, motion, pair = (np.asarray(sd) for sd in design.get("sd", (0.0, 0.0, 0.0)))

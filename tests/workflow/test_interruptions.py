@@ -6,8 +6,9 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 import psutil
@@ -29,21 +30,20 @@ WITHOUT_FLOCK = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP)
 """What the system says of locks where there are none, as on some network drives."""
 
 
-def program(text: str, **more: str) -> subprocess.Popen[str]:
-    """Start a program in Python that says when it is there."""
+@contextmanager
+def program(text: str, **more: str) -> Iterator[subprocess.Popen[str]]:
+    """A program in Python that has said that it is there; it is killed at the end of the block."""
     process = subprocess.Popen(
         [sys.executable, "-c", text], env={**os.environ, **more}, stdout=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
-    assert process.stdout.readline().strip() == "there"
-    return process
-
-
-def end(process: subprocess.Popen[str]) -> None:
-    assert process.stdout is not None
-    process.kill()
-    process.wait()
-    process.stdout.close()
+    try:
+        assert process.stdout.readline().strip() == "there"
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()
 
 
 def until(holds: Callable[[], object], seconds: float = 30.0) -> None:
@@ -53,7 +53,7 @@ def until(holds: Callable[[], object], seconds: float = 30.0) -> None:
         time.sleep(0.02)
 
 
-def holder(results: Path) -> subprocess.Popen[str]:
+def holder(results: Path) -> AbstractContextManager[subprocess.Popen[str]]:
     """A process that runs a study."""
     return program(
         "import time\nfrom pathlib import Path\nfrom rockfrag.stages.run_lock import run_lock\n"
@@ -62,25 +62,17 @@ def holder(results: Path) -> subprocess.Popen[str]:
 
 
 def test_a_second_run_is_told_in_which_process_the_first_one_is(tmp_path: Path):
-    first = holder(tmp_path / "tiny")
-    try:
-        with (
-            pytest.raises(InputError, match=f"running already, in process {first.pid} since"),
-            run_lock(tmp_path / "tiny"),
-        ):
+    with holder(tmp_path / "tiny") as first, run_lock(tmp_path / "another"):
+        words = f"running already, in process {first.pid} since"
+        with pytest.raises(InputError, match=words), run_lock(tmp_path / "tiny"):
             pass
-        with run_lock(tmp_path / "another"):
-            pass
-    finally:
-        end(first)
 
 
 def test_a_killed_run_leaves_neither_a_lock_nor_half_written_files(tmp_path: Path):
-    first = holder(tmp_path / "tiny")
-    (tmp_path / "tiny" / "figures").mkdir()
     part = tmp_path / "tiny" / "figures" / ".tests.csv.abc.part"
-    part.write_text("half")
-    end(first)
+    with holder(tmp_path / "tiny"):
+        part.parent.mkdir()
+        part.write_text("half")
     with run_lock(tmp_path / "tiny"):
         assert not part.exists()
 
@@ -96,14 +88,11 @@ def test_where_there_are_no_locks_nobody_waits(tmp_path, monkeypatch, number):
 
 
 def test_a_lock_that_another_process_holds_is_waited_for_no_longer_than_was_said(tmp_path: Path):
-    first = holder(tmp_path / "tiny")
-    try:
+    with holder(tmp_path / "tiny"):
         started = time.monotonic()
         with lock.locked(tmp_path / "tiny" / ".run", patience_s=0.2) as free:
             assert not free
         assert 0.2 <= time.monotonic() - started < 10
-    finally:
-        end(first)
 
 
 def test_a_folder_that_may_not_be_written_needs_no_lock(tmp_path: Path):
@@ -121,23 +110,20 @@ JOB = (
 @pytest.mark.parametrize("reaped", [True, False])
 def test_a_job_ends_with_its_run_and_with_the_shell_that_started_it(reaped: bool):
     """Between a run and its job is a shell, which a signal to the run does not end."""
-    run = program("import time; print('there', flush=True); time.sleep(60)")
-    job = program(JOB, **{RUN: str(run.pid)})
-    try:
+    with (
+        program("import time; print('there', flush=True); time.sleep(60)") as run,
+        program(JOB, **{RUN: str(run.pid)}) as job,
+    ):
         run.kill()
         if reaped:
             run.wait()
         job.wait(30)
-    finally:
-        end(run)
-        end(job)
 
 
 def test_a_job_whose_shell_was_killed_ends():
     text = f"import subprocess, sys\nsubprocess.run([sys.executable, '-c', {JOB!r}])"
-    shell = program(text, **{RUN: str(os.getpid())})
-    (job,) = psutil.Process(shell.pid).children()
-    end(shell)
+    with program(text, **{RUN: str(os.getpid())}) as shell:
+        (job,) = psutil.Process(shell.pid).children()
     job.wait(30)
 
 
@@ -149,11 +135,10 @@ POOL = (
 
 @pytest.mark.skipif(sys.platform != "linux", reason="pools are made of forks on Linux")
 def test_the_workers_of_a_pool_end_with_their_parent():
-    parent = program(POOL)
-    family = psutil.Process(parent.pid)
-    until(lambda: len(family.children()) == 3)
-    workers = family.children()
-    end(parent)
+    with program(POOL) as parent:
+        family = psutil.Process(parent.pid)
+        until(lambda: len(family.children()) == 3)
+        workers = family.children()
     assert not psutil.wait_procs(workers, timeout=30)[1]
 
 

@@ -1,7 +1,6 @@
 """What shakes a system: one to three components of acceleration on one time base."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,9 +72,3 @@ class GroundMotion:
             if motion is not None:
                 found[:, k] = motion.acceleration
         return found
-
-    @property
-    def provenance(self) -> dict[str, tuple[Any, ...]]:
-        """Steps that each component went through."""
-        each = {"x": self.x, "y": self.y, "z": self.z}
-        return {name: motion.provenance for name, motion in each.items() if motion is not None}

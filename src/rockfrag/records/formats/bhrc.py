@@ -11,13 +11,12 @@ import re
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import positive_step
+from rockfrag.records.parsing.fortran_sections import CHANNEL_END, positive_step
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
 _FIRST = re.compile(r"^\s*\*\s*VOL1DS\s+FILE", re.IGNORECASE)
 _HEAD = re.compile(rb"^[ \t]*\*[ \t]*VOL1DS[ \t]+FILE", re.I | re.M)
-_END = re.compile(rb"^[ \t]*/&", re.M)
 _UNITS_LINE = re.compile(rb"^[ \t]*UNITS\b.*\bAND\b", re.I | re.M)
 _UNIT = re.compile(r"\bUNITS\s+ARE\s+SEC\w*\s+AND\s+(?P<unit>\S+)", re.IGNORECASE)
 _SIZE = re.compile(
@@ -38,7 +37,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
-    return [_component(text, first, stop) for first, stop in text.parts(_HEAD, _END)]
+    return [_component(text, first, stop) for first, stop in text.parts(_HEAD, CHANNEL_END)]
 
 
 def _component(text: TextFile, first: int, stop: int) -> Channel:

@@ -14,6 +14,7 @@ from dataclasses import replace
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import (
+    CHANNEL_END,
     QUANTITIES,
     Section,
     accelerations,
@@ -44,7 +45,6 @@ _VALUES = re.compile(
     re.I | re.M,
 )
 _END = re.compile(_VALUES.pattern + rb"|^[ \t]*/&|" + _HEAD.pattern, re.I | re.M)
-_CHANNEL_END = re.compile(rb"^[ \t]*/&", re.M)
 _UNIT = re.compile(
     r"(?:units?\s*(?::|of|are|=)|\bin)\s*(?P<unit>[CM]*M\s*/\s*S\w*(?:\s*/\s*S\w*)?\d?|CM|G\s*/\s*10|"
     r"1/10\s*G|G)(?![A-Z])",
@@ -73,7 +73,7 @@ def _parse(text: TextFile) -> list[Channel]:
 
 
 def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
-    for first, stop in text.parts(_HEAD, _CHANNEL_END):
+    for first, stop in text.parts(_HEAD, CHANNEL_END):
         words = text.lines(first, min(stop, first + _MAX_HEADER))
         line = text.find(_VALUES, first, stop)
         if line < 0:

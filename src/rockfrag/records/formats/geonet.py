@@ -39,14 +39,13 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
-    channels = []
-    line = 0
+    channels, line = [], 0
     while line < len(text):
-        if not text.line(line).strip():
+        if text.line(line).strip():
+            channel, line = _component(text, line)
+            channels.append(channel)
+        else:
             line += 1
-            continue
-        channel, line = _component(text, line)
-        channels.append(channel)
     return channels
 
 
@@ -106,9 +105,7 @@ def _word_after(pattern: str, words: list[str]) -> str:
 
 def _start(whole: list[int]) -> UTCDateTime | None:
     year, month, day, hour, minute = (str(whole[place]) for place in _START)
-    if whole[_START[0]] <= 0:
-        return None
-    start = clock_time(year, month, day, hour, minute, "0")
+    start = clock_time(year, month, day, hour, minute, "0") if whole[_START[0]] > 0 else None
     return None if start is None else start + whole[_START_MS] / 1000
 
 

@@ -10,13 +10,13 @@ from pathlib import PurePath
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import CHANNEL_END
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.time_value_pairs import read_pairs
 from rockfrag.records.parsing.timestamps import american_time
 
 _FIRST = re.compile(r"^\s*UNCORRECTED\s+ACCELEROGRAM\s+DATA\b", re.IGNORECASE)
 _HEAD = re.compile(rb"^[ \t]*UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA\b", re.I | re.M)
-_END = re.compile(rb"^[ \t]*/&", re.M)
 _HEADER = 13
 
 
@@ -28,7 +28,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 def _parse(text: TextFile) -> list[Channel]:
     return [
         _channel(text, first, read_pairs(text, first, stop))
-        for first, stop in text.parts(_HEAD, _END)
+        for first, stop in text.parts(_HEAD, CHANNEL_END)
     ]
 
 

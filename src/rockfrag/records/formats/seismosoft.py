@@ -18,6 +18,8 @@ _COLUMNS = re.compile(
     r"(?P<quantity>accel\w*|veloc\w*|displ\w*)\.?\s*[\[(](?P<unit>[^\])]+)[\])]\s*$",
     re.IGNORECASE,
 )
+_BEFORE_COMPONENT = re.compile(r"^(?P<station>[^()]+)\((?P<component>[^()]+)\)\s*$")
+_BEHIND_COMPONENT = re.compile(r"^(?P<component>\d{3})\s+(?P<station>\D.*)$")
 _MAX_HEADER = 40
 
 
@@ -50,7 +52,12 @@ def _parse(text: TextFile) -> list[Channel]:
         if colon:
             header[key.strip().lower()] = value.strip()
     table = text.table(columns + 1, 2)
-    station, component = _station_and_component(header.get("recording station", ""))
+    # TOLMEZZO(000) or 090 CDMG STATION 47381
+    place = header.get("recording station", "")
+    found = _BEFORE_COMPONENT.match(place) or _BEHIND_COMPONENT.match(place)
+    station, component = (
+        (found["station"].strip(), found["component"].strip()) if found else (place, "")
+    )
     return [
         Channel(
             npts=table.shape[0],
@@ -63,21 +70,10 @@ def _parse(text: TextFile) -> list[Channel]:
                 "earthquake": header["earthquake"].rstrip("."),
                 "source": header.get("source", ""),
                 "frequency_range": header.get("frequency range", ""),
-                "recording_station": header.get("recording station", ""),
+                "recording_station": place,
             },
         )
     ]
-
-
-def _station_and_component(words: str) -> tuple[str, str]:
-    """Split ``TOLMEZZO(000)`` or ``090 CDMG STATION 47381``."""
-    bracketed = re.match(r"^(?P<station>[^()]+)\((?P<component>[^()]+)\)\s*$", words)
-    if bracketed:
-        return bracketed["station"].strip(), bracketed["component"].strip()
-    leading = re.match(r"^(?P<component>\d{3})\s+(?P<station>\D.*)$", words)
-    if leading:
-        return leading["station"].strip(), leading["component"]
-    return words, ""
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)

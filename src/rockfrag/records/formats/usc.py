@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import CHANNEL_END
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.time_value_pairs import read_pairs
 
@@ -30,8 +31,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 def _parse(text: TextFile) -> list[Channel]:
     channels = []
     for first, stop in text.parts(_HEAD):
-        last = text.find(re.compile(rb"^[ \t]*/&", re.M), first, stop)
-        pairs = read_pairs(text, first, stop if last < 0 else last)
+        pairs = read_pairs(text, first, min(stop, text.until(CHANNEL_END, first)))
         channels.append(place_of(text.lines(first, first + _HEADER), pairs))
     return channels
 

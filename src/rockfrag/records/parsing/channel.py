@@ -74,19 +74,15 @@ class Channel:
         """Name to choose the channel by: its code, else its orientation, with its member if any."""
         return f"{self.member} {self.code or self.component}".strip()
 
-    def facts(self) -> dict[str, Any]:
-        """Return the stated facts that SEED names have no room for."""
-        facts: dict[str, Any] = {
+    def trace(self, headonly: bool) -> Trace:
+        """Return the channel as an ObsPy trace, what SEED names have no room for in ``stats.rockfrag``."""
+        facts = {
             "unit": self.unit,
             "quantity": "acceleration",
             "component": self.component,
             "start_time_stated": self.start_time is not None,
+            **{key: value for key, value in self.details.items() if value not in ("", None)},
         }
-        facts.update({key: value for key, value in self.details.items() if value not in ("", None)})
-        return facts
-
-    def trace(self, headonly: bool) -> Trace:
-        """Return the channel as an ObsPy trace, its other facts in ``stats.rockfrag``."""
         header = {
             "network": self.network,
             "station": self.station,
@@ -94,7 +90,7 @@ class Channel:
             "channel": self.label,
             "delta": self.dt,
             "npts": self.npts,
-            "rockfrag": AttribDict(self.facts()),
+            "rockfrag": AttribDict(facts),
         }
         if self.start_time is not None:
             header["starttime"] = self.start_time

@@ -11,6 +11,7 @@ from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.text_file import TextFile
 
+CHANNEL_END = re.compile(rb"^[ \t]*/&", re.M)
 QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
 """First letters of a quantity's name in a header, and the quantity."""
 
