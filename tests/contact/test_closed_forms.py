@@ -149,10 +149,8 @@ def test_a_statue_slides_off_its_pedestal() -> None:
     response = simulate_with_friction(body, pulse(3.0, 1.0), DT, friction=(1.0, 0.05))
     assert response.overturned_body == "upper body"
     assert response.slip[-2, 1] < -0.1
-    start = response.contact_events[
-        response.contact_events["modes"].map(lambda to: "slides" in to[1])
-    ].iloc[0]
-    assert start["time"] < 0.1
+    events = response.contact_events
+    assert events[events["modes"].map(lambda to: "slides" in to[1])].iloc[0]["time"] < 0.1
 
 
 def test_a_still_block_stays_where_it_is() -> None:

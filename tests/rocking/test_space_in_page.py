@@ -69,13 +69,8 @@ def some_polygon(rng) -> tuple[System, dict]:
     centre = (0.02, -0.01, float(rng.uniform(0.4, 0.9)))
     base = Polygon(tuple(map(tuple, vertices.tolist())))
     body = RigidBody(300.0, tensor, centre, base, 2.0)
-    told = {
-        "mass": 300.0,
-        "centre": centre,
-        "tensor": tensor.tolist(),
-        "vertices": vertices.tolist(),
-    }
-    return System((body,), (Contact(),)), told
+    told = {"mass": 300.0, "centre": centre, "tensor": tensor.tolist()}
+    return System((body,), (Contact(),)), told | {"vertices": vertices.tolist()}
 
 
 @needs_node
@@ -95,12 +90,10 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path, bodies):
         if friction is not None:
             system = System(system.bodies, (Contact(friction=Friction(friction, friction)),))
         systems.append(system)
-        cases.append(
-            {
-                kind: told, "friction": friction, "components": int(rng.integers(1, 4)),
-                "dt": float(rng.choice([0.005, 0.01])), "scale": float(rng.uniform(0.3, 2.0)),
-            }
-        )  # fmt: skip
+        cases.append({
+            kind: told, "friction": friction, "components": int(rng.integers(1, 4)),
+            "dt": float(rng.choice([0.005, 0.01])), "scale": float(rng.uniform(0.3, 2.0)),
+        })  # fmt: skip
     said, written = in_node(tmp_path, "space", RUN, cases, motion)
     numbers = np.frombuffer(written)
     fell = 0

@@ -5,14 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.engines.kernels.equations import (
-    STATE,
-    coupling,
-    first_moment1,
-    first_moment2,
-    inertia1,
-    inertia2,
-)
+from rockfrag.engines.kernels import equations as eq
 from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
 from rockfrag.engines.records import body_record
@@ -35,10 +28,8 @@ def series_by_recurrence(mass, moments, gravity, angles, rates, ground):
     """
     (m11, m22, e, f), a, g = mass, [*ground, *[0.0] * ORDER], [*gravity, *[0.0] * ORDER]
     theta = [[angles[i], rates[i]] for i in (0, 1)]
-    sine, cosine = (
-        [fn(x) for x in (*angles, angles[1] - angles[0])] for fn in (math.sin, math.cos)
-    )
-    s, c = [[x] for x in sine], [[x] for x in cosine]
+    turned = (*angles, angles[1] - angles[0])
+    s, c = ([[of(x)] for x in turned] for of in (math.sin, math.cos))
     for k in range(ORDER - 1):
         turn = [*theta, [q - p for p, q in zip(*theta, strict=True)]]
         rate = [[(j + 1) * t[j + 1] for j in range(k + 1)] for t in turn]
@@ -64,9 +55,9 @@ def series_by_recurrence(mass, moments, gravity, angles, rates, ground):
 
 @entry_kernel
 def constants_of(body):
-    e, f = coupling(body, 1.0, -1.0)
-    mass = inertia1(body, 1.0, -1.0), inertia2(body, -1.0), e, f
-    return mass, first_moment1(body, 1.0, -1.0), first_moment2(body, -1.0)
+    e, f = eq.coupling(body, 1.0, -1.0)
+    mass = eq.inertia1(body, 1.0, -1.0), eq.inertia2(body, -1.0), e, f
+    return mass, eq.first_moment1(body, 1.0, -1.0), eq.first_moment2(body, -1.0)
 
 
 @entry_kernel
@@ -91,7 +82,7 @@ CASES = [((0.10, -0.05), (0.4, -0.9)), ((0.02, 0.0), (-1.0, 2.0)), ((0.3, 0.05),
 
 @pytest.mark.parametrize(("theta", "omega"), CASES)
 def test_the_series_of_one_history_are_those_of_the_recurrence(theta, omega):
-    state = np.zeros(1, STATE)
+    state = np.zeros(1, eq.STATE)
     state[0] = (1, -1, theta[0], omega[0], theta[1], omega[1], 0.0, GRAVITY)
     series = np.zeros(1, SERIES)[0]
     fill(BODY, state[0], Step(H, GROUND, RISE, GRAVITY, LIFT), series)

@@ -106,10 +106,7 @@ UNUSABLE = [
     (simulated(g="9.81"), "g: expected a positive number of m/s², got '9.81'"),
     (simulated(restitution=1.01), "restitution of the block: 1.01 would gain energy"),
     (simulated(restitution="a"), "restitution of the block: expected a finite number, got 'a'"),
-    (
-        simulated(restitution=(0.9, 0.9, 0.9)),
-        "restitution of the block: expected one ratio, or two",
-    ),
+    (simulated(restitution=(0.9,) * 3), "restitution of the block: expected one ratio, or two"),
     (stacked(restitution=0.9), "restitution: a stack takes a pair (ground, interface)"),
     (stacked(restitution=("a", 0.9)), "restitution of the ground: expected a finite number"),
     (stacked(restitution={"floor": 0.9}), "restitution: 'floor' is no contact of a system of 2"),
@@ -120,15 +117,9 @@ UNUSABLE = [
     (simulated(friction=(0.3, 0.4)), "the static coefficient 0.3 is less than the kinetic one 0.4"),
     (stacked(friction=(0.3,)), "friction: a stack takes (ground, interface)"),
     (simulated(friction=True), "friction of the ground: a coefficient is 0 or more, got True"),
-    (
-        simulated(friction=0.4, linear=True),
-        "friction cannot be had together with the linearised equations",
-    ),
+    (simulated(friction=0.4, linear=True), "friction cannot be had together with the linearised"),
     (simulated(vertical=SHAKE[:50]), "vertical: 50 samples for 100 horizontal ones"),
-    (
-        simulated(vertical=Motion(SHAKE, 0.02)),
-        "vertical: sampled every 0.02 s, the horizontal motion every 0.01 s",
-    ),
+    (simulated(vertical=Motion(SHAKE, 0.02)), "vertical: sampled every 0.02 s, the horizontal"),
     (simulated(vertical=SHAKE * math.nan), "vertical: sample 0 is not a finite number"),
     # ensembles
     (swept(friction=[0.3, 0.4]), "friction: expected a number or a list with 1 entries"),
