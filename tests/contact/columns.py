@@ -44,16 +44,9 @@ def random_column(rng: np.random.Generator, bodies: int) -> Column:
     width = rng.uniform(0.3, 1.0)
     for k in range(bodies):
         height = width * rng.uniform(0.3, 3.0)
-        blocks.append(
-            Block(
-                width,
-                height,
-                rng.uniform(300, 3000) * width**2 * height,
-                cg_height=height * rng.uniform(0.4, 0.6),
-                cg_offset=rng.uniform(-0.03, 0.03) * width,
-                lean=rng.uniform(-0.003, 0.003),
-            )
-        )
+        mass = rng.uniform(300, 3000) * width**2 * height
+        centre = height * rng.uniform(0.4, 0.6), rng.uniform(-0.03, 0.03) * width
+        blocks.append(Block(width, height, mass, None, *centre, rng.uniform(-0.003, 0.003)))
         if k:
             offsets.append(rng.uniform(-0.02, 0.02) * width)
         width *= rng.uniform(0.7, 1.05)

@@ -49,9 +49,6 @@ def test_formulas_give_what_elimination_gives(stacks: bool, flat: bool) -> None:
         found = []
         for kernel in (by_formulas, by_elimination):
             kernel(p, w, *loads)
-            forces = (
-                np.concatenate([w["normal"][: top + 1].ravel(), w["shear"][: top + 1]])
-                / p["weight"]
-            )
-            found.append(np.concatenate([w["out"][: 3 * top + 3], forces]))
+            forces = np.concatenate([w["normal"][: top + 1].ravel(), w["shear"][: top + 1]])
+            found.append(np.concatenate([w["out"][: 3 * top + 3], forces / p["weight"]]))
         np.testing.assert_allclose(found[0], found[1], rtol=1e-9, atol=1e-10)

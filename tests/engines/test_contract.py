@@ -4,17 +4,7 @@ import numpy as np
 import pytest
 
 from rockfrag.engines import contract
-from rockfrag.engines.contract import (
-    Cases,
-    Request,
-    Support,
-    Wish,
-    by_wishes,
-    forget_engine,
-    register_engine,
-    run_cases,
-    wishes,
-)
+from rockfrag.engines.contract import Request, Wish
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import empty_outcomes
 from rockfrag.records.ground_motion import GroundMotion
@@ -41,7 +31,7 @@ class Stub:
         self.name, self.meets = name, frozenset(meets)
 
     def supports(self, system, motion, request):
-        return by_wishes(self, system, motion, request)
+        return contract.by_wishes(self, system, motion, request)
 
     def run(self, cases):
         return empty_outcomes(cases.names, cases.scales, (self.name,))
@@ -54,8 +44,8 @@ class Stub:
 def two(monkeypatch):
     contract.engines()
     monkeypatch.setattr(contract, "_ENGINES", [])
-    register_engine(Stub("fast", Wish.TWO_BODIES, Wish.RESTITUTION))
-    register_engine(Stub("slow", Wish.TWO_BODIES, Wish.FRICTION, Wish.VERTICAL))
+    contract.register_engine(Stub("fast", Wish.TWO_BODIES, Wish.RESTITUTION))
+    contract.register_engine(Stub("slow", Wish.TWO_BODIES, Wish.FRICTION, Wish.VERTICAL))
 
 
 def rough(system, mu):
@@ -65,7 +55,7 @@ def rough(system, mu):
 
 def shake(*systems, **components):
     shaken = motion(**(components or {"x": np.ones(5)}))
-    return run_cases(Cases(systems, (shaken,), np.ones((1, 1)), Request()))
+    return contract.run_cases(contract.Cases(systems, (shaken,), np.ones((1, 1)), Request()))
 
 
 def test_the_first_engine_that_supports_a_system_answers_and_is_named(two):
@@ -87,7 +77,7 @@ def test_a_refusal_names_the_wishes_that_do_not_go_together(two):
 def test_wishes_are_read_off_system_motion_and_request():
     all_three = motion(x=np.ones(3), y=np.ones(3), z=np.ones(3))
     asked = Request(forces=True, history=True)
-    assert wishes(rough(STACK.system(), 0.1), all_three, asked) == {
+    assert contract.wishes(rough(STACK.system(), 0.1), all_three, asked) == {
         *(Wish.TWO_BODIES, Wish.SPACE, Wish.VERTICAL, Wish.FRICTION, Wish.FORCES, Wish.HISTORY)
     }
 
@@ -96,14 +86,14 @@ def test_a_plugin_may_go_before_the_others_and_say_why_it_does_not_answer():
     class Thin(Stub):
         def supports(self, system, motion, request):
             width = system.bodies[0].base.right - system.bodies[0].base.left
-            return Support(reason="it wants bodies without width" if width else "")
+            return contract.Support(reason="it wants bodies without width" if width else "")
 
     needle = RigidBody(1.0, 0.1, (0.0, 0.0, 0.5), Interval(0.0, 0.0), 1.0, name="needle")
-    register_engine(Thin("thin"), before=contract.engines()[0].name)
+    contract.register_engine(Thin("thin"), before=contract.engines()[0].name)
     try:
         found = overturns([System((needle,), (Contact(),)), BLOCK], 4.0 * np.ones(20), 0.01)
     finally:
-        forget_engine("thin")
+        contract.forget_engine("thin")
     assert list(found.table()["engine"]) == ["thin", "lanes of lone blocks"]
 
 

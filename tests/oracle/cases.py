@@ -119,14 +119,8 @@ def columns(bodies: int, count: int, seed: int = 3) -> Cases:
     for width in filled(rng, 0.3, 1.0, max(1, count // 4)):
         widths = np.linspace(1.3 * width, width, bodies)
         heights = np.append(filled(rng, 0.3, 1.0, bodies - 1) * widths[:-1], 3.5 * width)
-        made.append(
-            Column(
-                tuple(
-                    Block(float(b), float(h), DENSITY * float(b * b * h))
-                    for b, h in zip(widths, heights, strict=True)
-                )
-            )
-        )
+        sizes = zip(widths.tolist(), heights.tolist(), strict=True)
+        made.append(Column(tuple(Block(b, h, DENSITY * (b * b * h)) for b, h in sizes)))
     return Cases(made, motions(2, seed), np.array([[0.4, 0.8], [0.4, 0.8]]))
 
 

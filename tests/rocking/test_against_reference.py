@@ -30,20 +30,14 @@ def random_case(seed, lone):
     base, slenderness = rng.uniform(0.1, 0.5), rng.uniform(2, 6)
     below, squatness = base * rng.uniform(1, 1.6), rng.uniform(0.5, 2.5)
     odd = seed % 3 == 2
-    upper = Block(
-        base,
-        base * slenderness,
-        1000 * base**2 * slenderness,
-        cg_offset=0.05 * base * rng.normal() * odd,
-        cg_height=base * slenderness * (0.45 if odd else 0.5),
-    )
+    height = base * slenderness
+    centre = height * (0.45 if odd else 0.5), 0.05 * base * rng.normal() * odd
+    upper = Block(base, height, 1000 * base**2 * slenderness, None, *centre)
+    mass = 1000 * below**2 * squatness * rng.uniform(0.3, 3)
     lower = Block(
-        below,
-        below * squatness,
-        1000 * below**2 * squatness * rng.uniform(0.3, 3),
-        cg_offset=0.03 * below * rng.normal() * odd,
-        lean=0.005 * rng.normal() * odd,
-    )
+        below, below * squatness, mass,
+        cg_offset=0.03 * below * rng.normal() * odd, lean=0.005 * rng.normal() * odd,
+    )  # fmt: skip
     body = upper if lone else Stack(lower, upper)
     weakest = upper.alpha if lone else min(upper.alpha, body.rigidly_joined().alpha)
     motion = random_motion(rng, 9.81 * weakest * rng.uniform(1.1, 4))
