@@ -110,11 +110,8 @@ IN_PYTHON = [
 def test_what_a_page_shows_in_python_runs_as_it_stands_there(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("MPLBACKEND", "agg")
-    blocks = re.findall(
-        r"^```python\n(.*?)^```$",
-        (DOCS / name).read_text(encoding="utf-8"),
-        re.MULTILINE | re.DOTALL,
-    )
+    fences = FENCE.findall((DOCS / name).read_text(encoding="utf-8"))
+    blocks = [text for language, text in fences if language == "python"]
     names: dict[str, object] = {}
     for block in blocks:
         exec(compile(block, name, "exec"), names)

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -66,12 +67,6 @@ def typed(checkout):
     return run
 
 
-def write_record(motion, path: Path) -> None:
-    """Write a motion as a text of seconds and g."""
-    rows = zip(motion.time, motion.acceleration / 9.81, strict=True)
-    path.write_text("".join(f"{t:.2f} {a:.6f}\n" for t, a in rows))
-
-
 @pytest.mark.skipif(os.name == "nt", reason="make and symbolic links are those of POSIX")
 def test_the_route_to_ones_own_statue_ends_in_a_report(checkout, typed, noise):
     mine = checkout / "mine"
@@ -80,8 +75,9 @@ def test_the_route_to_ones_own_statue_ends_in_a_report(checkout, typed, noise):
     from rockfrag.motions.filtering import bandpass
 
     for seed in range(3):
-        motion = bandpass(noise(seed, 1200, tapered=True), 0.3, 5.0)
-        write_record(scale_to_pga(motion, 0.3), mine / "records" / f"station{seed}.txt")
+        motion = scale_to_pga(bandpass(noise(seed, 1200, tapered=True), 0.3, 5.0), 0.3)
+        rows = np.column_stack([motion.time, motion.acceleration / 9.81])
+        np.savetxt(mine / "records" / f"station{seed}.txt", rows, "%.6f")
     named = re.findall(
         r"`(mine/[a-z]+\.(?:csv|yaml))`[^`]*(?:`[^`\n]+`[^`]*)*?\n\n *```(csv|yaml)", README
     )
@@ -109,21 +105,9 @@ def test_the_route_to_ones_own_statue_ends_in_a_report(checkout, typed, noise):
 def record(checkout, noise) -> Path:
     """The record that the README calls record.AT2."""
     from rockfrag.motions import scale_to_pga
+    from rockfrag.records import write_motion
 
-    path = checkout / "record.AT2"
-    acceleration = scale_to_pga(noise(7, 800, tapered=True), 0.4).acceleration / 9.81
-    lines = [f"NPTS=  {acceleration.size}, DT=  .0100 SEC"]
-    lines += [
-        "".join(f"{a:15.7E}" for a in acceleration[i : i + 5])
-        for i in range(0, acceleration.size, 5)
-    ]
-    head = [
-        "PEER NGA STRONG MOTION DATABASE RECORD",
-        "Made up, 1/1/2000, Nowhere, 0",
-        "ACCELERATION TIME SERIES IN UNITS OF G",
-    ]
-    path.write_text("\n".join([*head, *lines]) + "\n")
-    return path
+    return write_motion(scale_to_pga(noise(7, 800, tapered=True), 0.4), checkout / "record.AT2")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="symbolic links are those of POSIX")

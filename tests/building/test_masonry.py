@@ -171,12 +171,23 @@ def pushed(ops, path):
 
 
 @pytest.mark.peers
-@pytest.mark.parametrize("law", [{}, {"damage_ductility": 0.05}, {"unloading": 0.0}])
-def test_a_cyclic_push_equals_opensees(opensees, masonry, law):
-    building = masonry(**({"damage_energy": 0.0} | law))
+@pytest.mark.parametrize(
+    ("law", "tolerance"),
+    [
+        ({"damage_energy": 0.0}, 1e-9),
+        ({"damage_energy": 0.0, "damage_ductility": 0.05}, 1e-9),
+        ({"damage_energy": 0.0, "unloading": 0.0}, 1e-9),
+        (
+            {},
+            0.03,
+        ),  # HystereticSM relates the energy to an area of its own, which is the whole difference
+    ],
+)
+def test_a_cyclic_push_is_that_of_opensees(opensees, masonry, law, tolerance):
+    building = masonry(**law)
     material(opensees, building, 0)
     found = push_storey(building, 1, GROWING)
-    assert np.abs(found - pushed(opensees, GROWING)).max() < 1e-9 * np.abs(found).max()
+    assert np.abs(found - pushed(opensees, GROWING)).max() < tolerance * np.abs(found).max()
 
 
 @pytest.mark.peers
@@ -195,15 +206,6 @@ def test_damage_by_energy_equals_opensees(opensees, masonry):
     )  # fmt: skip
     found = push_storey(building, 1, GROWING)
     assert np.abs(found - pushed(opensees, GROWING)).max() < 1e-9 * np.abs(found).max()
-
-
-@pytest.mark.peers
-def test_the_reference_law_is_within_three_per_cent_of_opensees(opensees, masonry):
-    # HystereticSM relates the energy to an area of its own, which is the whole difference
-    building = masonry()
-    material(opensees, building, 0)
-    found = push_storey(building, 1, GROWING)
-    assert np.abs(found - pushed(opensees, GROWING)).max() < 0.03 * np.abs(found).max()
 
 
 def shaken(ops, building, motion, parts, define):

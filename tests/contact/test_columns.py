@@ -23,11 +23,8 @@ from .columns import Found, random_column, run, with_contacts
 def early(found: Found, contact_events: int = 6) -> int:
     """Number of samples before a contact event."""
     times = found.contact_events[:, 0]
-    return (
-        int(np.searchsorted(found.time, times[contact_events]))
-        if len(times) > contact_events
-        else len(found.time)
-    )
+    until = times[contact_events] if len(times) > contact_events else math.inf
+    return int(np.searchsorted(found.time, until))
 
 
 def opening(found: Found) -> float:
@@ -156,17 +153,15 @@ def test_a_larger_column_moves_alike_in_longer_time() -> None:
     rng = np.random.default_rng(3)
     for ratio in (0.3, 4.0):
         column = random_column(rng, 3)
-        larger = Column(
-            tuple(
-                Block(
-                    ratio * b.width, ratio * b.height, ratio**3 * b.mass, lean=b.lean,
-                    cg_height=ratio * b.h, cg_offset=ratio * b.cg_offset,
-                )
-                for b in column.blocks
-            ),
-            tuple(ratio * x for x in column.offsets or ()),
-        )  # fmt: skip
         blocks = tuple(replace(b, cg_height=b.h) for b in column.blocks)
+        lengths = "width", "height", "cg_height", "cg_offset"
+        grown = tuple(
+            replace(
+                b, mass=ratio**3 * b.mass, **{name: ratio * getattr(b, name) for name in lengths}
+            )
+            for b in blocks
+        )
+        larger = Column(grown, tuple(ratio * x for x in column.offsets or ()))
         mus, motion = [0.5, 0.6, 0.7], random_motion(rng)
         found = run(with_contacts(Column(blocks, column.offsets), mus), motion)
         other = run(with_contacts(larger, mus), motion, DT * math.sqrt(ratio))

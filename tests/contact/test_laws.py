@@ -79,13 +79,9 @@ def drawn_laws(system: System, law: str, factor: float) -> list[ImpactLaw]:
     """Give every contact a multiple of its own momentum value, as far as the lone body may have it."""
     found = []
     for shape in system.carried:
-        values = [
-            min(
-                factor * geometry.momentum_restitution(shape, pivot),
-                geometry.largest_restitution(shape, pivot),
-            )
-            for pivot in (1, -1)
-        ]
+        own = [factor * geometry.momentum_restitution(shape, pivot) for pivot in (1, -1)]
+        most = [geometry.largest_restitution(shape, pivot) for pivot in (1, -1)]
+        values = list(map(min, own, most))
         found.append(ImpactLaw(law, *values) if min(values) > 0.05 else ImpactLaw())
     return found
 
@@ -151,9 +147,8 @@ def test_with_much_friction_impacts_are_those_of_pure_rocking(stacks: bool, law:
         laws = drawn_laws(body.system(), law, rng.uniform(0.8, 1.2))
         system = with_contacts(body, [1e6] * body.system().count, laws)
         values = [None if np.isnan(each.right) else (each.right, each.left) for each in laws]
-        measured = (
-            MeasuredRestitution(values if stacks else values[0], law) if any(values) else None
-        )
+        value = values if stacks else values[0]
+        measured = MeasuredRestitution(value, law) if any(values) else None
         motion = random_motion(rng)
         slow, fast = run(system, motion), simulate(body, motion, DT, restitution=measured)
         times = fast.contact_events["time"].to_numpy()

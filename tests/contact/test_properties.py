@@ -163,13 +163,7 @@ def test_the_slenderest_motion_of_the_thesis_cannot_rock_t1_at_a_friction_of_thr
     records = sorted(shared.glob("records/*.dat"))  # type: ignore[attr-defined]
     assert len(records) == 4
     motions = [read_motion(path) for path in records]
-    result = overturns(
-        T1,
-        [motion.acceleration for motion in motions],
-        [motion.dt for motion in motions],
-        np.linspace(0.5, 4.0, 8),
-        friction=[0.3],
-    )
+    result = overturns(T1, motions, scales=np.linspace(0.5, 4.0, 8), friction=[0.3])
     assert result.peak_slip.max() > 0.01
     assert result.peak_rotation.max() == 0
     assert not result.overturned.any()

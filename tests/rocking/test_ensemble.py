@@ -63,13 +63,8 @@ def test_threads_do_not_change_a_bit(whole, threads):
 def test_order_does_not_change_a_bit(whole):
     rng = np.random.default_rng(3)
     i, j, k = (rng.permutation(n) for n in whole.overturned.shape)
-    shuffled = overturns(
-        [BODIES[n] for n in i],
-        [MOTIONS[n] for n in j],
-        benchmark_cases.DT,
-        SCALES[j][:, k],
-        threads=1,
-    )
+    bodies, motions = [BODIES[n] for n in i], [MOTIONS[n] for n in j]
+    shuffled = overturns(bodies, motions, benchmark_cases.DT, SCALES[j][:, k], threads=1)
     same(picked(whole, *np.ix_(i, j, k)), shuffled)
 
 
@@ -153,13 +148,11 @@ def test_an_ensemble_of_motions_gives_a_table():
     same(result, overturns(BODIES[:3], MOTIONS[:2], benchmark_cases.DT, SCALES[:2]))
     table = result.table()
     assert len(table) == result.overturned.size
-    row = table[(table["system"] == 2) & (table["motion"] == 1)].iloc[2]
+    row = table.query("system == 2 and motion == 1").iloc[2]
     assert row["scale"] == SCALES[1, 2]
     assert row["overturned"] == result.overturned[2, 1, 2]
     bodies = result.table("bodies")
-    upper = bodies[(bodies["system"] == 2) & (bodies["motion"] == 1) & (bodies["body"] == 2)].iloc[
-        2
-    ]
+    upper = bodies.query("system == 2 and motion == 1 and body == 2").iloc[2]
     assert upper["peak_velocity_rad_s"] == result.peak_velocity[2, 1, 2, 1]
     assert upper["name"] == "upper body"
 
@@ -167,25 +160,12 @@ def test_an_ensemble_of_motions_gives_a_table():
 @pytest.mark.parametrize("linear", [False, True])
 def test_cases_with_a_start_of_their_own_end_as_single_simulations_do(linear):
     bodies = [LONE[1], STACKS[0]]
-    theta0, omega0 = [0.3 * LONE[1].alpha, (0.0, 0.02)], [None, (0.0, -0.1)]
-    found = overturns(
-        bodies,
-        MOTIONS[:2],
-        benchmark_cases.DT,
-        [0.2, 0.6],
-        theta0=theta0,
-        omega0=omega0,
-        linear=linear,
-    )
+    start = {"theta0": [0.3 * LONE[1].alpha, (0.0, 0.02)], "omega0": [None, (0.0, -0.1)]}
+    dt, scales = benchmark_cases.DT, (0.2, 0.6)
+    found = overturns(bodies, MOTIONS[:2], dt, scales, linear=linear, **start)
     for i, j, k in np.ndindex(found.overturned.shape):
-        response = simulate(
-            bodies[i],
-            (0.2, 0.6)[k] * MOTIONS[j],
-            benchmark_cases.DT,
-            theta0=theta0[i],
-            omega0=omega0[i],
-            linear=linear,
-        )
+        own = {name: values[i] for name, values in start.items()}
+        response = simulate(bodies[i], scales[k] * MOTIONS[j], dt, linear=linear, **own)
         assert found.overturned[i, j, k] == response.overturned
         assert found.impacts[i, j, k] == response.impacts
         assert found.unstable_distance[i, j, k] == response.unstable_distance

@@ -48,14 +48,8 @@ def blocks(draw: st.DrawFn, crooked: bool = False) -> Block:
     height = width * draw(st.floats(1.5, 6))
     if not crooked:
         return Block(width, height, width * height * 500)
-    return Block(
-        width,
-        height,
-        width * height * 500,
-        cg_height=height * draw(st.floats(0.3, 0.6)),
-        cg_offset=width * draw(st.floats(-0.15, 0.15)),
-        lean=draw(st.floats(-0.01, 0.01)),
-    )
+    cg = height * draw(st.floats(0.3, 0.6)), width * draw(st.floats(-0.15, 0.15))
+    return Block(width, height, width * height * 500, None, *cg, draw(st.floats(-0.01, 0.01)))
 
 
 @st.composite

@@ -43,17 +43,11 @@ def random_stack(rng):
     base, slenderness = rng.uniform(0.1, 0.5), rng.uniform(1.6, 6)
     below, squatness = base * rng.uniform(1, 1.8), rng.uniform(0.9, 2.5)
     odd = rng.integers(2)
-    upper = Block(
-        base,
-        base * slenderness,
-        1000 * base**2 * slenderness,
-        cg_offset=float(0.05 * base * rng.normal() * odd),
-    )
-    lower = Block(
-        below, below * squatness, 1000 * below**2 * squatness * rng.uniform(0.3, 3),
-        cg_offset=float(0.03 * below * rng.normal() * odd),
-    )  # fmt: skip
-    return Stack(lower, upper)
+    off = float(0.05 * base * rng.normal() * odd)
+    mass = 1000 * below**2 * squatness * rng.uniform(0.3, 3)
+    off_below = float(0.03 * below * rng.normal() * odd)
+    upper = Block(base, base * slenderness, 1000 * base**2 * slenderness, cg_offset=off)
+    return Stack(Block(below, below * squatness, mass, cg_offset=off_below), upper)
 
 
 def random_impact(rng, kind):
@@ -88,17 +82,12 @@ def plain(body, restitution, old, closes, theta, omega):
 def measured(stack, factor, law):
     """Every interface at a factor on what conserves momentum, as far as a lone block allows it."""
     blocks = stack.lower, stack.contact_upper
-    values = tuple(
-        tuple(
-            min(
-                factor * max(0.05, block.momentum_restitution(-pivot)),
-                largest_restitution(block, pivot),
-            )
-            for pivot in (1, -1)
-        )
-        for block in blocks
-    )
-    return MeasuredRestitution(values, law)
+
+    def of(block, pivot):
+        wanted = factor * max(0.05, block.momentum_restitution(-pivot))
+        return min(wanted, largest_restitution(block, pivot))
+
+    return MeasuredRestitution(tuple((of(block, 1), of(block, -1)) for block in blocks), law)
 
 
 def rates(omega):
@@ -124,14 +113,8 @@ def test_without_a_measured_value_momentum_is_conserved_and_nothing_gives_way():
         of_momentum = compiled(stack, None, *case)
         for law in ("position", "couple"):
             found = compiled(stack, measured(stack, 1.0, law), *case)
-            if (
-                min(
-                    b.momentum_restitution(s)
-                    for b in (stack.lower, stack.contact_upper)
-                    for s in (1, -1)
-                )
-                > 0.05
-            ):
+            blocks = stack.lower, stack.contact_upper
+            if min(b.momentum_restitution(s) for b in blocks for s in (1, -1)) > 0.05:
                 assert found[1] == pytest.approx(of_momentum[1], abs=1e-9)
         assert of_momentum[2] == 0
 
@@ -171,13 +154,8 @@ def test_on_a_support_that_does_not_move_every_law_is_the_lone_block(law, factor
     heavy = Stack(Block(5.0, 1.0, 1e9), upper)
     values = tuple(factor * upper.momentum_restitution(-pivot) for pivot in (1, -1))
     for side in (1, -1):
-        response = simulate(
-            heavy,
-            STILL,
-            0.002,
-            theta0=(0.0, side * 0.05),
-            restitution=MeasuredRestitution((None, values), law),
-        )
+        restitution = MeasuredRestitution((None, values), law)
+        response = simulate(heavy, STILL, 0.002, theta0=(0.0, side * 0.05), restitution=restitution)
         first = response.contact_events.query("kind == 'impact'").iloc[0]
         ratio = first["omega_after"][1] / first["omega_before"][1]
         assert ratio == pytest.approx(values[(1 + side) // 2], abs=1e-6)
@@ -204,9 +182,8 @@ def test_a_statue_does_not_stop_dead_below_what_conserves_momentum(e):
         impacts = response.contact_events.query("kind == 'impact'")
         assert len(impacts) > 3
         assert np.abs(response.theta[-20:]).max() < 0.05 < np.abs(response.theta[:, 1]).max()
-        assert abs(impacts.iloc[0]["omega_after"][1]) > 0.5 * abs(
-            impacts.iloc[0]["omega_before"][1]
-        )
+        first = impacts.iloc[0]
+        assert abs(first["omega_after"][1]) > 0.5 * abs(first["omega_before"][1])
 
 
 @pytest.mark.parametrize("law", law_names())

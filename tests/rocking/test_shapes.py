@@ -31,12 +31,9 @@ def test_a_box_has_the_mass_properties_of_the_closed_form(box: Path):
     assert shape.volume == pytest.approx(WIDTH * DEPTH * HEIGHT, rel=1e-6)
     assert shape.cg_height == pytest.approx(HEIGHT / 2, rel=1e-6)
     # I = m (b² + h²) / 3 with half sides, for rotation in the plane of the width
-    assert shape.block(0, 1e-6).inertia == pytest.approx(
-        MASS * (WIDTH**2 + HEIGHT**2) / 12, rel=1e-6
-    )
-    assert shape.block(90, 1e-6).inertia == pytest.approx(
-        MASS * (DEPTH**2 + HEIGHT**2) / 12, rel=1e-6
-    )
+    for direction, side in ((0, WIDTH), (90, DEPTH)):
+        expected = MASS * (side**2 + HEIGHT**2) / 12
+        assert shape.block(direction, 1e-6).inertia == pytest.approx(expected, rel=1e-6)
     assert read_shape(box, density=1250.0).mass == pytest.approx(300.0, rel=1e-6)
 
 

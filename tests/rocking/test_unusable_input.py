@@ -17,6 +17,7 @@ from rockfrag.rocking import (
     rocking_spectrum,
     simulate,
 )
+from rockfrag.rocking.inputs import UnitWarning
 
 from .reference_bodies import T2, P
 
@@ -191,7 +192,7 @@ def test_what_cannot_be_used_is_refused_in_one_sentence(call, sentence):
 
 @pytest.mark.parametrize("body", [T2, STACK], ids=["block", "stack"])
 def test_a_motion_in_g_is_warned_about_and_zeros_are_not(body):
-    with pytest.warns(UserWarning, match=r"multiply it by 9\.81"):
+    with pytest.warns(UnitWarning, match=r"multiply it by 9\.81"):
         simulate(body, 0.004 * SHAKE, 0.01)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -206,7 +207,7 @@ def test_a_motion_in_cm_s2_is_warned_about_by_either_function(body):
         simulate(body, 100 * SHAKE, 0.01)
     with pytest.warns(UserWarning, match="divide it by 100"):
         overturns(body, SHAKE, 0.01, [1.0, 100.0])
-    with pytest.warns(UserWarning, match=r"multiply it by 9\.81"):
+    with pytest.warns(UnitWarning, match=r"multiply it by 9\.81"):
         overturns(body, SHAKE, 0.01, [1e-4, 1e-3])
 
 

@@ -175,7 +175,8 @@ def spectrum_compatible(
     acceleration = noise * np.sqrt(gamma.pdf(np.arange(count) * dt - quiet, shape, scale=spread))
     window = tukey(count, alpha=2 * quiet / (count * dt))
     frequency = np.asarray(np.fft.rfftfreq(count, dt), dtype=np.float64)
-    low_cut = _low_cut(frequency, 1 / quiet)
+    # one above 1 / quiet, zero below half of it, half a cosine between them
+    low_cut = (1 - np.cos(np.pi * np.clip(2 * frequency / (1 / quiet) - 1, 0.0, 1.0))) / 2
 
     best, best_rms, best_max = acceleration, math.inf, math.inf
     for _ in range(ITERATIONS + 1):
@@ -260,12 +261,6 @@ def _at_rest(acceleration: Floats, window: Floats, dt: float) -> Floats:
     drift = np.array([history[-1] for history in integrate(acceleration, dt)])
     first, second = np.linalg.solve(ends.T, drift)
     return np.asarray(acceleration - first * lines[0] - second * lines[1])
-
-
-def _low_cut(frequency: Floats, lowest: float) -> Floats:
-    """One above the lowest frequency, zero below half of it, half a cosine between them."""
-    ramp = np.clip(2 * frequency / lowest - 1, 0.0, 1.0)
-    return np.asarray((1 - np.cos(np.pi * ramp)) / 2)
 
 
 def _synthetic(

@@ -39,7 +39,8 @@ def quality_flags(motion: Motion) -> list[str]:
     left = left / fastest if fastest else 0.0
     if left > _DRIFT:
         found.append(f"a drift: {100 * left:.0f} % of the peak velocity is left at the end")
-    if _longest_run(np.abs(a) >= peak * (1 - 1e-9)) >= _CLIPPED_RUN:
+    edges = np.flatnonzero(np.diff(np.abs(a) >= peak * (1 - 1e-9), prepend=False, append=False))
+    if (edges[1::2] - edges[::2]).max() >= _CLIPPED_RUN:
         found.append("its peak is flat, as if clipped")
     first = a[: max(2, round(0.1 / motion.dt))]
     if first.size < a.size / 4 and np.abs(first).max() > _LATE * peak:
@@ -50,12 +51,6 @@ def quality_flags(motion: Motion) -> list[str]:
     if _is_doubled(a):
         found.append("every second sample repeats the one before it")
     return found
-
-
-def _longest_run(mask: NDArray[np.bool_]) -> int:
-    """Return the length of the longest run of true values."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(np.int8), [0]))))
-    return int((edges[1::2] - edges[::2]).max()) if edges.size else 0
 
 
 def _is_doubled(a: NDArray[np.float64]) -> bool:

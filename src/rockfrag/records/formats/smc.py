@@ -78,12 +78,14 @@ def _parse(text: TextFile) -> list[Channel]:
         values = Channel(count, positive_step(text, dt, at_reals), samples.copy, "cm/s2")
     step = {"step": "leave out values beyond the count of the header", "values": left_out}
     steps = (*([step] if left_out else []), *values.details.get("steps", ()))
+    # a fifth character of the code names the channel
+    number = "" if whole[_STATION] == whole[_MISSING] else str(whole[_STATION])
     station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.IGNORECASE)
     return [
         replace(
             values,
             start_time=_start(whole),
-            station=_station_code(words[2], whole),
+            station=words[2][:4].strip().strip("\x00*") or number,
             component=_component(whole, station[2].strip() if station else ""),
             details={
                 "station_name": station[1] if station else "",
@@ -136,12 +138,6 @@ def _start(whole: list[int]) -> UTCDateTime | None:
     seconds: float = 0 if second == missing else second
     seconds += 0 if millisecond == missing else millisecond / 1000
     return time_at(seconds, year=year, julday=day, hour=hour, minute=minute)
-
-
-def _station_code(line: str, whole: list[int]) -> str:
-    """Return the code of the third line: four characters, a fifth names the channel."""
-    number = "" if whole[_STATION] == whole[_MISSING] else str(whole[_STATION])
-    return line[:4].strip().strip("\x00*") or number
 
 
 def _component(whole: list[int], words: str) -> str:
