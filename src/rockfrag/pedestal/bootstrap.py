@@ -27,7 +27,7 @@ def rank_probabilities(
         drawn = np.zeros((1, 1))
     elif within:
         means = [rows.groupby(cluster)["d"].mean().to_numpy() for _, rows in table.groupby(factor)]
-        drawn = np.column_stack([_resampled(item, rng) for item in means])
+        drawn = np.column_stack([_resampled(of_level, rng) for of_level in means])
     else:
         cells = table.pivot_table(index=cluster, columns=factor, values="d", aggfunc="mean")
         grid = cells[levels].dropna().to_numpy()
