@@ -84,7 +84,7 @@ def _told_of(shape: Shape, objects: Objects) -> Objects:
     tolerances = {**objects.tolerances, "restitution": ON_POINTS["restitution"]}
     return replace(
         objects,
-        statue=scan.block(),
+        block=scan.block(),
         scan=scan,
         livelier=ON_POINTS["livelier"],
         tolerances=tolerances,
@@ -103,7 +103,7 @@ def _true_scan(shape: Shape, told: Objects, seed: int, outside: float) -> Object
     unknowns[name] = _stretched(unknowns[name], outside)
     table = ways_to_stand(shape, unknowns, 64, seed).table
     way = dict(table.iloc[0])
-    return replace(told, statue=body_of(shape, way), livelier=way["restitution_ratio"])
+    return replace(told, block=body_of(shape, way), livelier=way["restitution_ratio"])
 
 
 def _true_place(place: Place, random: np.random.Generator) -> Place:
@@ -158,8 +158,8 @@ def _drawn(
             told, livelier=1 + told.tolerances["restitution"] * random.standard_normal()
         )
     z = random.standard_normal(2)
-    statue = wider(truth.statue, 1 + told.tolerances["width"] * z[0])
-    truth = replace(truth, statue=higher(statue, 1 + told.tolerances["cg_height"] * z[1]))
+    block = wider(truth.block, 1 + told.tolerances["width"] * z[0])
+    truth = replace(truth, block=higher(block, 1 + told.tolerances["cg_height"] * z[1]))
     place = _true_place(request.place, random)
     spread = MODEL_ERRORS[kind].beyond * (outside if kind == CUT else 1.0)
     error = random.normal(0, spread) + random.normal(0, SPACE)

@@ -65,14 +65,32 @@ class Outcomes:
 
     Arrays of cases have shape (systems, motions, scales), those of bodies and contacts one axis more, from below:
     body 0 is the lowest, contact 0 the ground's; what a system has fewer of is filled with what is not told.
-    ``docs/definitions.md`` defines each word; what is told of cases, bodies and contacts is declared below, see
-    :func:`columns`.
+    ``docs/definitions.md`` defines each word.
+
+    Attributes
+    ----------
+    names
+        Names of the bodies of each system, from below.
+    scales
+        Factors on the motions, shape (motions, scales).
+    engines
+        Names of the engines that answered.
+    engine
+        Which of them answered each case.
+    overturned, overturned_body, overturning_time, certain_time, impacts, flights, given_way, paradoxes
+        Of cases, see :func:`columns`.
+    parted_contact, several_modes, unstable_distance, minimum_gravity_ratio, lost_contact
+        Likewise.
+    peak_rotation, peak_velocity, turn, walk, fall_direction, fell_over
+        Of bodies.
+    slip, peak_slip, friction_demand, least_normal_force
+        Of contacts.
     """
 
-    names: tuple[tuple[str, ...], ...]  # of the bodies of each system, from below
-    scales: Floats  # factors on the motions, shape (motions, scales)
-    engines: tuple[str, ...]  # names of those that answered
-    engine: Small  # which of them answered each case
+    names: tuple[tuple[str, ...], ...]
+    scales: Floats
+    engines: tuple[str, ...]
+    engine: Small
     overturned: Bools = column("cases", "", "Whether a body fell.", False)
     overturned_body: Small = column(
         "cases",
