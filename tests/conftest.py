@@ -1,6 +1,5 @@
 """Fixtures that every folder of tests may use."""
 
-import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -22,11 +21,6 @@ SHARED = ROOT.parent / "shared"
 
 WHOLE_STUDIES = ("workflow", "end_to_end", "test_readme.py")
 """What runs whole studies, in the tests' folder."""
-
-
-def pytest_xdist_auto_num_workers() -> int:
-    """One worker more than processors, as some tests wait for programs that they start."""
-    return len(os.sched_getaffinity(0)) + 1 if hasattr(os, "sched_getaffinity") else 2
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
