@@ -143,8 +143,11 @@ def _generate(app: Sphinx) -> None:
     _write_live(folder / "reference" / "static" / "play.html")
     _write_app(folder / "reference" / "static" / "assess.html")
     _write(folder / "reference" / "command-line.md", _command_line())
-    for name, text in _library().items():
-        _write(folder / "reference" / "api" / f"{name}.md", text)
+    pages = {folder / "reference" / "api" / f"{name}.md": text for name, text in _library().items()}
+    for stale in set((folder / "reference" / "api").glob("*.md")) - set(pages):
+        stale.unlink()  # of a subpackage that is gone
+    for path, text in pages.items():
+        _write(path, text)
 
 
 def _write(path: Path, text: str) -> None:
