@@ -116,7 +116,7 @@ def _detector(name: str) -> Callable[[str], bool]:
 
 
 def _unknown(path: Path) -> str:
-    """Return what is wrong with a file that no format claims."""
+    """Return what is wrong with a file that no format recognises."""
     odd = first_odd_row(head_lines(path))
     if odd is not None:
         return f", line {odd + 1}: not a row of numbers like those above; the file is damaged."
