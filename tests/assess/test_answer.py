@@ -121,6 +121,7 @@ def test_answers_are_json_with_all_that_an_independent_computation_needs(on_plin
     ("settings", "words"),
     [
         ({"height": "1 m"}, "width is missing"),
+        (FIGURE | {"name": "a\fb"}, "no text shows"),
         (FIGURE | {"mass": "180 g"}, "density"),
         (FIGURE | {"depth": "1 cm"}, "density"),
         (FIGURE | {"cg_height": "130 cm"}, "cg_height"),

@@ -15,6 +15,7 @@ from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
 from rockfrag.errors import InputError
 from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.plain_text import unfit_character
 from rockfrag.schema import checked
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.yaml_file import read_yaml
@@ -119,7 +120,7 @@ def make_request(settings: Mapping[str, Any], source: str, folder: Path | None =
     where = folder or Path()
     try:
         return Request(
-            name=known.get("name", "the object"),
+            name=_name(known),
             objects=make_objects(known, where),
             place=make_place(known, where),
             level=_level(known),
@@ -129,6 +130,13 @@ def make_request(settings: Mapping[str, Any], source: str, folder: Path | None =
         )
     except InputError as error:
         raise InputError(f"{source}: {error}") from None
+
+
+def _name(known: Mapping[str, Any]) -> str:
+    name = str(known.get("name", "the object"))
+    if unfit := unfit_character(name):
+        raise InputError(f"name: holds the character {unfit!r}, which no text shows; remove it.")
+    return name
 
 
 def _checked(settings: Mapping[str, Any], source: str) -> dict[str, Any]:
