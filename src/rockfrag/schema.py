@@ -18,6 +18,7 @@ from jsonschema import Draft202012Validator, ValidationError
 from jsonschema.validators import extend
 
 from rockfrag.errors import InputError, errors_of
+from rockfrag.plain_text import unfit_character
 from rockfrag.plugins import plugins
 from rockfrag.renamed_keys import renamed
 from rockfrag.units import other_names, quantity, split_name
@@ -49,6 +50,10 @@ def checked(content: object, name: str, where: str) -> dict[str, Any]:
     with errors_of(where):
         plain = _in_usual_units(_with_text_keys(content, ""), schema, "")
         for key, value in _leaves(plain):
+            if isinstance(value, str) and (unfit := unfit_character(value)):
+                raise InputError(
+                    f"key {key}: holds the character {unfit!r}, which no text shows; remove it."
+                )
             if isinstance(value, float) and not math.isfinite(value):
                 raise InputError(f"key {key}: expected a finite number, found {value}.")
             if isinstance(value, int) and abs(value) > LARGEST_WHOLE:

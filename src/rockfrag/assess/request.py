@@ -13,9 +13,8 @@ from rockfrag.assess.hazard.measure import PGA, PGV, read_measure
 from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.motions.declared import IntensityMeasure
-from rockfrag.plain_text import unfit_character
 from rockfrag.schema import checked
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.yaml_file import read_yaml
@@ -118,9 +117,9 @@ def make_request(settings: Mapping[str, Any], source: str, folder: Path | None =
     """
     known = _checked(settings, source)
     where = folder or Path()
-    try:
+    with errors_of(source):
         return Request(
-            name=_name(known),
+            name=known.get("name", "the object"),
             objects=make_objects(known, where),
             place=make_place(known, where),
             level=_level(known),
@@ -128,15 +127,6 @@ def make_request(settings: Mapping[str, Any], source: str, folder: Path | None =
             years=float(known.get("years", YEARS)),
             records=_records(known, where),
         )
-    except InputError as error:
-        raise InputError(f"{source}: {error}") from None
-
-
-def _name(known: Mapping[str, Any]) -> str:
-    name = str(known.get("name", "the object"))
-    if unfit := unfit_character(name):
-        raise InputError(f"name: holds the character {unfit!r}, which no text shows; remove it.")
-    return name
 
 
 def _checked(settings: Mapping[str, Any], source: str) -> dict[str, Any]:

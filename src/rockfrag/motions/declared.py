@@ -131,11 +131,10 @@ def intensity_measures(periods: Sequence[float] = SPECTRAL_PERIODS) -> tuple[Int
     found: list[IntensityMeasure] = []
     spectral = [measure for measure in declared() if measure.spectral]
     for measure in declared():
-        if measure.of_block or measure in spectral[1:]:
-            continue
-        found += [measure]
-        if measure.spectral:
-            found[-1:] = [each.at(period) for period in periods for each in spectral]
+        if measure in spectral[:1]:
+            found += [each.at(period) for period in periods for each in spectral]
+        elif not (measure.of_block or measure.spectral):
+            found.append(measure)
     return tuple(found)
 
 

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.input_checks import number_from_zero, positive_number
 from rockfrag.motions.conditioning import pad
 from rockfrag.motions.filtering import highpass
@@ -162,10 +162,8 @@ def read_shaker(path: str | os.PathLike[str]) -> Shaker:
         If the file is absent, is not YAML, or does not describe a shaker.
     """
     values = checked(read_yaml(path), "shaker", str(path))
-    try:
+    with errors_of(str(path)):
         return Shaker(**{_FIELDS.get(key, key): value for key, value in values.items()})
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
 
 
 def required_corner(
