@@ -20,9 +20,8 @@ from rockfrag.engines.kernels.roots import slope, value
 from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP, resolve_impact
 from rockfrag.engines.kernels.taylor import SERIES, quick_sine_cosine
 
-SLOTS = (
-    2 * lanes.LANES
-)  # cases in flight, so that lanes of one kind or the other can always be filled
+# cases in flight, so that lanes of one kind or the other can always be filled
+SLOTS = 2 * lanes.LANES
 
 CASE = np.dtype(
     [
