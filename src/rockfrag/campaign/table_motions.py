@@ -1,4 +1,4 @@
-"""What the table did in each test: measured motions read and conditioned, and held against peaks that are listed."""
+"""What the table did in each test: measured motions read and conditioned, and held against listed peaks."""
 
 import os
 import zipfile
