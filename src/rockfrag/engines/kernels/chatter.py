@@ -1,24 +1,6 @@
-"""Series of impacts that accumulate, ended at once, and why that is allowed.
+"""Series of impacts that accumulate, ended at once where that is proved to change nothing.
 
-A contact that comes down can bounce from pivot to pivot infinitely often in finite time (Zeno).  Let D and D' be
-the least accelerations that bring it back on its two pivots while the series lasts, and e, e' the fractions of the
-speed that are left by an impact that ends rocking on the one and on the other.  A flight that begins at speed
-w ends before 2 w / D, its impact leaves e w, the next flight ends before 2 e w / D', and so on: a geometric
-series with the sum
-
-    T = 2 w (1/D + e/D') / (1 - e e').
-
-**At rest** (``block_dies_out``, ``dies_out``).  If the ground's acceleration stays inside the thresholds of
-rocking for T, every flight comes back and the body is at rest afterwards, exactly, whatever the flights were
-like: nothing needs to be integrated and no speed has to be chosen below which a body "is at rest".  D is that
-at zero angle, of which a flight of height w²/2D ≤ D/50 p² keeps 2 %; for stacks, whose thrown pedestals
-lengthen the flights of the statue, T is taken half as long again.
-
-**On a body that rocks on** (``may_close``).  While one contact chatters and the other rocks, all impacts of
-the first conserve one momentum, that of what rocks on.  So when the hops are over, the velocity is that of a
-contact that stayed closed from the first impact, but for what the hops change meanwhile: the opening returns
-to zero after each of them, and what remains is of second order, w² T.  Where that is below ``CHATTER_ERROR``,
-and nothing else can happen in twice T (itself taken half as long again), the contact is closed at once.
+The proofs, at rest and on a body that rocks on, with D, e, w and T: ``docs/kernels.md``, "Accumulating impacts".
 """
 
 import math

@@ -1,19 +1,4 @@
-"""The contact states of a body, and what leads from one to the next.
-
-| contacts (c1, c2) | pattern | what rotates |
-|---|---|---|
-| (0, 0) | rest | nothing |
-| (0, ±1) | 4 | the statue, or the lone block |
-| (±1, 0) | 3 | pedestal and statue as one |
-| (s, s), (s, -s) | 1, 2 | both |
-
-| what happens | when | what follows |
-|---|---|---|
-| uplift, release | a closed contact would have to be pulled at a corner (``ground_hold``, ``interface_hold``)
-| ``settle`` |
-| impact | an open contact's angle falls to zero | ``impact.impact``, then ``settle`` |
-| rest | an impact closes all contacts, or impacts that are sure to end do (``chatter``) | uplift |
-| fall | a block has turned by a right angle, or cannot come back | the end |
+"""The contact states of a body, and what leads from one to the next (tables in ``docs/kernels.md``).
 
 A full contact pushes and never pulls.  States are tried from all contacts closed to all open, and the first
 consistent one is taken, so that every transition that the mechanics allows occurs.

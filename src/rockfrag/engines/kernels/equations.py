@@ -1,13 +1,8 @@
 """The two-block model in one formulation for all nine contact states (``docs/derivation.md``).
 
-Block 1 is the pedestal, block 2 the statue.  c1 (ground) and c2 (interface) are the contact states: +1 or -1
-for rocking on the right or left pivot, 0 for full contact.
-
-Positions along an interface are given as σ in [-1, 1]: the pivots are σ = ±1.  With r1 = R(θ1) arm1, d = R(θ1)
-reach, r2 = R(θ2) arm2 the equations are M θ'' + f = τ with τ the moments of the contact forces, zero at a
-rocking pivot (Spanos, Roussis and Politis, 2001; ``docs/derivation.md``).
-
-A lone block is block 2 on a block 1 that cannot move (``fixed``).
+Block 1 is the pedestal, block 2 the statue, or a lone block on a block 1 that cannot move (``fixed``).  c1
+(ground) and c2 (interface) are +1 or -1 for rocking on the right or left pivot, σ = ±1 along the interface, and 0
+for full contact.  M θ'' + f = τ, with τ zero at a rocking pivot (Spanos, Roussis and Politis, 2001).
 """
 
 import math

@@ -1,10 +1,6 @@
 """One history: integrate one body through an acceleration, contact event by contact event.
 
-Between contact events the rotations follow their series; a contact event is located on the series and handled
-before the integrate goes on.  Every step size, root and decision depends on this one case alone.
-
-Nothing here needs what a web page does not have: no thread, no file, no Python object, and no mathematics but
-that of ``elementary``.
+Every step size, root and decision depends on this one case alone, and nothing needs what a web page does not have.
 """
 
 import math

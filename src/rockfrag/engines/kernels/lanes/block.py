@@ -1,13 +1,7 @@
-"""Ensembles of lone blocks, many cases side by side.
-
-Each lane carries one case; one pass of the vector loop advances every lane by one sample with the same
-straight-line arithmetic, and what is rare (impacts, rest, outcomes, the next case) is handled lane by lane
-between passes.  All cases need the same arithmetic, so a case lives in its lane and never waits for one,
-unlike those of stacks (``scheduler``).
+"""Ensembles of lone blocks, many cases side by side, each in a lane from its uplift to its outcome.
 
 With ψ = θc - |θ|, A the ground acceleration over g, positive where it pushes the block back down, and W gravity
-over g, 1 unless the ground moves vertically, the equation of motion on either pivot is ψ'' = p² (W sin ψ + A cos
-ψ) (Housner, 1963).  Time is counted in samples.
+over g, ψ'' = p² (W sin ψ + A cos ψ) on either pivot (Housner, 1963).  Time is counted in samples.
 """
 
 import math
