@@ -21,10 +21,7 @@ REPEATS = "majority of repeated tests (ceiling)"
 def agreement_row(
     name: str, outcomes: Bools, measured: Bools, groups: NDArray[np.int64], level: float
 ) -> dict[str, object]:
-    """Fraction of right outcomes with an interval (Student's t over the groups), and both kinds of error.
-
-    Outcomes have the shape (repeats, tests) or (tests,); repeats are divisions into folds and are averaged.
-    """
+    """Fraction of right outcomes with an interval (t over the groups), and both errors; repeats are averaged."""
     each = np.atleast_2d(outcomes)
     right = (each == measured).mean(axis=0)
     error = clustered_error(right, groups)
@@ -169,10 +166,7 @@ def _limits(values: Floats, tails: Sequence[float]) -> Floats:
 
 
 def curves_of(measure: Floats, outcomes: Bools | Floats, weights: Floats) -> Floats:
-    """Fit a lognormal curve for each row of weights: θ and β, shape (rows, 2); NaN where no curve rises.
-
-    Weights have the shape (rows, tests). Outcomes, or parts of votes, have the shape (tests,) or (rows, tests).
-    """
+    """Fit a lognormal curve for each row of weights, (rows, tests): θ and β, (rows, 2); NaN where none rises."""
     design = np.column_stack([np.ones(len(measure)), np.log(measure)])
     coefficients = fit_batch(design, weights * outcomes, weights).coefficients
     slope = np.where(coefficients[:, 1] > 0, coefficients[:, 1], np.nan)
@@ -182,10 +176,7 @@ def curves_of(measure: Floats, outcomes: Bools | Floats, weights: Floats) -> Flo
 def by_region(
     tests: pd.DataFrame, first: str, second: str, outcome: Bools, measured: Bools
 ) -> pd.DataFrame:
-    """Fraction of right outcomes in thirds of two measures.
-
-    A row per region: limits of both measures, ``tests``, ``overturned``, ``simulated`` and ``right``.
-    """
+    """Thirds of two measures, a row each: limits, ``tests``, ``overturned``, ``simulated``, ``right``."""
     ends, third = {}, {}
     for name in (first, second):
         values = tests[name].to_numpy()

@@ -143,10 +143,7 @@ def measured_peaks(motions: Sequence[Motion]) -> pd.DataFrame:
 
 
 def check_peaks(tests: pd.DataFrame, motions: Sequence[Motion], source: str) -> None:
-    """Refuse motions whose peaks are not those that the table of tests lists, and say the factor between them.
-
-    The table has ``pga_g`` and ``pgv_cm_s`` or ``pgv_over_pga_s`` as far as they are listed.
-    """
+    """Refuse motions whose peaks are not those that the tests list, if they do; say the factor between."""
     listed = tests.filter(items=list(_CAUSES))
     if "pgv_cm_s" not in listed and {"pga_g", "pgv_over_pga_s"} <= set(tests):
         listed = listed.assign(pgv_cm_s=100 * GRAVITY * tests["pga_g"] * tests["pgv_over_pga_s"])

@@ -61,10 +61,7 @@ def folds_by_group(
 def divisions(
     groups: NDArray[np.int64], *, folds: int, repeats: int, seed: int
 ) -> Iterator[tuple[int, Bools]]:
-    """Yield for each fold of ``repeats`` random divisions the division's number, and which tests are not in it.
-
-    Groups count from 0 and are never split.
-    """
+    """Yield for each fold of random divisions by group the division, and which tests are outside the fold."""
     rng = np.random.default_rng(seed)
     for repeat in range(repeats):
         fold = folds_by_group(groups, folds, rng)
@@ -86,10 +83,7 @@ def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:
 
 
 def plausible_trials(right: Bools, groups: NDArray[np.int64]) -> Bools:
-    """Say which trials agree with tests about as well as the best one.
-
-    ``right`` tells of each trial's outcomes whether they are the measured ones, shape (trials, tests).
-    """
+    """Say which trials agree with tests about as well as the best; ``right`` has the shape (trials, tests)."""
     fraction = right.mean(axis=1)
     best = int(fraction.argmax())
     error = clustered_error(right[best].astype(np.float64), groups)

@@ -187,10 +187,7 @@ class Outcomes:
         return np.stack([values[i, ..., count - 1] for i, count in enumerate(self.counts)])
 
     def of_any(self, name: str) -> NDArray[Any]:
-        """Return a column of bodies or contacts of the one in which it is largest, or least of least values.
-
-        The shape is (systems, motions, scales).
-        """
+        """Column of bodies or contacts where it is largest, or least of least ones, (systems, motions, scales)."""
         pick = np.fmin if name.startswith("least") else np.fmax
         return np.asarray(pick.reduce(getattr(self, name), axis=-1))
 

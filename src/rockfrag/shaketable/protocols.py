@@ -139,10 +139,7 @@ class Protocol:
 
 
 def measured(outcome: Outcome, measurement: Measurement | None, configuration: str) -> Outcome:
-    """Return an outcome as the instruments show it.
-
-    An accelerometer at the end of its range gives a lower bound only.
-    """
+    """Return an outcome as the instruments show it: a clipped accelerometer gives a lower bound only."""
     if measurement is None:
         return outcome
     if isinstance(measurement, Accelerometer):

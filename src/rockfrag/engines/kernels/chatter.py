@@ -91,10 +91,7 @@ def _restoring(body, c1, c2, ground, scratch):
 
 @kernel
 def _least(restoring, a, weight):
-    """Least restoring acceleration [rad/s²] over the ways in which the body can leave rest.
-
-    ``weight``: gravity over that of a ground that does not move vertically.
-    """
+    """Least restoring acceleration [rad/s²] over the ways to leave rest, at a ``weight`` over the usual."""
     still, per = restoring.still, restoring.per_ground
     return min(
         min(weight * still[0] + per[0] * a, weight * still[1] + per[1] * a),
@@ -141,11 +138,7 @@ def dies_out(speed, fraction, safety, restoring, drop, ahead):
 
 @inlined_kernel
 def block_dies_out(w, side, here, there, ahead):
-    """Whether the impacts after a launch of a lone block at speed ``w`` per sample end at rest.
-
-    ``here`` is the pivot of ``side``, on which it is launched, ``there`` the other (``block.PIVOT``); ``ahead`` is
-    the ground over g.
-    """
+    """Whether the impacts after a launch of a lone block on pivot ``here``, at ``w`` per sample, end at rest."""
     # gravity only ever grows D; the least of it is enough
     weight = weight_at(ahead, ahead.k)
     weight = min(weight, weight + ahead.tau * (weight_at(ahead, ahead.k + 1) - weight))
@@ -209,10 +202,7 @@ def _turn_of(hop):
 
 @kernel
 def _opening(two, hop, side, g):
-    """Acceleration that opens a contact on a still ground; per unit of its acceleration; of weight; inertia.
-
-    The inertia is that of the opening alone, the momentum that its impacts conserve being given.
-    """
+    """Acceleration that opens a contact: on a still ground, per unit of its own, of weight; inertia."""
     k1, s1, cosine, sine = _turn_of(hop)
     k2, s2 = hop.cosine, hop.sine
     m11, m12, m22, d = mass_matrix(two, cosine, sine)
@@ -234,11 +224,7 @@ def _opening(two, hop, side, g):
 
 @inlined_kernel
 def may_close(hop, before, after, longest, g, ahead):
-    """Whether a contact that hops may stay closed at once, while the other is open.
-
-    ``before`` and ``after`` are constants of the contact states (``stack_constants.TWO``); its hops may take
-    ``longest`` [samples].
-    """
+    """Whether a contact that hops, at most ``longest`` [samples], may stay closed, while the other is open."""
     h, k, tau, last, factor = ahead.dt, ahead.k, ahead.tau, ahead.last, ahead.factor
     samples = ahead.samples
     speed = abs(hop.omega1) if hop.ground else abs(hop.omega2 - hop.omega1)

@@ -72,10 +72,7 @@ def _rest_moment(body, contact, c, ground, scratch):
 
 @kernel
 def settle(body, state):
-    """Contact state into which forces take the closed contacts of a state.
-
-    An opening contact accelerates away from its corner, a closed one pushes at both corners.
-    """
+    """Contact state into which forces take closed contacts: they open, or are pushed at both corners."""
     c1, c2 = state.c1, state.c2
     if c1 != 0 and c2 != 0:
         return c1, c2
@@ -116,10 +113,7 @@ def settle(body, state):
 
 @kernel
 def release(body, state, fails, stuck):
-    """Contact state after a closed contact, GROUND or INTERFACE, can no longer hold.
-
-    ``stuck``: no time has passed since the last contact event, so a state that stays as it is would never end.
-    """
+    """Contact state after a closed contact fails; ``stuck``: no time has passed since the last event."""
     c1, c2 = settle(body, state)
     if stuck and c1 == state.c1 and c2 == state.c2:
         # rounding at a threshold: open the contact that fails

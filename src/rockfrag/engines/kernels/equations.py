@@ -174,10 +174,7 @@ def accelerations(body, c1, c2, state):
 
 @kernel
 def ground_hold(body, c2, state, alpha2):
-    """Least s1 τ1(s1) over both corners of a pedestal at rest [N m], and the corner it is least at.
-
-    The full contact persists while it is not negative: the ground pushes and never pulls.
-    """
+    """Least s1 τ1(s1) over both corners of a resting pedestal [N m], not to be negative, and its corner."""
     if body.fixed:
         return 1.0, 1
     least = math.inf
@@ -221,10 +218,7 @@ def turn_between(body, state):
 
 @kernel
 def metric(body, first, other, turn):
-    """Kinetic-metric products K11, K12, K21, K22 of the velocity fields about two pairs of points.
-
-    The points (σ1, σ2) lie on ground and interface; ``turn``: cosine and sine of θ2 - θ1.
-    """
+    """Kinetic products K11 to K22 of velocity fields about two pairs of points; ``turn`` is of θ2 - θ1."""
     c, s = turn
     ax, ay = arm1(body, first[0])
     bx, by = arm1(body, other[0])

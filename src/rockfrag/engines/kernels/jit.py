@@ -45,11 +45,7 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 
 def inlined_kernel(function: Callable[..., Any]) -> Any:
-    """Mark ``function``, which only kernels call, as one that is always inlined.
-
-    For what is called at every contact event, since an array is handed on as seven numbers, and for straight-line
-    arithmetic that the compiler is to do for several cases at once.
-    """
+    """Mark ``function``, which only kernels call, as always inlined: what is called at every contact event."""
     return _part(function, forceinline=True)
 
 
@@ -95,11 +91,7 @@ def _digest() -> str:
 
 @contextmanager
 def compiling_alone(entry: Any) -> Iterator[None]:
-    """Hold other processes off while this one calls an entry kernel for the first time.
-
-    The first of several processes that start together compiles; the others wait and read its cache, or compile
-    too if it takes longer than ``PATIENCE_S``.
-    """
+    """Let the first of several processes compile an entry kernel; the others wait, at most ``PATIENCE_S``."""
     folder = getattr(getattr(entry, "_cache", None), "cache_path", None)
     if entry.signatures:
         yield

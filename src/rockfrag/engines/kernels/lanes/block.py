@@ -99,10 +99,7 @@ def worker() -> Worker:
 
 @kernel
 def advance(lane, upward):
-    """Advance every lane to the end of its sample, and flag those with a contact event in between.
-
-    ``upward``: whether the ground moves vertically; where it does not, the weight is one and costs nothing.
-    """
+    """Advance all lanes to the end of their samples, flag contact events; if not ``upward`` the weight is one."""
     if upward:
         _advance(lane, True)
     else:
@@ -284,10 +281,7 @@ def _rates_of(lane, i):
 
 @kernel
 def _find_impacts(lane, stops):
-    """Find when the blocks of lanes come down within their steps, before any of them goes through it.
-
-    Each takes a long chain of arithmetic, and a processor works on several at once if nothing comes between them.
-    """
+    """Find the impacts of all lanes before any goes through one, as a processor works on several at once."""
     while stops != 0:
         i = lowest_bit(stops)
         stops &= stops - 1
@@ -297,10 +291,7 @@ def _find_impacts(lane, stops):
 
 @inlined_kernel
 def _contact_event(lane, i, tally):
-    """Time of the next impact in the lane's step, or NEVER; ψ and ψ' then or at the end; whether it never left.
-
-    What the response reaches on the way goes into the tally.
-    """
+    """Time of the next impact in the step, or NEVER; ψ and ψ' then or at the end; whether it never left."""
     psi = lane.was_psi[i]
     left = lane.was_left[i]
     angle = lane.angle[i]

@@ -11,10 +11,7 @@ from rockfrag.engines.kernels.lanes.case import LANES, QUIET, WITHIN, next_sampl
 
 @entry_kernel
 def integrate_stacks(ensemble, motions, worker, outcomes):
-    """Integrate the cases of an ensemble of stacks until none is left, with a worker for each thread.
-
-    Returned are the numbers of steps that lanes of one rotation and of two were advanced by.
-    """
+    """Integrate the cases of an ensemble of stacks, a worker a thread; steps of one rotation and of two."""
     g = ensemble.bodies[0].gravity
     upward = motions.vertical.size > 0
     for slot in range(stack_case.SLOTS):
