@@ -143,7 +143,9 @@ def overturns(
     >>> overturns([upper, stack], motion, scales=[2.0, 3.0, 5.0]).overturned.shape
     (2, 1, 3)
     """
-    options = Options(
+    cases = prepared(
+        *(bodies, motions, dt, scales),
+        forces=forces,
         restitution=restitution,
         friction=friction,
         vertical=vertical,
@@ -154,7 +156,6 @@ def overturns(
         step=step,
         threads=threads,
     )
-    cases = prepared(bodies, motions, dt, scales, forces=forces, **options)
     inputs.check_case_count(len(cases.systems) * cases.scales.size)
     return shaken(cases)
 
@@ -174,13 +175,7 @@ def prepared(
     factors = inputs.checked_scales(scales, shaking)
     g = options.get("g", GRAVITY)
     positive_number("g", g, "m/s²")
-    systems = systems_of(
-        body_list,
-        options.get("friction"),
-        options.get("restitution"),
-        options.get("theta0"),
-        options.get("omega0"),
-    )
+    systems = systems_of(body_list, dict(options))
     request = Request(
         forces=inputs.checked_switch("forces", forces),
         linear=inputs.checked_switch("linear", options.get("linear", False)),

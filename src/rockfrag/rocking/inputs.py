@@ -200,16 +200,6 @@ def _listed_motions(motions: Any, name: str = "motions") -> list[MotionLike]:
     return each
 
 
-def check_one_per_body(name: str, given: object, count: int) -> None:
-    """Say in one sentence if what is given per body is not a list with an entry for each."""
-    if given is None:
-        return
-    if not isinstance(given, (list, tuple, np.ndarray)):
-        raise InputError(f"{name}: expected a list with one entry per body, got {shown(given)}.")
-    if len(given) != count:
-        raise InputError(f"{name}: expected {count} entries, one per body, got {len(given)}.")
-
-
 def checked_scales(scales: ArrayLike, motions: Sequence[GroundMotion]) -> NDArray[np.float64]:
     """Return factors on the accelerations as an array of shape (motions, scales)."""
     if isinstance(scales, np.ndarray):

@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, TypeGuard
+from typing import Any, NamedTuple, TypeGuard
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number, shown
@@ -154,18 +154,9 @@ class Block:
             self._check_number("inertia", "kg m²", positive_number)
 
     @classmethod
-    def from_edges(
-        cls,
-        left: float,
-        right: float,
-        *,
-        cg_height: float,
-        height: float,
-        mass: float,
-        inertia: float,
-    ) -> "Block":
+    def from_edges(cls, left: float, right: float, **more: Any) -> "Block":
         """Make a block of the distances of its edges to the left and the right of the centre of gravity [m]."""
-        return cls(left + right, height, mass, inertia, cg_height, (left - right) / 2)
+        return cls(width=left + right, cg_offset=(left - right) / 2, **more)
 
     @property
     def in_space(self) -> bool:
