@@ -26,7 +26,7 @@ from rockfrag.rocking.measured_restitution import MeasuredRestitution
 from rockfrag.system import as_system
 from rockfrag.system.blocks import Block, Stack, Vector
 
-from .standing import StandingBody, standing
+from .standing import StandingBody, standing, upper_on_contact
 
 State = tuple[int, int]
 Pair = tuple[float, float]
@@ -70,7 +70,7 @@ class Model:
         self._middles = [Vector(*item.corners.mean(axis=0).tolist()) for item in bodies]
         self._halves = [Vector(*(np.diff(item.corners, axis=0)[0] / 2).tolist()) for item in bodies]
         self._rise = Vector(*(bodies[1].centre - bodies[0].centre).tolist())
-        upper = body if isinstance(body, Block) else body.contact_upper
+        upper = body if isinstance(body, Block) else upper_on_contact(body)
         self.frequency = max(upper.frequency(s, g) for s in (1, -1))
         self._laws = _laws_by_contact(body, restitution)
         pivots = itertools.product((1, -1), repeat=2)
@@ -441,7 +441,7 @@ def _laws_by_contact(body: Block | Stack, restitution: object) -> tuple[Laws, La
         # every law is that of the lone block
         return none, _laws_of(body, restitution, "ratio")
     ground, interface = restitution
-    return _laws_of(body.lower, ground, name), _laws_of(body.contact_upper, interface, name)
+    return _laws_of(body.lower, ground, name), _laws_of(upper_on_contact(body), interface, name)
 
 
 def _laws_of(block: Block, value: object, name: str) -> Laws:

@@ -59,14 +59,12 @@ def systems_of(bodies: Sequence[SystemLike], options: Mapping[str, Any]) -> tupl
     """Return the systems that bodies and their options, as of :func:`rockfrag.rocking.overturns`, are."""
     count = len(bodies)
     friction = _friction_of_each(options.get("friction"), count)
-    others = [
+    restitution, theta0, omega0 = (
         _one_per_body(name, options.get(name), count)
         for name in ("restitution", "theta0", "omega0")
-    ]
-    return tuple(
-        system_of(*written, name=f"[{i}]" if count > 1 else "")
-        for i, written in enumerate(zip(bodies, friction, *others, strict=True))
     )
+    names = [f"[{i}]" if count > 1 else "" for i in range(count)]
+    return tuple(map(system_of, bodies, friction, restitution, theta0, omega0, names))
 
 
 def _one_per_body(name: str, given: Any, count: int) -> list[Any]:

@@ -1,7 +1,6 @@
 """The laboratory's protocol of a study."""
 
-from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.steps import GeometricSteps
+from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.study.study import Study
 
 

@@ -268,8 +268,7 @@ class Stack:
 
     The two touch where the statue's base and the pedestal's top overlap.  A statue that reaches beyond its
     pedestal rocks on the pedestal's upper edge, a point of both bodies as long as neither slides; so the ends
-    of the overlap are the pivots, and all equations are those of a statue whose base is as wide as the overlap
-    (``contact_upper``).
+    of the overlap are the pivots, and all equations are those of a statue whose base is as wide as the overlap.
 
     Parameters
     ----------
@@ -335,22 +334,6 @@ class Stack:
         """The stack as the kernels know it."""
         lower, upper = self.lower, self.upper
         return geometry.pile_of(lower.shape, upper.shape, lower.height, lower.lean, self.offset)
-
-    @cached_property
-    def contact_upper(self) -> Block:
-        """The statue as it stands on the contact: itself, or one whose base is no wider than the overlap."""
-        pile = self.pile
-        if pile.upper is pile.above:
-            return self.upper
-        aside = Vector((pile.low + pile.high) / 2 - self.offset, 0.0)
-        centre = self.upper.centre.minus(aside).turned(-self.upper.lean)
-        made = Block(
-            *(pile.high - pile.low, self.upper.height, self.upper.mass),
-            *(self.upper.centroidal_inertia, centre.y, centre.x, self.upper.lean),
-        )
-        # to the last bit what the kernels know, without the turn there and back
-        vars(made)["shape"] = pile.upper
-        return made
 
     def common_arm(self, ground_pivot: int) -> Vector:
         """Vector from the pedestal's pivot to the common centre of gravity [m]."""
