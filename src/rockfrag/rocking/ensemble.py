@@ -203,12 +203,8 @@ def shaken(cases: Cases) -> Outcomes:
         outcomes.minimum_gravity_ratio[:] = 1.0 + least / cases.request.g
     # a body that is answered in space leaves the ground where it has to, and so do more than two bodies
     in_space = any(motion.y is not None for motion in cases.motions)
-    stuck = np.array(
-        [
-            not system.loose and system.count < 3 and (system.planar or not in_space)
-            for system in cases.systems
-        ]
-    )
+    held = [not system.loose and system.count < 3 for system in cases.systems]
+    stuck = np.array(held) & np.array([system.planar or not in_space for system in cases.systems])
     if stuck.any() and not cases.request.forces:
         _warn_of_weight(outcomes.minimum_gravity_ratio[stuck])
         _warn_of_lifting(cases, outcomes, stuck)
@@ -231,13 +227,8 @@ def overturned_cases(
         column[order] = np.arange(mine.size) - np.repeat(np.cumsum(counts) - counts, counts)
         scales = np.zeros((used.size, int(counts.max())))
         scales[row, column] = scale[mine]
-        some = replace(
-            cases,
-            systems=(cases.systems[number],),
-            motions=tuple(cases.motions[m] for m in used),
-            scales=scales,
-            threads=1,
-        )
+        systems, motions = (cases.systems[number],), tuple(cases.motions[m] for m in used)
+        some = replace(cases, systems=systems, motions=motions, scales=scales, threads=1)
         overturned[mine] = run_cases(some).overturned[0, row, column]
 
     with ThreadPoolExecutor(cases.threads) as pool:
