@@ -61,7 +61,7 @@ class Run(Integrator):
         return np.concatenate([self.theta, self.omega])
 
     def take(self, y: Array) -> None:
-        self.theta, self.omega = (self._joined(self.state, part) for part in np.split(y, 2))
+        self.theta, self.omega = (self._joined(self.state, part) for part in y.reshape(2, -1))
 
     def _joined(self, state: State, values: Array) -> Array:
         """What is stuck turns as what it stands on, to the last bit."""
@@ -77,12 +77,12 @@ class Run(Integrator):
         return not any(self.state)
 
     def rates(self, t: float, y: Array) -> Array:
-        theta, omega = np.split(y, 2)
+        theta, omega = y.reshape(2, -1)
         turning = self.model.accelerations(self.state, theta, omega, self._pull(t))
         return np.concatenate([omega, turning])
 
     def watched(self, t: float, y: Array) -> dict[Key, float]:
-        theta, omega = np.split(y, 2)
+        theta, omega = y.reshape(2, -1)
         gaps = self.state * rates(theta)
         values: dict[Key, float] = {
             ("gap", i): float(gaps[i]) + TOUCH for i, c in enumerate(self.state) if c != 0
@@ -94,8 +94,8 @@ class Run(Integrator):
         return values
 
     def approaches(self, y: Array) -> list[float]:
-        opening = self.state * rates(np.split(y, 2)[1])
-        return opening[np.flatnonzero(self.state)].tolist()
+        opening = rates(y[self.model.count :]).tolist()
+        return [c * rate for c, rate in zip(self.state, opening, strict=True) if c]
 
     def apply(self, t: float, keys: set[Key]) -> None:
         if any(key[0] == "upright" for key in keys):

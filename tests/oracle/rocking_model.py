@@ -18,6 +18,7 @@ import itertools
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
@@ -42,7 +43,28 @@ def pivots(state: State) -> State:
 
 def rates(omega: Array) -> Array:
     """Rate of opening of each contact."""
-    return np.diff(omega, prepend=0.0)
+    return omega - np.concatenate([[0.0], omega[:-1]])
+
+
+@numba.njit(cache=True)
+def _terms(arms, mass, inertia, theta, omega, pull):
+    """Return M and f, compiled: every rate asks for them."""
+    field = arms * (-1j * np.exp(-1j * theta))
+    products, force = np.diag(inertia), np.zeros(mass.size)
+    for j in range(mass.size):
+        # of the centre where all θ'' are zero, with gravity as if the ground rose
+        acceleration = pull - 1j * (field[j] * omega * omega).sum()
+        momentum = mass[j] * np.conj(field[j])
+        force += (momentum * acceleration).real
+        for k in range(j + 1):
+            products[:, k] += (momentum * field[j, k]).real
+    return products, force
+
+
+@numba.njit(cache=True)
+def _accelerations(mass, force, free):
+    """Return θ'' of M θ'' + f = τ where τ does no work on the motions ``free``."""
+    return -free @ np.linalg.solve(free.T @ mass @ free, free.T @ force)
 
 
 class Law(NamedTuple):
@@ -74,6 +96,11 @@ class Model:
         self.frequency = np.sqrt(g * reach / (self.inertia[-1] / self.mass[-1] + reach**2))
         # column k: the bodies that turn with contact k while all above it are full
         self._above = np.tril(np.ones((self.count, self.count)))
+        # the motions that a contact state allows: one for each contact that rocks
+        self._free = {
+            state: np.ascontiguousarray(self._above[:, np.flatnonzero(state)])
+            for state in itertools.product((1, -1, 0), repeat=self.count)
+        }
         self._arms: dict[tuple[float, ...], Complex] = {}
         self._laws = self._laws_by_contact(restitution)
 
@@ -90,7 +117,7 @@ class Model:
 
     def fields(self, places: tuple[float, ...], theta: Array) -> Complex:
         """Velocity of each centre for a unit of each angular velocity, in the turned position [m]."""
-        return -1j * self.arms(places) * np.exp(-1j * np.asarray(theta))
+        return self.arms(places) * (-1j * np.exp(-1j * np.asarray(theta)))
 
     def terms(
         self, places: State, theta: Array, omega: Array, pull: tuple[float, float]
@@ -99,25 +126,20 @@ class Model:
 
         ``pull`` is the acceleration of the ground, and gravity with its upward one [m/s²].
         """
-        field = self.fields(places, theta)
-        momenta = (self.mass[:, None] * field).conj().T
-        # of the centres where all θ'' are zero, with gravity as if the ground rose
-        acceleration = complex(*pull) - 1j * (field @ np.square(omega))
-        return (momenta @ field).real + np.diag(self.inertia), (momenta @ acceleration).real
+        return _terms(self.arms(places), self.mass, self.inertia, theta, omega, complex(*pull))
 
     def accelerations(
         self, state: State, theta: Array, omega: Array, pull: tuple[float, float]
     ) -> Array:
         """Angular accelerations in this contact state [rad/s²]."""
-        free = self._above[:, np.flatnonzero(state)]
-        if not free.size:
+        if not any(state):
             return np.zeros(self.count)
         mass, force = self.terms(pivots(state), theta, omega, pull)
-        return -free @ np.linalg.solve(free.T @ mass @ free, free.T @ force)
+        return _accelerations(mass, force, self._free[state])
 
     def kinetic_energy(self, state: State, theta: Array, omega: Array) -> float:
         """Kinetic energy relative to the ground [J]."""
-        return float(omega @ self.products(pivots(state), pivots(state), theta) @ omega) / 2
+        return np.vdot(omega, self.products(pivots(state), pivots(state), theta) @ omega) / 2
 
     # ----------------------------------------------------------- persistence
 

@@ -32,10 +32,8 @@ class _WholeRun(Run):
         """Accelerations of the ground, linear between samples and zero after the last [m/s²]."""
         x = t / self.dt
         k = int(x)
-        self.load = (
-            self.motions[:, k : k + 2].T if k < self.motions.shape[1] - 1 else np.zeros((2, 2))
-        )
-        return super().ground((x - k) * self.dt)
+        early, late = self.samples[k : k + 2] if k + 1 < len(self.samples) else (0.0, 0.0)
+        return [early + (x - k) * (late - early), 0.0]
 
 
 def rest_interval(model: Model) -> tuple[float, float]:
@@ -50,14 +48,15 @@ def watches(run: Run, start: float) -> list[Watch]:
     """What must stay positive from ``start`` on: every contact, open or closed, and nothing lies."""
 
     def gap(t: float, y: Array, i: int) -> float:
-        return run.state[i] * rates(y[: run.model.count])[i] if t > start else JUST_OPEN
+        return run.state[i] * (y[i] - (y[i - 1] if i else 0.0)) if t > start else JUST_OPEN
 
     def hold(t: float, y: Array) -> float:
-        return SLACK + min(x for key, x in run.watched(t, y).items() if key[0] == "press")
+        margins = run.model.margins(run.state, *y.reshape(2, -1), (run.ground(t)[0], G))
+        return SLACK + min(margins.values())
 
     def falls(t: float, y: Array) -> float:
         theta = y[: run.model.count]
-        return math.pi / 2 - np.abs([theta, rates(theta)]).max()
+        return math.pi / 2 - max(np.abs(theta).max(), np.abs(rates(theta)).max())
 
     contact_events: list[Watch] = [
         (lambda t, y, i=i: gap(t, y, i)) if c else hold for i, c in enumerate(run.state)
@@ -75,6 +74,7 @@ def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool =
     model = Model(body, G)
     values = np.append(acceleration, 0.0)
     run = _WholeRun(model, np.array([values, 0 * values]), dt, SLOWEST_IMPACT)
+    run.samples = values.tolist()
     low, high = rest_interval(model)
     moves = (values < low) | (values > high)
     end = (values.size - 1) * dt + LONGEST_TAIL / model.frequency
