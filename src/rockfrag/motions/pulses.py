@@ -114,10 +114,8 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude, dt
-        As of :func:`sine`, which says what is refused too.
-    duration
-        Duration d [s].
+    amplitude, duration, dt
+        As of :func:`sine`, which says what is refused too; it lasts d [s].
 
     Returns
     -------
@@ -137,10 +135,8 @@ def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude, dt
-        As of :func:`sine`, which says what is refused too.
-    duration
-        Duration d [s].
+    amplitude, duration, dt
+        As of :func:`sine`, which says what is refused too; it lasts d [s].
 
     Returns
     -------

@@ -7,16 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from rockfrag.pedestal import cluster_means
 from rockfrag.pedestal.bootstrap import rank_probabilities
-from rockfrag.pedestal.cluster_means import (
-    ROUNDING,
-    effect_of,
-    equivalence,
-    mean_effect,
-    sampled_unit,
-    sampled_units,
-    unit_means,
-)
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.pedestal.paired_tests import SAY, Pairs, pair_tests
 from rockfrag.pedestal.permutation import WITHOUT_COLUMNS, leave_one_earthquake_out, sign_flip_test
@@ -89,11 +81,11 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     known = [name for name in floors if name in set(table["floor"])]
     known += sorted(set(table["floor"]) - set(known))
     table = table.assign(floor=pd.Categorical(table["floor"], known))
-    tied, at_bound = table["d"].abs() < ROUNDING, table["bound"] != ""
+    tied, at_bound = table["d"].abs() < cluster_means.ROUNDING, table["bound"] != ""
     for scope, columns in SCOPES.items():
         groups = table.groupby(list(columns) or np.zeros(len(table)), observed=True)
         number = groups.ngroup()
-        sampled = sampled_units(table.assign(group=number), "group")
+        sampled = cluster_means.sampled_units(table.assign(group=number), "group")
         about = pd.DataFrame(
             {
                 "pairs": groups.size().to_numpy(),
@@ -105,9 +97,9 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
         for place, (key, of) in enumerate(
             zip(groups.size().index, about.to_dict("records"), strict=True)
         ):
-            effect = effect_of(sampled[place])
+            effect = cluster_means.effect_of(sampled[place])
             flips = sign_flip_test(sampled[place].d)
-            same = equivalence(effect)
+            same = cluster_means.equivalence(effect)
             names = key if isinstance(key, tuple) else (key,)
             rows.append(
                 {
@@ -137,8 +129,8 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
 
 
 def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
-    effect, unit = mean_effect(table), sampled_unit(table)
-    flips = sign_flip_test(unit_means(table, "earthquake"), seed)
+    effect, unit = cluster_means.mean_effect(table), cluster_means.sampled_unit(table)
+    flips = sign_flip_test(cluster_means.unit_means(table, "earthquake"), seed)
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:
         remark += STEPS_DECIDE
@@ -214,7 +206,7 @@ def study_pedestal(
         effects, whole, without, ranks = (pd.DataFrame(columns=names) for names in columns)
         notes = (*pairs.notes(), *SAY("no_ratio"))
         return PedestalStudy(pairs, effects, whole, without, ranks, notes)
-    tied = table["d"].abs() < ROUNDING
+    tied = table["d"].abs() < cluster_means.ROUNDING
     widest = float(table.loc[tied, "resolution"].max())
     return PedestalStudy(
         pairs=pairs,
