@@ -13,8 +13,7 @@ import numpy as np
 
 from rockfrag.building import hysteresis
 from rockfrag.building.model import ShearBuilding
-from rockfrag.building.modes import damping_matrix, find_modes
-from rockfrag.building.response import BuildingResponse, EnergyBalance
+from rockfrag.building.response import BuildingResponse, EnergyBalance, damping_matrix, find_modes
 from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
 

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from rockfrag.building import model
-from rockfrag.building.masonry import MasonryLaw
-from rockfrag.building.modes import find_modes
+from rockfrag.building.model import MasonryLaw
+from rockfrag.building.response import find_modes
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names
 from rockfrag.plausibility import FIRST_PERIODS, FLOOR_MASSES, STOREY_HEIGHTS
