@@ -76,9 +76,6 @@ def damping_matrix(building: ShearBuilding, modes: Modes) -> Floats:
     return np.asarray((massed * weight) @ massed.T, dtype=np.float64)
 
 
-Floats = NDArray[np.float64]
-
-
 @dataclass(frozen=True)
 class EnergyBalance:
     """Where the energy is, relative to the ground (Uang & Bertero 1990); each [J], shape (n,).

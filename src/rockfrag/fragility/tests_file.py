@@ -237,7 +237,7 @@ class _Numbers:
 
     def _numeric(self, column: str) -> pd.DataFrame:
         """A column as text of numbers that have points."""
-        text = self.piece[[column]].apply(lambda values: values.str.strip())
+        text: pd.DataFrame = self.piece[[column]].apply(lambda values: values.str.strip())
         return text.replace(",", ".", regex=True) if self.decimal_comma else text
 
     def numbers(self, column: str) -> Floats:

@@ -137,9 +137,6 @@ def _energy(velocity: Floats) -> Floats:
     return np.concatenate([[0.0], np.cumsum(velocity**2)])
 
 
-Floats = NDArray[np.float64]
-
-
 @cached_njit()
 def half_length(length: float, dt: float) -> int:
     """Samples to either side of the middle of a pulse of a length [s]."""
