@@ -14,7 +14,7 @@ LIMITED = "step_protocol_shaker"
 
 
 def limits_table(study: Study, motions: Sequence[Motion]) -> pd.DataFrame:
-    """What each motion asks of the study's shaker, see :func:`rockfrag.shaketable.shaker_table`."""
+    """What each motion asks of the study's shaker, see :func:`rockfrag.shaketable.shaker.shaker_table`."""
     from rockfrag.shaketable.shaker import shaker_table
 
     if study.shaker is None:
