@@ -9,13 +9,12 @@ from rockfrag.report.page import render
 from rockfrag.report.part import Answer
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.stages.pedestal import pedestal_tables
-from rockfrag_thesis import pattern
-from rockfrag_thesis.first_page import first_page
 from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
-from rockfrag_thesis.pattern import perturbations_by_floor
+from rockfrag_thesis.hypotheses.evidence import THESIS_BODIES
+from rockfrag_thesis.sections.first_page import first_page
+from rockfrag_thesis.sections.signs import perturbations_by_floor
 from rockfrag_thesis.sensitivity_analysis.explain import explain
 from rockfrag_thesis.sensitivity_analysis.simulated import REFERENCE
-from rockfrag_thesis.specimens import THESIS_BODIES
 
 from ..end_to_end.checked_report import open_words
 from .conftest import build
@@ -262,8 +261,3 @@ def test_the_first_page_stands_open_in_few_words(effects, hypotheses):
     answer = page[page.index('<section id="answer"') : page.index("</section>")]
     assert len(open_words(answer)) <= MOST_WORDS - 40
     assert "[" not in " ".join(open_words(answer))
-
-
-def test_signs_are_given_no_chance_level():
-    """Perturbations that share their tests are no coins to toss."""
-    assert not hasattr(pattern, "expected_by_chance")

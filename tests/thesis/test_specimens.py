@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rockfrag.study.configurations import read_specimens
-from rockfrag_thesis.specimens import THESIS_BODIES
+from rockfrag_thesis.hypotheses.evidence import THESIS_BODIES
 
 ROOT = Path(__file__).resolve().parents[2]
 
