@@ -65,8 +65,8 @@ format: .venv/installed
 
 fuzz: .venv/installed
 	@$(RUN) tests.fuzz --inputs $(INPUTS)
-	@$(RUN) tests.fuzz.requests --requests $(REQUESTS)
-	@$(RUN) tests.fuzz.studies --studies $(STUDIES)
+	@$(RUN) tests.fuzz --only requests --inputs $(REQUESTS)
+	@$(RUN) tests.fuzz --only studies --inputs $(STUDIES)
 
 torture: .venv/installed
 	@$(RUN) tests.fault_injection

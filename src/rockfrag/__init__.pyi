@@ -28,15 +28,8 @@ from .records.read import read_motion as read_motion
 from .records.write import write_motion as write_motion
 from .rocking.ensemble import overturns as overturns
 from .rocking.measured_restitution import MeasuredRestitution as MeasuredRestitution
-from .rocking.parquet import (
-    stream_histories as stream_histories,
-    stream_overturns as stream_overturns,
-)
 from .rocking.simulation import simulate as simulate
-from .rocking.spectra import (
-    RockingSpectrum as RockingSpectrum,
-    rocking_spectrum as rocking_spectrum,
-)
+from .rocking.spectra import rocking_spectrum as rocking_spectrum
 from .rocking.step_sensitivity import find_step_size_sensitive as find_step_size_sensitive
 from .rocking.robustness import outcome_robustness as outcome_robustness
 from .rocking.thresholds import Thresholds as Thresholds, find_thresholds as find_thresholds

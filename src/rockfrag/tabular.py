@@ -103,7 +103,8 @@ def read_rows(
     or too many cells adds a sentence to ``faults`` and is left out; without that list the table is refused.
     """
     needed, known = list(required), [*required, *optional]
-    lines = read_cells(path)
+    # lines of separators alone, as spreadsheets leave, are none
+    lines = [(line, cells) for line, cells in read_cells(path) if any(cells)]
     if not lines or len(lines) <= least:
         raise InputError(
             f"{path}: expected a header line and {least} rows or more, found {len(lines)} lines."

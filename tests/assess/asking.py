@@ -1,6 +1,6 @@
 """Random requests of `rockfrag assess`, and what an answer may not say of itself.
 
-Used by ``test_random_requests.py`` for some dozens of requests, by ``tests/fuzz/requests.py`` for thousands.
+Used by ``test_random_requests.py`` for some dozens of requests, by ``tests/fuzz/draws.py`` for thousands.
 """
 
 import contextlib
@@ -58,17 +58,7 @@ _EMPTY = re.compile(r"\bnan\b|\binf\b|\bNone\b(?! of)|less than 0 %|\b0 to 100 %
 
 
 def request(rng: random.Random, records: Path, hazard: Path) -> list[str]:
-    """Options of one request; most of them make sense.
-
-    Parameters
-    ----------
-    rng
-        Source of chance.
-    records
-        Catalogue of records.
-    hazard
-        A hazard curve.
-    """
+    """Options of one request with a catalogue and a hazard curve; most of them make sense."""
     usual = rng.random() < 0.75
     chosen: list[str] = []
     for option, values in SIZES.items():
@@ -94,15 +84,7 @@ def request(rng: random.Random, records: Path, hazard: Path) -> list[str]:
 
 
 def answered(options: Sequence[str], folder: Path) -> tuple[int, str, str]:
-    """Run the command line; return the exit status and what it wrote to both channels.
-
-    Parameters
-    ----------
-    options
-        Options of ``rockfrag assess``.
-    folder
-        Where it writes.
-    """
+    """Run ``rockfrag assess``; return the exit status and what it wrote to both channels."""
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         try:
@@ -113,13 +95,7 @@ def answered(options: Sequence[str], folder: Path) -> tuple[int, str, str]:
 
 
 def contradictions(status: int, out: str, err: str) -> list[str]:
-    """What is wrong with an answer; nothing where it agrees with itself or was refused in one sentence.
-
-    Parameters
-    ----------
-    status, out, err
-        Exit status, and what was written to both channels.
-    """
+    """What is wrong with an answer; nothing where it agrees with itself or was refused in one sentence."""
     if status == 2:
         said = [line for line in err.splitlines() if not line.startswith(("usage:", "warning:"))]
         return [] if len(said) == 1 and not out else [f"refused in {len(said)} lines: {err[-300:]}"]

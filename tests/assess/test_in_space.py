@@ -9,12 +9,10 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.as_json import as_json
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.words import five_lines
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.errors import InputError
-from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.system import Block
 
-from .conftest import asked
+from .conftest import asked, fallen_in_space
 
 BOX = {"width": "35 cm", "depth": "50 cm", "height": "120 cm", "mass": "180 kg"}
 
@@ -25,10 +23,7 @@ def found(few):
 
 
 def test_the_fraction_is_that_of_both_components_at_once(found, few):
-    shaking = [GroundMotion(few.base[i], few.base[j]) for i, j in few.pairs]
-    scales = [0.4 / np.sqrt(pair.x.pga * pair.y.pga) * 9.80665 for pair in shaking]
-    body = Block(0.35, 1.2, 180.0, depth=0.5)
-    fallen = run_in_space([body], shaking, np.array(scales)[:, np.newaxis]).overturned
+    fallen = fallen_in_space(few, Block(0.35, 1.2, 180.0, depth=0.5), 0.4)
     assert 0 < found.fraction.value == fallen.mean() < 1
 
 

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from rockfrag.building.drift import judge_drift
-from rockfrag.building.floors import respond
+from rockfrag.building.floors import judge_drift, respond
 from rockfrag.building.response import BuildingResponse
 from rockfrag.building.settings import make_building
 

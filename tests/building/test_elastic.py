@@ -5,8 +5,7 @@ from scipy.linalg import eigh, expm
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, RayleighDamping, ShearBuilding
 from rockfrag.building.model import stiffnesses_for_period as for_period
-from rockfrag.building.modes import damping_matrix, find_modes
-from rockfrag.building.response import respond_elastically
+from rockfrag.building.response import find_modes, respond_elastically
 from rockfrag.motions.spectra import oscillator_response
 from rockfrag.records.motion import Motion
 
@@ -87,18 +86,6 @@ def test_modal_superposition_equals_the_matrix_exponential(damping, noise):
     assert np.abs(found.acceleration[1:] - total).max() < 1e-9 * scale
     drift = np.diff(state[:n], axis=0, prepend=0) / np.array(HEIGHTS)[:, None]
     assert np.abs(found.drift - drift).max() < 1e-9 * np.abs(drift).max()
-
-
-def test_damping_matrix_gives_every_mode_its_ratio():
-    building = reference(damping=RayleighDamping(0.07, (1, 2)))
-    modes = find_modes(building)
-    viscous = modes.shape.T @ damping_matrix(building, modes) @ modes.shape
-    modal_mass = np.diag(modes.shape.T @ building.mass_matrix() @ modes.shape)
-    assert np.allclose(
-        np.diag(viscous) / modal_mass, 2 * modes.damping * modes.frequency, rtol=1e-9
-    )
-    assert np.abs(viscous - np.diag(np.diag(viscous))).max() < 1e-9 * np.abs(viscous).max()
-    assert modes.damping[:2] == pytest.approx([0.07, 0.07])
 
 
 def test_modes_take_up_the_whole_mass_and_every_floor_moves_with_the_ground():

@@ -4,9 +4,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.campaign.comparison import agreement_row, by_region, fragility_beside, paired_row
-from rockfrag.campaign.peaks import check_peaks, measured_peaks
-from rockfrag.campaign.thresholds import best_threshold, cross_validated_threshold
+from rockfrag.campaign.comparison import (
+    agreement_row,
+    best_threshold,
+    by_region,
+    cross_validated_threshold,
+    fragility_beside,
+    paired_row,
+)
+from rockfrag.campaign.table_motions import check_peaks, measured_peaks
 from rockfrag.campaign.trials import preferred_edges
 from rockfrag.campaign.validation import (
     clustered_error,

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import find_thresholds, overturns, simulate, stream_overturns
+from rockfrag.rocking import find_thresholds, overturns, simulate
 from rockfrag.rocking.ensemble import LightBodies
+from rockfrag.rocking.parquet import stream_overturns
 from rockfrag.shaketable.swept import fallen_names, labels_of
 from rockfrag.study.configurations import read_configurations, read_counterparts, read_specimens
 from rockfrag.system import Block, Column, Stack

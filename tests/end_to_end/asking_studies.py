@@ -1,6 +1,6 @@
 """Random small studies, and what the results of one may not say.
 
-Used by ``test_random_studies.py`` for a few studies, by ``tests/fuzz/studies.py`` for hundreds.
+Used by ``test_random_studies.py`` for a few studies, by ``tests/fuzz/draws.py`` for hundreds.
 """
 
 import random
@@ -43,13 +43,7 @@ PARTICULAR = ("sensitivity_analysis", "building_sensitivity")
 
 
 def draw(rng: random.Random) -> Foreign:
-    """Draw a study; most make sense, some ask for what cannot be.
-
-    Parameters
-    ----------
-    rng
-        Source of chance.
-    """
+    """Draw a study; most make sense, some ask for what cannot be."""
     names = rng.sample(NAMES, rng.randint(1, 3))
     if rng.random() < 0.04:
         names[0] = "=1+1"
@@ -130,15 +124,7 @@ def _keys(rng: random.Random, names: list[str]) -> dict[str, Any]:
 
 
 def fate(study: Foreign, folder: Path) -> tuple[int, list[str]]:
-    """Run a study to its report; return 0 if it ran and 2 if it was refused, and what is wrong with it.
-
-    Parameters
-    ----------
-    study
-        What is asked.
-    folder
-        Empty folder for its files.
-    """
+    """Run a study to its report; return 0 if it ran and 2 if it was refused, and what is wrong with it."""
     path = write(study, folder)
     (folder / "shaker.yaml").write_text(yaml.safe_dump(SHAKER))
     try:

@@ -74,17 +74,7 @@ class Page(HTMLParser):
 
 
 def check_report(results: Path, names: Iterable[str] = (), plugin: bool = False) -> Page:
-    """Assert that a report is fit to be shown, and return what is on it.
-
-    Parameters
-    ----------
-    results
-        Folder of the study's results.
-    names
-        Names that the user has given, which may be any words.
-    plugin
-        Whether the study asked to be compared with the thesis.
-    """
+    """Assert that a report is fit to be shown, whatever the user's names are, and return what is on it."""
     text = (results / "report.html").read_text(encoding="utf-8")
     page = Page(text)
     said = [_without(word, names) for word in (*page.words, *page.drawings, *page.labels)]

@@ -70,10 +70,11 @@ new Promise(done => {{
 """
 
 
-def compare_with_command(browser, own_records, folder, capsys, count) -> None:
+@pytest.mark.parametrize("count", [3, pytest.param(200, marks=pytest.mark.slow)])
+def test_its_figures_are_those_of_the_command(browser, own_records, tmp_path, capsys, count):
     """The page that a command writes gives the shares of ``assess --json`` to the bit, and its intervals."""
     records, rng = ["--record", str(own_records / "catalogue.csv")], random.Random(11)
-    page = folder / "assess.html"
+    page = tmp_path / "assess.html"
     assert main(["app", *records, *options_of(FORM), "--output", str(page)]) == 0
     browser.open(page)
     assert browser.run(STAGE)
@@ -81,7 +82,7 @@ def compare_with_command(browser, own_records, folder, capsys, count) -> None:
     while compared < count:
         form = some_form(rng)
         capsys.readouterr()
-        if main(["assess", *records, *options_of(form), "--json", "--output", str(folder)]) != 0:
+        if main(["assess", *records, *options_of(form), "--json", "--output", str(tmp_path)]) != 0:
             continue
         said = json.loads(capsys.readouterr().out)
         found = json.loads(browser.run(ANSWER.format(form=json.dumps(form))))
@@ -93,17 +94,6 @@ def compare_with_command(browser, own_records, folder, capsys, count) -> None:
                 assert found[mine][key] == same, (form, mine, key)
         compared += 1
     assert browser.console == []
-
-
-def test_its_figures_are_those_of_the_command(browser, own_records, tmp_path, capsys):
-    compare_with_command(browser, own_records, tmp_path, capsys, 3)
-
-
-@pytest.mark.slow
-def test_its_figures_are_those_of_the_command_of_200_objects(
-    browser, own_records, tmp_path, capsys
-):
-    compare_with_command(browser, own_records, tmp_path, capsys, 200)
 
 
 REFUSED = """
@@ -147,7 +137,10 @@ def test_the_last_key_stroke_is_answered(browser, app_page):
 def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
     opened(browser, app_page)
     for field, text in (
+        ("width", "<img src=x onerror=document.title='hit'>"),
+        ("height", "${document.title='hit'}"),
         ("width", "<b>1</b> m"),
+        ("cg_height", "a" * 5000),
         ("mass", "12"),
         ("depth", "30"),
         ("floor", "9/4"),
@@ -162,52 +155,7 @@ def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
         put(browser, f"#field-{field}", before)
         waited(browser, f"!document.getElementById('field-{error}-error').textContent")
     assert browser.run("document.querySelectorAll('main img, main b').length") == 0
-    assert browser.console == []
-
-
-HOSTILE = (
-    "<img src=x onerror=document.title='hit'>",
-    "${document.title='hit'}",
-    "=HYPERLINK(1)",
-    "1e999 m",
-    "-1 kg",
-    "\\u202e12 cm",
-    "a" * 5000,
-)
-
-TRIED = """
-(async () => {{
-  const found = [], wait = (ms) => new Promise(done => setTimeout(done, ms));
-  for (const field of document.querySelectorAll('#form input[type=text], #form textarea')) {{
-    const before = field.value;
-    for (const text of {texts}) {{
-      field.value = text;
-      field.dispatchEvent(new Event('input', {{bubbles: true}}));
-      await wait(160);
-      const said = [...document.querySelectorAll('#form small')].map(one => one.textContent).filter(Boolean);
-      found.push([field.id, text.slice(0, 20), said]);
-      field.value = before;
-    }}
-  }}
-  return found;
-}})()
-"""
-
-
-@pytest.mark.slow
-def test_hostile_text_in_every_field_gets_a_sentence(browser, app_page):
-    opened(browser, app_page)
-    title = browser.run("document.title")
-    found = browser.run(TRIED.format(texts=json.dumps(HOSTILE)))
-    assert len(found) > 12 * len(HOSTILE)
-    for field, text, said in found:
-        # a name may be anything, and a negative offset is one
-        if field == "field-name":
-            assert not said
-        elif field != "field-cg_offset":
-            assert len(said) == 1 and said[0].endswith("."), (field, text, said)
-    assert browser.run("document.querySelectorAll('main img, main script').length") == 0
-    assert browser.run("document.title") == title
+    assert browser.run("document.title") != "hit"
     assert browser.console == []
 
 

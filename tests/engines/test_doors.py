@@ -17,11 +17,10 @@ from rockfrag import (
     overturns,
     rocking_spectrum,
     simulate,
-    stream_histories,
-    stream_overturns,
 )
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
+from rockfrag.rocking.parquet import stream_histories, stream_overturns
 
 DT = 0.01
 TIME = np.arange(0.0, 1.5, DT)

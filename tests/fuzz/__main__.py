@@ -2,10 +2,12 @@
 
     python -m tests.fuzz --inputs 1000000
     python -m tests.fuzz --inputs 1000 --only hazard --seed 7
+    python -m tests.fuzz --inputs 2000 --only requests
 
 Each must be used, or refused with an :class:`InputError` of one line and at most 500 characters, within five
 seconds of processor time and one gibibyte. All processors work. Prints how many there were of each kind, and
-what went wrong; the first inputs that did are kept. Exit status 1 if anything did.
+what went wrong; the first inputs that did are kept. Exit status 1 if anything did. Requests and studies are
+drawn only if they are asked for: each must be answered without a contradiction, or refused, within a minute.
 """
 
 import argparse
@@ -29,27 +31,38 @@ from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.processes import in_processes
 
 from .assess import hazard_files, objects
-from .inputs import configurations, numbers, tables
+from .draws import requests, studies
+from .inputs import Attempt, configurations, numbers, tables
 from .records import records
 
-MOST_SECONDS = 5.0
 LONGEST_WAIT_S = 120.0
 """By the clock, for what hangs without using the processor; long, as the machine may do other things."""
 
-MOST_BYTES = 2**30
-CHUNK = 500
 KEPT = 20
 
-Attempt = tuple[Path, Callable[[], object]]
-KINDS: Mapping[str, tuple[Callable[[Path], Callable[[random.Random], Attempt]], float]] = {
-    "records, archives and catalogues": (records, 0.3),
-    "configurations": (configurations, 0.15),
-    "tables": (tables, 0.2),
-    "hazard files": (hazard_files, 0.15),
-    "statues and inventories": (objects, 0.1),
-    "numbers": (numbers, 0.1),
+
+@dataclass(frozen=True)
+class Kind:
+    """What makes inputs, their fraction of all, and what one of them may take at most."""
+
+    make: Callable[[Path], Callable[[random.Random], Attempt]]
+    fraction: float = 0.0
+    most_seconds: float = 5.0
+    most_bytes: int = 2**30
+    chunk: int = 500
+    least_used: float = 0.0
+
+
+KINDS: Mapping[str, Kind] = {
+    "records, archives and catalogues": Kind(records, 0.3),
+    "configurations": Kind(configurations, 0.15),
+    "tables": Kind(tables, 0.2),
+    "hazard files": Kind(hazard_files, 0.15),
+    "statues and inventories": Kind(objects, 0.1),
+    "numbers": Kind(numbers, 0.1),
+    "requests": Kind(requests, most_seconds=60, most_bytes=2**33, chunk=50, least_used=0.25),
+    "studies": Kind(studies, most_seconds=60, most_bytes=2**33, chunk=10, least_used=0.4),
 }
-"""What makes the inputs of each kind, and their share."""
 
 
 @dataclass
@@ -82,12 +95,13 @@ def main() -> int:
     parser.add_argument("--only", default="", help="kinds of inputs, by a word of their names")
     options = parser.parse_args()
     begin = time.monotonic()
-    kinds = {name: fraction for name, (_, fraction) in KINDS.items() if options.only in name}
+    asked = {name: kind.fraction for name, kind in KINDS.items() if options.only in name}
+    kinds = {name: part for name, part in asked.items() if part} or dict.fromkeys(asked, 1.0)
     chunks = [
-        (kind, number, min(CHUNK, count - number))
+        (kind, number, min(KINDS[kind].chunk, count - number))
         for kind, fraction in kinds.items()
         for count in [round(options.inputs * fraction / sum(kinds.values()))]
-        for number in range(0, count, CHUNK)
+        for number in range(0, count, KINDS[kind].chunk)
     ]
     # files in memory where there are such: a disk is slower than what is under test
     memory = Path("/dev/shm")
@@ -102,6 +116,8 @@ def main() -> int:
         tallies[tally.kind].add(tally)
     for kind, tally in tallies.items():
         used, refused = tally.fates["used"], tally.fates["refused"]
+        if used < KINDS[kind].least_used * tally.fates.total():
+            tally.wrong["too few of them were used for this to say anything"] += 1
         print(
             f"{kind}: {tally.fates.total()}, {used} used, {refused} refused, {tally.wrong.total()} wrong; "
             f"the slowest {tally.slowest_s:.2f} s, at most {tally.most_bytes / 2**20:.0f} MiB"
@@ -120,7 +136,7 @@ def _maker(scratch: Path, kind: str) -> tuple[Path, Callable[[random.Random], At
     folder = scratch / str(os.getpid()) / kind
     folder.mkdir(parents=True)
     tempfile.tempdir = str(folder)
-    return folder, KINDS[kind][0](folder)
+    return folder, KINDS[kind].make(folder)
 
 
 def _tried(scratch: Path, seed: int, kind: str, number: int, count: int) -> Tally:
@@ -135,7 +151,7 @@ def _tried(scratch: Path, seed: int, kind: str, number: int, count: int) -> Tall
         for place in range(number, number + count):
             path, attempt = make(rng)
             start = time.process_time()
-            fate = _fate(attempt)
+            fate = _fate(attempt, KINDS[kind].most_seconds)
             tally.slowest_s = max(tally.slowest_s, time.process_time() - start)
             tally.fates[fate] += 1
             if fate not in ("used", "refused"):
@@ -145,8 +161,8 @@ def _tried(scratch: Path, seed: int, kind: str, number: int, count: int) -> Tall
                     shutil.copy(path, kept)
                     print(f"{kept}: {fate}", file=sys.stderr, flush=True)
     tally.most_bytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-    if tally.most_bytes > MOST_BYTES:
-        tally.wrong[f"more than {MOST_BYTES / 2**20:.0f} MiB"] += 1
+    if tally.most_bytes > KINDS[kind].most_bytes:
+        tally.wrong[f"more than {KINDS[kind].most_bytes / 2**20:.0f} MiB"] += 1
     return tally
 
 
@@ -154,8 +170,8 @@ def _alarm(*_: object) -> None:
     raise _TooSlow
 
 
-def _fate(attempt: Callable[[], object]) -> str:
-    signal.setitimer(signal.ITIMER_PROF, MOST_SECONDS)
+def _fate(attempt: Callable[[], object], most_seconds: float) -> str:
+    signal.setitimer(signal.ITIMER_PROF, most_seconds)
     signal.setitimer(signal.ITIMER_REAL, LONGEST_WAIT_S)
     try:
         attempt()
@@ -167,6 +183,8 @@ def _fate(attempt: Callable[[], object]) -> str:
         return "refused"
     except _TooSlow:
         return "too slow"
+    except AssertionError as error:
+        return f"wrong: {error}"
     except Exception as error:
         place = traceback.extract_tb(error.__traceback__)[-1]
         return f"uncaught: {type(error).__name__} in {Path(place.filename).name}:{place.lineno}"

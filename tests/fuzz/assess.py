@@ -13,7 +13,7 @@ from rockfrag.assess.request import read_request
 
 from ..assess.samples import SAMPLES
 from .damage import changed, damage
-from .inputs import DUMPER
+from .inputs import DUMPER, Attempt
 
 ROOT = Path(__file__).resolve().parents[2]
 STATUES: tuple[dict[str, Any], ...] = (
@@ -36,7 +36,6 @@ saint,35,160,30 cm,310,70,50 cm,0.9 m,2/4,0.9
 vase,20,55,,12,,,,,
 Größe,12.5,90,0.12 m,,40,,,1/4,0.85
 """
-Attempt = tuple[Path, Callable[[], object]]
 
 
 def hazard_files(folder: Path) -> Callable[[random.Random], Attempt]:

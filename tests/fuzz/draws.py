@@ -1,79 +1,70 @@
-"""Random draws in parts, one process each, and what came of them."""
+"""Random requests of `rockfrag assess` and random studies, whose answers may not contradict themselves."""
 
-import argparse
 import random
-import tempfile
-import traceback
-from collections import Counter
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from functools import partial
 from pathlib import Path
-from typing import Any
+from tempfile import mkdtemp
 
-Found = tuple[Counter[int], list[str]]
-"""How many ended with each exit status, and what is wrong."""
+import numpy as np
 
+from rockfrag.errors import InputError
+from rockfrag.motions import scale_to_pga
+from rockfrag.motions.filtering import bandpass
+from rockfrag.records.motion import Motion
+from rockfrag.units import GRAVITY
 
-def run_draws(
-    make: Callable[[random.Random, Path], tuple[Any, Callable[[], tuple[int, list[str]]]]],
-    what: str,
-    many: int,
-    size: int,
-    least: float,
-    about: str,
-) -> int:
-    """Make the draws that the command line asks for; return 0 if nothing is wrong with any.
+from ..assess import asking, samples
+from ..end_to_end import asking_studies
+from .inputs import Attempt
 
-    Parameters
-    ----------
-    make
-        Draws one in a folder: what it is, and what gives its exit status and what is wrong with it.
-    what
-        What is drawn, in the plural: an option of the command line.
-    many
-        How many there are if the option is left out.
-    size
-        Draws of a part.
-    least
-        Fraction of them that must be answered, and not refused [-].
-    about
-        What the command does.
-    """
-    parser = argparse.ArgumentParser(description=about.splitlines()[0])
-    parser.add_argument(f"--{what}", type=int, default=many, dest="many", help="how many")
-    parser.add_argument("--seed", type=int, default=0)
-    asked = parser.parse_args()
-    parts = [
-        (asked.seed, first, min(first + size, asked.many)) for first in range(0, asked.many, size)
-    ]
-    fates: Counter[int] = Counter()
-    wrong: list[str] = []
-    with ProcessPoolExecutor() as pool:
-        for found, lines in pool.map(partial(_part, make), parts):
-            fates += found
-            wrong += lines
-            print("\n".join([f"{sum(fates.values())} of {asked.many}", *lines]), flush=True)
-    print(f"{asked.many} {what}: {fates[0]} answered, {fates[2]} refused in one sentence")
-    print(f"{len(wrong)} contradictions" if wrong else "no contradiction")
-    if fates[0] < least * asked.many:
-        print("too few of them were answered for this to say anything")
-        return 1
-    return 1 if wrong else 0
+EARTHQUAKES = 6
 
 
-def _part(make: Callable[..., Any], part: tuple[int, int, int]) -> Found:
-    """Make the draws of a seed from a number up to another, all in one folder."""
-    seed, first, last = part
-    fates: Counter[int] = Counter()
-    wrong = []
-    with tempfile.TemporaryDirectory(prefix="rockfrag.") as folder:
-        for number in range(first, last):
-            drawn, answer = make(random.Random(f"{seed} {number}"), Path(folder))
-            try:
-                status, found = answer()
-            except Exception:
-                status, found = 1, [traceback.format_exc(limit=-3)]
-            fates[status] += 1
-            wrong += [f"{number}: {drawn}\n    {said}" for said in found]
-    return fates, wrong
+def requests(folder: Path) -> Callable[[random.Random], Attempt]:
+    """Return what asks `rockfrag assess` at random (``tests/assess/asking.py``)."""
+    records, hazard = folder / "catalogue.csv", folder / "hazard.csv"
+    write_records(folder)
+    hazard.write_text(samples.table_csv())
+
+    def draw(rng: random.Random) -> Attempt:
+        asked = asking.request(rng, records, hazard)
+
+        def attempt() -> None:
+            status, out, err = asking.answered(asked, folder / "answer")
+            settle(" ".join(asked), status, asking.contradictions(status, out, err))
+
+        return folder / "request", attempt
+
+    return draw
+
+
+def studies(folder: Path) -> Callable[[random.Random], Attempt]:
+    """Return what runs small studies at random, to their reports (``tests/end_to_end/asking_studies.py``)."""
+
+    def draw(rng: random.Random) -> Attempt:
+        study = asking_studies.draw(rng)
+        return folder / "study", lambda: settle(
+            repr(study), *asking_studies.fate(study, Path(mkdtemp(dir=folder)))
+        )
+
+    return draw
+
+
+def settle(drawn: str, status: int, wrong: list[str]) -> None:
+    """Raise what became of a draw: contradictions, or a refusal."""
+    assert not wrong, f"{'; '.join(wrong)} of {drawn}"
+    if status == 2:
+        raise InputError("It is refused.")
+
+
+def write_records(folder: Path) -> None:
+    """Write a catalogue of short records of noise, one an earthquake and two a station."""
+    rng = np.random.default_rng(0)
+    rows = ["name,earthquake,station,file,unit"]
+    for i in range(EARTHQUAKES):
+        raw = Motion(rng.standard_normal(1500) * np.hanning(1500), 0.01, name=f"noise {i}")
+        motion = scale_to_pga(bandpass(raw, 0.2, 1.0 + 0.5 * i), 0.2 + 0.01 * i)
+        values = zip(motion.time, motion.acceleration / GRAVITY, strict=True)
+        (folder / f"{i}.txt").write_text("".join(f"{t:.2f} {a:.7f}\n" for t, a in values))
+        rows.append(f"noise {i},earthquake {i},station {i // 2},{i}.txt,g")
+    (folder / "catalogue.csv").write_text("\n".join(rows) + "\n")

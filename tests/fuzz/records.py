@@ -18,13 +18,14 @@ from rockfrag.records.read import motion_of, read_record
 
 from ..records import built_records
 from .damage import damage
+from .inputs import Attempt
 
 
-def records(folder: Path) -> Callable[[random.Random], tuple[Path, Callable[[], object]]]:
+def records(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a damaged record and how it is read."""
     seeds = list(_seeds(folder))
 
-    def one(rng: random.Random) -> tuple[Path, Callable[[], object]]:
+    def one(rng: random.Random) -> Attempt:
         name, content, read = rng.choice(seeds)
         path = folder / name
         path.write_bytes(damage(content, rng.choice(seeds)[1], rng))

@@ -61,17 +61,6 @@ def test_rotation_is_recorded():
     )
 
 
-@pytest.mark.parametrize("other", [Motion(np.ones(299), 0.01), Motion(np.ones(300), 0.02)])
-def test_components_that_do_not_fit_are_refused(other):
-    with pytest.raises(InputError, match="one sampling and length"):
-        rotd(pair(4)[0], other, pga, 50)
-
-
-def test_percentile_beyond_the_hundredth_is_refused():
-    with pytest.raises(InputError, match="between 0 and 100"):
-        rotd(*pair(5), pga, 101)
-
-
 def components(azimuths=(30.0, 120.0), starts=(None, None)):
     """A straight motion of azimuth 75° seen by two sensors."""
     shape = np.sin(np.linspace(0, 20, 400))
@@ -115,18 +104,26 @@ def test_the_stronger_direction_has_the_largest_peak_of_all():
     assert strongest.pga >= rotd(first, second, pga, 100)
 
 
-def test_components_that_are_no_pair_are_refused():
-    first, second = components()
-    upright = Motion(second.acceleration, 0.01, "up", {"component": "UP"})
-    unknown = Motion(second.acceleration, 0.01, "x")
-    with pytest.raises(InputError, match="vertical"):
-        rotd(first, upright, pga, 100)
-    with pytest.raises(InputError, match="one and the same"):
-        rotd(first, first, pga, 100)
-    with pytest.raises(InputError, match="not at a right angle"):
-        rotate_to_azimuth(first, components((30, 60))[1], 0)
-    with pytest.raises(InputError, match="azimuth is not known"):
-        rotate_to_azimuth(first, unknown, 0)
+FIRST, SECOND = components()
+UPRIGHT = Motion(SECOND.acceleration, 0.01, "up", {"component": "UP"})
+UNKNOWN = Motion(SECOND.acceleration, 0.01, "x")
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: rotd(pair(4)[0], Motion(np.ones(299), 0.01), pga, 50), "one sampling and length"),
+        (lambda: rotd(pair(4)[0], Motion(np.ones(300), 0.02), pga, 50), "one sampling and length"),
+        (lambda: rotd(*pair(5), pga, 101), "between 0 and 100"),
+        (lambda: rotd(FIRST, UPRIGHT, pga, 100), "vertical"),
+        (lambda: rotd(FIRST, FIRST, pga, 100), "one and the same"),
+        (lambda: rotate_to_azimuth(FIRST, components((30, 60))[1], 0), "not at a right angle"),
+        (lambda: rotate_to_azimuth(FIRST, UNKNOWN, 0), "azimuth is not known"),
+    ],
+)
+def test_components_that_are_no_pair_are_refused(call, words):
+    with pytest.raises(InputError, match=words):
+        call()
 
 
 class TestCommonTime:

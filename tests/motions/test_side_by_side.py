@@ -46,16 +46,6 @@ def test_housner_intensity_is_the_area_below_the_spectrum(motion):
     assert housner_and_average(motion)[0] == np.trapezoid(spectrum, HOUSNER_PERIODS)
 
 
-def test_stillness_moves_nothing():
-    assert (peak_displacements(Motion(np.zeros(40), 0.01), HOUSNER_PERIODS) == 0).all()
-
-
-def test_one_sample_is_a_motion():
-    motion = Motion([1.0], 0.01)
-    alone = m.response_spectrum(motion, HOUSNER_PERIODS).displacement
-    assert (peak_displacements(motion, HOUSNER_PERIODS) == alone).all()
-
-
 def test_negative_damping_is_refused(motion):
     with pytest.raises(InputError, match="damping"):
         peak_displacements(motion, HOUSNER_PERIODS, -0.1)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from .built_records import BUILDERS, Built, cosmos_header, esm_text, smc_text
+from .built_records import BUILDERS, Built
 
 
 @pytest.fixture(scope="session", params=sorted(BUILDERS))
@@ -18,13 +18,3 @@ def built(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 def builders() -> dict[str, Callable[[Path], Built]]:
     """The builders by name."""
     return BUILDERS
-
-
-@pytest.fixture(scope="session")
-def texts() -> dict[str, Callable[..., str]]:
-    """Builders of the text of a file, for variants that must be refused."""
-    return {
-        "smc": smc_text,
-        "esm": esm_text,
-        "cosmos_header": cosmos_header,
-    }

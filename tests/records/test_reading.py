@@ -7,8 +7,7 @@ from obspy import Stream, Trace, UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.records.parsing.quantities import canonical_unit
-from rockfrag.records.parsing.timestamps import american_time
-from rockfrag.records.read import read_motion, read_record
+from rockfrag.records.read import read_motion
 
 
 def two_columns(path, times, values):
@@ -192,25 +191,6 @@ def test_a_file_name_with_wildcards_is_a_name(tmp_path):
     assert read_motion(path, unit="g").acceleration.size == 3
 
 
-@pytest.mark.parametrize(
-    ("words", "time"),
-    [
-        ("05/02/83, 16:42:48.2 PDT", "1983-05-02T23:42:48.2"),
-        (" 2/13/12, 21:06:45.0 UTC (GPS)", "2012-02-13T21:06:45"),
-        ("11/12/2009 23:10:03.000 GMT", "2009-11-12T23:10:03"),
-    ],
-)
-def test_american_times_are_turned_to_utc(words, time):
-    assert american_time(words) == UTCDateTime(time)
-
-
-@pytest.mark.parametrize(
-    "words", ["", "05/02/83", "13/45/83, 16:42:48 PDT", "05/02/83, 16:42:48 XYZ"]
-)
-def test_what_is_no_time_or_of_no_known_zone_is_none(words):
-    assert american_time(words) is None
-
-
 class TestWriting:
     @pytest.mark.parametrize("file", ["out.AT2", "out.txt"])
     @pytest.mark.parametrize("dt", [0.005, 0.01, 1 / 256, 0.00244, 0.0024])
@@ -237,11 +217,3 @@ class TestWriting:
             with pytest.raises(InputError):
                 stream.write(str(path), format=name)
             assert not path.exists()
-
-
-def test_a_record_keeps_name_digest_and_channels(builders, tmp_path):
-    built = builders["renadic"](tmp_path)
-    record = read_record(built.path)
-    assert record.format == "RENADIC"
-    assert len(record.sha256) == 64
-    assert [channel.label for channel in record.channels] == ["EW", "NS", "V"]

@@ -10,6 +10,9 @@ from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import FORMATS, choose_channel, motion_of, read_motion, read_record
 from rockfrag.units import GRAVITY
 
+SYLMAR = "world/archives/24514_Sylmar_OliveView_MedicalCenterFF.zip"
+SMC_OF_ONE_LINE_MORE = "world/smc/891018_1.sma-1.0444a.smc"
+
 # file, unit to give, format, station, start time, samples, dt [s], unit stored, PGA [g] of each
 # channel about its mean
 # fmt: off
@@ -72,21 +75,22 @@ def test_a_sample_is_read_with_its_facts(shared, sample):
             assert about_mean / GRAVITY == pytest.approx(peak, abs=0.6 * 10.0**-digits)
 
 
-def test_uncorrected_smc_peak_is_the_one_of_its_header(shared):
-    motion = read_motion(shared / "records/formats/smc/0165a_u.smc")
-    assert motion.pga == pytest.approx(2.634864, rel=2e-5)
-
-
-def test_the_peaks_that_a_csmip_file_states_are_those_of_its_samples(shared):
-    path = shared / "records/formats/csmip_dmg/ce36456p_CE36456.V2"
-    assert read_motion(path, channel="90").pga == pytest.approx(2.67957, rel=1e-9)
-
-
-def test_the_displacement_file_is_refused(shared):
-    path = shared / "records/formats/peer_at2/IELC180.DT2"
-    for read in (read_motion, obspy.read):
-        with pytest.raises(InputError, match=r"IELC180\.DT2.*displacement.*not acceleration"):
-            read(path)
+@pytest.mark.parametrize(
+    ("file", "channel", "pga", "within"),
+    [
+        ("formats/smc/0165a_u.smc", None, 2.634864, 2e-5),
+        ("formats/csmip_dmg/ce36456p_CE36456.V2", "90", 2.67957, 1e-9),
+        ("world/usc/017m30bt.s0a", None, 2.4239450, 1e-5),
+        (SYLMAR, "90", 0.50298, 1e-12),
+        (SYLMAR, "0", 0.55792, 1e-12),
+        (SMC_OF_ONE_LINE_MORE, None, 0.80191, 1e-6),
+    ],
+)
+def test_peaks_that_headers_state_are_those_of_the_motions(shared, file, channel, pga, within):
+    motion = read_motion(shared / "records" / file, channel=channel)
+    assert motion.pga == pytest.approx(pga, rel=within)
+    left_out = {"step": "leave out values beyond the count of the header", "values": 8}
+    assert (left_out in motion.provenance) == (file == SMC_OF_ONE_LINE_MORE)
 
 
 def test_the_wrong_time_column_is_reported(shared):
@@ -155,27 +159,8 @@ def test_a_record_of_the_world_gives_the_values_read_independently(shared, sampl
         assert np.abs(samples).max() == pytest.approx(peak, rel=1e-9)
 
 
-def test_peaks_that_headers_state_are_those_of_the_motions(shared):
-    """The corrected USC record states -242.39450 cm/s², the CSMIP archive 50.298 and -55.792 cm/s²."""
-    world = shared / "records/world"
-    assert read_motion(world / "usc/017m30bt.s0a").pga == pytest.approx(2.4239450, rel=1e-5)
-    archive = world / "archives/24514_Sylmar_OliveView_MedicalCenterFF.zip"
-    assert read_motion(archive, channel="90").pga == pytest.approx(0.50298, rel=1e-12)
-    assert read_motion(archive, channel="0").pga == pytest.approx(0.55792, rel=1e-12)
-
-
-def test_the_line_of_an_smc_file_that_its_count_leaves_out_is_left_out(shared):
-    path = shared / "records/world/smc/891018_1.sma-1.0444a.smc"
-    motion = read_motion(path)
-    assert motion.pga == pytest.approx(0.80191, rel=1e-6)
-    assert motion.provenance[1] == {
-        "step": "leave out values beyond the count of the header",
-        "values": 8,
-    }
-
-
 def test_an_archive_of_a_data_centre_keeps_its_unit_and_leaves_out_spectra(shared):
-    path = shared / "records/world/archives/24514_Sylmar_OliveView_MedicalCenterFF.zip"
+    path = shared / "records" / SYLMAR
     record = read_record(path)
     assert [channel.label for channel in record.channels] == ["90", "UP", "0"]
     assert [(name, type(error)) for name, error in record.left_out] == [
@@ -190,13 +175,15 @@ def test_an_archive_of_a_data_centre_keeps_its_unit_and_leaves_out_spectra(share
 @pytest.mark.parametrize(
     ("file", "words"),
     [
-        ("cosmos/NP8040-n.1000hyfh.HNE.01.V0c", "raw counts"),
-        ("csmip/CE89146.V3", "response spectra"),
+        ("formats/peer_at2/IELC180.DT2", r"IELC180\.DT2.*displacement.*not acceleration"),
+        ("world/cosmos/NP8040-n.1000hyfh.HNE.01.V0c", "raw counts"),
+        ("world/csmip/CE89146.V3", "response spectra"),
     ],
 )
 def test_what_is_not_acceleration_is_refused_as_that(shared, file, words):
-    with pytest.raises(NotAcceleration, match=words):
-        read_motion(shared / "records/world" / file)
+    for read in (read_motion, obspy.read):
+        with pytest.raises(NotAcceleration, match=words):
+            read(shared / "records" / file)
 
 
 def test_earthquake_station_and_component_of_peers_records_of_eastern_north_america_are_kept(

@@ -158,31 +158,6 @@ def test_a_configuration_without_a_curve_keeps_its_outcomes():
     assert titles == ["(a) vase: θ = 0.4 g, β = 0.30", "(b) jug: no median"]
 
 
-HARD_NAMES = ("Büste “Ä”", "a$b$c", "x_{1}^2 \\alpha $", "<b>&amp;", "n" * 200, "日本")
-
-
-@pytest.mark.parametrize("name", HARD_NAMES)
-@pytest.mark.filterwarnings("ignore:Glyph")
-def test_any_name_can_be_drawn_and_is_the_text_that_was_given(name: str, tmp_path: Path):
-    tests = laboratory().replace({"vase": name})
-    figure = amplitudes_by_object(tests, mean_amplitudes(tests))
-    save_figure(figure, tmp_path / "a.svg", tmp_path / "a.png")
-    label = figure.axes[0].get_xticklabels()[0].get_text()
-    assert label == name if len(name) <= 14 else label.startswith(name[:6])
-    outcome_map(ida([0.1, 0.2], [False, True]).assign(motion=name), ["vase"])
-
-
-def test_figures_are_the_same_bytes_for_the_same_data_and_their_text_is_text(tmp_path: Path):
-    tests = laboratory(1)
-    for name in ("one", "two"):
-        figure = amplitudes_by_object(tests, mean_amplitudes(tests))
-        save_figure(figure, tmp_path / f"{name}.svg", tmp_path / f"{name}.png")
-    for ending in ("svg", "png"):
-        first, two = ((tmp_path / f"{name}.{ending}").read_bytes() for name in ("one", "two"))
-        assert first == two
-    assert ">vase<" in (tmp_path / "one.svg").read_text()
-
-
 def test_labels_lie_within_the_figure(tmp_path: Path):
     with figure_style():
         figure = new_figure(3.5, 2)

@@ -8,8 +8,6 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-import rockfrag
-from rockfrag.fragility.curve_facts import compared_curves
 from rockfrag.report.findings import ONE_MOTION
 from rockfrag.report.glossary import TERMS, terms_used
 from rockfrag.report.page import render
@@ -72,25 +70,13 @@ def test_no_report_speaks_in_riddles(riddle):
     assert not said, f"say instead: {RIDDLES[riddle]}"
 
 
-def test_the_page_does_not_number_contact_states_as_the_thesis_does():
-    script = Path(rockfrag.__file__).parent / "report" / "templates" / "live.js"
-    assert "pattern" not in script.read_text(encoding="utf-8")
-
-
-def test_a_canvas_without_pixels_is_not_copied():
-    """As while a browser takes a picture of a whole page."""
-    script = (Path(rockfrag.__file__).parent / "report" / "templates" / "live.js").read_text()
-    for line in script.splitlines():
-        assert "drawImage(" not in line or "if (hasPixels(" in line
-
-
-def page(**answer) -> str:
+def page(said: str = "AvgSA predicts best.", **answer) -> str:
     given = {"asked": "How strong?", "sentences": [Finding("It holds", "So far", "P/NP 1.01")]}
     return render(
         title="T",
         lead="lead",
         answer=Answer(**{**given, **answer}),
-        sections=[Section("a", "A", "Short.", ["AvgSA predicts best."])],
+        sections=[Section("a", "A", "Short.", [said])],
         pictures={},
         provenance={"Seed": "1"},
     )
@@ -113,18 +99,7 @@ def test_a_page_explains_the_terms_that_it_uses_and_no_others():
     text = page()
     assert "<dt>P/NP</dt>" in text and "<dt>AvgSA</dt>" in text
     assert "<dt>AUC</dt>" not in text
-    assert "Glossary" not in page_without_terms()
-
-
-def page_without_terms() -> str:
-    return render(
-        title="T",
-        lead="lead",
-        answer=Answer("How?", [Finding("So")]),
-        sections=[],
-        pictures={},
-        provenance={"Seed": "1"},
-    )
+    assert "Glossary" not in page("", sentences=[Finding("So")])
 
 
 def test_terms_are_found_as_words_of_their_own():
@@ -171,19 +146,3 @@ def test_best_measures_are_among_those_asked_for():
         }
     )
     assert best_of(choice, ["pga_g", "pgv_cm_s"]) == ["PGA", "PGV"]
-
-
-def test_all_curves_of_a_comparison_have_one_estimator():
-    rows = pd.DataFrame(
-        {
-            "configuration": ["a", "b"],
-            "p_fit": [0.07, 0.015],
-            "theta": [0.401, 0.472],
-            "theta_isotonic": [0.323, 0.398],
-        }
-    )
-    found = compared_curves(rows)
-    assert found.nonparametric and found.rejected == ["b"]
-    assert found.rows["theta"].tolist() == [0.323, 0.398]
-    kept = compared_curves(rows.assign(p_fit=0.5))
-    assert not kept.nonparametric and kept.rows["theta"].tolist() == [0.401, 0.472]

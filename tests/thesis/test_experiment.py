@@ -7,7 +7,7 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag_thesis.hypotheses import COLUMNS, HYPOTHESES, Evidence, Finding, hypothesis_table
 from rockfrag_thesis.hypotheses.earthquakes import rank_correlation
-from rockfrag_thesis.hypotheses.hypothesis import Kind, hypothesis, outcome
+from rockfrag_thesis.hypotheses.hypothesis import Kind, outcome
 from rockfrag_thesis.hypotheses.orders import ORDERS, margin
 
 FOR, AGAINST, OPEN = Finding.FOR, Finding.AGAINST, Finding.OPEN
@@ -415,11 +415,6 @@ def test_there_are_58_statements_each_with_text_source_rule_and_error_rate():
         assert item.number == number
         assert item.text and item.source and item.evidence and item.rule and item.error_rate
         assert item.kind in Kind
-
-
-def test_a_number_is_given_once():
-    with pytest.raises(ValueError, match="C35 is there already"):
-        hypothesis(35, evidence="", rule="", error_rate="")(lambda _: None)
 
 
 def test_a_margin_is_positive_where_the_means_are_as_stated(made):

@@ -96,25 +96,22 @@ def test_no_false_statement_is_confirmed_and_no_true_one_rejected(large, name):
     assert of(large[name], "rejected") <= FALSE[name] | NEITHER[name]
 
 
-def test_what_the_thesis_reports_of_the_floors_is_confirmed_where_it_is_so(large):
-    assert {29, 34, 35, 37, 39, 40, 41, 43, 44, 46, 48, 49, 50, 51, 53} <= of(
-        large["thesis"], "confirmed"
-    )
-    # the sentences that exclude others which are so
-    assert of(large["thesis"], "rejected") == {42, 47}
-
-
-def test_without_an_effect_large_changes_are_excluded_and_small_ones_are_not(large):
-    found = large["no effect"]
-    # no table excludes an increase that may be as small as one likes
-    assert {29, 33, 34, 35, 36, 37, 39, 40, 48, 49, 50, 51} <= of(found, EXCLUDED)
-    assert {27, 31} <= of(found, "confirmed")
-
-
-def test_the_opposite_pattern_rejects_what_the_thesis_reports(large):
-    assert {25, 26, 29, 34, 35, 37, 39, 40, 43, 44, 46, 48, 49, 50, 51, 53} <= of(
-        large["opposite"], "rejected"
-    )
+@pytest.mark.parametrize(
+    ("name", "outcome", "numbers"),
+    [
+        ("thesis", "confirmed", {29, 34, 35, 37, 39, 40, 41, 43, 44, 46, 48, 49, 50, 51, 53}),
+        # the sentences that exclude others which are so
+        ("thesis", "rejected", {42, 47}),
+        # no table excludes an increase that may be as small as one likes
+        ("no effect", EXCLUDED, {29, 33, 34, 35, 36, 37, 39, 40, 48, 49, 50, 51}),
+        ("no effect", "confirmed", {27, 31}),
+        ("opposite", "rejected", {25, 26, 29, 34, 35, 37, 39, 40, 43, 44, 46, 48, 49, 50, 51, 53}),
+    ],
+)
+def test_what_is_so_in_a_laboratory_is_found(large, name, outcome, numbers):
+    found = of(large[name], outcome)
+    assert numbers <= found
+    assert name != "thesis" or outcome != "rejected" or numbers == found
 
 
 @pytest.mark.parametrize("name", LABORATORIES)

@@ -1,12 +1,14 @@
 """Tables 3.1, 3.3 and 4.1 come out to the printed digits."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from pathlib import Path
 
 import pandas as pd
 import pytest
+from rockfrag_thesis.specimens import THESIS_BODIES
 
 from rockfrag.errors import InputError
+from rockfrag.study.configurations import read_specimens
 from rockfrag.study.loading import load_any
 from rockfrag.system.blocks import Block, Stack
 from rockfrag_thesis.printed_tables import (
@@ -35,6 +37,13 @@ def computed(four_records):
         "table_3_3": (ground_measures(motions), TABLE_3_3),
         "table_4_1": (uplift_table(study.configurations), TABLE_4_1),
     }
+
+
+def test_the_package_and_the_study_have_the_same_specimens():
+    study = read_specimens(CONFIG / "specimens.csv")
+    assert list(study) == list(THESIS_BODIES)
+    for name, body in THESIS_BODIES.items():
+        assert astuple(study[name]) == pytest.approx(astuple(body))
 
 
 @pytest.mark.parametrize(("name", "rows"), [("table_3_1", 16), ("table_3_3", 12), ("table_4_1", 9)])

@@ -58,7 +58,16 @@ def test_the_thesis_has_72_tests():
         (lambda c: c.update(study="../elsewhere"), ["study", "lower-case"]),
         (lambda c: c.update(seed=1.5), ["seed", "whole number"]),
         (lambda c: c.update(seed=True), ["seed", "whole number"]),
+        (lambda c: c.update(seed=10**300), ["seed", "expected a number of at most"]),
         (lambda c: c.pop("seed"), ["seed", "missing"]),
+        (lambda c: c.update(study="tiny\n"), ["key study"]),
+        (lambda c: c.update(title="two\nlines"), ["key title: expected one line"]),
+        (lambda c: c["fragility"].update(measures=["PGA"]), ["measures[0]: expected one"]),
+        (lambda c: c["fragility"].update(measures=["d5_95_s"]), ["found d5_95_s"]),
+        (
+            lambda c: c["fragility"].update(measures=["pga_g", ["pga_g"]]),
+            ["a pair of intensity measures"],
+        ),
         (lambda c: c.update(fragility=None), ["fragility", "mapping"]),
     ],
 )

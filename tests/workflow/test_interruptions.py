@@ -207,24 +207,6 @@ def test_a_folder_of_results_that_may_not_be_written_is_named_before_the_first_j
     assert "figures may not be written" in in_words(told.value)
 
 
-@pytest.mark.slow
-def test_a_run_killed_at_any_level_ends_in_the_same_bytes(study_folder: Path):
-    command = [*LAUNCHER, "study.yaml", "--cores", "2"]
-    wanted = None
-    for wait in (None, 6.0, 12.0):
-        process = subprocess.Popen([*command, "--logger", "rockfrag"], cwd=study_folder)
-        if wait is not None:
-            time.sleep(wait)
-            process.kill()
-        process.wait()
-        done = subprocess.run(command, cwd=study_folder, capture_output=True, text=True, check=True)
-        assert "LockException" not in done.stderr
-        found = tables_of(study_folder)
-        wanted = wanted or found
-        assert found == wanted
-        subprocess.run(["rm", "-r", str(study_folder / "results")], check=True)
-
-
 def test_libraries_take_what_every_processor_has(monkeypatch: pytest.MonkeyPatch):
     chosen = same_numbers({"GLIBC_TUNABLES": "glibc.malloc.check=1:glibc.cpu.hwcaps=-AVX2"})
     assert chosen["GLIBC_TUNABLES"].startswith("glibc.malloc.check=1:glibc.cpu.hwcaps=-FMA,")

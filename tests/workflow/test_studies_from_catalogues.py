@@ -1,7 +1,5 @@
 """A folder of records, or a download, becomes a study in two commands: a catalogue, and the run."""
 
-import importlib.util
-import sys
 from pathlib import Path
 
 import pandas as pd
@@ -12,18 +10,9 @@ from rockfrag.cli import main
 from rockfrag.stages import motions
 from rockfrag.study.loading import load_any
 
+from ..records.built_records import peer_download
 from ..stages_in_process import run_stages
 from .conftest import CONFIGURATIONS, SPECIMENS, study_content, write_record
-
-
-def peer_download(folder: Path, count: int) -> Path:
-    """Make a download of PEER's database, as the tests of the records do."""
-    path = Path(__file__).resolve().parents[1] / "records" / "built_records.py"
-    spec = importlib.util.spec_from_file_location("built_records", path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["built_records"] = module
-    spec.loader.exec_module(module)
-    return module.peer_download(folder, count)
 
 
 def far_field_set(folder: Path) -> Path:

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.building.masonry import MasonryLaw
-from rockfrag.building.model import ShearBuilding
+from rockfrag.building.model import MasonryLaw, ShearBuilding
 from rockfrag.errors import InputError
 from rockfrag.machine_code import cached_njit
 from rockfrag.units import GRAVITY

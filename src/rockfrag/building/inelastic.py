@@ -11,20 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.building.hysteresis import (
-    AIM_NEG,
-    AIM_POS,
-    DISPLACEMENT,
-    FORCE,
-    MEMORY,
-    law_parameters,
-    move,
-    storey_envelopes,
-    unloading_stiffness,
-)
+from rockfrag.building import hysteresis
 from rockfrag.building.model import ShearBuilding
-from rockfrag.building.modes import damping_matrix, find_modes
-from rockfrag.building.response import BuildingResponse, EnergyBalance
+from rockfrag.building.response import BuildingResponse, EnergyBalance, damping_matrix, find_modes
 from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
 
@@ -36,14 +25,14 @@ def respond_hysteretically(
     building: ShearBuilding, motion: Motion, longest_step: float = LONGEST_STEP
 ) -> BuildingResponse:
     """Integrate the building with its masonry law; damping is that of the elastic modes."""
-    corner, strength = storey_envelopes(building)
+    corner, strength = hysteresis.storey_envelopes(building)
     parts = max(1, int(np.ceil(motion.dt / longest_step - 1e-9)))
     step = motion.dt / parts
     mass = np.asarray(building.masses)
     viscous = damping_matrix(building, find_modes(building))
     effective = building.stiffness_matrix() + 2 / step * viscous + np.diag(4 / step**2 * mass)
     matrices = mass, viscous, np.linalg.inv(effective)
-    law = corner, strength, law_parameters(building.masonry)
+    law = corner, strength, hysteresis.law_parameters(building.masonry)
     total, shift, energy = _integrate(motion.acceleration, step, parts, *matrices, *law)
     return BuildingResponse(
         time=motion.time,
@@ -61,11 +50,11 @@ def _shears(
     n = u.size
     below = 0.0
     for i in range(n):
-        move(memory[i], u[i] - below, corner[i], strength[i], law, moved[i])
+        hysteresis.move(memory[i], u[i] - below, corner[i], strength[i], law, moved[i])
         below = u[i]
     for i in range(n):
-        above = moved[i + 1, FORCE] if i + 1 < n else 0.0
-        force[i] = moved[i, FORCE] - above
+        above = moved[i + 1, hysteresis.FORCE] if i + 1 < n else 0.0
+        force[i] = moved[i, hysteresis.FORCE] - above
 
 
 @cached_njit()
@@ -84,7 +73,7 @@ def _integrate(
     total, shift = np.zeros((n, samples)), np.zeros((n, samples))
     energy = np.zeros((5, samples))
     u, v, a = np.zeros(n), np.zeros(n), -ground[0] * np.ones(n)
-    memory, moved = np.zeros((n, MEMORY)), np.zeros((n, MEMORY))
+    memory, moved = np.zeros((n, hysteresis.MEMORY)), np.zeros((n, hysteresis.MEMORY))
     force, force1 = np.zeros(n), np.zeros(n)
     u1, v1, a1, rest = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     total[:, 0] = a + ground[0]
@@ -125,11 +114,15 @@ def _integrate(
             memory[:] = moved
         strain = kinetic = 0.0
         for i in range(n):
-            aim = memory[i, AIM_POS] if memory[i, FORCE] > 0 else memory[i, AIM_NEG]
-            stiffness = unloading_stiffness(aim, corner[i], strength[i], law[4])
-            strain += 0.5 * memory[i, FORCE] ** 2 / stiffness
+            aim = (
+                memory[i, hysteresis.AIM_POS]
+                if memory[i, hysteresis.FORCE] > 0
+                else memory[i, hysteresis.AIM_NEG]
+            )
+            stiffness = hysteresis.unloading_stiffness(aim, corner[i], strength[i], law[4])
+            strain += 0.5 * memory[i, hysteresis.FORCE] ** 2 / stiffness
             kinetic += 0.5 * mass[i] * v[i] ** 2
-            shift[i, k + 1] = memory[i, DISPLACEMENT]
+            shift[i, k + 1] = memory[i, hysteresis.DISPLACEMENT]
             total[i, k + 1] = a[i] + ground[k + 1]
         energy[0, k + 1] = work_in
         energy[1, k + 1] = kinetic

@@ -44,10 +44,7 @@ class BlindAnswer:
         return math.log(self.upper / self.lower) / (2 * _Z)
 
     def interval(self, model: float = 0.0) -> tuple[float, float]:
-        """Limits of the median with what is not known of the body, of the motions and of the model (90 %).
-
-        ``model`` is the standard deviation of ln median that stands for the model [-].
-        """
+        """Limits of the median (90 %); ``model`` is the standard deviation of ln median of the model [-]."""
         other = _Z * math.hypot(self.sampling, model)
         low = math.hypot(math.log(self.median / self.lower), other)
         high = math.hypot(math.log(self.upper / self.median), other)

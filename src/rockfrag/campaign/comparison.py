@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
-from rockfrag.campaign.validation import Bools, Floats, Validated, clustered_error
+from rockfrag.campaign.validation import Bools, Floats, Validated, clustered_error, divisions
 from rockfrag.fragility.batch_glm import fit_batch
 
 NEAR_CRITICAL = (0.1, 0.9)
@@ -21,10 +21,7 @@ REPEATS = "majority of repeated tests (ceiling)"
 def agreement_row(
     name: str, outcomes: Bools, measured: Bools, groups: NDArray[np.int64], level: float
 ) -> dict[str, object]:
-    """Fraction of right outcomes with an interval (Student's t over the groups), and both kinds of error.
-
-    Outcomes have the shape (repeats, tests) or (tests,); repeats are divisions into folds and are averaged.
-    """
+    """Fraction of right outcomes with an interval (t over the groups), and both errors; repeats are averaged."""
     each = np.atleast_2d(outcomes)
     right = (each == measured).mean(axis=0)
     error = clustered_error(right, groups)
@@ -69,6 +66,54 @@ def paired_row(
         "better_upper": mean + width,
         "p": float(found.pvalue),
     }
+
+
+def best_threshold(measure: Floats, overturned: Bools) -> float:
+    """Return the value of a measure above which "overturned" is right most often, in the measure's unit."""
+    order = np.argsort(measure, kind="stable")
+    fell = overturned[order]
+    # right outcomes if the first k tests are taken as survived
+    right = np.concatenate([[0], np.cumsum(~fell)]) + np.concatenate(
+        [np.cumsum(fell[::-1])[::-1], [0]]
+    )
+    first = int(right.argmax())
+    sorted_measure = measure[order]
+    if first == 0:
+        return float(sorted_measure[0])
+    if first == len(measure):
+        return float("inf")
+    return float(np.sqrt(sorted_measure[first - 1] * sorted_measure[first]))
+
+
+def cross_validated_threshold(
+    measures: Floats, overturned: Bools, groups: NDArray[np.int64], **division: int
+) -> Bools:
+    """Outcomes by thresholds on one or two measures that tests of other motions chose, shape (repeats, tests).
+
+    On two measures the line of even odds of a probit regression on their logarithms takes the place of the
+    threshold. ``division`` is that of :func:`rockfrag.campaign.validation.cross_validate`.
+    """
+    outcomes = np.empty((division["repeats"], len(overturned)), dtype=bool)
+    for repeat, chosen_by in divisions(groups, **division):
+        known, asked = measures[chosen_by], measures[~chosen_by]
+        outcomes[repeat, ~chosen_by] = _predicted(known, overturned[chosen_by], asked)
+    return outcomes
+
+
+def _predicted(known: Floats, overturned: Bools, asked: Floats) -> Bools:
+    if known.ndim == 1:
+        return np.asarray(asked >= best_threshold(known, overturned))
+    fit = fit_batch(
+        _design(known),
+        overturned[None].astype(np.float64),
+        np.ones((1, len(overturned))),
+        penalised=True,
+    )
+    return np.asarray(_design(asked) @ fit.coefficients[0] >= 0)
+
+
+def _design(measures: Floats) -> Floats:
+    return np.column_stack([np.ones(len(measures)), np.log(measures)])
 
 
 def fragility_beside(
@@ -121,10 +166,7 @@ def _limits(values: Floats, tails: Sequence[float]) -> Floats:
 
 
 def curves_of(measure: Floats, outcomes: Bools | Floats, weights: Floats) -> Floats:
-    """Fit a lognormal curve for each row of weights: θ and β, shape (rows, 2); NaN where no curve rises.
-
-    Weights have the shape (rows, tests). Outcomes, or parts of votes, have the shape (tests,) or (rows, tests).
-    """
+    """Fit a lognormal curve for each row of weights, (rows, tests): θ and β, (rows, 2); NaN where none rises."""
     design = np.column_stack([np.ones(len(measure)), np.log(measure)])
     coefficients = fit_batch(design, weights * outcomes, weights).coefficients
     slope = np.where(coefficients[:, 1] > 0, coefficients[:, 1], np.nan)
@@ -134,10 +176,7 @@ def curves_of(measure: Floats, outcomes: Bools | Floats, weights: Floats) -> Flo
 def by_region(
     tests: pd.DataFrame, first: str, second: str, outcome: Bools, measured: Bools
 ) -> pd.DataFrame:
-    """Fraction of right outcomes in thirds of two measures.
-
-    A row per region: limits of both measures, ``tests``, ``overturned``, ``simulated`` and ``right``.
-    """
+    """Thirds of two measures, a row each: limits, ``tests``, ``overturned``, ``simulated``, ``right``."""
     ends, third = {}, {}
     for name in (first, second):
         values = tests[name].to_numpy()

@@ -32,11 +32,7 @@ def simulate_tests(
     threads: int | None = None,
     done: Callable[[int], None] = lambda count: None,
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Simulate each test with what stood on the table in each trial.
-
-    Returns whether a body overturns, and whether any rocks at all, each of shape (trials, tests). ``done`` is
-    called with the number of tests done after each batch.
-    """
+    """Whether a body overturns, and whether any rocks, (trials, tests); ``done`` is told the tests done."""
     overturned, rocked = np.zeros((2, len(systems), len(motions)), dtype=bool)
     for first in range(0, len(motions), BATCH):
         batch = motions[first : first + BATCH]

@@ -48,10 +48,7 @@ def lognormal(median: float, spread: float, fraction: float) -> float:
 
 
 def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, Unknown]:
-    """Distributions of what nobody measured of a ``scan`` or a ``cut block``.
-
-    The accuracy of a scan is the standard deviation of the height of a point [mm]; None if it is not known.
-    """
+    """Distributions of what nobody measured of a ``cut block``, or of a ``scan`` of this accuracy [mm]."""
     if kind == CUT:
         return {
             "edge_retreat_mm": Unknown(

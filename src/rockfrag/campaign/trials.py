@@ -117,10 +117,7 @@ _NOTHING_BEYOND = (("edge_retreat_mm", 0.0), ("restitution", 1.0))
 def preferred_edges(
     trials: pd.DataFrame, plausible: Any, ranges: Mapping[str, tuple[float, float]]
 ) -> dict[str, str]:
-    """Say at which ends of their ranges plausible trials crowd: ``low end`` or ``high end`` by unknown.
-
-    Directions all around have no end.
-    """
+    """Say at which ends of their ranges plausible trials crowd: ``low end`` or ``high end`` by unknown."""
     found = {}
     for name, limits in ranges.items():
         if name == "direction_deg" and limits[1] - limits[0] >= 360:

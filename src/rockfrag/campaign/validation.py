@@ -6,6 +6,7 @@ trials that agree with the tests of four folds about as well as the best one vot
 trial alone would follow the noise of the choice.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,6 +58,17 @@ def folds_by_group(
     return np.asarray(order[groups] % count)
 
 
+def divisions(
+    groups: NDArray[np.int64], *, folds: int, repeats: int, seed: int
+) -> Iterator[tuple[int, Bools]]:
+    """Yield for each fold of random divisions by group the division, and which tests are outside the fold."""
+    rng = np.random.default_rng(seed)
+    for repeat in range(repeats):
+        fold = folds_by_group(groups, folds, rng)
+        for number in range(folds):
+            yield repeat, fold != number
+
+
 def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:
     """Standard error of a mean whose values share their chance within a group.
 
@@ -71,10 +83,7 @@ def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:
 
 
 def plausible_trials(right: Bools, groups: NDArray[np.int64]) -> Bools:
-    """Say which trials agree with tests about as well as the best one.
-
-    ``right`` tells of each trial's outcomes whether they are the measured ones, shape (trials, tests).
-    """
+    """Say which trials agree with tests about as well as the best; ``right`` has the shape (trials, tests)."""
     fraction = right.mean(axis=1)
     best = int(fraction.argmax())
     error = clustered_error(right[best].astype(np.float64), groups)
@@ -88,25 +97,18 @@ def cross_validate(
     measured: Bools,
     groups: NDArray[np.int64],
     *,
-    folds: int,
-    repeats: int,
-    seed: int,
     asked: Bools | None = None,
+    **division: int,
 ) -> Validated:
     """Let trials that are plausible by the tests of other motions vote on each test.
 
-    ``outcomes`` are simulated, shape (trials, tests), ``measured`` has the shape (tests,), ``groups`` count from 0
-    and are never split; there are ``repeats`` random divisions into ``folds``. ``asked`` is what the plausible
-    trials vote on, if not the outcomes that they are chosen by.
+    ``outcomes`` are simulated, shape (trials, tests), ``measured`` has the shape (tests,); ``division`` is that of
+    :func:`divisions`. ``asked`` is what the plausible trials vote on, if not the outcomes that they are chosen by.
     """
-    rng = np.random.default_rng(seed)
     right = outcomes == measured
     answers = outcomes if asked is None else asked
-    votes = np.empty((repeats, len(measured)))
-    for repeat in range(repeats):
-        fold = folds_by_group(groups, folds, rng)
-        for number in range(folds):
-            chosen_by = fold != number
-            voters = plausible_trials(right[:, chosen_by], groups[chosen_by])
-            votes[repeat, ~chosen_by] = answers[voters][:, ~chosen_by].mean(axis=0)
+    votes = np.empty((division["repeats"], len(measured)))
+    for repeat, chosen_by in divisions(groups, **division):
+        voters = plausible_trials(right[:, chosen_by], groups[chosen_by])
+        votes[repeat, ~chosen_by] = answers[voters][:, ~chosen_by].mean(axis=0)
     return Validated(votes)

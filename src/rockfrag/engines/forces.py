@@ -63,11 +63,7 @@ def contact_forces(
     alpha: Array,
     gravity: Array,
 ) -> tuple[Array, Array]:
-    """Normal and friction force of each interface on what stands on it [N], each of shape (n, blocks).
-
-    They act across and along the face that carries, up and to the right. ``gravity`` has the ground's upward
-    acceleration in it [m/s²], shape (n,).
-    """
+    """Normal and friction force of each interface, across and along the face that carries [N], (n, blocks)."""
     normal = np.zeros_like(theta)
     friction = np.zeros_like(theta)
     sine, cosine = _sines(theta)

@@ -42,10 +42,7 @@ def integrate(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: 
 
 
 def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64], Array]:
-    """Sample the motions as densely as the systems need; which each system × motion uses, and its interval [s].
-
-    ``per_gravity`` makes of vertical accelerations what factors make parts of gravity of.
-    """
+    """Sample the motions as densely as systems need; which each uses, its interval [s]; vertical over gravity."""
     values = [motion.x.acceleration for motion in cases.motions]
     dts = intervals_of(cases)
     g, step = cases.request.g, cases.request.step

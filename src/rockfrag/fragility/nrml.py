@@ -78,7 +78,7 @@ def write_nrml(
         Column whose value names the function (OpenQuake's taxonomy); what OpenQuake
         does not take in a name becomes ``_``.
     fractions
-        Points of the non-parametric fragility function (:func:`rockfrag.fragility.drawn_curves.fraction_points`),
+        Points of the non-parametric fragility function (:func:`rockfrag.fragility.ida_curves.fraction_points`),
         with columns ``by`` and ``state``. A function of which a state has such points is written as discrete
         levels; so is one whose lognormal curves would make a state more probable than the one that comes before
         it.

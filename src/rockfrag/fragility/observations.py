@@ -155,8 +155,8 @@ def name_and_unit(column: str) -> tuple[str, str]:
     return name.replace("_", " "), unit
 
 
-def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
-    """Return a column as finite numbers, shape (n,)."""
+def numbers(table: pd.DataFrame, column: str, source: str = "table", first: int = 1) -> Floats:
+    """Return a column as finite numbers, shape (n,); messages count rows from ``first``."""
     if column not in table:
         check_names(source, table.columns, [column])
         known = ", ".join(map(str, table.columns))
@@ -166,21 +166,22 @@ def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
     values = pd.to_numeric(table[column], errors="coerce").to_numpy(dtype=np.float64)
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
+        found = table[column].iloc[bad[0]]
         raise InputError(
-            f"{source}, row {bad[0] + 1}, column {column!r}: {table[column].iloc[bad[0]]!r} is "
-            f"not a finite number; correct it or leave the row out."
+            f"{source}, row {bad[0] + first}, column {column!r}: {'nothing' if pd.isna(found) else repr(found)} "
+            "is not a finite number; correct it or leave the row out."
         )
     return values
 
 
-def positive(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
+def positive(table: pd.DataFrame, column: str, source: str = "table", first: int = 1) -> Floats:
     """Return a column as numbers above zero, shape (n,), because they enter by their logarithm."""
-    values = numbers(table, column, source)
+    values = numbers(table, column, source, first)
     bad = np.flatnonzero(values <= 0)
     if bad.size:
         raise InputError(
-            f"{source}, row {bad[0] + 1}, column {column!r}: an intensity measure must be above "
-            f"zero to have a logarithm, got {values[bad[0]]:g}; leave such tests out."
+            f"{source}, row {bad[0] + first}, column {column!r}: an intensity measure must be above "
+            f"zero to have a logarithm, got {values[bad[0]]:g}; correct it or leave the row out."
         )
     return values
 
@@ -197,10 +198,12 @@ def read_observations(table: pd.DataFrame, column: str, source: str = "table") -
     return values
 
 
-def labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.object_]:
+def labels(
+    table: pd.DataFrame, column: str | None, source: str, first: int = 1
+) -> NDArray[np.object_]:
     """Return a column of labels, shape (n,); one label per row where ``column`` is None."""
     if column is None:
-        return np.array([f"row {row + 1}" for row in range(len(table))], dtype=object)
+        return np.array([f"row {row + first}" for row in range(len(table))], dtype=object)
     if column not in table:
         check_names(source, table.columns, [column])
         raise InputError(
@@ -210,7 +213,7 @@ def labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.o
     missing = np.flatnonzero(values.isna())
     if missing.size:
         raise InputError(
-            f"{source}, row {missing[0] + 1}, column {column!r}: the label is missing; fill it in."
+            f"{source}, row {missing[0] + first}, column {column!r}: the label is missing; fill it in."
         )
     return values.to_numpy(dtype=object)
 

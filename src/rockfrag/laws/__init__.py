@@ -53,11 +53,7 @@ def declare(
     moves_impulse: bool = False,
     scales_momentum: bool = False,
 ) -> Law:
-    """Declare a law of impacts, with what :class:`Law` has.
-
-    With a rate it must be declared before anything is simulated, as kernels are compiled with the laws that there
-    are.
-    """
+    """Declare a law (:class:`Law`), with a rate before anything is simulated: kernels are compiled with it."""
     if name in _LAWS:
         raise InputError(
             f"law of impacts {name!r} is declared twice; give the second another name."

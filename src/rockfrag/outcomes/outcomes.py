@@ -54,7 +54,7 @@ class Column:
         return np.dtype(object) if isinstance(self.empty, str) else np.asarray(self.empty).dtype
 
 
-def column(table: Table, unit: str, meaning: str, empty: Any) -> Any:
+def column(meaning: str, empty: Any = NOT_TOLD, unit: str = "", table: Table = "cases") -> Any:
     """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`."""
     return field(metadata={"table": table, "unit": unit, "meaning": meaning, "empty": empty})
 
@@ -91,101 +91,81 @@ class Outcomes:
     scales: Floats
     engines: tuple[str, ...]
     engine: Small
-    overturned: Bools = column("cases", "", "Whether a body fell.", False)
+    overturned: Bools = column("Whether a body fell.", False)
     overturned_body: Small = column(
-        "cases",
-        "",
-        "Number from below of the body that fell first, from 1; 0 without a fall.",
-        np.int8(0),
+        "Number from below of the body that fell first, from 1; 0 without a fall.", np.int8(0)
     )
     overturning_time: Floats = column(
-        "cases",
-        "s",
-        "Instant of the fall; NaN without a fall, or where the engine stops before it.",
-        NOT_TOLD,
+        "Instant of the fall; NaN without a fall, or where the engine stops before it.", unit="s"
     )
     certain_time: Floats = column(
-        "cases", "s", "Instant from which the fall was certain whatever followed; NaN without one or not told.",
-        NOT_TOLD,
-    )  # fmt: skip
-    impacts: Whole = column("cases", "", "Impacts until the outcome was known.", np.int64(0))
+        "Instant from which the fall was certain whatever followed; NaN without one or not told.",
+        unit="s",
+    )
+    impacts: Whole = column("Impacts until the outcome was known.", np.int64(0))
     flights: Whole = column(
-        "cases", "", "Times that a body left what it stood on with all of its base.", np.int64(0)
+        "Times that a body left what it stood on with all of its base.", np.int64(0)
     )
     given_way: Whole = column(
-        "cases",
-        "",
-        "Impacts in which the law of a restitution gave way, lest energy grow.",
-        np.int64(0),
+        "Impacts in which the law of a restitution gave way, lest energy grow.", np.int64(0)
     )
     parted_contact: Small = column(
-        "cases",
-        "",
         "Number from below, from 1, of the contact open furthest under what fell; 0: no fall, or not told.",
         np.int8(0),
     )
     several_modes: Whole = column(
-        "cases", "", "Times that more than one mode of contact was found consistent.", np.int64(0)
+        "Times that more than one mode of contact was found consistent.", np.int64(0)
     )
-    paradoxes: Whole = column(
-        "cases", "", "Times that no mode of contact was consistent.", np.int64(0)
-    )
+    paradoxes: Whole = column("Times that no mode of contact was consistent.", np.int64(0))
     unstable_distance: Floats = column(
-        "cases", "", "Least distance to an unstable equilibrium; infinite if it never rocked, NaN not told.",
+        "Least distance to an unstable equilibrium; infinite if it never rocked, NaN not told.",
         math.inf,
-    )  # fmt: skip
+    )
     minimum_gravity_ratio: Floats = column(
-        "cases", "", "Least effective gravity over gravity while the ground moves.", 1.0
+        "Least effective gravity over gravity while the ground moves.", 1.0
     )
     lost_contact: Floats = column(
-        "cases", "s", "Instant at which pure rocking first needed a contact to pull; NaN if none or not told.",
-        NOT_TOLD,
-    )  # fmt: skip
+        "Instant at which pure rocking first needed a contact to pull; NaN if none or not told.",
+        unit="s",
+    )
     peak_rotation: Floats = column(
-        "bodies",
-        "",
         "Largest rotation on what it stands on, over the critical angle of its side; infinite if it fell.",
-        NOT_TOLD,
+        table="bodies",
     )
     peak_velocity: Floats = column(
-        "bodies", "rad/s", "Largest angular velocity until the outcome was known.", NOT_TOLD
+        "Largest angular velocity until the outcome was known.", unit="rad/s", table="bodies"
     )
     turn: Floats = column(
-        "bodies", "rad", "Rotation about the vertical at the end; NaN of a planar body.", NOT_TOLD
+        "Rotation about the vertical at the end; NaN of a planar body.", unit="rad", table="bodies"
     )
     walk: Floats = column(
-        "bodies",
-        "m",
         "Horizontal displacement of the centre of gravity at the end; NaN not told.",
-        NOT_TOLD,
+        unit="m",
+        table="bodies",
     )
     fall_direction: Floats = column(
-        "bodies",
-        "rad",
         "Direction of the fall from x towards y; NaN without a fall or not told.",
-        NOT_TOLD,
+        unit="rad",
+        table="bodies",
     )
     fell_over: Words = column(
-        "bodies",
-        "",
         "Edge or vertex (from 1) over which it fell, rim, or flight; empty without a fall or not told.",
         "",
+        table="bodies",
     )
     slip: Floats = column(
-        "contacts",
-        "m",
         "Displacement along the contact at the end, positive to the right.",
-        NOT_TOLD,
+        unit="m",
+        table="contacts",
     )
-    peak_slip: Floats = column("contacts", "m", "Largest displacement along the contact.", NOT_TOLD)
+    peak_slip: Floats = column(
+        "Largest displacement along the contact.", unit="m", table="contacts"
+    )
     friction_demand: Floats = column(
-        "contacts",
-        "",
-        "Largest friction over normal force until the fall was due; NaN not told.",
-        NOT_TOLD,
+        "Largest friction over normal force until the fall was due; NaN not told.", table="contacts"
     )
     least_normal_force: Floats = column(
-        "contacts", "N", "Least normal force until the fall was due; NaN not told.", NOT_TOLD
+        "Least normal force until the fall was due; NaN not told.", unit="N", table="contacts"
     )
 
     __repr__ = short_repr
@@ -207,10 +187,7 @@ class Outcomes:
         return np.stack([values[i, ..., count - 1] for i, count in enumerate(self.counts)])
 
     def of_any(self, name: str) -> NDArray[Any]:
-        """Return a column of bodies or contacts of the one in which it is largest, or least of least values.
-
-        The shape is (systems, motions, scales).
-        """
+        """Column of bodies or contacts where it is largest, or least of least ones, (systems, motions, scales)."""
         pick = np.fmin if name.startswith("least") else np.fmax
         return np.asarray(pick.reduce(getattr(self, name), axis=-1))
 

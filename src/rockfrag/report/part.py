@@ -1,6 +1,6 @@
 """What a report is made of: parts, each with its words, tables and figures in one file.
 
-To add a part, write a module in ``report/sections/`` with one :class:`Part`, its words into ``sections.j2`` there,
+To add a part, write one :class:`Part` in a module of ``report/sections/``, its words into ``sections.j2`` there,
 and name it in ``report/sections/__init__.py`` where it should stand.
 """
 

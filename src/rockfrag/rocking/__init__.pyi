@@ -14,29 +14,19 @@ from .parquet import (
     stream_overturns as stream_overturns,
 )
 from .restitution import (
-    RestitutionFit as RestitutionFit,
     restitution_from_history as restitution_from_history,
     restitution_from_impacts as restitution_from_impacts,
     restitution_from_peaks as restitution_from_peaks,
 )
 from .simulation import simulate as simulate
-from .spectra import (
-    RockingSpectrum as RockingSpectrum,
-    rocking_spectrum as rocking_spectrum,
-)
-from .step_sensitivity import (
-    StepSizeSensitive as StepSizeSensitive,
-    find_step_size_sensitive as find_step_size_sensitive,
-)
+from .spectra import rocking_spectrum as rocking_spectrum
+from .step_sensitivity import find_step_size_sensitive as find_step_size_sensitive
 from .robustness import outcome_robustness as outcome_robustness
 from .thresholds import (
     Thresholds as Thresholds,
     find_thresholds as find_thresholds,
 )
-from .worst_direction import (
-    WorstDirection as WorstDirection,
-    worst_direction as worst_direction,
-)
+from .worst_direction import worst_direction as worst_direction
 
 Block = _blocks.Block
 Body = _blocks.Body

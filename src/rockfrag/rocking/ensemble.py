@@ -223,10 +223,7 @@ def shaken(cases: Cases) -> Outcomes:
 def overturned_cases(
     cases: Cases, system: Index, motion: Index, scale: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Say for case i, system ``system[i]`` under ``scale[i]`` × motion ``motion[i]``, whether it overturns.
-
-    Each system with all its cases is one grid, and systems share the threads.
-    """
+    """Say of case i, system ``system[i]`` under ``scale[i]`` × motion ``motion[i]``, whether it overturns."""
     overturned = np.zeros(len(system), dtype=bool)
 
     def run(number: int) -> None:

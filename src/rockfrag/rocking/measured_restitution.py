@@ -55,10 +55,7 @@ Restitution = float | Sequence[Measured] | dict[str, Any] | MeasuredRestitution 
 
 
 def largest_restitution(block: Block, pivot: int | None = None) -> float:
-    """Largest ratio of angular velocities with which no impact of the lone block gains energy [-].
-
-    ``pivot`` is the corner that comes down, +1 or -1; without one it is the lesser of both, 1 if symmetric.
-    """
+    """Largest ratio with which no impact of the lone block (on a ``pivot``, or on either) gains energy [-]."""
     if pivot is None:
         return min(largest_restitution(block, +1), largest_restitution(block, -1))
     return geometry.largest_restitution(block.shape, pivot)

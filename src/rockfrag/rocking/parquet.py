@@ -63,28 +63,18 @@ def stream_overturns(
     ----------
     bodies, motions, dt, scales
         As in :func:`overturns`.
-    path
-        The file to write.
-    table
-        "cases", "bodies" or "contacts".
+    path, table
+        The file to write, of "cases", "bodies" or "contacts".
     columns
         Columns beside those that say which case it is, named as the attributes of the outcomes; None takes
         ``overturned`` and ``overturned_body`` of cases, and all of bodies and contacts.
-    forces
-        As in :func:`overturns`.
-    progress
-        Called with the number of cases done and of all cases after every row group.
-    **options
-        As in :func:`overturns`.
+    forces, progress, **options
+        As in :func:`overturns`; progress is called with the number of cases done and of all cases after every row
+        group.
 
     Returns
     -------
     Number of cases.
-
-    Raises
-    ------
-    InputError
-        If an argument cannot be used; the message says which and why.
     """
     known = {column.name: column for column in columns_of(table) if table in WITHIN}
     if columns is None:
@@ -181,23 +171,12 @@ def stream_histories(
 
     Parameters
     ----------
-    bodies, motions, dt, scales
-        As in :func:`overturns`.
-    path
-        The file to write.
-    progress
-        Called with the number of cases done and of all cases after every row group.
-    **options
-        As in :func:`overturns`, but for ``forces``.
+    bodies, motions, dt, scales, path, progress, **options
+        As in :func:`stream_overturns`, but for ``forces``.
 
     Returns
     -------
     Number of cases.
-
-    Raises
-    ------
-    InputError
-        If an argument cannot be used; the message says which and why.
     """
     cases = prepared(bodies, motions, dt, scales, **options)
     request = replace(cases.request, history=True)

@@ -29,28 +29,16 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 
 @dataclass(frozen=True)
 class RestitutionFit:
-    """Coefficient of restitution that explains a free-rocking history best.
+    """Coefficient of restitution that explains a free-rocking history best."""
 
-    Attributes
-    ----------
-    restitution
-        e, ratio of the angular velocities after and before an impact [-].
-    lower, upper
-        Limits of its confidence interval; NaN where the data leave no degree of freedom.
-    impacts
-        Impacts that speak about e.
-    scatter
-        Standard deviation of the data about the fit, in their own unit (rad or s); NaN likewise.
-    computed
-        What conservation of momentum gives for this block, 1 - 1.5 sin²α if it is uniform [-].
-    """
-
-    restitution: float
+    restitution: float  # e, ratio of the angular velocities after and before an impact [-]
+    # lower, upper: limits of its confidence interval; NaN where the data leave no degree of freedom
     lower: float
     upper: float
-    impacts: int
+    impacts: int  # impacts that speak about e
+    # standard deviation of the data about the fit, in their own unit (rad or s); NaN likewise
     scatter: float
-    computed: float
+    computed: float  # what conservation of momentum gives for this block, 1 - 1.5 sin²α if it is uniform [-]
 
 
 def peak_after(block: Block, speed: float, pivot: int = 1, g: float = GRAVITY) -> float:
@@ -100,19 +88,16 @@ def restitution_from_peaks(
 
     Parameters
     ----------
-    block
-        The block.
-    peaks
-        Peak rotations in their order [rad], shape (n,), n ≥ 2; alternating in sign, or magnitudes.
+    block, peaks
+        Peak rotations of the block in their order [rad], shape (n,), n ≥ 2; alternating in sign, or magnitudes.
         They alternate between the corners; the first is on that of the first peak's sign.
-    confidence
-        Level of the interval.
-    g
-        Acceleration of gravity [m/s²].
+    confidence, g
+        Level of the interval, and acceleration of gravity [m/s²].
 
     Returns
     -------
-    The :class:`RestitutionFit`.
+    The :class:`RestitutionFit`: ``restitution`` with ``lower`` and ``upper``, ``impacts``, ``scatter``,
+    ``computed``.
 
     Raises
     ------
@@ -157,10 +142,8 @@ def restitution_from_impacts(
 
     Parameters
     ----------
-    block
-        The block.
-    times
-        Times of successive impacts [s], shape (n,), n ≥ 3, rising; none may be left out.
+    block, times
+        Times of successive impacts of the block [s], shape (n,), n ≥ 3, rising; none may be left out.
     first_pivot
         Corner the block rocks on between the first two.
     confidence, g
@@ -169,11 +152,6 @@ def restitution_from_impacts(
     Returns
     -------
     The :class:`RestitutionFit`.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than three times or they do not rise.
     """
     values = _numbers("impact times", times, 3)
     intervals = np.diff(values)
@@ -225,32 +203,20 @@ def restitution_from_history(
 ) -> RestitutionFit:
     """Fit e to a sampled history of free rocking, by least squares on the rotations.
 
-    Rotation and angular velocity at the first sample are fitted too, so the release need not be
-    at rest.  The noise of the samples is taken as independent; low-frequency noise makes the
-    interval too narrow.
+    Rotation and angular velocity at the first sample are fitted too, so the release need not be at rest. The noise
+    of the samples is taken as independent; low-frequency noise makes the interval too narrow.
 
     Parameters
     ----------
-    block
-        The block.
-    time
-        Times of the samples [s], shape (n,), evenly spaced, none before the release.
-    theta
-        Rotations [rad], shape (n,), clockwise positive.
-    confidence
-        Level of the interval.
-    g
-        Acceleration of gravity [m/s²].
+    block, time, theta
+        Times of the samples [s], evenly spaced, none before the release, and clockwise rotations of the block
+        [rad], shape (n,).
+    confidence, g
+        As for :func:`restitution_from_peaks`.
 
     Returns
     -------
-    The :class:`RestitutionFit`.
-
-    Raises
-    ------
-    InputError
-        If the samples are not even, a rotation reaches the critical angle, or the history holds
-        fewer than two impacts.
+    The :class:`RestitutionFit`; a history with fewer than two impacts is refused.
     """
     t, values = _numbers("time", time, 8), _numbers("theta", theta, 8)
     if t.shape != values.shape:

@@ -94,10 +94,7 @@ def predicted(body: Body, motion: Motion, rule: Rule) -> float:
 def bias(
     predicted_factors: NDArray[np.float64], simulated: NDArray[np.float64]
 ) -> tuple[float, float]:
-    """Median of predicted over simulated factors, and the standard deviation of its logarithm [-].
-
-    Motions without a simulated factor are left out.
-    """
+    """Median of predicted over simulated factors, where there are, and the deviation of its logarithm [-]."""
     ratio = np.log(predicted_factors / simulated)
     ratio = ratio[np.isfinite(ratio)]
     if not ratio.size:

@@ -36,10 +36,7 @@ Pair = tuple[Motion, Motion]
 
 
 def body_of(base: str, slenderness: float, height: float) -> Block:
-    """Return a uniform body of stone on a base that is ``square``, ``one to two`` or ``round``.
-
-    Slenderness is the height [m] over the narrow side or the diameter [-].
-    """
+    """Return a stone body, ``square``, ``one to two`` or ``round``; slenderness is over the narrow side [-]."""
     width = height / slenderness
     if base == ROUND:
         mass = STONE * math.pi / 4 * width**2 * height

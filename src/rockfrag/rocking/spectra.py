@@ -32,24 +32,13 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RockingSpectrum:
-    """Peak rotations and velocities of uniform blocks.
+    """Peak rotations and velocities of uniform blocks."""
 
-    Attributes
-    ----------
-    period
-        2π/p of the blocks [s], shape (k,).
-    alpha
-        Critical angles of the blocks, their slenderness [rad], shape (j,).
-    rotation
-        max |θ| / α [-], shape (j, k); infinite where the block overturns, zero where it never rocks.
-    velocity
-        max |θ'| / p [rad], shape (j, k); infinite where the block overturns.
-    """
-
-    period: Floats
-    alpha: Floats
+    period: Floats  # 2π/p of the blocks [s], shape (k,)
+    alpha: Floats  # critical angles of the blocks, their slenderness [rad], shape (j,)
+    # max |θ| / α [-], shape (j, k); infinite where the block overturns, zero where it never rocks
     rotation: Floats
-    velocity: Floats
+    velocity: Floats  # max |θ'| / p [rad], shape (j, k); infinite where the block overturns
 
     __repr__ = short_repr
 
@@ -110,7 +99,8 @@ def rocking_spectrum(
 
     Returns
     -------
-    The :class:`RockingSpectrum`, whose arrays have the shape (j, k): angles × periods.
+    The :class:`RockingSpectrum`: peak ``rotation`` over the critical angle and ``velocity`` over p, infinite where
+    the block overturns, and ``overturned``, of shape (j, k), angles × periods.
 
     Raises
     ------

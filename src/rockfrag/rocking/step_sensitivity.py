@@ -22,20 +22,11 @@ from rockfrag.system.blocks import SystemLike
 
 @dataclass(frozen=True)
 class StepSizeSensitive:
-    """Step-size-sensitive outcomes: those that change when every step is halved.
+    """Step-size-sensitive outcomes: those that change when every step is halved."""
 
-    Attributes
-    ----------
-    sampled
-        Number of cases looked at.
-    changed
-        Number of them whose outcome changed.
-    cases
-        Body, motion and scale (positions) of the changed ones, shape (changed, 3).
-    """
-
-    sampled: int
-    changed: int
+    sampled: int  # number of cases looked at
+    changed: int  # number of them whose outcome changed
+    # body, motion and scale (positions) of the changed ones, shape (changed, 3)
     cases: NDArray[np.int64]
 
     __repr__ = short_repr

@@ -160,10 +160,7 @@ def find_thresholds(
 def _read(
     low: Array, high: Array, falls: NDArray[np.bool_], highest: float
 ) -> tuple[tuple[float, float], list[tuple[float, float]]]:
-    """Read first and always-overturning scale and the structural resurrections off bracketed changes.
-
-    The changes alternate and the first, from rest at zero scale, is a fall.
-    """
+    """Read first and always-overturning scale and resurrections off bracketed changes; the first is a fall."""
     if not falls.size:
         return (math.nan, math.nan), []
     starts, ends = high[~falls], low[falls][1:]

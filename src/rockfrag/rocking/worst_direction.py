@@ -23,22 +23,15 @@ DIRECTIONS_DEG = tuple(range(0, 360, 10))
 
 @dataclass(frozen=True)
 class WorstDirection:
-    """How a body's first overturning depends on the direction of the motion.
+    """How a body's first overturning depends on the direction of the motion."""
 
-    Attributes
-    ----------
-    angle_deg
-        Angle from the first component towards the second that overturns the body with the least scale;
-        NaN if none does.
-    motion
-        The motion in that direction, unscaled; in the first component's direction if none overturns.
-    table
-        A row per direction: ``angle_deg``, ``first_overturning`` (least scale, NaN if the body stands)
-        and ``peak_g`` of the unscaled motion.
-    """
-
+    # angle from the first component towards the second that overturns the body with the least scale; NaN if none
+    # does
     angle_deg: float
+    # the motion in that direction, unscaled; in the first component's direction if none overturns
     motion: Motion
+    # a row per direction: ``angle_deg``, ``first_overturning`` (least scale, NaN if the body stands) and
+    # ``peak_g`` of the unscaled motion
     table: pd.DataFrame
 
     __repr__ = short_repr
@@ -77,7 +70,7 @@ def worst_direction(
 
     Returns
     -------
-    The :class:`WorstDirection`, with a table of a row per direction.
+    The :class:`WorstDirection`: ``angle_deg``, the ``motion`` in it, and a ``table`` of a row per direction.
 
     Raises
     ------

@@ -65,21 +65,11 @@ Measurement = ForceOverMass | Accelerometer
 
 @dataclass(frozen=True)
 class Outcome:
-    """Bounds of the overturning amplitude of one test.
+    """Bounds of the overturning amplitude of one test."""
 
-    Attributes
-    ----------
-    lower_g
-        Largest amplitude survived on the way [g]; 0 if the first one overturned.
-    upper_g
-        Amplitude that overturned [g]; NaN if none did.
-    remark
-        What a reader of the figure has to know.
-    """
-
-    lower_g: float
-    upper_g: float
-    remark: str = ""
+    lower_g: float  # largest amplitude survived on the way [g]; 0 if the first one overturned
+    upper_g: float  # amplitude that overturned [g]; NaN if none did
+    remark: str = ""  # what a reader of the figure has to know
 
     @property
     def censored(self) -> bool:
@@ -149,10 +139,7 @@ class Protocol:
 
 
 def measured(outcome: Outcome, measurement: Measurement | None, configuration: str) -> Outcome:
-    """Return an outcome as the instruments show it.
-
-    An accelerometer at the end of its range gives a lower bound only.
-    """
+    """Return an outcome as the instruments show it: a clipped accelerometer gives a lower bound only."""
     if measurement is None:
         return outcome
     if isinstance(measurement, Accelerometer):

@@ -42,39 +42,21 @@ _FIELDS = {
 class Shaker:
     """Limits of a uniaxial electrodynamic shaker.
 
-    The defaults are those of a small one, a Wölfel BD.5; its moving masses are assumptions, harmless as
-    long as the force does not govern.
-
-    Attributes
-    ----------
-    stroke
-        Distance between the end stops [m].
-    force
-        Largest force [N].
-    lowest_hz, highest_hz
-        Frequency band [Hz].
-    start
-        ``off-centre``: the motion starts wherever it needs to use the whole stroke; ``centred``: in
-        the middle, with half the stroke to either side.
-    armature_mass, table_mass
-        Masses that always move [kg].
-    velocity
-        Largest velocity [m/s]; ``None`` where it is not limited.
-
-    Raises
-    ------
-    InputError
-        If a limit is not positive, a mass is negative, or the start is unknown.
+    The defaults are those of a small one, a Wölfel BD.5; its moving masses are assumptions, harmless as long as
+    the force does not govern.
     """
 
-    stroke: float = 0.290
-    force: float = 500.0
+    stroke: float = 0.290  # distance between the end stops [m]
+    force: float = 500.0  # largest force [N]
+    # lowest_hz, highest_hz: frequency band [Hz]
     lowest_hz: float = 0.5
     highest_hz: float = 200.0
+    # wherever the motion needs to start to use the whole stroke, or in the middle, with half of it to either side
     start: Literal["off-centre", "centred"] = "off-centre"
+    # armature_mass, table_mass: masses that always move [kg]
     armature_mass: float = 5.0
     table_mass: float = 5.0
-    velocity: float | None = None
+    velocity: float | None = None  # largest velocity [m/s]; None where it is not limited
 
     def __post_init__(self) -> None:
         limits = {"stroke": self.stroke, "force": self.force, "lowest_hz": self.lowest_hz}
@@ -169,22 +151,16 @@ def read_shaker(path: str | os.PathLike[str]) -> Shaker:
 def required_corner(
     shaker: Shaker, motion: Motion, amplitude_g: float, payload: float = 0.0
 ) -> float:
-    """Lowest high-pass corner with which a motion keeps the limits [Hz]; 0 if it does without.
+    """Lowest high-pass corner with which a motion keeps the limits.
 
     Parameters
     ----------
-    shaker
-        The shaker.
-    motion
-        Wanted motion.
-    amplitude_g
-        Peak of the wanted motion [g].
-    payload
-        Mass on the table [kg].
+    shaker, motion, amplitude_g, payload
+        The shaker, the wanted motion, its peak [g], and the mass on the table [kg].
 
     Returns
     -------
-    The frequency [Hz].
+    The frequency [Hz]; 0 if it does without.
 
     Raises
     ------
@@ -211,29 +187,19 @@ def produced_motion(
 ) -> Motion:
     """Motion that the table would really have produced.
 
-    It is high-passed at the lower end of the shaker's band, or higher where the stroke needs it.
+    It is high-passed at the lower end of the shaker's band, or higher where the stroke needs it
+    (:func:`required_corner`). Its peak is not the wanted ``amplitude_g`` [g], as the filter takes out what the
+    stroke cannot hold: a fifth less for a long pulse, a tenth more where the filter takes what was opposed to the
+    peak. The provenance has both.
 
     Parameters
     ----------
-    shaker
-        The shaker.
-    motion
-        Wanted motion.
-    amplitude_g
-        Peak of the wanted motion [g]. That of the produced one is another, as the filter takes out what the
-        stroke cannot hold: a fifth less for a long pulse, a tenth more where the filter takes what was
-        opposed to the peak. The provenance has both.
-    payload
-        Mass on the table [kg].
+    shaker, motion, amplitude_g, payload
+        As of :func:`required_corner`, which says what is refused.
 
     Returns
     -------
     The motion with zeros before and after it, for the filter's transients.
-
-    Raises
-    ------
-    InputError
-        As :func:`required_corner`.
     """
     wanted = scale_to_pga(motion, amplitude_g)
     corner = max(shaker.lowest_hz, required_corner(shaker, motion, amplitude_g, payload))
@@ -241,20 +207,9 @@ def produced_motion(
 
 
 def shaker_table(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0) -> pd.DataFrame:
-    """What each motion asks per g of its peak, and up to which amplitude it fits.
+    """What each motion, as it is, asks per g of its peak, and up to which amplitude it fits.
 
-    Parameters
-    ----------
-    shaker
-        The shaker.
-    motions
-        Motions as they are.
-    payload
-        Mass on the table [kg].
-
-    Returns
-    -------
-    One row a motion: ``motion``, ``earthquake``, ``floor``, ``travel_cm_per_g``, ``excursion_cm_per_g``,
+    A row a motion: ``motion``, ``earthquake``, ``floor``, ``travel_cm_per_g``, ``excursion_cm_per_g``,
     ``velocity_cm_s_per_g``, ``force_n_per_g``, ``limit_g``, ``limited_by``.
     """
     rows = []

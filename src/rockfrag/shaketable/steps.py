@@ -54,10 +54,7 @@ class GeometricSteps:
 
 @dataclass(frozen=True)
 class ForceSteps:
-    """Amplitudes set by the shaker's force, which grows by the same amount.
-
-    The shaker moves armature, table and specimen.
-    """
+    """Amplitudes by the shaker's force on armature, table and specimen, which grows by the same amount."""
 
     start_n: float
     step_n: float

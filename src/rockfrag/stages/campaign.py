@@ -11,16 +11,20 @@ from rockfrag.campaign.comparison import (
     REPEATS,
     agreement_row,
     by_region,
+    cross_validated_threshold,
     fragility_beside,
     judged_tests,
     majority_of_repeats,
     paired_row,
 )
 from rockfrag.campaign.outcomes import simulate_tests
-from rockfrag.campaign.peaks import check_peaks, measured_peaks
-from rockfrag.campaign.table_motions import missing_motions, table_motions
+from rockfrag.campaign.table_motions import (
+    check_peaks,
+    measured_peaks,
+    missing_motions,
+    table_motions,
+)
 from rockfrag.campaign.tests import MEASURED, Campaign, read_campaign
-from rockfrag.campaign.thresholds import cross_validated_threshold
 from rockfrag.campaign.trials import Trials, sample_trials
 from rockfrag.campaign.validation import Validated, cross_validate, plausible_trials
 from rockfrag.errors import InputError

@@ -62,7 +62,7 @@ def protocol_of(study: Study, step_percent: float | None = None) -> Protocol:
 def limited_tests(
     ida_curves: Iterable[Swept], protocol: Protocol, limits: pd.DataFrame
 ) -> pd.DataFrame:
-    """Read the step protocol with limits of :func:`rockfrag.shaketable.shaker_table`.
+    """Read the step protocol with limits of :func:`rockfrag.shaketable.shaker.shaker_table`.
 
     Returns tests whose reading is ``LIMITED``; the remark of a test that the shaker ended says so.
     """

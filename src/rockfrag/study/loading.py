@@ -20,6 +20,7 @@ from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.schema import checked
 from rockfrag.shaketable.shaker import read_shaker
+from rockfrag.study import measured_table
 from rockfrag.study.campaign import CAMPAIGN_KEY, CampaignStudy, campaign_from
 from rockfrag.study.configurations import (
     each_alone,
@@ -30,11 +31,6 @@ from rockfrag.study.configurations import (
     with_restitution,
 )
 from rockfrag.study.heading import check_file, checked_steps, existing_file, heading_of
-from rockfrag.study.measured_table import (
-    TABLE_KEY,
-    MeasuredTable,
-    measured_table_from,
-)
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.study import Amplitudes, FragilitySettings, Study
 from rockfrag.system.blocks import Block
@@ -51,7 +47,7 @@ OF_ONE_COMPONENT = (
 )
 """Steps that choose a part or a factor by the component itself."""
 
-AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
+AnyStudy = Study | measured_table.MeasuredTable | CampaignStudy | SpaceStudy
 
 
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
@@ -62,7 +58,7 @@ def load_any(path: str | os.PathLike[str]) -> AnyStudy:
 def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnyStudy:
     """Make a study of any kind of a configuration that was read from ``path``."""
     kinds: dict[str, Callable[..., AnyStudy]] = {
-        TABLE_KEY: measured_table_from,
+        measured_table.TABLE_KEY: measured_table.measured_table_from,
         CAMPAIGN_KEY: campaign_from,
         SPACE_KEY: space_study_from,
     }

@@ -189,10 +189,7 @@ def edge_distances(corners: Array) -> Array:
 
 
 def _without_hardly_turning(corners: Array) -> Array:
-    """Leave out corners of a convex polygon, each time the one that is nearest to the line past it.
-
-    As long as there are more than MOST_CORNERS, or it is nearer than FLAT times the polygon's size.
-    """
+    """Leave out the corner nearest to the line past it, until few are left that are further than FLAT off it."""
     kept = corners
     size = float(np.ptp(corners, axis=0).max())
     while len(kept) > FEWEST_CARRY:

@@ -16,7 +16,7 @@ from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.report.live.space import AMPLITUDES_G
 from rockfrag.report.wording import number
-from rockfrag.rocking import stream_overturns
+from rockfrag.rocking.parquet import stream_overturns
 from rockfrag.system import Block, Contact, System, as_system
 from rockfrag.system.system import box, cylinder
 from rockfrag.units import GRAVITY

@@ -218,10 +218,7 @@ def _remembering_call_types(find: Any) -> Any:
 
 
 def _of_plain_types(find: Any) -> Any:
-    """Find a kernel for numbers as such, not one more for each number that is written out where it is called.
-
-    What follows from the number, the compiler finds where it inlines the kernel.
-    """
+    """Find a kernel for numbers as such, not one more for each number that is written out where it is called."""
 
     def get_call_type(kernel: Any, context: Any, args: Any, named: Any) -> Any:
         plain = {name: unliteral(kind) for name, kind in named.items()}
@@ -244,10 +241,7 @@ def _remembering_sizes(measure: Any) -> Any:
 
 @cache
 def _import_without_scipy() -> None:
-    """Import what numba is about to, but leave scipy's linear algebra until something multiplies matrices.
-
-    It is imported only to see that it is there, and takes longer than all that numba imports.
-    """
+    """Import what numba is about to, but not scipy's linear algebra, which takes longer than all else."""
     linalg = importlib.import_module("numba.np.linalg")
     look = linalg.ensure_blas
     linalg.ensure_blas = lambda: None  # type: ignore[attr-defined]
@@ -259,10 +253,7 @@ def _import_without_scipy() -> None:
 
 @contextmanager
 def _shortcuts() -> Iterator[None]:
-    """Spare numba what it would work out anew for each operation of each kernel.
-
-    The compiler's lock is held meanwhile.
-    """
+    """Spare numba what it would work out anew for each operation; the compiler's lock is held meanwhile."""
     if BaseContext.refresh is _refresh:
         yield
         return
@@ -331,12 +322,7 @@ class WholeCompiler(_KernelCompiler):
 
 
 def whole_ir(kernel: Any, types: tuple[Any, ...]) -> tuple[str, str]:
-    """Return the code of a kernel that only kernels call, with all that it needs, not optimised; its name there.
-
-    Parameters
-    ----------
-    types : numba's, of its arguments
-    """
+    """Return the code of a kernel for arguments of numba's ``types``, not optimised, and its name there."""
     kernel.compile(types)
     (compiled,) = kernel.overloads.values()
     entry = compiled.fndesc.llvm_func_name

@@ -1,24 +1,6 @@
-"""Series of impacts that accumulate, ended at once, and why that is allowed.
+"""Series of impacts that accumulate, ended at once where that is proved to change nothing.
 
-A contact that comes down can bounce from pivot to pivot infinitely often in finite time (Zeno).  Let D and D' be
-the least accelerations that bring it back on its two pivots while the series lasts, and e, e' the fractions of the
-speed that are left by an impact that ends rocking on the one and on the other.  A flight that begins at speed
-w ends before 2 w / D, its impact leaves e w, the next flight ends before 2 e w / D', and so on: a geometric
-series with the sum
-
-    T = 2 w (1/D + e/D') / (1 - e e').
-
-**At rest** (``block_dies_out``, ``dies_out``).  If the ground's acceleration stays inside the thresholds of
-rocking for T, every flight comes back and the body is at rest afterwards, exactly, whatever the flights were
-like: nothing needs to be integrated and no speed has to be chosen below which a body "is at rest".  D is that
-at zero angle, of which a flight of height w²/2D ≤ D/50 p² keeps 2 %; for stacks, whose thrown pedestals
-lengthen the flights of the statue, T is taken half as long again.
-
-**On a body that rocks on** (``may_close``).  While one contact chatters and the other rocks, all impacts of
-the first conserve one momentum, that of what rocks on.  So when the hops are over, the velocity is that of a
-contact that stayed closed from the first impact, but for what the hops change meanwhile: the opening returns
-to zero after each of them, and what remains is of second order, w² T.  Where that is below ``CHATTER_ERROR``,
-and nothing else can happen in twice T (itself taken half as long again), the contact is closed at once.
+The proofs, at rest and on a body that rocks on, with D, e, w and T: ``docs/kernels.md``, "Accumulating impacts".
 """
 
 import math
@@ -109,10 +91,7 @@ def _restoring(body, c1, c2, ground, scratch):
 
 @kernel
 def _least(restoring, a, weight):
-    """Least restoring acceleration [rad/s²] over the ways in which the body can leave rest.
-
-    ``weight``: gravity over that of a ground that does not move vertically.
-    """
+    """Least restoring acceleration [rad/s²] over the ways to leave rest, at a ``weight`` over the usual."""
     still, per = restoring.still, restoring.per_ground
     return min(
         min(weight * still[0] + per[0] * a, weight * still[1] + per[1] * a),
@@ -159,11 +138,7 @@ def dies_out(speed, fraction, safety, restoring, drop, ahead):
 
 @inlined_kernel
 def block_dies_out(w, side, here, there, ahead):
-    """Whether the impacts after a launch of a lone block at speed ``w`` per sample end at rest.
-
-    ``here`` is the pivot of ``side``, on which it is launched, ``there`` the other (``block.PIVOT``); ``ahead`` is
-    the ground over g.
-    """
+    """Whether the impacts after a launch of a lone block on pivot ``here``, at ``w`` per sample, end at rest."""
     # gravity only ever grows D; the least of it is enough
     weight = weight_at(ahead, ahead.k)
     weight = min(weight, weight + ahead.tau * (weight_at(ahead, ahead.k + 1) - weight))
@@ -227,10 +202,7 @@ def _turn_of(hop):
 
 @kernel
 def _opening(two, hop, side, g):
-    """Acceleration that opens a contact on a still ground; per unit of its acceleration; of weight; inertia.
-
-    The inertia is that of the opening alone, the momentum that its impacts conserve being given.
-    """
+    """Acceleration that opens a contact: on a still ground, per unit of its own, of weight; inertia."""
     k1, s1, cosine, sine = _turn_of(hop)
     k2, s2 = hop.cosine, hop.sine
     m11, m12, m22, d = mass_matrix(two, cosine, sine)
@@ -252,11 +224,7 @@ def _opening(two, hop, side, g):
 
 @inlined_kernel
 def may_close(hop, before, after, longest, g, ahead):
-    """Whether a contact that hops may stay closed at once, while the other is open.
-
-    ``before`` and ``after`` are constants of the contact states (``stack_constants.TWO``); its hops may take
-    ``longest`` [samples].
-    """
+    """Whether a contact that hops, at most ``longest`` [samples], may stay closed, while the other is open."""
     h, k, tau, last, factor = ahead.dt, ahead.k, ahead.tau, ahead.last, ahead.factor
     samples = ahead.samples
     speed = abs(hop.omega1) if hop.ground else abs(hop.omega2 - hop.omega1)

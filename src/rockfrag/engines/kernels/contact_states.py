@@ -1,19 +1,4 @@
-"""The contact states of a body, and what leads from one to the next.
-
-| contacts (c1, c2) | pattern | what rotates |
-|---|---|---|
-| (0, 0) | rest | nothing |
-| (0, ±1) | 4 | the statue, or the lone block |
-| (±1, 0) | 3 | pedestal and statue as one |
-| (s, s), (s, -s) | 1, 2 | both |
-
-| what happens | when | what follows |
-|---|---|---|
-| uplift, release | a closed contact would have to be pulled at a corner (``ground_hold``, ``interface_hold``)
-| ``settle`` |
-| impact | an open contact's angle falls to zero | ``impact.impact``, then ``settle`` |
-| rest | an impact closes all contacts, or impacts that are sure to end do (``chatter``) | uplift |
-| fall | a block has turned by a right angle, or cannot come back | the end |
+"""The contact states of a body, and what leads from one to the next (tables in ``docs/kernels.md``).
 
 A full contact pushes and never pulls.  States are tried from all contacts closed to all open, and the first
 consistent one is taken, so that every transition that the mechanics allows occurs.
@@ -87,10 +72,7 @@ def _rest_moment(body, contact, c, ground, scratch):
 
 @kernel
 def settle(body, state):
-    """Contact state into which forces take the closed contacts of a state.
-
-    An opening contact accelerates away from its corner, a closed one pushes at both corners.
-    """
+    """Contact state into which forces take closed contacts: they open, or are pushed at both corners."""
     c1, c2 = state.c1, state.c2
     if c1 != 0 and c2 != 0:
         return c1, c2
@@ -131,10 +113,7 @@ def settle(body, state):
 
 @kernel
 def release(body, state, fails, stuck):
-    """Contact state after a closed contact, GROUND or INTERFACE, can no longer hold.
-
-    ``stuck``: no time has passed since the last contact event, so a state that stays as it is would never end.
-    """
+    """Contact state after a closed contact fails; ``stuck``: no time has passed since the last event."""
     c1, c2 = settle(body, state)
     if stuck and c1 == state.c1 and c2 == state.c2:
         # rounding at a threshold: open the contact that fails

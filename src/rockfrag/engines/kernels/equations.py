@@ -1,13 +1,8 @@
 """The two-block model in one formulation for all nine contact states (``docs/derivation.md``).
 
-Block 1 is the pedestal, block 2 the statue.  c1 (ground) and c2 (interface) are the contact states: +1 or -1
-for rocking on the right or left pivot, 0 for full contact.
-
-Positions along an interface are given as σ in [-1, 1]: the pivots are σ = ±1.  With r1 = R(θ1) arm1, d = R(θ1)
-reach, r2 = R(θ2) arm2 the equations are M θ'' + f = τ with τ the moments of the contact forces, zero at a
-rocking pivot (Spanos, Roussis and Politis, 2001; ``docs/derivation.md``).
-
-A lone block is block 2 on a block 1 that cannot move (``fixed``).
+Block 1 is the pedestal, block 2 the statue, or a lone block on a block 1 that cannot move (``fixed``).  c1
+(ground) and c2 (interface) are +1 or -1 for rocking on the right or left pivot, σ = ±1 along the interface, and 0
+for full contact.  M θ'' + f = τ, with τ zero at a rocking pivot (Spanos, Roussis and Politis, 2001).
 """
 
 import math
@@ -179,10 +174,7 @@ def accelerations(body, c1, c2, state):
 
 @kernel
 def ground_hold(body, c2, state, alpha2):
-    """Least s1 τ1(s1) over both corners of a pedestal at rest [N m], and the corner it is least at.
-
-    The full contact persists while it is not negative: the ground pushes and never pulls.
-    """
+    """Least s1 τ1(s1) over both corners of a resting pedestal [N m], not to be negative, and its corner."""
     if body.fixed:
         return 1.0, 1
     least = math.inf
@@ -226,10 +218,7 @@ def turn_between(body, state):
 
 @kernel
 def metric(body, first, other, turn):
-    """Kinetic-metric products K11, K12, K21, K22 of the velocity fields about two pairs of points.
-
-    The points (σ1, σ2) lie on ground and interface; ``turn``: cosine and sine of θ2 - θ1.
-    """
+    """Kinetic products K11 to K22 of velocity fields about two pairs of points; ``turn`` is of θ2 - θ1."""
     c, s = turn
     ax, ay = arm1(body, first[0])
     bx, by = arm1(body, other[0])

@@ -35,10 +35,7 @@ def stuck(body, state, n1, n2):
 
 @kernel
 def _projected(body, state, n1, n2, test):
-    """Velocities after an impact that ends with the contacts (n1, n2), 0 being stuck.
-
-    ``test`` are the points where the impulses act: the pivots, unless the law of position moves them.
-    """
+    """Velocities after an impact that ends with contacts (n1, n2) and acts at the points ``test``."""
     if n1 == 0 and n2 == 0:
         return 0.0, 0.0
     turn = turn_between(body, state)
@@ -92,10 +89,7 @@ def _pushed(body, state, contacts, after, test):
 
 @kernel
 def _choice(number, c, closes):
-    """The ``number``-th state that a contact may have after an impact, open before stuck; 2 if there is none.
-
-    One that closes does not rebound on its old pivot; one that is open and does not close stays as it is.
-    """
+    """The ``number``-th state that a contact may have after an impact, open before stuck; 2 if there is none."""
     if number == 0:
         return -c if closes else (1 if c == 0 else c)
     if number == 1:

@@ -1,25 +1,7 @@
-"""How kernels are compiled, and the one place that uses the private parts of numba's compiler.
+"""How kernels are compiled, and why so: ``docs/kernels.md``, "How kernels are compiled".
 
-``kernel`` marks a function that other kernels call, ``entry_kernel`` one that Python calls.  Machine code is
-made for entry kernels alone, once per machine, and cached where the installation (or the user's cache) can be
-written.
-
-Numba would otherwise optimise every kernel by itself, once more inside each kernel that calls it, and make
-machine code for all of them, of which only that of the entry kernels is ever run; and it would take every
-kernel through two dozen passes for what these do not use (closures, reference counts, array expressions,
-parallel loops); and for each operation it would look anew among dozens of implementations for what a product
-of two numbers is.  All this costs more time than all that is needed.  So a kernel stays a piece of unoptimised
-code until an entry kernel that needs it is optimised as a whole, and what was found once is remembered until
-then.  This uses classes that numba does not document;
-with a version other than ``TESTED_NUMBA`` kernels are compiled the ordinary way, which takes longer and gives
-the same bits.
-
-Arithmetic is strictly IEEE: nothing is contracted or reordered, because the compiler would do so differently
-in each place that a kernel is inlined in, and sine and its like come from ``elementary``, not from a library.
-So bits are the same on every processor; one without multiply-adds computes those that are asked for by name
-(``fma``) by a function, exactly and slowly.  Kernels may not allocate arrays: what they are given is borrowed
-from the caller, and nothing counts references (atomic operations that took a twentieth of the time of an
-ensemble).
+``kernel`` marks a function that other kernels call, ``entry_kernel`` one that Python calls: machine code is made
+for these alone, once per machine, and cached.  Arithmetic is strictly IEEE; kernels may not allocate arrays.
 """
 
 import gc
@@ -63,11 +45,7 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 
 def inlined_kernel(function: Callable[..., Any]) -> Any:
-    """Mark ``function``, which only kernels call, as one that is always inlined.
-
-    For what is called at every contact event, since an array is handed on as seven numbers, and for straight-line
-    arithmetic that the compiler is to do for several cases at once.
-    """
+    """Mark ``function``, which only kernels call, as always inlined: what is called at every contact event."""
     return _part(function, forceinline=True)
 
 
@@ -113,11 +91,7 @@ def _digest() -> str:
 
 @contextmanager
 def compiling_alone(entry: Any) -> Iterator[None]:
-    """Hold other processes off while this one calls an entry kernel for the first time.
-
-    The first of several processes that start together compiles; the others wait and read its cache, or compile
-    too if it takes longer than ``PATIENCE_S``.
-    """
+    """Let the first of several processes compile an entry kernel; the others wait, at most ``PATIENCE_S``."""
     folder = getattr(getattr(entry, "_cache", None), "cache_path", None)
     if entry.signatures:
         yield

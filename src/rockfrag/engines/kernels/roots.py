@@ -170,10 +170,7 @@ def closing_time(q, end):
 
 @kernel
 def _first_root(q, start, end):
-    """Find where q falls through zero in (start, end], given q(end) < 0; -1.0 if it never was positive.
-
-    Newton's method kept inside a bracket.
-    """
+    """Find by Newton's method where q falls through zero in (start, end], given q(end) < 0; -1.0: nowhere."""
     low = start
     if value(q, low) <= 0.0:
         return -1.0
@@ -253,10 +250,7 @@ def graze(gap, rates):
 
 @inlined_kernel
 def guess_between(bracket):
-    """Next point of regula falsi, kept inside the bracket so that both its ends move.
-
-    ``bracket`` is (low, hold at low ≥ 0, high, hold at high < 0, which end moved last).
-    """
+    """Next point of regula falsi in (low, hold ≥ 0, high, hold < 0, which end moved), off both of its ends."""
     low, at_low, high, at_high, _ = bracket
     tau = high - at_high * (high - low) / (at_high - at_low)
     return min(max(tau, low + 4e-14), high - 4e-14)

@@ -1,10 +1,6 @@
 """One history: integrate one body through an acceleration, contact event by contact event.
 
-Between contact events the rotations follow their series; a contact event is located on the series and handled
-before the integrate goes on.  Every step size, root and decision depends on this one case alone.
-
-Nothing here needs what a web page does not have: no thread, no file, no Python object, and no mathematics but
-that of ``elementary``.
+Every step size, root and decision depends on this one case alone, and nothing needs what a web page does not have.
 """
 
 import math
@@ -351,10 +347,7 @@ def first_closing(c1, c2, series):
 
 @kernel
 def _next_contact_event(body, state, step, series, trial):
-    """Find the earliest contact event within a step: its time, NEVER if there is none, and what it is.
-
-    That is which closed contact fails (0 none), and whether ground and interface close.
-    """
+    """Time of the next contact event, or NEVER; which contact fails (0 none); whether each closes."""
     c1, c2 = state.c1, state.c2
     when, closes1, closes2 = first_closing(c1, c2, series)
     trial.c1, trial.c2 = c1, c2

@@ -1,16 +1,7 @@
-"""Taylor series of a rocking motion over one step (Moore 1966; Jorba and Zou 2005).
+"""Taylor series of a rocking motion over one step (Moore 1966; Jorba and Zou 2005), see ``docs/kernels.md``.
 
-The ground acceleration is linear over a step, so every coefficient follows exactly from those before it.  With
-V = R(θ)(vx, vy) a first moment, X = V_y and Y = V_x, the equations of motion hold only sums and products of
-series and X' = -Y θ', Y' = X θ'; a product's coefficient is (u v)_k = Σ u_j v_{k-j}, and a rate's follows from
-(k + 1) w_{k+1} = (θ'')_k.  That is the whole method; ``tests/rocking/test_taylor.py`` has it in twenty lines, and
-compares with it what stands here:
-
-- ``fill_series``: both rotations of any body in any contact state, linearised or not, for one history.
-- ``rates_of_one``, ``rates_of_two``: the same written out, without loops or branches, so that the compiler can
-  work on several cases at once.
-
-Gravity is g + a_v(t), linear over the step too, so a weight moment g Y is a product of two series as a X is.
+``fill_series`` is for both rotations of any body in any contact state, linearised or not; ``rates_of_one`` and
+``rates_of_two`` are the same written out, so that the compiler can work on several cases at once.
 """
 
 from typing import NamedTuple

@@ -532,10 +532,7 @@ def _note(p, w, time, kind, contact_events, count):
 
 @kernel
 def slip(p, w, k):
-    """Displacement along interface k of the corner that carries, from where it stood at first [m].
-
-    ``look_at`` must have been called with ``w.q``.
-    """
+    """Slip of the corner that carries along interface k [m], after ``look_at`` with ``w.q``."""
     relative = w.q[3 * k + 2] - (w.q[3 * k - 1] if k > 0 else 0.0)
     end = 1 if relative >= 0.0 else 0
     x, _, _, _, _, beyond, _ = end_of(p, w, w.q, k, end, 1)

@@ -167,10 +167,7 @@ def parts_of(system: System) -> list[Part]:
 
 
 def fill_record(p: np.void, parts: Sequence[Part], g: float) -> None:
-    """Fill geometry and masses of a column into its record.
-
-    A base that reaches beyond the face below is as wide as what lies on it: the two corners of the contact.
-    """
+    """Fill geometry and masses of a column into its record; a base is as wide as what lies on the face below."""
     p["count"], p["g"] = len(parts), g
     p["half"][0], p["tilt_cos"][:] = math.inf, 1.0
     middle, tilt = np.zeros(2), 0.0  # of the face under a body, from the middle of the lowest base

@@ -173,10 +173,7 @@ def _note_worst(w, worst, margin, k, what, way):
 
 @kernel
 def try_mode(p, w, impact, force, motion):
-    """Least margin of the mode in ``w``, in units of ``force`` and of ``motion``; needs :func:`weigh`.
-
-    It is negative where the mode is not consistent; ``w.flip`` says what mends the worst.
-    """
+    """Least margin of the mode in ``w``, negative if inconsistent, after ``weigh``; ``w.flip`` mends it."""
     w.flip[0] = -1
     m = _solve_mode(p, w)
     if m < 0:
@@ -359,10 +356,7 @@ def _only_touching(p, w):
 
 @kernel
 def _try_slips(p, w, impact, force, motion, found, count):
-    """Try the other ways to slide of the interfaces that a consistent mode changes; sticking goes before sliding.
-
-    Returned are the number of modes in the list, the mode to take, and whether another one was consistent.
-    """
+    """Try the other ways to slide of a consistent mode; modes in the list, the one to take, whether more were."""
     several = False
     for k in range(p.count):
         taken = (found >> (4 * k)) & 15

@@ -229,10 +229,7 @@ def _interface_of(w, i):
 
 @kernel
 def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
-    """Solve any mode by elimination, as :func:`solve` does those that it has no formulas for.
-
-    The first ``standing`` bodies are known to stand still; what they carry is not computed.
-    """
+    """Solve any mode by elimination above the first ``standing`` bodies, as :func:`solve` does in formulas."""
     m = _fill_equations(p, w, q, v, impact, rough, standing)
     for k in range(p.count):
         if impact:

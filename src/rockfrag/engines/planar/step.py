@@ -65,10 +65,7 @@ def start_step(p, w):
 
 @kernel
 def take_step(p, w, stretch, energy_balance):
-    """Go on by a stretch of time from q0, v0, a0 to q1, v1, a1 by Dormand and Prince's pair of order 5.
-
-    With ``energy_balance`` the work of the ground and of friction is added up.
-    """
+    """Go on from q0, v0, a0 to q1, v1, a1 by Dormand and Prince's pair of order 5; work of ground and friction."""
     h = stretch.length
     size = 3 * p.count
     for d in range(size):
@@ -141,10 +138,7 @@ def _powers(p, w, q, v, ah, av):
 
 @kernel
 def least_margin(p, w, q, v):
-    """Least of all that must stay positive until the next contact event; ``w.fails`` says what is negative.
-
-    Contact forces are those in ``w``; ``look_at`` must have been called with ``q``.
-    """
+    """Least of all that must stay positive, with the forces in ``w``; ``w.fails`` says what is negative."""
     least = math.inf
     for k in range(p.count):
         pressed = 0.0
@@ -202,10 +196,7 @@ def least_margin(p, w, q, v):
 
 @kernel
 def off_the_edge(p, w, q, k):
-    """Whether the base above interface k no longer reaches over the face below.
-
-    At the far edge a corner meets the edge against its own base, which must not pass for a closed face.
-    """
+    """Whether the base above interface k no longer reaches over the face below."""
     for end in range(2):
         _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, 1)
         if beyond < AT_EDGE * p.size - 2.0 * p.half[k]:
@@ -275,10 +266,7 @@ def first_failure(p, w, at_low, high, at_high, stretch):
 
 @kernel
 def comes_near(p, w):
-    """Whether a gap has narrowed at the start of the step and widens at its end.
-
-    ``look_at`` must have been called with ``w.q1``.
-    """
+    """Whether a gap narrowed at the start of the step and widens at its end, after ``look_at`` with ``w.q1``."""
     for k in range(p.count):
         for end in range(2):
             if w.early[k, end] < 0.0:

@@ -136,10 +136,7 @@ def fill_velocities(body, y, rows, which, n, out):
 
 @kernel
 def fill_accelerations(body, y, rows, weight, which, n, out):
-    """Fill in the accelerations that contacts would have without contact forces.
-
-    ``weight`` is the effective gravity as the body sees it.
-    """
+    """Fill in the accelerations of contacts without contact forces, with ``weight`` as the body sees it."""
     omega = solid.omega_of(y)
     spin = solid.free_spin(body, omega)
     for i in range(n):

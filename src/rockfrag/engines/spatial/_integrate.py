@@ -85,10 +85,7 @@ def lies_still(body, pull):
 
 @kernel
 def rest_ends(body, y, field, tau, dt):
-    """When in an interval the ground no longer carries the body at rest; a negative number if it does throughout.
-
-    The margin is the least of concave functions of time, so it is enough to look at the ends.
-    """
+    """When the ground no longer carries the body at rest, -1 if it does: concave margins need only ends."""
     if lies_still(body, forces.pull_at(field, dt)):
         return -1.0
     rows = rotation(y)
@@ -172,10 +169,7 @@ def add_edge(body, y, rows, pull, i, j, small, s):
 
 @kernel
 def start_rolling(body, y, x, z, pull, s):
-    """Tilt a round body from flat by RIM_START towards a direction of the base, about the point there.
-
-    What the tilt takes is the work of the ground's motion, whose pull leans over that point.
-    """
+    """Tilt a round body by RIM_START towards a direction of the base, by the work of the ground's pull."""
     size = max(norm(x, z), 1e-300)
     u = (x / size, z / size)
     a, b, c = y[0], y[1], y[2]
@@ -278,10 +272,7 @@ def go_on(s, h):
 
 @kernel
 def locate(body, tau, h, y, s):
-    """Find the first instant in a step at which a margin vanishes; leave the state there in s.new.
-
-    Returns the step up to there, and what happens.
-    """
+    """Find the first instant in a step at which a margin vanishes, with its state in s.new, and what happens."""
     below, what = step.margin(body, s.new, s)
     middle = guess_landing(body, h, y, below, s) if what == modes.LANDS else 0.0
     forces.rates(body, tau, y, s.slopes[0], s)

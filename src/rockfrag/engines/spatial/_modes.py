@@ -188,10 +188,7 @@ def still(body, y):
 
 @kernel
 def rest_margin(body, y, rows, pull):
-    """Least margin by which the ground carries the body at rest: over its base's edges, and of friction.
-
-    Positive: it rests.  In units of acceleration.
-    """
+    """Least margin of acceleration by which the body rests: over the edges of its base, and of friction."""
     level = norm(pull[0], pull[1])
     margin = -body.static * pull[2] - level
     if body.rim > 0:
@@ -388,10 +385,7 @@ def write_mode(body, y, rows, n, found, s):
 
 @kernel
 def insist(body, what, s):
-    """Change one contact where the problem of contacts gives the same mode again and again at one instant.
-
-    The one that pulls most opens, or the one that is furthest out of its cone slides.
-    """
+    """Open the contact that pulls most, or slide the one furthest out of its cone, where a mode comes again."""
     worst, value = 0, 1e300
     for i in range(s.count):
         shear = norm(s.lam[i, 0], s.lam[i, 1])

@@ -19,10 +19,7 @@ LEAST_FORCE = 1e-9
 
 @kernel
 def attempt(body, tau, h, y, s):
-    """Take a step from y to s.new; s.slopes[0] holds the rates at its beginning.  Return the error's estimate.
-
-    Afterwards s.slopes[6] and s.lam are the rates and forces at the end.
-    """
+    """Step from y to s.new, with rates in s.slopes and forces in s.lam at its end; the estimate of the error."""
     k, new = s.slopes, s.new
     for stage in range(1, STAGES):
         for i in range(solid.SIZE):

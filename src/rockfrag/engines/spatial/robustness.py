@@ -16,10 +16,7 @@ PERTURBATION = 1e-6
 
 
 def perturbed(system: System, spread: float, rng: np.random.Generator) -> tuple[System, float]:
-    """Return a body with its base moved by up to ``spread``, and an angle within it by which it is turned [rad].
-
-    Vertices, or the centre of a round base, lie up to ``spread`` times its extent beside.
-    """
+    """Return a body with its base moved by up to ``spread`` of its extent, and a turn within that angle [rad]."""
     body = system.bodies[0]
     if isinstance(body.base, Circle):
         x, y = rng.uniform(-spread, spread, 2) * 2 * body.base.radius

@@ -9,16 +9,8 @@ from typing import Any
 from obspy import Stream, UTCDateTime
 
 from rockfrag.errors import InputError
+from rockfrag.records.parsing import text_file
 from rockfrag.records.parsing.channel import Channel, cut_short_step
-from rockfrag.records.parsing.text_file import (
-    HEAD_BYTES,
-    NotAcceleration,
-    Source,
-    TextFile,
-    name_of,
-    read_head,
-    read_text,
-)
 
 _LONGEST = 1_000  # characters of a line that are looked at to recognise a format
 
@@ -37,25 +29,25 @@ class Format:
     # encoding of text that is not UTF-8, where the format's network writes in one
     encoding: str = ""
 
-    def is_format(self, source: Source) -> bool:
+    def is_format(self, source: text_file.Source) -> bool:
         """Tell whether a file is of this format, from a bounded piece of its head; never raises."""
         lines = head_lines(source)
         if not lines:
             return False
         try:
-            return self.recognise(lines, name_of(source))
+            return self.recognise(lines, text_file.name_of(source))
         except (ValueError, IndexError, KeyError, ArithmeticError):
             return False
 
     def channels(
-        self, source: Source, dt: float | None = None, cut_short: bool = False
+        self, source: text_file.Source, dt: float | None = None, cut_short: bool = False
     ) -> list[Channel]:
         """Return the acceleration channels of a file.
 
         ``dt`` [s] is for plain text that does not state its own. With ``cut_short`` a file with fewer samples than
         its header promises is read all the same, and a step of the channel says so.
         """
-        text = read_text(source, self.encoding)
+        text = text_file.read_text(source, self.encoding)
         try:
             channels = self._parsed(text, dt)
             if cut_short:
@@ -63,14 +55,14 @@ class Format:
                     # samples are read on demand, and may be too few
                     channel.samples()
             return channels
-        except NotAcceleration:
+        except text_file.NotAcceleration:
             raise
         except InputError:
             if not cut_short:
                 raise
         return [_shortened(channel) for channel in self._parsed(text.up_to_last_line_end(), dt)]
 
-    def _parsed(self, text: TextFile, dt: float | None) -> list[Channel]:
+    def _parsed(self, text: text_file.TextFile, dt: float | None) -> list[Channel]:
         try:
             channels = self.parse(text, dt) if self.wants_dt else self.parse(text)
             if not text.cut_short:
@@ -86,7 +78,7 @@ class Format:
 
     def read(
         self,
-        source: Source,
+        source: text_file.Source,
         headonly: bool = False,
         starttime: UTCDateTime | None = None,
         endtime: UTCDateTime | None = None,
@@ -111,7 +103,7 @@ def _shortened(channel: Channel) -> Channel:
     return replace(channel, npts=int(samples.size), samples=samples.copy, details=details)
 
 
-def head_lines(source: Source) -> list[str]:
+def head_lines(source: text_file.Source) -> list[str]:
     """Return the first whole lines of a text file; none for a binary file or one it cannot read."""
     if isinstance(source, (str, os.PathLike)):
         try:
@@ -119,13 +111,13 @@ def head_lines(source: Source) -> list[str]:
         except (OSError, ValueError):
             return []
         return list(_lines_of_path(str(source), state.st_mtime_ns, state.st_size))
-    return list(_lines_of(read_head(source)))
+    return list(_lines_of(text_file.read_head(source)))
 
 
 @lru_cache(maxsize=4)
 def _lines_of_path(path: str, changed: int, size: int) -> tuple[str, ...]:
     """Return the lines of a file's head; every format looks at them, one after the other."""
-    return _lines_of(read_head(path))
+    return _lines_of(text_file.read_head(path))
 
 
 def _lines_of(head: bytes) -> tuple[str, ...]:
@@ -133,7 +125,7 @@ def _lines_of(head: bytes) -> tuple[str, ...]:
         return ()
     text = head.decode("utf-8", errors="replace").removeprefix("\ufeff")
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    if len(head) >= HEAD_BYTES:
+    if len(head) >= text_file.HEAD_BYTES:
         # the last line of a head is cut anywhere
         lines = lines[:-1]
     return tuple(line[:_LONGEST].rstrip() for line in lines)

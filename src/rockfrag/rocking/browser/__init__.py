@@ -24,10 +24,7 @@ def module_bytes(name: str = "integrate") -> bytes:
 
 
 def driver_text(*names: str) -> str:
-    """Return the scripts of modules: plain text that defines ``async function rockfragKernel(bytes)``.
-
-    That of ``ensemble`` is ``rockfragEnsemble(bytes)``, that of ``space`` ``rockfragSpace(bytes)``.
-    """
+    """Return the scripts of modules, which define ``rockfragKernel``, ``rockfragEnsemble``, ``rockfragSpace``."""
     return "\n".join(
         (_FOLDER / f"{part}.js").read_text(encoding="utf-8")
         for part in ("module", *(names or ("integrate",)))
@@ -35,10 +32,7 @@ def driver_text(*names: str) -> str:
 
 
 class InPage(PureRocking):
-    """The module under the contract of engines: what a page may say that it simulates.
-
-    It is not in the registry, as it answers in a page alone.
-    """
+    """The module under the contract of engines, which answers in a page alone: what a page may simulate."""
 
     name = "page"
     meets = frozenset({Wish.TWO_BODIES, Wish.HISTORY})

@@ -1,13 +1,7 @@
-"""Ensembles of lone blocks, many cases side by side.
-
-Each lane carries one case; one pass of the vector loop advances every lane by one sample with the same
-straight-line arithmetic, and what is rare (impacts, rest, outcomes, the next case) is handled lane by lane
-between passes.  All cases need the same arithmetic, so a case lives in its lane and never waits for one,
-unlike those of stacks (``scheduler``).
+"""Ensembles of lone blocks, many cases side by side, each in a lane from its uplift to its outcome.
 
 With ψ = θc - |θ|, A the ground acceleration over g, positive where it pushes the block back down, and W gravity
-over g, 1 unless the ground moves vertically, the equation of motion on either pivot is ψ'' = p² (W sin ψ + A cos
-ψ) (Housner, 1963).  Time is counted in samples.
+over g, ψ'' = p² (W sin ψ + A cos ψ) on either pivot (Housner, 1963).  Time is counted in samples.
 """
 
 import math
@@ -105,10 +99,7 @@ def worker() -> Worker:
 
 @kernel
 def advance(lane, upward):
-    """Advance every lane to the end of its sample, and flag those with a contact event in between.
-
-    ``upward``: whether the ground moves vertically; where it does not, the weight is one and costs nothing.
-    """
+    """Advance all lanes to the end of their samples, flag contact events; if not ``upward`` the weight is one."""
     if upward:
         _advance(lane, True)
     else:
@@ -290,10 +281,7 @@ def _rates_of(lane, i):
 
 @kernel
 def _find_impacts(lane, stops):
-    """Find when the blocks of lanes come down within their steps, before any of them goes through it.
-
-    Each takes a long chain of arithmetic, and a processor works on several at once if nothing comes between them.
-    """
+    """Find the impacts of all lanes before any goes through one, as a processor works on several at once."""
     while stops != 0:
         i = lowest_bit(stops)
         stops &= stops - 1
@@ -303,10 +291,7 @@ def _find_impacts(lane, stops):
 
 @inlined_kernel
 def _contact_event(lane, i, tally):
-    """Time of the next impact in the lane's step, or NEVER; ψ and ψ' then or at the end; whether it never left.
-
-    What the response reaches on the way goes into the tally.
-    """
+    """Time of the next impact in the step, or NEVER; ψ and ψ' then or at the end; whether it never left."""
     psi = lane.was_psi[i]
     left = lane.was_left[i]
     angle = lane.angle[i]

@@ -1,13 +1,7 @@
-"""Ensembles of stacks, many cases side by side.
+"""Ensembles of stacks, many cases side by side, in lanes of two kinds (``docs/kernels.md``, "Two schedulers").
 
-There are lanes for the cases of which one part rotates and lanes for those of which both blocks do, because
-the arithmetic of the second costs twice that of the first.  One pass advances all lanes of a kind; what is
-rare (contact events, rest, outcomes, the next case) is handled case by case between passes.  A case whose contact
-event changes its kind waits for a lane of the other: there are as many cases in flight as lanes, so that one kind
-or the other can always fill its lanes.
-
-A case's numbers depend on that case alone, so neither the number of lanes nor their neighbours nor the threads
-change a bit of them.
+One pass advances all lanes of a kind; contact events, rest, outcomes and the next case are handled case by case
+between passes.  A case whose contact event changes its kind waits for a lane of the other.
 """
 
 from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, lowest_bit
@@ -17,10 +11,7 @@ from rockfrag.engines.kernels.lanes.case import LANES, QUIET, WITHIN, next_sampl
 
 @entry_kernel
 def integrate_stacks(ensemble, motions, worker, outcomes):
-    """Integrate the cases of an ensemble of stacks until none is left, with a worker for each thread.
-
-    Returned are the numbers of steps that lanes of one rotation and of two were advanced by.
-    """
+    """Integrate the cases of an ensemble of stacks, a worker a thread; steps of one rotation and of two."""
     g = ensemble.bodies[0].gravity
     upward = motions.vertical.size > 0
     for slot in range(stack_case.SLOTS):

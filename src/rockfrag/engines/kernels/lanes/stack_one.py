@@ -50,10 +50,7 @@ LANE = np.dtype(
 
 @inlined_kernel
 def _moment(hold, i, turn, alpha, square, pull):
-    """Contact moment of a closed contact at one corner.
-
-    ``turn``: sine and cosine of θ; ``pull``: acceleration of the ground, and weight.
-    """
+    """Contact moment of a closed contact at one corner; ``turn`` is of θ, ``pull`` the ground and weight."""
     ground, weight = pull
     s, c = turn
     moment = (hold[0, i] + hold[1, i] * s + hold[2, i] * c) * alpha
@@ -64,20 +61,14 @@ def _moment(hold, i, turn, alpha, square, pull):
 
 @inlined_kernel
 def _rates(g_over_inertia, turn, w, left, ground, weight):
-    """Taylor coefficients of θ' over the rest of a sample.
-
-    ``ground``: over -g, at its beginning, and what it grows by; ``weight`` as in ``taylor.pulled``.
-    """
+    """Taylor coefficients of θ' over the rest of a sample; ``ground`` is over -g, ``weight`` as in ``pulled``."""
     (gx, gy), (s, c) = g_over_inertia, turn
     return taylor.rates_of_one((gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight)
 
 
 @kernel
 def advance(lane, g, upward):
-    """Advance every lane to the end of its sample, and flag those with a contact event in between.
-
-    ``upward``: whether the ground moves vertically; where it does not, all weights are one and cost nothing.
-    """
+    """Advance all lanes to the end of their samples, flag contact events; if not ``upward`` weights are one."""
     if upward:
         _advance(lane, g, True)
     else:
@@ -86,10 +77,7 @@ def advance(lane, g, upward):
 
 @inlined_kernel
 def _advance(lane, g, upward):
-    """Advance every lane; ``upward`` is known where this is compiled into ``advance``.
-
-    Everything is stored in every lane: conditional stores cost many times as much.
-    """
+    """Advance every lane and store everything in each: conditional stores cost many times as much."""
     down = -1.0 / g
     for i in range(LANES):
         left = lane.part_left[i]
@@ -208,10 +196,7 @@ def pull_at(lane, i, tau):
 
 @kernel
 def least_hold(lanes_of_one, theta, omega, pull, g):
-    """Least contact moment of the closed contact; negative if it would have to pull.
-
-    ``pull``: acceleration of the ground, and weight.
-    """
+    """Least contact moment of the closed contact, negative if it has to pull; ``pull`` as in ``_moment``."""
     ground, weight = pull
     turn = taylor.quick_sine_cosine(theta)
     s, c = turn

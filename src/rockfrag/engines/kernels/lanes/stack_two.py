@@ -63,10 +63,7 @@ def span_of(left, part):
 
 @kernel
 def advance(lane, g, upward):
-    """Advance every lane by a step, and flag those with a contact event in it.
-
-    ``upward``: whether the ground moves vertically; where it does not, all weights are one and cost nothing.
-    """
+    """Advance every lane by a step and flag contact events in it; without ``upward`` all weights are one."""
     if upward:
         _advance(lane, g, True)
     else:
@@ -75,11 +72,7 @@ def advance(lane, g, upward):
 
 @inlined_kernel
 def _advance(lane, g, upward):
-    """Advance every lane by a step; ``upward`` is known where this is compiled into ``advance``.
-
-    A lane is QUIET at the end of its sample, and WITHIN it after a step that does not reach that end.
-    Everything is stored in every lane: conditional stores cost many times as much.
-    """
+    """Advance every lane by a step: to the end of its sample (QUIET), or WITHIN it; see ``stack_one._advance``."""
     for i in range(LANES):
         left = lane.part_left[i]
         span = span_of(left, lane.part[i])
