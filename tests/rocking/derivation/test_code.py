@@ -13,7 +13,7 @@ from rockfrag.laws import law_names
 from rockfrag.rocking import Block, MeasuredRestitution, Stack
 from rockfrag.rocking.options import system_of
 
-from ...oracle.rocking_model import LinearModel, Model
+from ...oracle.rocking_model import LinearModel, Model, pivots
 from .systems import System, error, impact_map, random_systems
 
 PIVOTS = list(itertools.product((1, -1), (1, -1)))
@@ -49,18 +49,14 @@ def stack(s: System, k: int) -> Stack:
 STACKS = [stack(S, k) for k in range(N)]
 
 
-def moments_of(terms: tuple[float, ...], q: tuple[float, float]) -> tuple[float, float]:
-    m11, m12, m22, f1, f2 = terms
-    return m11 * q[0] + m12 * q[1] + f1, m12 * q[0] + m22 * q[1] + f2
-
-
 def each(function) -> np.ndarray:
     """Collect a function of the system's number, shape (2, n)."""
     return np.array([function(k) for k in range(N)]).T
 
 
-def state(s: System, k: int) -> tuple[tuple[float, float], tuple[float, float]]:
-    return (float(s.th1[k]), float(s.th2[k])), (float(s.w1[k]), float(s.w2[k]))
+def state(s: System, k: int) -> np.ndarray:
+    """Rotations and angular velocities."""
+    return np.array([[s.th1[k], s.th2[k]], [s.w1[k], s.w2[k]]])
 
 
 def pull(k: int) -> tuple[float, float]:
@@ -74,13 +70,16 @@ def test_equations_of_motion(pivots, linear):
     true = S.get("linear_motion" if linear else "motion", *pivots)
 
     def reference(k):
-        terms = (LinearModel if linear else Model)(STACKS[k], S.g[k]).terms
-        return moments_of(terms(pivots, *state(S, k), pull(k)), (S.q1[k], S.q2[k]))
+        model = (LinearModel if linear else Model)(STACKS[k], S.g[k])
+        mass, force = model.terms(pivots, *state(S, k), pull(k))
+        return mass @ (S.q1[k], S.q2[k]) + force
 
     def kernel(k):
         p = body_record(STACKS[k].system(), linear=linear, g=S.g[k])
-        terms = kernel_equations(p, *pivots, record(pivots, *state(S, k), pull(k)))
-        return moments_of(terms, (S.q1[k], S.q2[k]))
+        found = kernel_equations(p, *pivots, record(pivots, *state(S, k), pull(k)))
+        m11, m12, m22, f1, f2 = found
+        q1, q2 = S.q1[k], S.q2[k]
+        return m11 * q1 + m12 * q2 + f1, m12 * q1 + m22 * q2 + f2
 
     assert error(each(reference), true).max() < 1e-12
     assert error(each(kernel), true).max() < 1e-12
@@ -118,7 +117,7 @@ def test_a_full_contact_persists_while_both_its_corners_are_pressed(contact, sid
     q = each(lambda k: models[k].accelerations(at, *state(stuck, k), pull(k)))
     stuck = stuck.with_(q1=q[0], q2=q[1])
     force = corner_force(stuck, contact, pivot, (at[0] or pivot, at[1] or pivot))
-    found = each(lambda k: models[k].margins(at, *state(stuck, k), pull(k))[contact, pivot])
+    found = each(lambda k: models[k].margins(at, *state(stuck, k), pull(k))[contact - 1, pivot])
     scale = (S.m2 if contact == 2 else S.m1 + S.m2) * S.g / 2
     assert error(found * scale, force).max() < 1e-11
 
@@ -135,11 +134,9 @@ def test_impact_maps(old: tuple[int, int], new: tuple[int, int]) -> None:
     if old[1] == 0:
         s = s.with_(w2=s.w1)
     true = np.array(impact_map(s, old, new))
-    pivots = (float(new[0] or 1), float(new[1] or 1))
 
-    def reference(k: int) -> tuple[float, float]:
-        theta, omega = state(s, k)
-        return Model(STACKS[k], S.g[k]).projected(pivots, new, old, theta, omega)
+    def reference(k: int) -> np.ndarray:
+        return Model(STACKS[k], S.g[k]).projected(pivots(new), new, old, *state(s, k))
 
     np.testing.assert_allclose(each(reference), true, rtol=1e-11, atol=1e-12)
 
