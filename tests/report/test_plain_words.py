@@ -12,7 +12,7 @@ from rockfrag.report.findings import ONE_MOTION
 from rockfrag.report.glossary import TERMS, terms_used
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding, Section, section_of
-from rockfrag.report.wording import agree, estimate, macros, spelled
+from rockfrag.report.wording import Macros, agree, estimate, spelled
 from rockfrag.stages.measure_selection import best_of
 
 SPEAKING = ("report", "assess", "survival", "pedestal", "fragility", "campaign", "stages")
@@ -130,7 +130,7 @@ def test_one_motion_gives_no_fragility_and_no_half_of_the_cases():
 
 
 def test_an_open_chapter_says_what_its_headline_rests_on():
-    opening = macros("rockfrag.report", "opening.j2", {}).opening
+    opening = Macros("rockfrag.report", "opening.j2").opening
     section = section_of(opening("Title", Finding("A", "b", "c")), "anchor", [])
     assert section == Section("anchor", "Title", "A.", ["b", "c"], [])
     assert section_of(opening("Title", Finding("A")), "anchor", []).paragraphs == []

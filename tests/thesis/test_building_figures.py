@@ -2,9 +2,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag_thesis.figures.building import floor_amplitudes
-from rockfrag_thesis.figures.floors import floor_hypotheses, floor_order
 from rockfrag_thesis.floor_order import HYPOTHESES
+from rockfrag_thesis.sections.building import floor_amplitudes
+from rockfrag_thesis.sections.floor_order import floor_hypotheses, floor_order
 
 PERIODS = (0.3, 0.5, 0.7)
 

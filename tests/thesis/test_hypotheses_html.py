@@ -1,8 +1,7 @@
 """The table of hypotheses as the report shows it."""
 
 from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
-from rockfrag_thesis.hypotheses_html import hypotheses_html, outcomes_by_kind
-from rockfrag_thesis.sections.hypotheses import outcomes_section
+from rockfrag_thesis.sections.hypotheses import hypotheses_html, outcomes_by_kind, outcomes_section
 
 
 def test_the_hypothesis_table_shows_kind_outcome_rule_and_error_rate(made):

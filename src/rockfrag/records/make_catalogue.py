@@ -18,8 +18,7 @@ from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.peer_search import FILE_NAME, PeerRecord, read_search_results
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import Record, motion_of, read_record
-from rockfrag.records.sources.archive import is_archive, unpacked
-from rockfrag.records.sources.folder import files_of
+from rockfrag.records.sources.archive import files_of, is_archive, unpacked
 
 _PERPENDICULAR = 5.0  # degrees by which two components may be off a right angle and still be a pair
 

@@ -35,7 +35,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import Record, motion_of, read_record
-from rockfrag.records.sources.folder import files_of
+from rockfrag.records.sources.archive import files_of
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 COLUMNS = (

@@ -17,8 +17,7 @@ from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import integers, positive_step, reals
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.time_value_pairs import pairs_of
-from rockfrag.records.parsing.timestamps import time_at
+from rockfrag.records.parsing.timestamps import pairs_of, time_at
 
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
 _FIRST_DATA = _TEXT_LINES + _INTEGER_LINES + _REAL_LINES

@@ -1,4 +1,4 @@
-"""A record format as ObsPy wants it: a test for it and a reader."""
+"""A record format as ObsPy wants it: a test for it, a reader, and what every writer checks."""
 
 import os
 from collections.abc import Callable
@@ -6,11 +6,14 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from obspy import Stream, UTCDateTime
+import numpy as np
+from numpy.typing import NDArray
+from obspy import Stream, Trace, UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.records.parsing import text_file
 from rockfrag.records.parsing.channel import Channel, cut_short_step
+from rockfrag.records.parsing.quantities import TO_SI
 
 _LONGEST = 1_000  # characters of a line that are looked at to recognise a format
 
@@ -129,3 +132,26 @@ def _lines_of(head: bytes) -> tuple[str, ...]:
         # the last line of a head is cut anywhere
         lines = lines[:-1]
     return tuple(line[:_LONGEST].rstrip() for line in lines)
+
+
+def one_trace(
+    stream: Stream, filename: str | os.PathLike[str]
+) -> tuple[Trace, NDArray[np.float64]]:
+    """Return the only trace of a stream and its samples, shape (n,)."""
+    if len(stream) != 1:
+        raise InputError(f"{filename}: a file holds one trace, not {len(stream)}; choose one.")
+    samples = np.asarray(stream[0].data, dtype=np.float64)
+    if samples.size == 0 or not np.isfinite(samples).all():
+        raise InputError(f"{filename}: a record needs at least one sample, and all of them finite.")
+    return stream[0], samples
+
+
+def stated_unit(trace: Trace, filename: str | os.PathLike[str]) -> str:
+    """Return the unit of acceleration that ``stats.rockfrag.unit`` states."""
+    unit = str(trace.stats.get("rockfrag", {}).get("unit") or "")
+    if unit not in TO_SI:
+        raise InputError(
+            f"{filename}: the trace does not state a unit of acceleration; set stats.rockfrag = "
+            "{'unit': 'g'} (or 'cm/s2', 'm/s2', …) once it is known."
+        )
+    return unit

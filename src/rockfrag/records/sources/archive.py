@@ -1,4 +1,4 @@
-"""Archives of records, as data centres send them: zip and tar, unpacked within bounds."""
+"""The files that may be records, of a folder or of an archive (zip and tar), unpacked within bounds."""
 
 import lzma
 import os
@@ -10,7 +10,7 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import Path, PurePath, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import IO
 
@@ -157,4 +157,31 @@ def _by_number(name: str) -> list[tuple[int, str]]:
     return [
         (int(part), "") if part.isdecimal() and len(part) < 19 else (-1, part)
         for part in re.split(r"(\d+)", name)
+    ]
+
+
+_NO_RECORDS = frozenset(
+    (".xml", ".pdf", ".md", ".json", ".html", ".htm", ".png", ".jpg", ".svg", ".yaml", ".yml")
+)
+"""Endings of what lies beside records: descriptions of stations, papers, pictures, facts."""
+
+
+def is_no_record(name: str) -> bool:
+    """Tell whether a file of a folder or an archive is passed over, by its name."""
+    path = PurePath(name)
+    return (
+        path.name.startswith((".", "_SearchResults", "README", "LICENSE", "LICENCE"))
+        or path.suffix.lower() in _NO_RECORDS
+    )
+
+
+def files_of(folder: str | os.PathLike[str]) -> list[Path]:
+    """Return the files below a folder that may be records, in order of name."""
+    found = sorted(path for path in Path(folder).rglob("*") if not path.is_dir())
+    inside = Path(folder)
+    return [
+        path
+        for path in found
+        if not is_no_record(path.name)
+        and not any(part.startswith(".") for part in path.relative_to(inside).parts)
     ]
