@@ -20,7 +20,7 @@ from rockfrag.engines.response import (
     with_slips,
 )
 from rockfrag.engines.steps import STEP, free_samples, step_count
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
