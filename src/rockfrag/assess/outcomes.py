@@ -13,7 +13,7 @@ from scipy import stats
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
-from rockfrag.engines.spatial.robustness import PERTURBATION
+from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.fragility.observations import Observations
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states

@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.engines.spatial import run_in_space
-from rockfrag.engines.spatial.robustness import PERTURBATION
+from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.motions.rotation import rotate
 from rockfrag.plausibility import STONE
 from rockfrag.records.motion import GroundMotion, Motion

@@ -12,7 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.engines.contract import Cases, Request
-from rockfrag.engines.planar.ensemble import contact_outcomes
+from rockfrag.engines.planar.cases import contact_outcomes
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.pedestal.cluster_means import mean_effects
 from rockfrag.records.motion import GroundMotion, Motion
