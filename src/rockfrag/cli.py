@@ -178,7 +178,7 @@ def _simulate_in_space(
     """Shake one body by both horizontal components of a record, and the vertical one if it is told."""
     from rockfrag.engines.spatial import SpatialResponse
     from rockfrag.motions.scaling import scale
-    from rockfrag.records.ground_motion import GroundMotion
+    from rockfrag.records.motion import GroundMotion
     from rockfrag.rocking import simulate
 
     block, components = _case_in_space(options, body, motion, options.vertical)
@@ -280,7 +280,7 @@ def _case_in_space(
 
 
 def _play(options: argparse.Namespace) -> int:
-    from rockfrag.records.ground_motion import GroundMotion
+    from rockfrag.records.motion import GroundMotion
     from rockfrag.report.play_page import write_play_page
 
     if not options.output.endswith(".html"):

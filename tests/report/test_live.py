@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import MOST_SAMPLES, carried, live_kernel, swept
 from rockfrag.report.live.frames import frames_svg, outlines
 from rockfrag.report.live.space import Standing, live_in_space

@@ -38,7 +38,7 @@ from numpy.typing import NDArray
 from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rockfrag.engines.contract import Cases, Request, Support, Wish, by_wishes
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system import geometry
 from rockfrag.system.system import System
 

@@ -8,8 +8,8 @@ import pandas as pd
 from scipy import optimize, special
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.checks import binned_deviance, refitted_deviance
 from rockfrag.fragility.curve_facts import REJECTED
-from rockfrag.fragility.goodness import binned_deviance, refitted_deviance
 from rockfrag.fragility.observations import (
     Floats,
     labels,

@@ -13,7 +13,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.plain_text import printable
 from rockfrag.records.catalogue import COLUMNS, is_catalogue
-from rockfrag.records.parsing.orientation import azimuth_of, is_vertical
+from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.peer_search import FILE_NAME, PeerRecord, read_search_results
 from rockfrag.records.quality_flags import quality_flags

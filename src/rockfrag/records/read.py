@@ -15,9 +15,14 @@ from rockfrag.plain_text import printable
 from rockfrag.records.formats import HEADED, plain
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.motion import Motion
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.orientation import azimuth_of, plain_name
-from rockfrag.records.parsing.quantities import ASKED_UNITS, TO_SI, asked_unit
+from rockfrag.records.parsing.format import Channel
+from rockfrag.records.parsing.quantities import (
+    ASKED_UNITS,
+    TO_SI,
+    asked_unit,
+    azimuth_of,
+    plain_name,
+)
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.quality_flags import STRONGEST_G
 from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked

@@ -15,8 +15,7 @@ from rockfrag.engines.contract import Cases
 from rockfrag.engines.steps import MOST_SAMPLES, STEP, step_count
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_array, shown, whole_number
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.system.blocks import SystemLike, as_system, is_system
 from rockfrag.system.system import uplift_ratios
 

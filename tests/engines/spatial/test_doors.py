@@ -13,8 +13,7 @@ from rockfrag.engines.spatial.body import kernel_body
 from rockfrag.engines.spatial.engine import ENGINE
 from rockfrag.engines.spatial.outcome import run_case
 from rockfrag.errors import InputError
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import AMPLITUDES_G
 from rockfrag.report.wording import number
 from rockfrag.rocking.parquet import stream_overturns

@@ -16,7 +16,7 @@ from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar import records
 from rockfrag.engines.response import FLIGHT, Response
 from rockfrag.engines.steps import STEP, free_samples, step_count
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 

@@ -10,7 +10,7 @@ from rockfrag.engines import contract
 from rockfrag.engines.contract import Wish
 from rockfrag.engines.response import ROCKING_MODES, Response, with_slips
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 
 

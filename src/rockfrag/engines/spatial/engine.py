@@ -15,7 +15,7 @@ from rockfrag.engines.spatial.body import kernel_body, later_peaks, perturbed
 from rockfrag.engines.spatial.outcome import AFTER, SpatialOutcome, history_table, run_case
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system.blocks import Block, as_system
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY

@@ -15,8 +15,7 @@ from obspy import Stream
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format, one_trace, stated_unit
+from rockfrag.records.parsing.format import Channel, Format, one_trace, stated_unit
 from rockfrag.records.parsing.fortran_sections import QUANTITIES, first_match, positive_step
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile, last_row

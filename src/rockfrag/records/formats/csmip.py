@@ -12,8 +12,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from rockfrag.records.parsing import fortran_sections
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import american_time, is_pairs_header, read_pairs

@@ -16,8 +16,7 @@ from obspy import Stream
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format, one_trace, stated_unit
+from rockfrag.records.parsing.format import Channel, Format, one_trace, stated_unit
 from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.number_fields import NumberError, parse_separated
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit

@@ -20,11 +20,10 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.formats import HEADED
-from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.column_titles import Column, column_titles
-from rockfrag.records.parsing.format import Format, one_trace
+from rockfrag.records.parsing.format import Channel, Format, one_trace
 from rockfrag.records.parsing.fortran_sections import positive_step
-from rockfrag.records.parsing.number_table import (
+from rockfrag.records.parsing.number_fields import (
     LOOKED_AT,
     NumberTable,
     are_numbers,

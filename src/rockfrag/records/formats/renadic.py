@@ -8,8 +8,7 @@ import re
 from dataclasses import replace
 from pathlib import PurePath
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import CHANNEL_END
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import american_time, read_pairs

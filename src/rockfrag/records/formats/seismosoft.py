@@ -6,8 +6,7 @@ import re
 from obspy import Stream
 
 from rockfrag.files import write_text
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format, one_trace, stated_unit
+from rockfrag.records.parsing.format import Channel, Format, one_trace, stated_unit
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import step_of_times

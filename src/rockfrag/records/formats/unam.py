@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import (
     field_width,
     header_keys,

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.records.formats.usc import place_of
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import (
     Section,
     accelerations,

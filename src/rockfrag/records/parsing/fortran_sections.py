@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
-from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import TextFile
 
 _LINE = re.compile(r"^\s*(?P<key>[^:]*?)\s*:\s*(?P<value>.*?)\s*$")

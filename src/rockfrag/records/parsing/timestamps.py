@@ -8,7 +8,7 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.plausibility import LONGEST_STEP
-from rockfrag.records.parsing.channel import Channel, cut_short_step
+from rockfrag.records.parsing.format import Channel, cut_short_step
 from rockfrag.records.parsing.fortran_sections import reals
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 from rockfrag.records.parsing.quantities import canonical_unit
