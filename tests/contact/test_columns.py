@@ -17,8 +17,7 @@ from ..oracle.contact_reference import simulate_reference
 from ..oracle.rocking_integrator import simulate_reference as rock
 from ..oracle.time_stepping import time_stepping
 from ..rocking.reference_bodies import random_motion
-from .cases import DT
-from .columns import Found, random_column, run, with_contacts
+from .cases import DT, Found, random_column, run, with_contacts
 
 
 def early(found: Found, contact_events: int = 6) -> int:

@@ -10,8 +10,14 @@ from rockfrag import read_motion
 from rockfrag.rocking import Block, Response, Stack, overturns
 
 from ..rocking.reference_bodies import T1, P, random_motion
-from .cases import DT, as_friction, random_block, random_frictions, random_stack
-from .with_friction import simulate_with_friction
+from .cases import (
+    DT,
+    as_friction,
+    random_block,
+    random_frictions,
+    random_stack,
+    simulate_with_friction,
+)
 
 seeds = st.integers(0, 10**6)
 
