@@ -11,37 +11,22 @@ import yaml
 from rockfrag.study.loading import load_any
 
 from .. import stages_in_process
+from ..workflow.conftest import CATALOGUE as COLUMNS
 
-CATALOGUE = (
-    "name,earthquake,date,station,component,magnitude,distance_km,"
-    "source,file,vertical,sha256,unit,licence\n"
-)
+CATALOGUE = COLUMNS.replace(",file,", ",file,vertical,")
 STEP, SAMPLES = 0.02, 250
 
 
 @dataclass(frozen=True)
 class Foreign:
-    """A study by somebody else.
+    """A study by somebody else; all but ``content`` is by name."""
 
-    Attributes
-    ----------
-    blocks
-        Width [cm], height [cm] and mass [kg] of each block by name.
-    configurations
-        Object and pedestal (or None) of each configuration by name, and with what it is compared, if that is said.
-    records
-        Earthquake of each record by name.
-    floors
-        Level of each floor by its label, in a building of three storeys; None for no building.
-    content
-        Keys of the configuration that differ from the usual ones.
-    """
-
-    blocks: Mapping[str, tuple[float, float, float]]
+    blocks: Mapping[str, tuple[float, float, float]]  # width [cm], height [cm], mass [kg]
+    # object, pedestal or None, and with what it is compared, if that is said
     configurations: Mapping[str, tuple[str | None, ...]]
-    records: Mapping[str, str]
-    floors: Mapping[str, int] | None = None
-    content: Mapping[str, Any] = field(default_factory=dict)
+    records: Mapping[str, str]  # their earthquakes
+    floors: Mapping[str, int] | None = None  # levels in a building of three storeys
+    content: Mapping[str, Any] = field(default_factory=dict)  # keys that differ from the usual ones
 
     @property
     def names(self) -> list[str]:
@@ -109,10 +94,8 @@ def _record(path: Path, seed: int) -> None:
     """Two columns, seconds and g: a burst of band-limited noise."""
     rng = np.random.default_rng(seed)
     time = np.arange(SAMPLES) * STEP
-    waves = np.sin(2 * np.pi * np.outer(time, rng.uniform(0.5, 4, 20)) + rng.uniform(0, 6, 20)).sum(
-        axis=1
-    )
-    burst = np.exp(-(((time - 1.5) / 0.8) ** 2)) * waves
+    phases = np.outer(time, rng.uniform(0.5, 4, 20)) * 2 * np.pi + rng.uniform(0, 6, 20)
+    burst = np.exp(-(((time - 1.5) / 0.8) ** 2)) * np.sin(phases).sum(axis=1)
     rows = [f"{t:.2f} {a:.6f}" for t, a in zip(time, 0.3 * burst / abs(burst).max(), strict=True)]
     path.write_text("\n".join(rows) + "\n")
 

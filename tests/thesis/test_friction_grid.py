@@ -15,6 +15,8 @@ from rockfrag_thesis.sensitivity_analysis.friction_grid import (
 )
 from rockfrag_thesis.sensitivity_analysis.simulated import level_amplitudes
 
+from .conftest import bursts
+
 TOWER = Block(0.124, 0.372, 2.172)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
 INTENSITY_LEVELS = 0.2 * 1.15 ** np.arange(14)
@@ -23,16 +25,7 @@ PAIRS = [(first, two) for first in (0.3, 0.4, math.inf) for two in (0.25, 0.36, 
 
 @pytest.fixture(scope="module")
 def motions() -> list[Motion]:
-    time = np.arange(250) * 0.01
-    rng = np.random.default_rng(3)
-    found = []
-    for earthquake in ("A", "B"):
-        waves = np.sin(2 * np.pi * np.outer(time, rng.uniform(0.6, 4, 12)) + rng.uniform(0, 6, 12))
-        values = waves.sum(axis=1) * np.exp(-(((time - 1.2) / 0.6) ** 2))
-        found.append(
-            Motion(values, 0.01, earthquake, {"earthquake": earthquake, "floor": "ground"})
-        )
-    return found
+    return bursts(3, "AB", "ground", 250, 1.2)
 
 
 def test_amplitudes_are_those_of_each_pair_climbed_by_itself(motions: list[Motion]) -> None:

@@ -26,6 +26,8 @@ from rockfrag_thesis.sensitivity_analysis.simulated import (
     with_references,
 )
 
+from .conftest import bursts
+
 TOWER = Block(0.124, 0.496, 2.79)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
 # so wide and heavy that neither a motion nor an impact of the object moves it
@@ -35,16 +37,7 @@ INTENSITY_LEVELS = 0.1 * 1.08 ** np.arange(32)
 
 @pytest.fixture(scope="module")
 def motions() -> list[Motion]:
-    time = np.arange(400) * 0.01
-    rng = np.random.default_rng(11)
-    found = []
-    for earthquake in ("A", "B", "C"):
-        waves = np.sin(2 * np.pi * np.outer(time, rng.uniform(0.6, 4, 12)) + rng.uniform(0, 6, 12))
-        values = waves.sum(axis=1) * np.exp(-(((time - 1.5) / 0.8) ** 2))
-        found.append(
-            Motion(values, 0.01, f"{earthquake}_GF", {"earthquake": earthquake, "floor": "GF"})
-        )
-    return found
+    return bursts(11, "ABC", "GF", 400, 1.5)
 
 
 def test_no_restitution_makes_a_difference_on_a_pedestal_that_cannot_move(motions):
