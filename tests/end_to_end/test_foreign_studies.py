@@ -1,5 +1,6 @@
 """Studies of other people's things run from configuration to report, and the report fits them."""
 
+import random
 from pathlib import Path
 
 import pandas as pd
@@ -8,6 +9,7 @@ import pytest
 from rockfrag.report.part import Results
 from rockfrag.study.loading import load_any
 
+from .asking_studies import draw, fate, wrong_limits
 from .checked_report import check_first_page, check_report
 from .studies import STUDIES, Foreign, run
 
@@ -48,3 +50,14 @@ def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
 def _pairs(study: Foreign) -> bool:
     sides = {(name, pedestal is None) for name, pedestal, *_ in study.configurations.values()}
     return any((name, True) in sides and (name, False) in sides for name, _ in sides)
+
+
+@pytest.mark.parametrize("number", (9, 15, 21))
+def test_random_studies_end_with_a_report_or_are_refused_in_a_sentence(number, tmp_path):
+    assert fate(draw(random.Random(f"0 {number}")), tmp_path)[1] == []
+
+
+def test_the_checker_sees_limits_that_do_not_hold_their_estimate():
+    table = pd.DataFrame({"theta": [0.3], "theta_lower": [0.1], "theta_upper": [0.2]})
+    assert len(wrong_limits(table)) == 1
+    assert wrong_limits(table.assign(theta_upper=0.4)) == []
