@@ -13,7 +13,7 @@ from rockfrag.assess.request import make_request, read_request
 from rockfrag.assess.words import five_lines
 from rockfrag.cli import main
 
-from ..app_forms import options_of, some_form
+from ..app_forms import options_of, settings_of, some_form
 from .browsers import QUICK_IN_ONE, Browser, barriers, put, put_file, waited
 
 FORM = {"width": "25 cm", "height": "1 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
@@ -249,3 +249,35 @@ def test_it_speaks_italian(browser, app_page):
         assert word in text
     lines = " ".join(lines_of(browser)).lower()
     assert not [word for word in ("topple", "height", "motions that", "interval ") if word in lines]
+
+
+SHAKEN = {"measure": "PGA", "level": "0.3 g", "years": "475"}
+BOX = {"width": "25 cm", "depth": "40 cm", "height": "1 m", "facing": "30"} | SHAKEN
+VASE = {"width": "25 cm", "height": "1 m", "round": True} | SHAKEN
+PICTURE = "document.getElementById('scene').toDataURL()"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("form", [BOX, VASE], ids=["box", "vase"])
+@pytest.mark.parametrize("width", [390, 1280])
+def test_the_page_says_and_shows_what_moves_in_space(browser, motions, tmp_path, form, width):
+    path = tmp_path / "assess.html"
+    write_app(motions, {key: str(value) for key, value in form.items()}, path, made=True)
+    browser.open(path, width, 1200)
+    assert browser.run(STAGE)
+    found = assess_with(make_request(settings_of(form), "form"), motions)
+    said = browser.run("document.getElementById('lines').innerText")
+    for line in five_lines(found)[:4]:
+        title, _, words = line.partition(": ")
+        if title in ("Result", "Position"):
+            assert words in said
+    waited(browser, "document.getElementById('scene').tabIndex === 0")
+    waited(browser, "document.getElementById('scene-words').textContent !== ''")
+    before = browser.run(PICTURE)
+    press = "new KeyboardEvent('keydown', {key: 'ArrowLeft'})"
+    browser.run(f"document.getElementById('scene').dispatchEvent({press})")
+    assert browser.run(PICTURE) != before
+    assert browser.run("document.documentElement.scrollWidth <= innerWidth")
+    put(browser, "#field-depth", "1 parsec")
+    waited(browser, "document.querySelector('[aria-invalid=true]') !== null")
+    assert browser.console == []

@@ -1,11 +1,15 @@
 """Studies of other people's things run from configuration to report, and the report fits them."""
 
 import random
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.records.motion import read_motion_set
+from rockfrag.records.read import read_motion
 from rockfrag.report.part import Results
 from rockfrag.study.loading import load_any
 
@@ -61,3 +65,24 @@ def test_the_checker_sees_limits_that_do_not_hold_their_estimate():
     table = pd.DataFrame({"theta": [0.3], "theta_lower": [0.1], "theta_upper": [0.2]})
     assert len(wrong_limits(table)) == 1
     assert wrong_limits(table.assign(theta_upper=0.4)) == []
+
+
+WRITTEN = Foreign(
+    blocks={"cabinet": (50.0, 160.0, 90.0)},
+    configurations={"cabinet": ("cabinet", None)},
+    records={"quake": "quake"},
+    floors={"roof": 3, "cellar": 0},
+)
+
+
+@pytest.mark.parametrize("format", ["AT2", "CSV"])
+def test_the_motions_of_all_floors_are_written(tmp_path: Path, format: str):
+    results = run(replace(WRITTEN, content={"write_motions": format}), tmp_path)
+    motions = read_motion_set(results / "motions" / "floors.parquet")
+    assert {motion.metadata["floor"] for motion in motions} == {"roof", "cellar"}
+    for motion in motions:
+        (path,) = (results / "motions" / "written").glob(f"{motion.name}.*")
+        again = read_motion(path)
+        assert again.dt == pytest.approx(motion.dt)
+        limit = 1e-6 * np.abs(motion.acceleration).max()
+        np.testing.assert_allclose(again.acceleration, motion.acceleration, atol=limit)
