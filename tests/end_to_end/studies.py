@@ -133,16 +133,6 @@ STUDIES = {
     "with and without a plinth on one upper floor": Foreign(
         blocks=MARBLE, configurations=ON_PLINTH, records=TEN, floors={"piano nobile": 2}
     ),
-    "three cabinets on floors of their own": Foreign(
-        blocks={
-            "Schrank groß": (60.0, 190.0, 90.0),
-            "Schrank klein": (50.0, 120.0, 60.0),
-            "Vitrine": (40.0, 180.0, 70.0),
-        },
-        configurations=alone("Schrank groß", "Schrank klein", "Vitrine"),
-        records={"a": "Erste", "b": "Zweite", "c": "Zweite"},
-        floors={"Keller": 0, "Dachboden": 3},
-    ),
     "pairs of which some never overturn": Foreign(
         blocks={**MARBLE, "urn": (45.0, 90.0, 80.0)},
         configurations=ON_PLINTH | alone("urn") | {"urn on plinth": ("urn", "plinth")},
@@ -196,14 +186,6 @@ STUDIES = {
     "a figure on a base on a plinth": Foreign(
         blocks=WITH_BASE,
         configurations=ON_PLINTH | {"figure on base on plinth": ("marble figure", "base|plinth")},
-        records=THREE,
-    ),
-    "a base between figure and plinth, and nothing else": Foreign(
-        blocks=WITH_BASE,
-        configurations={
-            "on plinth": ("marble figure", "plinth"),
-            "on base": ("marble figure", "base|plinth", "on plinth"),
-        },
         records=THREE,
     ),
     "arrangements compared with each other": Foreign(

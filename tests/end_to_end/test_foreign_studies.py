@@ -23,8 +23,6 @@ LONG = (
     "pairs of which some never overturn",
     "arrangements compared with each other",
     "two pedestals under one figure",
-    "a base between figure and plinth, and nothing else",
-    "three cabinets on floors of their own",
 )
 """Studies of five seconds and more, of which others have every part."""
 

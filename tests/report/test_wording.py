@@ -9,7 +9,6 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockfrag.report.findings import ONE_MOTION
 from rockfrag.report.glossary import TERMS, terms_used
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding, Section, section_of
@@ -204,11 +203,6 @@ def test_verbs_agree_with_what_is_counted():
 def test_an_estimate_on_its_own_limit_is_called_a_bound():
     assert estimate(0.0445, 0.0, 0.0445, 3) == "≤ 0.044"
     assert estimate(0.03, 0.0, 0.0445, 3) == "0.030 [open, 0.044]"
-
-
-def test_one_motion_gives_no_fragility_and_no_half_of_the_cases():
-    assert ONE_MOTION.headline == "One motion: no fragility can be given"
-    assert "half" not in ONE_MOTION.said
 
 
 def test_an_open_chapter_says_what_its_headline_rests_on():
