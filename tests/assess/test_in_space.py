@@ -13,7 +13,7 @@ from rockfrag.assess.request import make_request
 from rockfrag.assess.words import five_lines
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.errors import InputError
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system import Block
 from rockfrag.system.mesh import read_shape
 

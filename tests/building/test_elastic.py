@@ -5,8 +5,7 @@ from scipy.linalg import eigh, expm
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, RayleighDamping, ShearBuilding
 from rockfrag.building.model import stiffnesses_for_period as for_period
-from rockfrag.building.modes import find_modes
-from rockfrag.building.response import respond_elastically
+from rockfrag.building.response import find_modes, respond_elastically
 from rockfrag.motions.spectra import oscillator_response
 from rockfrag.records.motion import Motion
 

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from rockfrag.building.modes import find_modes
+from rockfrag.building.response import find_modes
 from rockfrag.building.settings import make_building, read_building
 from rockfrag.errors import InputError
 

@@ -14,6 +14,7 @@ from rockfrag.system.contact import Contact
 
 from ..oracle.cases import drum_column, drum_pulse
 from ..oracle.contact_reference import simulate_reference
+from ..oracle.rocking_integrator import simulate_reference as rock
 from ..oracle.time_stepping import time_stepping
 from ..rocking.reference_bodies import random_motion
 from .cases import DT
@@ -232,6 +233,17 @@ def test_histories_of_three_bodies_are_those_of_the_plain_reference(columns: int
         np.testing.assert_allclose(found.slip[:n], plain.slip[:n], atol=2e-6)
         compared += len(times) > 7
     assert compared >= 1
+
+
+def test_rough_columns_rock_as_the_plain_integrator_of_pure_rocking_says() -> None:
+    rng = np.random.default_rng(9)
+    for bodies in (3, 4):
+        column, motion = random_column(rng, bodies), random_motion(rng)
+        found = run(column.system(), motion)
+        n = early(found, 5)
+        assert 20 < n < len(found.time)
+        plain = rock(column, motion, DT, duration=n * DT)
+        np.testing.assert_allclose(found.theta[:n], plain.theta[:n], atol=1e-6)
 
 
 def outcomes_beside_stepping(cases, bodies, seed):

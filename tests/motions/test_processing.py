@@ -10,9 +10,8 @@ from scipy.signal import butter, sosfilt, sosfreqz
 
 from rockfrag import motions as m
 from rockfrag.errors import InputError
-from rockfrag.motions import conditioning, filtering, intensity, processing, scaling, selection
-from rockfrag.records import integration
-from rockfrag.records.motion import Motion, read_motion_set, write_motion_set
+from rockfrag.motions import conditioning, filtering, intensity, processing, scaling
+from rockfrag.records.motion import Motion, integrate, read_motion_set, write_motion_set
 from rockfrag.units import GRAVITY as G
 
 
@@ -248,7 +247,7 @@ def test_filtered_motion_with_pads_comes_to_rest(record):
     # 1.5 × order / corner seconds of zeros in all (Converse & Brady)
     motion = Motion(record.acceleration + 0.02, 0.01)
     filtered = filtering.highpass(conditioning.pad(motion, 30.0, 30.0), 0.1, 4)
-    velocity, displacement = integration.integrate(filtered.acceleration, filtered.dt)
+    velocity, displacement = integrate(filtered.acceleration, filtered.dt)
     assert abs(velocity[-1]) < 1e-3 * np.abs(velocity).max()
     assert abs(displacement[-1]) < 0.02 * np.abs(displacement).max()
 
@@ -327,7 +326,7 @@ def test_interpolating_keeps_the_motion(record):
 
 
 def test_strong_part_holds_its_share_of_the_intensity(record):
-    strong = selection.strong_part(record, 0.05, 0.95)
+    strong = conditioning.strong_part(record, 0.05, 0.95)
     assert intensity.arias(strong) == pytest.approx(0.9 * intensity.arias(record), rel=0.02)
     assert len(strong.time) * 0.01 == pytest.approx(
         intensity.significant_duration(record), abs=0.03
@@ -336,14 +335,14 @@ def test_strong_part_holds_its_share_of_the_intensity(record):
 
 def test_bracketed_part_begins_and_ends_at_the_threshold():
     motion = Motion(np.array([0.0, 0.1, 0.6, -0.1, -0.5, 0.3]) * G, 0.01)
-    kept = selection.bracketed_part(motion, 0.5).acceleration / G
+    kept = conditioning.bracketed_part(motion, 0.5).acceleration / G
     np.testing.assert_allclose(kept, [0.6, -0.1, -0.5])
 
 
 def test_trim_keeps_both_ends_of_its_window():
     motion = Motion(np.arange(101.0), 0.1)
-    assert selection.trim(motion, 2.0, 3.0).acceleration.tolist() == list(range(20, 31))
-    assert selection.trim(motion, 0.0, 10.0).acceleration.size == 101
+    assert conditioning.trim(motion, 2.0, 3.0).acceleration.tolist() == list(range(20, 31))
+    assert conditioning.trim(motion, 0.0, 10.0).acceleration.size == 101
 
 
 def test_scaling_reaches_its_target(record):
@@ -359,6 +358,8 @@ def test_scaling_reaches_its_target(record):
 def test_start_time_moves_with_the_first_sample():
     motion = Motion(np.ones(1001), 0.01, metadata={"start_time": "2016-11-13T11:03:00.000000Z"})
     assert conditioning.pad(motion, 1.5).metadata["start_time"] == "2016-11-13T11:02:58.500000Z"
-    assert selection.trim(motion, 2.25, 4.0).metadata["start_time"] == "2016-11-13T11:03:02.250000Z"
+    assert (
+        conditioning.trim(motion, 2.25, 4.0).metadata["start_time"] == "2016-11-13T11:03:02.250000Z"
+    )
     unknown = Motion(np.ones(1001), 0.01, metadata={"start_time": None})
-    assert selection.trim(unknown, 2.25, 4.0).metadata["start_time"] is None
+    assert conditioning.trim(unknown, 2.25, 4.0).metadata["start_time"] is None

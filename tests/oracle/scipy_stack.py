@@ -1,23 +1,21 @@
-"""A statue on a pedestal by scipy's ``solve_ivp``, the counterpart of ``competitors.scipy_lone``.
+"""Bodies on each other by scipy's ``solve_ivp``, the counterpart of ``competitors.scipy_lone``.
 
 The mechanics (contact states, impacts, what a closed contact can hold) is that of
-`rocking_model`.
+`rocking_integrator`.
 """
 
 import math
 from collections.abc import Callable
-from itertools import pairwise
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from rockfrag.system.blocks import Body, Stack
+from rockfrag.system.blocks import Body
 
 from .competitors import SLOWEST_IMPACT, Array, G
-from .rocking_integrator import LONGEST_TAIL
-from .rocking_model import Model, State
+from .rocking_integrator import LONGEST_TAIL, Run
+from .rocking_model import Model, rates
 
-Ground = Callable[[float], float]
 Watch = Callable[[float, Array], float]
 
 SLACK = 1e-10
@@ -27,120 +25,84 @@ JUST_OPEN = 1e-300
 """A gap at the start of an integration [rad]: where a contact has just opened no closing is found."""
 
 
-def piecewise_linear(values: list[float], dt: float) -> Ground:
-    """Acceleration of the ground [m/s²], zero after the last sample."""
-    slopes = [b - a for a, b in pairwise(values)]
+class _WholeRun(Run):
+    """A response whose time runs on through all samples."""
 
-    def ground(t: float) -> float:
-        x = t / dt
+    def ground(self, t: float) -> list[float]:
+        """Accelerations of the ground, linear between samples and zero after the last [m/s²]."""
+        x = t / self.dt
         k = int(x)
-        return values[k] + (x - k) * slopes[k] if k < len(slopes) else 0.0
-
-    return ground
+        early, late = self.samples[k : k + 2] if k + 1 < len(self.samples) else (0.0, 0.0)
+        return [early + (x - k) * (late - early), 0.0]
 
 
 def rest_interval(model: Model) -> tuple[float, float]:
     """Accelerations of the ground [m/s²] between which what is at rest stays so."""
-    still, pushed = (model.margins((0, 0), (0.0, 0.0), (0.0, 0.0), (a, G)) for a in (0.0, 1.0))
+    rest = np.zeros(model.count)
+    still, pushed = (model.margins((0,) * rest.size, rest, rest, (a, G)) for a in (0.0, 1.0))
     limits = [still[key] / (still[key] - pushed[key]) for key in still]
     return max(a for a in limits if a < 0), min(a for a in limits if a > 0)
 
 
-def watches(model: Model, state: State, start: float, ground: Ground) -> list[Watch]:
-    """Contact events of a contact state that starts at ``start``: at ground and interface, and a fall."""
+def watches(run: Run, start: float) -> list[Watch]:
+    """What must stay positive from ``start`` on: every contact, open or closed, and nothing lies."""
 
     def gap(t: float, y: Array, i: int) -> float:
-        theta = y.tolist()
-        return state[i] * (theta[i] - i * theta[0]) if t > start else JUST_OPEN
+        return run.state[i] * (y[i] - (y[i - 1] if i else 0.0)) if t > start else JUST_OPEN
 
     def hold(t: float, y: Array) -> float:
-        th1, th2, w1, w2 = y.tolist()
-        pull = ground(t), G
-        return min(model.margins(state, (th1, th2), (w1, w2), pull).values()) + SLACK
+        margins = run.model.margins(run.state, *y.reshape(2, -1), (run.ground(t)[0], G))
+        return SLACK + min(margins.values())
 
     def falls(t: float, y: Array) -> float:
-        th1, th2, _, _ = y.tolist()
-        return math.pi / 2 - max(abs(th1), abs(th2), abs(th2 - th1))
+        theta = y[: run.model.count]
+        return math.pi / 2 - max(np.abs(theta).max(), np.abs(rates(theta)).max())
 
     contact_events: list[Watch] = [
-        (lambda t, y, i=i: gap(t, y, i)) if state[i] else hold for i in (0, 1)
+        (lambda t, y, i=i: gap(t, y, i)) if c else hold for i, c in enumerate(run.state)
     ]
     for contact_event in (*contact_events, falls):
         contact_event.terminal, contact_event.direction = True, -1  # type: ignore[attr-defined]
     return [*contact_events, falls]
 
 
-def landed(model, state, shut, theta, omega, a):
-    """Contact state and velocities after the contacts ``shut`` have closed, without chatter."""
-    closing = (state[0] if 0 in shut else 0, state[1] if 1 in shut else 0)
-    new, after, _ = model.impact(state, closing, theta, omega)
-    while True:
-        q1, q2 = model.accelerations(new, theta, after, (a, G))
-        parts, pulls = (after[0], after[1] - after[0]), (q1, q2 - q1)
-        weak = [
-            (closing[i] or not state[i])
-            and abs(parts[i]) < SLOWEST_IMPACT
-            and new[i] * pulls[i] < 0
-            for i in (0, 1)
-        ]
-        if not any(weak):
-            return new, after
-        new = (0 if weak[0] else new[0], 0 if weak[1] else new[1])
-        after = model.projected((new[0] or 1, new[1] or 1), new, state, theta, omega)
-
-
 def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool = False) -> bool:
-    """Statue on pedestal by ``solve_ivp``, DOP853, rtol 1e-10, impacts, openings and falls as contact events.
+    """Whether bodies fall, by ``solve_ivp``, DOP853, rtol 1e-10, impacts, openings and falls as contact events.
 
     ``by_sample`` as in ``scipy_lone``.
     """
-    assert isinstance(body, Stack)
     model = Model(body, G)
-    values = [*acceleration.tolist(), 0.0]
-    ground = piecewise_linear(values, dt)
+    values = np.append(acceleration, 0.0)
+    run = _WholeRun(model, np.array([values, 0 * values]), dt, SLOWEST_IMPACT)
+    run.samples = values.tolist()
     low, high = rest_interval(model)
-    moves = (np.array(values) < low) | (np.array(values) > high)
-    end = (len(values) - 1) * dt + LONGEST_TAIL / model.frequency
-    t, state, theta, omega = 0.0, (0, 0), (0.0, 0.0), (0.0, 0.0)
+    moves = (values < low) | (values > high)
+    end = (values.size - 1) * dt + LONGEST_TAIL / model.frequency
+    t = 0.0
     while t < end:
-        if state == (0, 0) and low <= ground(t) <= high:
+        if run.resting() and low <= run.ground(t)[0] <= high:
             k = int(t / dt) + 1
             later = np.flatnonzero(moves[k:])
             if not later.size:
                 return False
             k += int(later[0])
             before, after = max(t, (k - 1) * dt), k * dt
-            a0, a1 = ground(before), values[k]
+            a0, a1 = run.ground(before)[0], values[k]
             limit = high if a1 > high else low
             t = before + (after - before) * (limit - a0) / (a1 - a0) + 1e-9
-        state = model.settled(state, theta, omega, (ground(t), G))
-        if state == (0, 0):
+        run.apply(t, set())
+        if run.resting():
             continue
-
-        def rates(t: float, y: Array, state: State = state) -> tuple[float, float, float, float]:
-            th1, th2, w1, w2 = y.tolist()
-            pull = ground(t), G
-            return w1, w2, *model.accelerations(state, (th1, th2), (w1, w2), pull)
-
         # from a contact event just before a sample on to the one after
         stop = (int(t / dt + 1e-7) + 1) * dt if by_sample else end
-        run = solve_ivp(
-            rates, (t, stop), np.array([*theta, *omega]), method="DOP853", rtol=1e-10, atol=1e-13,
-            first_step=min(dt, stop - t), max_step=dt, events=watches(model, state, t, ground),
+        found = solve_ivp(
+            run.rates, (t, stop), run.y, method="DOP853", rtol=1e-10, atol=1e-13,
+            first_step=min(dt, stop - t), max_step=dt, events=watches(run, t),
         )  # fmt: skip
-        if run.t_events[2].size:
+        *contact_events, falls = found.t_events
+        if falls.size:
             return True
-        t = float(run.t[-1])
-        th1, th2, w1, w2 = run.y[:, -1].tolist()
-        gaps, parts = (th1, th2 - th1), (w1, w2 - w1)
-        shut = [
-            i
-            for i, c in enumerate(state)
-            if c and (run.t_events[i].size or (c * gaps[i] < 1e-13 and c * parts[i] < 0))
-        ]
-        th1 = 0.0 if 0 in shut or state[0] == 0 else th1
-        theta = (th1, th1 if 1 in shut or state[1] == 0 else th2)
-        omega = (w1, w1 if state[1] == 0 else w2)
-        if shut:
-            state, omega = landed(model, state, shut, theta, omega, ground(t))
+        t = float(found.t[-1])
+        run.take(found.y[:, -1])
+        run.apply(t, {("gap", i) for i, e in enumerate(contact_events) if e.size and run.state[i]})
     return False

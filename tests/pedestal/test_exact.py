@@ -5,7 +5,6 @@ import pytest
 from scipy import stats
 
 from rockfrag.pedestal import permutation
-from rockfrag.pedestal.bootstrap import rank_probabilities
 from rockfrag.pedestal.cluster_means import (
     contrast,
     mean_effect,
@@ -15,6 +14,7 @@ from rockfrag.pedestal.cluster_means import (
 )
 from rockfrag.pedestal.paired_tests import pair_tests
 from rockfrag.pedestal.permutation import leave_one_earthquake_out, sign_flip_test
+from rockfrag.pedestal.study import rank_probabilities
 
 
 def test_t_on_units_is_the_one_sample_t_test():

@@ -13,6 +13,7 @@ from rockfrag.report.glossary import TERMS, terms_used
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding, Section, section_of
 from rockfrag.report.wording import (
+    Macros,
     agree,
     amplitude,
     counted,
@@ -20,7 +21,6 @@ from rockfrag.report.wording import (
     estimate,
     estimates,
     listed,
-    macros,
     number,
     of_all,
     probability,
@@ -206,7 +206,7 @@ def test_an_estimate_on_its_own_limit_is_called_a_bound():
 
 
 def test_an_open_chapter_says_what_its_headline_rests_on():
-    opening = macros("rockfrag.report", "opening.j2", {}).opening
+    opening = Macros("rockfrag.report", "opening.j2").opening
     section = section_of(opening("Title", Finding("A", "b", "c")), "anchor", [])
     assert section == Section("anchor", "Title", "A.", ["b", "c"], [])
     assert section_of(opening("Title", Finding("A")), "anchor", []).paragraphs == []

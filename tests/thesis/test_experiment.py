@@ -9,8 +9,7 @@ from rockfrag_thesis.hypotheses import COLUMNS, HYPOTHESES, Evidence, Finding, h
 from rockfrag_thesis.hypotheses.earthquakes import rank_correlation
 from rockfrag_thesis.hypotheses.hypothesis import Kind, outcome
 from rockfrag_thesis.hypotheses.orders import ORDERS, margin
-from rockfrag_thesis.hypotheses_html import hypotheses_html, outcomes_by_kind
-from rockfrag_thesis.sections.hypotheses import outcomes_section
+from rockfrag_thesis.sections.hypotheses import hypotheses_html, outcomes_by_kind, outcomes_section
 
 FOR, AGAINST, OPEN = Finding.FOR, Finding.AGAINST, Finding.OPEN
 

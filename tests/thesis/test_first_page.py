@@ -9,12 +9,12 @@ from rockfrag.report.page import render
 from rockfrag.report.part import Answer
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.stages.pedestal import pedestal_tables
-from rockfrag_thesis.first_page import first_page
 from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
-from rockfrag_thesis.pattern import perturbations_by_floor
+from rockfrag_thesis.hypotheses.evidence import THESIS_BODIES
+from rockfrag_thesis.sections.first_page import first_page
+from rockfrag_thesis.sections.signs import perturbations_by_floor
 from rockfrag_thesis.sensitivity_analysis.explain import explain
 from rockfrag_thesis.sensitivity_analysis.simulated import REFERENCE
-from rockfrag_thesis.specimens import THESIS_BODIES
 
 from ..end_to_end.checked_report import open_words
 from .conftest import build

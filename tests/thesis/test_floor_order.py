@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag_thesis.figures.building import floor_amplitudes
-from rockfrag_thesis.figures.floors import floor_hypotheses, floor_order
 from rockfrag_thesis.floor_order import HYPOTHESES, floor_margins
 from rockfrag_thesis.hypotheses.floors import FLOORS
+from rockfrag_thesis.sections.building import floor_amplitudes
+from rockfrag_thesis.sections.floor_order import floor_hypotheses, floor_order
 
 TOWERS = {"T1": 0.5, "T2": 0.4, "T3": 0.3}
 

@@ -9,8 +9,7 @@ import pytest
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Stack, overturns
-from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.steps import GeometricSteps
+from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag_thesis.sensitivity_analysis.friction_grid import (
     friction_effects,
     friction_ratios,

@@ -149,10 +149,8 @@ def row(factor_1: str, factor_2: str = "", **given) -> dict[str, object]:
 
 
 def asking(wanted: dict[str, float]) -> SimpleNamespace:
-    sensitivity_analysis = SimpleNamespace(wanted_percent=wanted)
-    return SimpleNamespace(
-        added={NAME: Settings(sensitivity_analysis=sensitivity_analysis)}, has_pairs=True
-    )
+    settings = Settings(sensitivity_analysis={"wanted_percent": wanted})
+    return SimpleNamespace(added={NAME: settings}, has_pairs=True)
 
 
 def section(rows: list[dict[str, object]], wanted: dict[str, float]):

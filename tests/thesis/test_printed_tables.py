@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from rockfrag_thesis.specimens import THESIS_BODIES
 
 from rockfrag.errors import InputError
 from rockfrag.study.configurations import read_specimens
@@ -21,7 +22,6 @@ from rockfrag_thesis.printed_tables import (
     uplift_accelerations,
     uplift_table,
 )
-from rockfrag_thesis.specimens import THESIS_BODIES
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"
 

@@ -11,11 +11,11 @@ from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Stack, simulate
 from rockfrag_thesis.hypotheses import HYPOTHESES, Undecidable, theory_table
 from rockfrag_thesis.hypotheses.blocks import perturbed
+from rockfrag_thesis.hypotheses.evidence import THESIS_BODIES
 from rockfrag_thesis.hypotheses.hypothesis_table import THEORY
 from rockfrag_thesis.hypotheses.setting import bisect, make_setting, moves, starts_at
 from rockfrag_thesis.hypotheses.spectra import dispersion_ratio, exchanges
 from rockfrag_thesis.hypotheses.stacks import LIFTED, SETTLES, STILL, after_impacts, free_fall
-from rockfrag_thesis.specimens import THESIS_BODIES
 
 
 def made_motion(seed: int) -> Motion:

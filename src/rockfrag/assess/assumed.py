@@ -1,10 +1,8 @@
 """What was not given and had to be assumed, with what depends on it; the words stand in ``assumed.j2``."""
 
 from dataclasses import dataclass
-from functools import cache
-from typing import Any
 
-from rockfrag.report.wording import PART, macros, one_line
+from rockfrag.report.wording import PART, Macros, one_line
 
 
 @dataclass(frozen=True)
@@ -18,12 +16,10 @@ class Assumption:
     sources: tuple[str, ...] = ()
 
 
-@cache
-def _sentences() -> Any:
-    return macros("rockfrag.assess", "assumed.j2", {})
+_says = Macros("rockfrag.assess", "assumed.j2")
 
 
 def assume(what: str, *sources: str, **about: object) -> Assumption:
     """Return an assumption as a macro says it, shortly and in a sentence; see :class:`Assumption`."""
-    short, words = getattr(_sentences(), what)(**about).split(PART)
+    short, words = getattr(_says, what)(**about).split(PART)
     return Assumption(one_line(short), one_line(words), sources)

@@ -16,7 +16,7 @@ from rockfrag.assess.inventory import Inventory, best_change, inventory_table, j
 from rockfrag.assess.joint import JointRisk
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.risk import probability_in
-from rockfrag.assess.words import estimate_words, mitigation_words, sentences
+from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, one_panel, plain_log
 from rockfrag.files import write_table, write_text
 from rockfrag.report.page import Column, table_html
@@ -68,7 +68,7 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
     """Return the page as HTML, which loads nothing from outside."""
     first = inventory.found[0].request
     years, valued = first.years, math.isfinite(first.value)
-    says = sentences("gallery.j2")
+    says = gallery_says
     numbers = figure_of(says.numbers_figure(years), "numbers", lambda: numbers_figure(joint, years))
     losses = figure_of(says.losses_figure(years), "losses", lambda: losses_figure(joint, years))
     count = len(inventory.found)
@@ -111,7 +111,7 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
         "The objects, the one that adds most first; each change is simulated as a body of its own."
     )
     table = table_html(pd.DataFrame(rows), RANKING, caption, "inventory.csv")
-    text = sentences("gallery.j2").ranking(joint.objects.iloc[0], mean)
+    text = gallery_says.ranking(joint.objects.iloc[0], mean)
     return section_of(text, "ranking", [table])
 
 
@@ -130,14 +130,14 @@ def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
     rate = joint.numbers["annual_rate"].iloc[-1]
     years = float(f"{1 / rate:.2g}") if rate else 0.0
     table = table_html(numbers, columns, "How many objects topple in one earthquake.")
-    text = sentences("gallery.j2").numbers(most, years)
+    text = gallery_says.numbers(most, years)
     return section_of(text, "numbers", [table, *figures])
 
 
 def _correlation(joint: JointRisk) -> Section:
     apart = joint.correlation.to_numpy()[np.triu_indices(len(joint.correlation), 1)]
     known = apart[np.isfinite(apart)]
-    says = sentences("gallery.j2")
+    says = gallery_says
     text = says.correlation_figure()
     figure = figure_of(text, "correlation", lambda: correlation_figure(joint))
     text = says.correlation(np.median(known) if known.size else None)

@@ -15,7 +15,7 @@ from rockfrag.assess.joint import JointRisk, joint_risk
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.request import Request, make_request
-from rockfrag.assess.words import mitigation_words, sentences
+from rockfrag.assess.words import gallery_says, mitigation_words
 from rockfrag.errors import InputError
 from rockfrag.files import check_name, file_name
 from rockfrag.report.wording import one_line, said
@@ -247,7 +247,7 @@ def joint_lines(inventory: Inventory) -> list[str]:
     joint, first = inventory.joint, inventory.found[0]
     if joint is None:
         return []
-    says, valued = sentences("gallery.j2"), math.isfinite(first.request.value)
+    says, valued = gallery_says, math.isfinite(first.request.value)
     rows = joint.numbers.to_dict("records")
     lines = said(says.together(rows, first.request.years))
     lines += said(says.adds_most(joint, joint.objects.iloc[0], valued))
@@ -261,7 +261,7 @@ def inventory_lines(inventory: Inventory) -> list[str]:
     """One line an object, the one most at risk first."""
     first = inventory.found[0]
     longest = max(len(found.request.name) for found in inventory.found)
-    says = sentences("gallery.j2")
+    says = gallery_says
     lines = [one_line(says.head(first, len(inventory.found), len(inventory.faults)))]
     for i, found in enumerate(inventory.found, start=1):
         name, place = found.request.name, found.request.place.words

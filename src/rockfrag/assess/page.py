@@ -3,7 +3,6 @@
 import os
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -21,7 +20,7 @@ from rockfrag.assess.words import (
     fraction_words,
     headline,
     mitigation_words,
-    sentences,
+    page_says,
     value_words,
 )
 from rockfrag.files import file_name, write_text
@@ -56,14 +55,14 @@ def page_of(found: Assessment) -> str:
             _mitigations(found),
             _arrangements(found),
             _sure(found),
-            section_of(_says().assumed(found), "assumed", []),
+            section_of(page_says.assumed(found), "assumed", []),
             *([_rules(found)] if found.rules else []),
             _levels(found),
             _motions(found),
             _glossary(found),
         ],
         title=headline(found),
-        lead=one_line(_says().lead(found)),
+        lead=one_line(page_says.lead(found)),
         provenance={
             "Program": f"rockfrag {version('rockfrag')}",
             "Motions": found.motions.words,
@@ -73,19 +72,14 @@ def page_of(found: Assessment) -> str:
     )
 
 
-def _says() -> Any:
-    """The macros of ``page.j2``."""
-    return sentences("page.j2")
-
-
 def _answer(found: Assessment) -> Answer:
-    figure = _says().fractions_figure(found)
+    figure = page_says.fractions_figure(found)
     return Answer(
         asked="Does it topple, how probable is that, and what helps?",
-        sentences=[finding_of(line) for line in said(_says().findings(found))],
+        sentences=[finding_of(line) for line in said(page_says.findings(found))],
         figure=figure_of(figure, "fractions", lambda: fractions_figure(found)),
-        rests_on=said(_says().rests_on(found)),
-        could_change=said(_says().could_change(found)),
+        rests_on=said(page_says.rests_on(found)),
+        could_change=said(page_says.could_change(found)),
         questions=[
             ("What helps?", "mitigations"),
             ("How does it stand best?", "arrangements"),
@@ -109,7 +103,7 @@ def _mitigations(found: Assessment) -> Section:
         "Each change is simulated with the same motions and compared with the object as it stands.",
         ["With it"],
     )
-    return section_of(_says().mitigations(found), "mitigations", [table])
+    return section_of(page_says.mitigations(found), "mitigations", [table])
 
 
 def _arrangements(found: Assessment) -> Section:
@@ -121,15 +115,15 @@ def _arrangements(found: Assessment) -> Section:
         "The same object under the same motions.",
         ["Estimate"],
     )
-    return section_of(_says().arrangements(found), "arrangements", [table])
+    return section_of(page_says.arrangements(found), "arrangements", [table])
 
 
 def _sure(found: Assessment) -> Section:
     parts: list[Markup | FigureSpec] = [_sources(found), _effects(found)]
     if found.main.sources:
-        text = _says().sources_figure()
+        text = page_says.sources_figure()
         parts.insert(0, figure_of(text, "sources", lambda: sources_figure(found)))
-    return section_of(_says().sure(found), "sure", parts)
+    return section_of(page_says.sure(found), "sure", parts)
 
 
 def _sources(found: Assessment) -> Markup:
@@ -181,7 +175,7 @@ def _rules(found: Assessment) -> Section:
         Column("unsafe", "Motions that topple it earlier", numeric=True),
     )
     caption = "Rules held against every motion that topples the object."
-    return section_of(_says().rules(), "rules", [table_html(table, columns, caption)])
+    return section_of(page_says.rules(), "rules", [table_html(table, columns, caption)])
 
 
 def _levels(found: Assessment) -> Section:
@@ -224,7 +218,7 @@ def _levels(found: Assessment) -> Section:
         ]
         columns.append(Column("rate", "Return period [years]", numeric=True))
     caption = "Motions that make it rock, and that topple it, by the level of shaking."
-    return section_of(_says().levels(found), "levels", [table_html(table, columns, caption)])
+    return section_of(page_says.levels(found), "levels", [table_html(table, columns, caption)])
 
 
 def _years(period: float) -> str:
@@ -238,7 +232,7 @@ def _glossary(found: Assessment) -> Section:
     table = text_table(
         {"Word": words, "What it means here": meanings}, "Words and abbreviations of this page."
     )
-    return section_of(_says().glossary(), "glossary", [table])
+    return section_of(page_says.glossary(), "glossary", [table])
 
 
 def _motions(found: Assessment) -> Section:
@@ -262,4 +256,4 @@ def _motions(found: Assessment) -> Section:
         Column("first", f"Topples it from [{found.measure.unit}]", 2),
     )
     caption = "The motions that need the least shaking."
-    return section_of(_says().motions(found), "motions", [table_html(table, columns, caption)])
+    return section_of(page_says.motions(found), "motions", [table_html(table, columns, caption)])

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from functools import cache
 from typing import Any
 
 from rockfrag.assess.answer import Assessment
@@ -13,7 +12,7 @@ from rockfrag.assess.outcomes import LARGEST_FACTOR
 from rockfrag.assess.risk import LEVEL, Estimate
 from rockfrag.assess.scale import SCALE_WORDS, classes, step_of
 from rockfrag.assess.sources import SOURCES, parts_of
-from rockfrag.report.wording import macros, one_line, said
+from rockfrag.report.wording import Macros, one_line, said
 
 NAMES: Mapping[str, str] = {name: source.words for name, source in SOURCES.items()}
 """Sources of uncertainty and assumptions as a reader may know them."""
@@ -140,45 +139,51 @@ def _largest_sources(found: Assessment) -> list[str]:
     return named[:MOST_SOURCES]
 
 
-@cache
-def sentences(template: str = "words.j2") -> Any:
-    """The macros of a template: ``words.j2`` of the answer, ``page.j2`` of its page, ``gallery.j2``."""
-    words = (
-        *(estimate_words, mitigation_words, step_of),
-        *(all_assumed, classes, does_not_move, fraction_words, narrowed, not_decidable),
-        *(range_words, short_assumptions, value_words),
-    )
-    return macros(
-        "rockfrag.assess",
-        template,
-        {function.__name__: function for function in words}
-        | {"LEVEL": LEVEL, "MANY": MANY, "FEW": FEW, "SCALE_WORDS": SCALE_WORDS}
-        | {"LARGEST_FACTOR": LARGEST_FACTOR, "exp": math.exp, "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS}
-        | {"MEASUREMENTS": MEASUREMENTS, "influential": _influential, "limits": _limits}
-        | {"largest_sources": _largest_sources},
-    )
+def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
+    """A change and what it does to the risk, or to the shaking that the object bears."""
+    return one_line(says.mitigation(found, mitigation))
+
+
+_WORDS: dict[str, Any] = {
+    "LEVEL": LEVEL,
+    "MANY": MANY,
+    "FEW": FEW,
+    "SCALE_WORDS": SCALE_WORDS,
+    "LARGEST_FACTOR": LARGEST_FACTOR,
+    "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS,
+    "MEASUREMENTS": MEASUREMENTS,
+    "exp": math.exp,
+    "influential": _influential,
+    "limits": _limits,
+    "largest_sources": _largest_sources,
+}
+_FUNCTIONS = (
+    *(all_assumed, classes, does_not_move, estimate_words, fraction_words, mitigation_words),
+    *(narrowed, not_decidable, range_words, short_assumptions, step_of, value_words),
+)
+_WORDS |= {function.__name__: function for function in _FUNCTIONS}
+
+says, page_says, gallery_says = (
+    Macros("rockfrag.assess", f"{name}.j2", _WORDS) for name in ("words", "page", "gallery")
+)
+"""The macros of the answer, of its page, and of a gallery."""
 
 
 def headline(found: Assessment) -> str:
     """Say in a few words whether the object rocks and topples; the heading of the page."""
-    return one_line(sentences().headline(found))
-
-
-def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
-    """A change and what it does to the risk, or to the shaking that the object bears."""
-    return one_line(sentences().mitigation(found, mitigation))
+    return one_line(says.headline(found))
 
 
 def assumptions(found: Assessment) -> list[str]:
     """Sentences of all that was assumed and of all that a reader must know."""
-    return said(sentences().assumptions(found))
+    return said(says.assumptions(found))
 
 
 def quality_flags(found: Assessment) -> list[str]:
     """Sentences of what looks wrong."""
-    return said(sentences().quality_flags(found))
+    return said(says.quality_flags(found))
 
 
 def five_lines(found: Assessment) -> list[str]:
     """Return the answer in five lines."""
-    return said(sentences().five_lines(found))
+    return said(says.five_lines(found))

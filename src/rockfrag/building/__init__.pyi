@@ -1,4 +1,4 @@
-from .drift import (
+from .floors import (
     DriftOutcome as DriftOutcome,
     judge_drift as judge_drift,
 )
@@ -6,7 +6,7 @@ from .floors import (
     floor_motions as floor_motions,
     respond as respond,
 )
-from .masonry import MasonryLaw as MasonryLaw
+from .model import MasonryLaw as MasonryLaw
 from .model import (
     ModalDamping as ModalDamping,
     RayleighDamping as RayleighDamping,

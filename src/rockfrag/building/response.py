@@ -1,17 +1,78 @@
-"""Histories of a building under a ground motion, and the elastic ones solved exactly."""
+"""Modes of a building, its histories under a ground motion, and the elastic ones solved exactly."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.building.model import ShearBuilding
-from rockfrag.building.modes import find_modes
-from rockfrag.motions.spectra import oscillator_response
+from rockfrag.building.model import RayleighDamping, ShearBuilding
 from rockfrag.records.motion import Motion
 from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes from the longest period to the shortest, each shape one at the top."""
+
+    period: Floats  # natural periods [s], shape (storeys,)
+    shape: Floats  # shapes [-], shape (floors, modes)
+    # participation factors Γ [-], shape (modes,); Γ times the shape sums to one at every floor
+    participation: Floats
+    mass_fraction: Floats  # effective modal mass over the total mass [-], shape (modes,)
+    damping: Floats  # fraction of critical damping [-], shape (modes,)
+
+    __repr__ = short_repr
+
+    @property
+    def frequency(self) -> Floats:
+        """Circular frequencies ω [rad/s], shape (modes,)."""
+        return 2 * np.pi / self.period
+
+
+def find_modes(building: ShearBuilding) -> Modes:
+    """Solve the undamped eigenproblem of the elastic building (Chopra, ch. 10)."""
+    mass = np.asarray(building.masses)
+    root = 1 / np.sqrt(mass)
+    # the symmetric form M^-1/2 K M^-1/2 keeps the shapes orthogonal to machine precision
+    eigenvalues, vectors = np.linalg.eigh(root[:, None] * building.stiffness_matrix() * root)
+    frequency = np.sqrt(eigenvalues)
+    shape = root[:, None] * vectors
+    shape /= shape[-1]
+    modal_mass = shape.T**2 @ mass
+    excited = shape.T @ mass
+    ratios = np.full(building.storeys, building.damping.ratio)
+    if isinstance(building.damping, RayleighDamping):
+        alpha, beta = rayleigh_factors(building, frequency)
+        ratios = alpha / (2 * frequency) + beta * frequency / 2
+    return Modes(
+        period=2 * np.pi / frequency,
+        shape=shape,
+        participation=excited / modal_mass,
+        mass_fraction=excited**2 / modal_mass / mass.sum(),
+        damping=ratios,
+    )
+
+
+def rayleigh_factors(building: ShearBuilding, frequency: Floats) -> tuple[float, float]:
+    """Return factors of mass [1/s] and stiffness [s] in C = α M + β K (Chopra, eq. 11.4.11)."""
+    damping = building.damping
+    assert isinstance(damping, RayleighDamping)
+    if building.storeys == 1:
+        return 2 * damping.ratio * float(frequency[0]), 0.0
+    first, second = (float(frequency[number - 1]) for number in damping.modes)
+    factor = 2 * damping.ratio / (first + second)
+    return factor * first * second, factor
+
+
+def damping_matrix(building: ShearBuilding, modes: Modes) -> Floats:
+    """Damping matrix C [N s/m] with the modes' ratios, shape (storeys, storeys)."""
+    mass = np.asarray(building.masses)
+    modal_mass = modes.shape.T**2 @ mass
+    weight = 2 * modes.damping * modes.frequency / modal_mass
+    massed = mass[:, None] * modes.shape
+    return np.asarray((massed * weight) @ massed.T, dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -78,6 +139,9 @@ class BuildingResponse:
 
 def respond_elastically(building: ShearBuilding, motion: Motion) -> BuildingResponse:
     """Superpose the modes, each exact for a ground acceleration linear between samples."""
+    # compiled, which the checks of a building need not wait for
+    from rockfrag.motions.spectra import oscillator_response
+
     modes = find_modes(building)
     displacement = np.zeros((building.storeys, motion.acceleration.size))
     acceleration = np.zeros_like(displacement)

@@ -4,15 +4,9 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-from rockfrag.building.masonry import MasonryLaw
-from rockfrag.building.model import (
-    Damping,
-    ModalDamping,
-    RayleighDamping,
-    ShearBuilding,
-    stiffnesses_for_period,
-)
-from rockfrag.building.modes import find_modes
+from rockfrag.building import model
+from rockfrag.building.model import MasonryLaw
+from rockfrag.building.response import find_modes
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names
 from rockfrag.plausibility import FIRST_PERIODS, FLOOR_MASSES, STOREY_HEIGHTS
@@ -20,7 +14,7 @@ from rockfrag.schema import checked
 from rockfrag.yaml_file import read_yaml
 
 
-def read_building(path: str | os.PathLike[str]) -> ShearBuilding:
+def read_building(path: str | os.PathLike[str]) -> model.ShearBuilding:
     """Read a building from a YAML file such as ``config/building.yaml``.
 
     Parameters
@@ -40,14 +34,14 @@ def read_building(path: str | os.PathLike[str]) -> ShearBuilding:
     return make_building(read_yaml(path), str(path))
 
 
-def make_building(settings: Any, source: str = "building") -> ShearBuilding:
+def make_building(settings: Any, source: str = "building") -> model.ShearBuilding:
     """Make a building from a mapping such as ``config/building.yaml`` holds."""
     known = checked(settings, "building", source)
     with errors_of(source):
         return _building(known)
 
 
-def _building(settings: Mapping[str, Any]) -> ShearBuilding:
+def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
     heights = tuple(float(value) for value in settings["storey_heights_m"])
     masses = tuple(float(value) for value in settings["masses_kg"])
     if len(heights) != len(masses):
@@ -69,10 +63,12 @@ def _building(settings: Mapping[str, Any]) -> ShearBuilding:
             )
     distinct_file_names(settings.get("floors", {}))
     if "first_period_s" in settings:
-        stiffnesses = stiffnesses_for_period(masses, heights, float(settings["first_period_s"]))
+        stiffnesses = model.stiffnesses_for_period(
+            masses, heights, float(settings["first_period_s"])
+        )
     else:
         stiffnesses = tuple(float(value) for value in settings["storey_stiffnesses_N_m"])
-    building = ShearBuilding(
+    building = model.ShearBuilding(
         masses=masses,
         heights=heights,
         stiffnesses=stiffnesses,
@@ -93,11 +89,11 @@ def _building(settings: Mapping[str, Any]) -> ShearBuilding:
     return building
 
 
-def _damping(settings: Mapping[str, Any]) -> Damping:
+def _damping(settings: Mapping[str, Any]) -> model.Damping:
     ratio = float(settings.get("ratio", 0.05))
     if settings.get("kind", "modal") == "rayleigh":
         first, second = settings.get("modes", (1, 2))
-        return RayleighDamping(ratio, (first, second))
+        return model.RayleighDamping(ratio, (first, second))
     if "modes" in settings:
         raise InputError("key damping.modes: expected only with the kind rayleigh.")
-    return ModalDamping(ratio)
+    return model.ModalDamping(ratio)

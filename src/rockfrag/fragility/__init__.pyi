@@ -35,7 +35,7 @@ from .vector import (
     VectorFragility as VectorFragility,
     fit_vector as fit_vector,
 )
-from .vector_checks import (
+from .vector_tables import (
     VectorChecks as VectorChecks,
     check_vector as check_vector,
 )

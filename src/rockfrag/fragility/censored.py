@@ -14,20 +14,13 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.errors import InputError
+from rockfrag.fragility import lognormal
 from rockfrag.fragility.intervals import (
     MOST_BLOCKS,
     Interval,
     population,
     resampled_interval,
     step_limits,
-)
-from rockfrag.fragility.lognormal import (
-    LEAST_SLOPE,
-    NO_COVARIANCE,
-    NO_CURVE,
-    SAY,
-    FragilityFit,
-    curve_parameters,
 )
 from rockfrag.fragility.observations import Floats, Grouped, Over, labels, name_and_unit, numbers
 from rockfrag.short_repr import short_repr
@@ -92,7 +85,7 @@ def brackets_from_table(
     return Brackets(low, high, motions, earthquakes, *name_and_unit(measure))
 
 
-def fit_brackets(brackets: Brackets) -> FragilityFit:
+def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
     """Fit θ and β to bracketed amplitudes by maximum likelihood.
 
     Where one amplitude lies inside every bracket the likelihood grows without end as β tends to zero; then θ is
@@ -100,7 +93,7 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
     overturned there is no curve, only a bound.
     """
     low, high = _logs(brackets)
-    curve, log_likelihood, case = NO_CURVE, 0.0, ""
+    curve, log_likelihood, case = lognormal.NO_CURVE, 0.0, ""
     if brackets.n_overturned == 0:
         method, case = "none: all tests survived", "survived"
     elif brackets.lower.max() == 0:
@@ -112,16 +105,16 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
         covariance = information * np.nan
         if np.isfinite(information).all():
             covariance = np.linalg.pinv(information, hermitian=True)
-        theta, beta, spread = curve_parameters(coefficients, covariance)
+        theta, beta, spread = lognormal.curve_parameters(coefficients, covariance)
         if _fraction_a_point(low, high, weights)[0]:
             method, case = "interval estimate (brackets overlap)", "overlap"
-            curve, log_likelihood = (theta, beta, NO_COVARIANCE), float("nan")
-        elif coefficients[1] < LEAST_SLOPE:
+            curve, log_likelihood = (theta, beta, lognormal.NO_COVARIANCE), float("nan")
+        elif coefficients[1] < lognormal.LEAST_SLOPE:
             method, case = "none: no curve in the brackets", "flat"
         else:
             method = "lognormal, interval- and right-censored maximum likelihood"
             curve = theta, beta, spread
-    return FragilityFit(
+    return lognormal.FragilityFit(
         *curve,
         log_likelihood,
         low.size,
@@ -131,7 +124,7 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
         brackets.name,
         brackets.unit,
         "probit",
-        tuple(SAY("brackets", brackets, case)),
+        tuple(lognormal.SAY("brackets", brackets, case)),
     )
 
 
@@ -186,7 +179,7 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
     if _fraction_a_point(low, high, weights).any():
         return _fit_weighted(low, high, weights)[0]
     coefficients, _, value = _newton(low, high, whole)
-    if not (np.isfinite(value).all() and coefficients[0, 1] >= LEAST_SLOPE):
+    if not (np.isfinite(value).all() and coefficients[0, 1] >= lognormal.LEAST_SLOPE):
         return _fit_weighted(low, high, weights)[0]
     pulls = np.concatenate(_pulls(low, high, coefficients))
     _, score0, score1, h00, h01, h11 = (weights @ pulls.T).T
@@ -262,7 +255,7 @@ def _newton(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats,
                 break
         moved = np.abs(size[:, None] * step).max(axis=1) / np.abs(coefficients[active]).max(axis=1)
         # a slope that sinks below what counts as a curve would sink for ever
-        flat = coefficients[active, 1] < 0.1 * LEAST_SLOPE
+        flat = coefficients[active, 1] < 0.1 * lognormal.LEAST_SLOPE
         active = active[(moved > 1e-10) & ~flat]
         if active.size == 0:
             break

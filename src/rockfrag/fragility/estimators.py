@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
+from rockfrag.fragility import observations
 from rockfrag.fragility.censored import (
     Brackets,
     bracket_interval,
@@ -14,16 +15,9 @@ from rockfrag.fragility.censored import (
     fit_brackets,
 )
 from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_outcomes
-from rockfrag.fragility.ida_data import IdaData, TableIda
+from rockfrag.fragility.empirical import IdaData, TableIda
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
-from rockfrag.fragility.observations import (
-    Observations,
-    labels,
-    name_and_unit,
-    observations_from_table,
-    positive,
-)
 from rockfrag.keywords import named_keywords
 from rockfrag.short_repr import short_repr
 
@@ -91,7 +85,7 @@ class IncrementalFragility:
 
 
 def fragility_of(
-    outcomes: Observations,
+    outcomes: observations.Observations,
     *,
     level: float = 0.90,
     seed: int = 0,
@@ -137,7 +131,7 @@ def fit_cloud(
     -------
     The :class:`Fragility`.
     """
-    outcomes = observations_from_table(
+    outcomes = observations.observations_from_table(
         table, im, overturned=overturned, motion=motion, earthquake=earthquake
     )
     return fragility_of(outcomes, level=level)
@@ -174,7 +168,7 @@ def fit_stripes(
     -------
     The :class:`Fragility`.
     """
-    outcomes = observations_from_table(
+    outcomes = observations.observations_from_table(
         table, im, overturned=overturned, trials=trials, motion=motion, earthquake=earthquake
     )
     whole = fragility_of(outcomes, level=level)
@@ -281,7 +275,9 @@ def fit_uplift(motions: pd.DataFrame, im: str, *, level: float = 0.90) -> Fragil
     gives its measure at uplift exactly; in the peak acceleration itself the curve is a step, given as a β of
     next to nothing.
     """
-    at = positive(motions, im)
-    names = labels(motions, "motion", "table")
-    earthquakes = labels(motions, "earthquake", "table")
-    return fragility_of_brackets(Brackets(at, at, names, earthquakes, *name_and_unit(im)), level)
+    at = observations.positive(motions, im)
+    names = observations.labels(motions, "motion", "table")
+    earthquakes = observations.labels(motions, "earthquake", "table")
+    return fragility_of_brackets(
+        Brackets(at, at, names, earthquakes, *observations.name_and_unit(im)), level
+    )

@@ -15,15 +15,8 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 from scipy import optimize, stats
 
-from rockfrag.fragility.intervals import (
-    BETA_POWER,
-    all_but_one,
-    blocks_of,
-    jackknife_error,
-    student,
-)
-from rockfrag.fragility.observations import Floats, Observations
-from rockfrag.fragility.pooling import cells, counts
+from rockfrag.fragility import intervals
+from rockfrag.fragility.observations import Floats, Observations, cells, counts
 
 ENDS = (0.1587, 0.8413)
 """Shares one standard deviation below and above the median of a lognormal curve [-]."""
@@ -121,7 +114,7 @@ def fractions_of_capacities(
     capacity[finite] = values[cell]
     # up to just below a capacity the fraction is that of the one before
     values = np.unique(np.append(values, values - 1e-9))
-    block = blocks_of(len(names))[codes]
+    block = intervals.blocks_of(len(names))[codes]
     # an infinite capacity lies in the column after the last value
     columns = values.size + 1
     flat = block * columns + np.searchsorted(values, capacity)
@@ -154,14 +147,14 @@ def _fractions(
     nothing = np.full(fraction.shape, np.nan)
     if groups < 2:
         return Fractions(im, fraction, nothing, nothing, theta, UNKNOWN, beta, UNKNOWN)
-    weights = all_but_one(groups, 0)
+    weights = intervals.all_but_one(groups, 0)
     left_out = np.array(
         [_rising(f, t) for f, t in zip(weights @ fell, weights @ total, strict=True)]
     )
     seen = np.full(fraction.shape, float(witnesses or 0))
     if witnesses is None:
         seen = _witnesses(fraction, total)
-    lower, upper = _limits(fraction, jackknife_error(left_out), seen, motions, level)
+    lower, upper = _limits(fraction, intervals.jackknife_error(left_out), seen, motions, level)
     theta_limits = UNKNOWN
     if np.isfinite(theta):
         # values between which the limits of the curve hold one half
@@ -232,7 +225,9 @@ def _dispersion_limits(beta: float, left_out: Floats, level: float) -> Limits:
         return UNKNOWN
     if len(left_out) < 3 or not (np.isfinite(left_out).all() and (left_out > 0).all() and beta > 0):
         return 0.0, float("inf")
-    power = beta**BETA_POWER
-    half = student(level, len(left_out)) * float(jackknife_error(left_out**BETA_POWER))
-    upper = (power - half) ** (1 / BETA_POWER) if power > half else float("inf")
-    return float((power + half) ** (1 / BETA_POWER)), float(upper)
+    power = beta**intervals.BETA_POWER
+    half = intervals.student(level, len(left_out)) * float(
+        intervals.jackknife_error(left_out**intervals.BETA_POWER)
+    )
+    upper = (power - half) ** (1 / intervals.BETA_POWER) if power > half else float("inf")
+    return float((power + half) ** (1 / intervals.BETA_POWER)), float(upper)

@@ -11,15 +11,10 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.censored import (
-    Brackets,
-    bracket_interval,
-    brackets_from_table,
-    fit_brackets,
-)
+from rockfrag.fragility import censored
+from rockfrag.fragility.empirical import IdaData, TableIda
 from rockfrag.fragility.held_out import capacity_scores
 from rockfrag.fragility.ida_curves import scale_power, with_measures
-from rockfrag.fragility.ida_data import IdaData, TableIda
 from rockfrag.fragility.measure_selection import (
     MeasureSelection,
     dependence_p_value,
@@ -63,7 +58,7 @@ def recommend_ida_measure(
     resurrections = ida.resurrections(
         "amplitude_g", ["motion"] if earthquake is None else ["motion", earthquake]
     )
-    amplitude = brackets_from_table(
+    amplitude = censored.brackets_from_table(
         resurrections,
         lower="first_lower",
         upper="first_upper",
@@ -78,7 +73,7 @@ def recommend_ida_measure(
     for column, power in powers.items():
         unit_value = positive(known.loc[resurrections["motion"]], column, "measures") / pga**power
         outcomes = ida.outcomes(column)
-        scaled = Brackets(
+        scaled = censored.Brackets(
             unit_value * amplitude.lower**power,
             unit_value * amplitude.upper**power,
             amplitude.motion,
@@ -86,8 +81,8 @@ def recommend_ida_measure(
             outcomes.name,
             outcomes.unit,
         )
-        fit = fit_brackets(scaled)
-        interval = bracket_interval(scaled, level=level)
+        fit = censored.fit_brackets(scaled)
+        interval = censored.bracket_interval(scaled, level=level)
         # residual of ln capacity of the motions that overturned above a survived step
         seen = np.isfinite(scaled.upper) & (scaled.lower > 0)
         middle = 0.5 * np.log(scaled.lower[seen] * scaled.upper[seen])

@@ -13,8 +13,7 @@ from scipy import constants, special
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.fragility.checks import REJECTION
-from rockfrag.fragility.curve_facts import curve_facts
-from rockfrag.fragility.identifiers import StateCurve, curves_by_name
+from rockfrag.fragility.curve_facts import StateCurve, curve_facts, curves_by_name
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.declared import declared, measure_labelled
 from rockfrag.outcomes.limit_states import limit_states
@@ -78,7 +77,7 @@ def write_nrml(
         Column whose value names the function (OpenQuake's taxonomy); what OpenQuake
         does not take in a name becomes ``_``.
     fractions
-        Points of the non-parametric fragility function (:func:`rockfrag.fragility.drawn_curves.fraction_points`),
+        Points of the non-parametric fragility function (:func:`rockfrag.fragility.ida_curves.fraction_points`),
         with columns ``by`` and ``state``. A function of which a state has such points is written as discrete
         levels; so is one whose lognormal curves would make a state more probable than the one that comes before
         it.

@@ -1,4 +1,4 @@
-"""The observations that every fragility estimator starts from, checked once at the door."""
+"""The observations that every fragility estimator starts from, checked once at the door, and their pooling."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.errors import InputError
+from rockfrag.keywords import check_names
 from rockfrag.motions.declared import measure_of, split_column
-from rockfrag.renamed_keys import check_names
 from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]  # an array of floating-point numbers
@@ -155,8 +155,8 @@ def name_and_unit(column: str) -> tuple[str, str]:
     return name.replace("_", " "), unit
 
 
-def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
-    """Return a column as finite numbers, shape (n,)."""
+def numbers(table: pd.DataFrame, column: str, source: str = "table", first: int = 1) -> Floats:
+    """Return a column as finite numbers, shape (n,); messages count rows from ``first``."""
     if column not in table:
         check_names(source, table.columns, [column])
         known = ", ".join(map(str, table.columns))
@@ -166,21 +166,22 @@ def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
     values = pd.to_numeric(table[column], errors="coerce").to_numpy(dtype=np.float64)
     bad = np.flatnonzero(~np.isfinite(values))
     if bad.size:
+        found = table[column].iloc[bad[0]]
         raise InputError(
-            f"{source}, row {bad[0] + 1}, column {column!r}: {table[column].iloc[bad[0]]!r} is "
-            f"not a finite number; correct it or leave the row out."
+            f"{source}, row {bad[0] + first}, column {column!r}: {'nothing' if pd.isna(found) else repr(found)} "
+            "is not a finite number; correct it or leave the row out."
         )
     return values
 
 
-def positive(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
+def positive(table: pd.DataFrame, column: str, source: str = "table", first: int = 1) -> Floats:
     """Return a column as numbers above zero, shape (n,), because they enter by their logarithm."""
-    values = numbers(table, column, source)
+    values = numbers(table, column, source, first)
     bad = np.flatnonzero(values <= 0)
     if bad.size:
         raise InputError(
-            f"{source}, row {bad[0] + 1}, column {column!r}: an intensity measure must be above "
-            f"zero to have a logarithm, got {values[bad[0]]:g}; leave such tests out."
+            f"{source}, row {bad[0] + first}, column {column!r}: an intensity measure must be above "
+            f"zero to have a logarithm, got {values[bad[0]]:g}; correct it or leave the row out."
         )
     return values
 
@@ -197,10 +198,12 @@ def read_observations(table: pd.DataFrame, column: str, source: str = "table") -
     return values
 
 
-def labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.object_]:
+def labels(
+    table: pd.DataFrame, column: str | None, source: str, first: int = 1
+) -> NDArray[np.object_]:
     """Return a column of labels, shape (n,); one label per row where ``column`` is None."""
     if column is None:
-        return np.array([f"row {row + 1}" for row in range(len(table))], dtype=object)
+        return np.array([f"row {row + first}" for row in range(len(table))], dtype=object)
     if column not in table:
         check_names(source, table.columns, [column])
         raise InputError(
@@ -210,7 +213,7 @@ def labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.o
     missing = np.flatnonzero(values.isna())
     if missing.size:
         raise InputError(
-            f"{source}, row {missing[0] + 1}, column {column!r}: the label is missing; fill it in."
+            f"{source}, row {missing[0] + first}, column {column!r}: the label is missing; fill it in."
         )
     return values.to_numpy(dtype=object)
 
@@ -273,3 +276,32 @@ def observations_from_table(
     earthquakes = motions if earthquake is None else labels(table, earthquake, source)
     name, unit = name_and_unit(im)
     return Observations(values, failed, counts, motions, earthquakes, name, unit)
+
+
+MOST_VALUES = 1000
+"""Different values of a measure that are kept apart; more fall into as many cells of equal counts."""
+
+
+def cells(
+    measure: Floats, most: int = MOST_VALUES, tests: Floats | None = None
+) -> tuple[NDArray[np.intp], Floats]:
+    """Put each row into a cell of equal or neighbouring values; its number, (n,), and the mean of each cell.
+
+    Means rise.  Up to ``most`` different values have a cell each; of more, cells have about equally many rows, or
+    ``tests`` where their number in each row is given.
+    """
+    values, cell = np.unique(measure, return_inverse=True)
+    if values.size <= most:
+        return cell, values
+    count = np.bincount(cell, tests)
+    middle = np.cumsum(count) - 0.5 * count
+    coarse = np.unique((middle / count.sum() * most).astype(np.intp), return_inverse=True)[1]
+    cell = coarse[cell]
+    return cell, np.bincount(cell, measure) / np.bincount(cell)
+
+
+def counts(group: NDArray[np.intp], cell: NDArray[np.intp], weight: Floats) -> Floats:
+    """Sum weights by group and cell, shape (groups, cells)."""
+    groups, columns = int(group.max()) + 1, int(cell.max()) + 1
+    flat = np.bincount(group * columns + cell, weight, minlength=groups * columns)
+    return np.asarray(flat.reshape(groups, columns))

@@ -16,9 +16,10 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.fragility import observations
 from rockfrag.fragility.observations import Floats, name_and_unit
-from rockfrag.plain_text import table_encoding
 from rockfrag.plausibility import LARGEST_PEAK
+from rockfrag.tabular import table_encoding
 from rockfrag.units import DIMENSIONS, convert
 
 ROWS = 100_000  # rows that are read at a time
@@ -133,12 +134,12 @@ def _read(
 ) -> pd.DataFrame:
     """Read the needed columns piece by piece, each by its own reader."""
     source = Path(path).name
-    parts, first = [], 0
+    parts, first = [], 2
     with closing(_pieces(path, source, needed)) as pieces:
         for piece, decimal_comma in pieces:
             parts.append(pd.DataFrame(columns(_Numbers(piece, source, first, decimal_comma))))
             first += len(piece)
-    if not first:
+    if not any(map(len, parts)):
         raise InputError(f"{source}: there is no row below the header; give at least one test.")
     return pd.concat(parts, ignore_index=True)
 
@@ -223,59 +224,35 @@ def _pieces(
 
 
 class _Numbers:
-    """One piece of the table, and how to read its columns."""
+    """One piece of the table, and how to read its columns; ``first`` is the number of its first row."""
 
     def __init__(self, piece: pd.DataFrame, source: str, first: int, decimal_comma: bool) -> None:
-        self.piece, self.source, self.first = piece, source, first
+        self.piece, self.where = piece, (source, first)
         self.decimal_comma = decimal_comma
-
-    def where(self, row: int, column: str) -> str:
-        """File, row as a spreadsheet shows it, and column."""
-        return f"{self.source}, row {self.first + row + 2}, column {column!r}"
 
     def labels(self, column: str | None) -> list[str]:
         """Text of a column; the row's own label where there is no column."""
-        if column is None:
-            return [f"row {self.first + row + 2}" for row in range(len(self.piece))]
-        values = self.piece[column]
-        missing = np.flatnonzero(values.isna())
-        if missing.size:
-            raise InputError(
-                f"{self.where(int(missing[0]), column)}: the label is missing; fill it in."
-            )
-        return [str(value).strip() for value in values]
+        found = observations.labels(self.piece, column, *self.where)
+        return [str(value).strip() for value in found]
+
+    def _numeric(self, column: str) -> pd.DataFrame:
+        """A column as text of numbers that have points."""
+        text: pd.DataFrame = self.piece[[column]].apply(lambda values: values.str.strip())
+        return text.replace(",", ".", regex=True) if self.decimal_comma else text
 
     def numbers(self, column: str) -> Floats:
         """Column as finite numbers, shape (rows,)."""
-        text = self.piece[column].str.strip()
-        if self.decimal_comma:
-            text = text.str.replace(",", ".", regex=False)
-        values = pd.to_numeric(text, errors="coerce").to_numpy(dtype=np.float64)
-        bad = np.flatnonzero(~np.isfinite(values))
-        if bad.size:
-            found = self.piece[column].iloc[int(bad[0])]
-            what = "nothing" if pd.isna(found) else repr(found)
-            raise InputError(
-                f"{self.where(int(bad[0]), column)}: {what} is not a finite number; correct it or leave "
-                "the row out."
-            )
-        return values
+        return observations.numbers(self._numeric(column), column, *self.where)
 
     def product(self, recipe: Sequence[str | float]) -> Floats:
         """Product of columns and numbers, above zero because it enters by its logarithm, (rows,)."""
         result = np.ones(len(self.piece))
         for factor in recipe:
-            if not isinstance(factor, str):
+            if isinstance(factor, str):
+                numeric = self._numeric(factor)
+                result = result * observations.positive(numeric, factor, *self.where)
+            else:
                 result = result * float(factor)
-                continue
-            values = self.numbers(factor)
-            if (values <= 0).any():
-                row = int(np.flatnonzero(values <= 0)[0])
-                raise InputError(
-                    f"{self.where(row, factor)}: an intensity measure must be above zero to have a "
-                    f"logarithm, got {values[row]:g}; correct it or leave the row out."
-                )
-            result = result * values
         return result
 
     def outcomes(self, column: str) -> Floats:
@@ -285,8 +262,9 @@ class _Numbers:
         known = text.isin(_YES | _NO).to_numpy()
         if not known.all():
             row = int(np.flatnonzero(~known)[0])
+            source, first = self.where
             raise InputError(
-                f"{self.where(row, column)}: {self.piece[column].iloc[row]!r} is no outcome; write 1 or yes "
-                "for overturned, 0 or no for survived."
+                f"{source}, row {first + row}, column {column!r}: {self.piece[column].iloc[row]!r} is no outcome; "
+                "write 1 or yes for overturned, 0 or no for survived."
             )
         return np.asarray(text.isin(_YES), dtype=np.float64)

@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import Any
 
 from rockfrag.errors import InputError
-from rockfrag.motions import conditioning, filtering, scaling, selection
+from rockfrag.motions import conditioning, filtering, scaling
 from rockfrag.records.motion import Motion
 
 STEPS: Mapping[str, Callable[..., Motion]] = MappingProxyType(
@@ -25,9 +25,9 @@ STEPS: Mapping[str, Callable[..., Motion]] = MappingProxyType(
             filtering.bandpass,
             filtering.resample,
             filtering.interpolate,
-            selection.strong_part,
-            selection.bracketed_part,
-            selection.trim,
+            conditioning.strong_part,
+            conditioning.bracketed_part,
+            conditioning.trim,
             scaling.scale,
             scaling.scale_to_pga,
             scaling.scale_to_pgv,

@@ -59,25 +59,16 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude
-        Peak acceleration a [m/s²], of either sign.
-    period
-        Period T [s].
-    dt
-        Longest sampling interval [s].
+    amplitude, period, dt
+        As of :func:`sine`, which says what is refused too.
 
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
-    name, source = "one_sine", "Makris & Roussos (2000)"
-    length, given = _seconds(f"{name}: period", period), {"amplitude": amplitude, "period": period}
-    return _pulse(name, source, lambda t: np.sin(2 * np.pi * t / period), length, dt, given)
+    length, given = _seconds("one_sine: period", period), {"amplitude": amplitude, "period": period}
+    source = "Makris & Roussos (2000)"
+    return _pulse("one_sine", source, lambda t: np.sin(2 * np.pi * t / period), length, dt, given)
 
 
 def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
@@ -88,21 +79,12 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude
-        Peak acceleration a [m/s²], of either sign.
-    period
-        Period T [s].
-    dt
-        Longest sampling interval [s].
+    amplitude, period, dt
+        As of :func:`sine`, which says what is refused too.
 
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
     name, source = "one_cosine", "Makris & Roussos (2000)"
     length, given = _seconds(f"{name}: period", period), {"amplitude": amplitude, "period": period}
@@ -132,21 +114,12 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude
-        Peak acceleration a [m/s²], of either sign.
-    duration
-        Duration d [s].
-    dt
-        Longest sampling interval [s].
+    amplitude, duration, dt
+        As of :func:`sine`, which says what is refused too; it lasts d [s].
 
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
     length = _seconds("half_sine: duration", duration)
     given = {"amplitude": amplitude, "duration": duration}
@@ -162,21 +135,12 @@ def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude
-        Peak acceleration a [m/s²], of either sign.
-    duration
-        Duration d [s].
-    dt
-        Longest sampling interval [s].
+    amplitude, duration, dt
+        As of :func:`sine`, which says what is refused too; it lasts d [s].
 
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
     length = _seconds("rectangular: duration", duration)
     given = {"amplitude": amplitude, "duration": duration}
@@ -192,21 +156,12 @@ def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude
-        Peak acceleration a [m/s²], of either sign.
-    period
-        Period T [s].
-    dt
-        Longest sampling interval [s].
+    amplitude, period, dt
+        As of :func:`sine`, which says what is refused too.
 
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
     centre = 7.1 * _seconds("ricker_symmetric: period", period) / (math.sqrt(2) * np.pi)
 
@@ -227,21 +182,12 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
 
     Parameters
     ----------
-    amplitude
-        Peak acceleration a [m/s²], of either sign.
-    period
-        Period T [s].
-    dt
-        Longest sampling interval [s].
+    amplitude, period, dt
+        As of :func:`sine`, which says what is refused too.
 
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
     unit = math.sqrt(3) * _seconds("ricker_antisymmetric: period", period) / (2 * np.pi)
     centre = 7.5 * unit
@@ -276,16 +222,11 @@ def mavroeidis_papageorgiou(
     phase_deg
         Phase ν [degrees]; 0 is a symmetric velocity pulse, 90 an antisymmetric one.
     dt
-        Longest sampling interval [s].
+        As of :func:`sine`, which says what is refused too.
 
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
     who = "mavroeidis_papageorgiou"
     if real_number(f"{who}: cycles", cycles) < 1:
@@ -322,16 +263,11 @@ def sine_sweep(
     octaves_per_minute
         Rate r [1/min], positive.
     dt
-        Longest sampling interval [s].
+        As of :func:`sine`, which says what is refused too.
 
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
     who = "sine_sweep"
     start = positive_number(f"{who}: start_hz", start_hz, "hertz")

@@ -20,13 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.machine_code import cached_njit
-from rockfrag.motions.spectra import (
-    checked_damping,
-    oscillator_matrix,
-    state_after,
-    steps_within,
-    turning_time,
-)
+from rockfrag.motions import spectra
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
@@ -62,7 +56,7 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
 
     The motion is linear between samples and zero after the last one; ``periods`` [s], shape (k,), are positive.
     """
-    damping = checked_damping(damping)
+    damping = spectra.checked_damping(damping)
     peaks = np.empty(periods.size)
     # largest |a| from each sample on
     to_come = np.maximum.accumulate(np.abs(motion.acceleration[::-1]))[::-1]
@@ -78,7 +72,7 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
 def _groups(periods: bytes, damping: float, dt: float) -> tuple[_Group, ...]:
     """Oscillators grouped by their steps."""
     each = np.frombuffer(periods)
-    parts = np.array([steps_within(dt, float(period), damping) for period in each])
+    parts = np.array([spectra.steps_within(dt, float(period), damping) for period in each])
     # undamped vibration does not get smaller, and so each such oscillator must end at its own time
     lanes = LANES if damping > 0 else 1
     groups = []
@@ -106,7 +100,7 @@ def _column(period: float, damping: float, step: float) -> Floats:
         turn = omega * math.sqrt(1 - damping**2)
         ahead = [damping * omega, 1 / turn, (1 + r) / (1 - r) / k]
     q = k * (step / 2) ** 2 / 2 / (1 - c * step)
-    matrix = oscillator_matrix(omega, damping, step).ravel()
+    matrix = spectra.oscillator_matrix(omega, damping, step).ravel()
     return np.array([*matrix, *[0.0] * 5, *ahead, 1 - q, q / k, c, k, 0.0])
 
 
@@ -207,6 +201,6 @@ def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
     """Let the peak of lane i between the last two steps count, if it can be the largest."""
     u, v, u1, v1 = x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i]
     if v * v1 < 0 and max(abs(u), abs(u1)) + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
-        t = turning_time(u, v, u1, v1, step)
-        peak = abs(state_after(u, v, a, s, x[_C + i], x[_K + i], t)[0])
+        t = spectra.turning_time(u, v, u1, v1, step)
+        peak = abs(spectra.state_after(u, v, a, s, x[_C + i], x[_K + i], t)[0])
         x[_LARGEST + i] = max(x[_LARGEST + i], peak)

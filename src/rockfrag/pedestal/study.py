@@ -5,22 +5,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
-from rockfrag.pedestal.bootstrap import rank_probabilities
-from rockfrag.pedestal.cluster_means import (
-    ROUNDING,
-    effect_of,
-    equivalence,
-    mean_effect,
-    sampled_unit,
-    sampled_units,
-    unit_means,
-)
-from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
+from rockfrag.pedestal import cluster_means
+from rockfrag.pedestal.cluster_means import Array
 from rockfrag.pedestal.paired_tests import SAY, Pairs, pair_tests
 from rockfrag.pedestal.permutation import WITHOUT_COLUMNS, leave_one_earthquake_out, sign_flip_test
-from rockfrag.pedestal.power import detectable_ratio
+from rockfrag.pedestal.power import benjamini_hochberg, detectable_ratio, holm
 from rockfrag.short_repr import short_repr
 
 SCOPES: Mapping[str, tuple[str, ...]] = {
@@ -45,6 +37,9 @@ EQUIVALENCE_LEVEL = 0.05  # equivalence is shown below this p value [-]
 STEPS_DECIDE = "; the limits are the width of the steps, not of the scatter"
 """Said of a method whose own interval is narrower than what the steps of the amplitudes leave open."""
 RANK_COLUMNS = ["factor", "level", "ratio", "p_largest", "p_smallest"]
+DRAWS = 9_999  # samples drawn of motions or earthquakes
+DRAWN_AT_ONCE = 2_000_000
+"""Numbers drawn at a time; the stream of random numbers does not depend on it."""
 
 
 @dataclass(frozen=True)
@@ -89,11 +84,11 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     known = [name for name in floors if name in set(table["floor"])]
     known += sorted(set(table["floor"]) - set(known))
     table = table.assign(floor=pd.Categorical(table["floor"], known))
-    tied, at_bound = table["d"].abs() < ROUNDING, table["bound"] != ""
+    tied, at_bound = table["d"].abs() < cluster_means.ROUNDING, table["bound"] != ""
     for scope, columns in SCOPES.items():
         groups = table.groupby(list(columns) or np.zeros(len(table)), observed=True)
         number = groups.ngroup()
-        sampled = sampled_units(table.assign(group=number), "group")
+        sampled = cluster_means.sampled_units(table.assign(group=number), "group")
         about = pd.DataFrame(
             {
                 "pairs": groups.size().to_numpy(),
@@ -105,9 +100,9 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
         for place, (key, of) in enumerate(
             zip(groups.size().index, about.to_dict("records"), strict=True)
         ):
-            effect = effect_of(sampled[place])
+            effect = cluster_means.effect_of(sampled[place])
             flips = sign_flip_test(sampled[place].d)
-            same = equivalence(effect)
+            same = cluster_means.equivalence(effect)
             names = key if isinstance(key, tuple) else (key,)
             rows.append(
                 {
@@ -137,8 +132,8 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
 
 
 def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
-    effect, unit = mean_effect(table), sampled_unit(table)
-    flips = sign_flip_test(unit_means(table, "earthquake"), seed)
+    effect, unit = cluster_means.mean_effect(table), cluster_means.sampled_unit(table)
+    flips = sign_flip_test(cluster_means.unit_means(table, "earthquake"), seed)
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:
         remark += STEPS_DECIDE
@@ -214,7 +209,7 @@ def study_pedestal(
         effects, whole, without, ranks = (pd.DataFrame(columns=names) for names in columns)
         notes = (*pairs.notes(), *SAY("no_ratio"))
         return PedestalStudy(pairs, effects, whole, without, ranks, notes)
-    tied = table["d"].abs() < ROUNDING
+    tied = table["d"].abs() < cluster_means.ROUNDING
     widest = float(table.loc[tied, "resolution"].max())
     return PedestalStudy(
         pairs=pairs,
@@ -228,3 +223,47 @@ def study_pedestal(
             *SAY("ties", int(tied.sum()), len(table), widest),
         ),
     )
+
+
+def rank_probabilities(
+    table: pd.DataFrame, factor: str, cluster: str, seed: int, *, within: bool = False
+) -> pd.DataFrame:
+    """How often each level of a factor has the largest and the smallest mean of ``d`` in resampled data.
+
+    All rows of a drawn ``cluster`` (earthquake or motion) come. ``within`` draws clusters separately inside each
+    level (the motions of each earthquake); otherwise the same ones for all levels, which keeps what the levels
+    share. Columns: level, mean, p_largest, p_smallest; ties share their draw.
+    """
+    rng = np.random.default_rng(seed)
+    levels = sorted(table[factor].unique())
+    if len(levels) == 1:
+        drawn = np.zeros((1, 1))
+    elif within:
+        means = [rows.groupby(cluster)["d"].mean().to_numpy() for _, rows in table.groupby(factor)]
+        drawn = np.column_stack([_resampled(of_level, rng) for of_level in means])
+    else:
+        cells = table.pivot_table(index=cluster, columns=factor, values="d", aggfunc="mean")
+        grid = cells[levels].dropna().to_numpy()
+        drawn = _resampled(grid, rng)
+    return pd.DataFrame(
+        {
+            "level": levels,
+            "mean": table.groupby(factor)["d"].mean()[levels].to_numpy(),
+            "p_largest": _fraction_of(drawn == drawn.max(axis=1, keepdims=True)),
+            "p_smallest": _fraction_of(drawn == drawn.min(axis=1, keepdims=True)),
+        }
+    )
+
+
+def _resampled(means: Array, rng: np.random.Generator) -> Array:
+    """Means of ``DRAWS`` samples of n out of n with replacement, some at a time so that memory stays small."""
+    n = len(means)
+    at_once = max(1, DRAWN_AT_ONCE // max(n, 1))
+    sizes = (min(at_once, DRAWS - begin) for begin in range(0, DRAWS, at_once))
+    return np.concatenate(
+        [means[rng.integers(0, n, size=(size, n))].mean(axis=1) for size in sizes]
+    )
+
+
+def _fraction_of(extreme: npt.NDArray[np.bool_]) -> Array:
+    return np.asarray((extreme / extreme.sum(axis=1, keepdims=True)).mean(axis=0), dtype=float)

@@ -19,8 +19,7 @@ from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.parsing.text_file import read_head
 from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
 from rockfrag.records.wording import for_catalogue
-from rockfrag.renamed_keys import check_names
-from rockfrag.tabular import read_cells
+from rockfrag.tabular import read_rows
 
 SOURCES = ("folder", "url", *WHEELS, "fdsn")
 """Where a motion may come from: a local folder, the web, a pinned wheel, an FDSN service."""
@@ -100,33 +99,16 @@ def _checked(path: str | os.PathLike[str]) -> tuple[pd.DataFrame, list[int]]:
 
 def _cells(path: str | os.PathLike[str]) -> tuple[list[dict[str, str]], list[int]]:
     """Return the rows of a catalogue and the line of each."""
-    filled = [(number, cells) for number, cells in read_cells(path) if any(cells)]
-    if not filled:
+    faults: list[str] = []
+    optional = [column for column in COLUMNS if column not in NEEDED]
+    rows = read_rows(path, NEEDED, optional, least=0, faults=faults)
+    if faults:
+        raise InputError(_listed([fault.rstrip(".") for fault in faults]) + ".")
+    if not rows:
         raise InputError(f"{path}: the catalogue names no motion.")
-    header = filled[0][1]
-    check_names(str(path), header, COLUMNS)
-    unknown = [title for title in header if title not in COLUMNS]
-    if unknown:
-        raise InputError(
-            f"{path}: column {unknown[0]!r} is unknown; a catalogue has {', '.join(COLUMNS)}."
-        )
-    twice = next((title for title in header if header.count(title) > 1), None)
-    if twice is not None:
-        raise InputError(f"{path}: column {twice!r} is there twice.")
-    missing = [column for column in NEEDED if column not in header]
-    if missing:
-        raise InputError(f"{path}: column {missing[0]!r} is missing; each motion needs one.")
-    if len(filled) == 1:
-        raise InputError(f"{path}: the catalogue names no motion.")
-    ragged = [f"line {n} has {len(c)} cells" for n, c in filled[1:] if len(c) != len(header)]
-    if ragged:
-        raise InputError(f"{path}: the titles are {len(header)}, but {_listed(ragged)}.")
     empty = dict.fromkeys(COLUMNS, "") | _DEFAULTS
-    rows = [
-        empty | {title: cell for title, cell in zip(header, cells, strict=True) if cell}
-        for _, cells in filled[1:]
-    ]
-    return rows, [number for number, _ in filled[1:]]
+    filled = [empty | {title: cell for title, cell in row.cells.items() if cell} for row in rows]
+    return filled, [row.line for row in rows]
 
 
 def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
@@ -235,7 +217,7 @@ def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) 
         path = fetch_fdsn(name, records)
     elif source == "url":
         path = records / "url" / f"{row['sha256'][:16]}-{name.rpartition('/')[2] or 'record'}"
-        from rockfrag.records.sources.url import fetch_url
+        from rockfrag.records.sources.wheel import fetch_url
 
         fetch_url(name, row["sha256"], path)
     else:

@@ -1,8 +1,5 @@
 """What stands first on the page of any study: the question, what was found, what to do, and what it rests on."""
 
-from functools import cache
-from typing import Any
-
 import numpy as np
 
 from rockfrag.report.figures.answer import strength_figure
@@ -20,7 +17,7 @@ from rockfrag.report.findings import (
 )
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results, figure_of
 from rockfrag.report.sides import sides_of
-from rockfrag.report.wording import macros, said, sentence
+from rockfrag.report.wording import Macros, said, sentence
 
 FEW = 10
 """Intervals over fewer earthquakes than this rest on little."""
@@ -39,16 +36,13 @@ MOST_NAMED = 4
 """So many objects are named in the question."""
 
 
-@cache
-def _sentences() -> Any:
-    """The macros of ``answer.j2``."""
-    return macros("rockfrag.report", "answer.j2", {"FEW": FEW, "FRICTION": FRICTION})
+says = Macros("rockfrag.report", "answer.j2", {"FEW": FEW, "FRICTION": FRICTION})
 
 
 def study_answer(results: Results) -> Answer:
     """Return what stands first on the page of a study, made of its tables alone."""
     return Answer(
-        asked=said(_sentences().asked(results.objects, results.study, MOST_NAMED))[0],
+        asked=said(says.asked(results.objects, results.study, MOST_NAMED))[0],
         sentences=sentences(results),
         figure=_figure(results),
         advice=advice(results),
@@ -86,19 +80,19 @@ def sentences(results: Results) -> list[Finding]:
             *found,
             pedestal_effect(results.table("pedestal/effects"), sides_of(results.study))[0],
         ]
-    slenderness = {name: results.study.specimens[name].slenderness for name in results.objects}
+
     resurrections = resurrections_found(results.table("resurrections"), results.table("tests"))
     return [
         *found,
-        *objects_compared(results.table("mean_amplitudes"), slenderness),
+        *objects_compared(results.table("mean_amplitudes"), results.slenderness),
         resurrections,
     ][:3]
 
 
 def _strength(results: Results) -> Finding:
-    level = f"{100 * results.study.fragility.confidence:g} %"
     curves = results.table("fragility")
-    return strength_found(curves[curves["theta"].notna()], level) or amplitudes_found(results.tests)
+    known = curves[curves["theta"].notna()]
+    return strength_found(known, results.level) or amplitudes_found(results.tests)
 
 
 def advice(results: Results) -> list[str]:
@@ -112,7 +106,7 @@ def advice(results: Results) -> list[str]:
             least = 1.005 * curves["theta"].min()
             weakest = curves.loc[curves["theta"] < least, "configuration"].tolist()
     may_slide = not results.study.slides and _needs_friction(results)
-    return said(_sentences().advice(weakest, may_slide, _earthquakes(results)))
+    return said(says.advice(weakest, may_slide, _earthquakes(results)))
 
 
 def _needs_friction(results: Results) -> bool:
@@ -131,14 +125,13 @@ def _figure(results: Results) -> FigureSpec:
     if has_one_record(results):
         curves = curves.iloc[:0]
     names = [configuration.name for configuration in results.study.configurations]
-    level = f"{100 * results.study.fragility.confidence:g} %" if len(curves) else ""
-    text = _sentences().answer_figure(sentences(results)[0], level)
+    text = says.answer_figure(sentences(results)[0], results.level if len(curves) else "")
     return figure_of(text, "answer", lambda: strength_figure(results.tests, curves, names))
 
 
 def rests_on(results: Results) -> list[str]:
     """What the numbers rest on: model, motions, building, steps."""
-    return said(_sentences().rests_on(results.study, _earthquakes(results)))
+    return said(says.rests_on(results.study, _earthquakes(results)))
 
 
 def could_change(results: Results) -> list[str]:
@@ -149,9 +142,9 @@ def could_change(results: Results) -> list[str]:
     words = [
         *_friction_words(results),
         *_flight_words(results),
-        *said(_sentences().few(_earthquakes(results))),
-        *said(_sentences().resurrections(int((fallen["resurrections"] > 0).sum()), len(fallen))),
-        *said(_sentences().shape(rejected, curves["configuration"].nunique())),
+        *said(says.few(_earthquakes(results))),
+        *said(says.resurrections(int((fallen["resurrections"] > 0).sum()), len(fallen))),
+        *said(says.shape(rejected, curves["configuration"].nunique())),
     ]
     return [sentence(word) for word in words]
 
@@ -161,12 +154,12 @@ def _friction_words(results: Results) -> list[str]:
     if results.study.slides:
         sliding = results.table("sliding")
         other = int(sliding[["saved", "felled"]].to_numpy().sum())
-        return said(_sentences().assumed_friction(other, int(sliding["cases"].sum())))
+        return said(says.assumed_friction(other, int(sliding["cases"].sum())))
     validity = results.table("validity")
     if validity.empty:
         return []
     needed = friction_sentence(validity) if _needs_friction(results) else ""
-    return said(_sentences().sliding(needed))
+    return said(says.sliding(needed))
 
 
 def _flight_words(results: Results) -> list[str]:
@@ -176,4 +169,4 @@ def _flight_words(results: Results) -> list[str]:
     if not results.study.vertical or results.study.slides:
         return []
     light = int((results.least_gravity_ratio < LIGHT).sum())
-    return said(_sentences().flight(light, np.size(results.least_gravity_ratio)))
+    return said(says.flight(light, np.size(results.least_gravity_ratio)))

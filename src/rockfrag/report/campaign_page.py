@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -31,9 +31,9 @@ from rockfrag.report.part import (
     section_of,
 )
 from rockfrag.report.provenance import provenance
-from rockfrag.report.sections.two_measures import two_measures_section
+from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import estimate, macros, number, one_line, probability, said
+from rockfrag.report.wording import Macros, estimate, number, one_line, probability, said
 from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
 from rockfrag.study.campaign import CampaignStudy
 
@@ -55,21 +55,13 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         _answer(study, tables, sections),
         sections,
         title=study.title,
-        lead=one_line(_sentences().lead(tests, _motion(study))),
+        lead=one_line(says.lead(tests, _motion(study))),
         provenance=provenance(study, {"Tests": study.tests.name}),
         basis="measured",
     )
 
 
 Row = Mapping[Any, Any]
-
-
-@cache
-def _sentences() -> Any:
-    """The macros of ``campaign_page.j2``."""
-    words = {"better": _better, "estimate": estimate, "p": _p, "percent": _percent}
-    levels = {"FEWEST_VOTERS": FEWEST_VOTERS, "LEVEL": LEVEL}
-    return macros("rockfrag.report", "campaign_page.j2", words | levels)
 
 
 def _percent(row: Row) -> str:
@@ -82,6 +74,23 @@ def _better(row: Row) -> str:
         number(100 * row[name], 1) for name in ("better", "better_lower", "better_upper")
     )
     return f"{middle} [{low}, {high}]"
+
+
+LEVEL = 0.05
+"""A difference between programs is stated below this adjusted p value [-]."""
+
+
+def _p(value: float) -> str:
+    text = probability(value)
+    return text if text.startswith("<") else f"= {text}"
+
+
+says = Macros(
+    "rockfrag.report",
+    "campaign_page.j2",
+    {"better": _better, "estimate": estimate, "p": _p, "percent": _percent}
+    | {"FEWEST_VOTERS": FEWEST_VOTERS, "LEVEL": LEVEL},
+)
 
 
 def _who(name: str) -> str:
@@ -106,9 +115,9 @@ def _answer(
         asked="How often does the simulation predict what happened on the shaking table?",
         sentences=found[:3],
         figure=next((spec for spec in specs if spec.name == "tests"), specs[0]),
-        rests_on=said(_sentences().rests_on(tests, _motion(study))),
+        rests_on=said(says.rests_on(tests, _motion(study))),
         could_change=[
-            *said(_sentences().near_critical(near, len(tests))),
+            *said(says.near_critical(near, len(tests))),
             *(finding.headline + "." for finding in found[3:]),
         ],
     )
@@ -123,7 +132,7 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
     ours, *others = tables["agreement"].to_dict("records")
     rivals = [row for row in others if row["who"] != IN_PLANE]
     found = [
-        finding_of(_sentences().predicted(ours)),
+        finding_of(says.predicted(ours)),
         *(_beside_plane(ours, row) for row in others if row["who"] == IN_PLANE),
         *_against_rivals(rivals),
         *_fragility_found(tables["fragility"]),
@@ -132,13 +141,13 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
     near, wrong = tests["near_critical"], ~tests["right"]
     if wrong.any():
         counts = (int((wrong & near).sum()), int(wrong.sum()), int(near.sum()), len(tests))
-        found.append(finding_of(_sentences().wrong(*counts)))
+        found.append(finding_of(says.wrong(*counts)))
     return found
 
 
 def _beside_plane(ours: Row, plane: Row) -> Finding:
     """Whether three dimensions predict better than one plane."""
-    return finding_of(_sentences().beside_plane(ours, plane))
+    return finding_of(says.beside_plane(ours, plane))
 
 
 def _against_rivals(others: Sequence[Row]) -> list[Finding]:
@@ -147,16 +156,7 @@ def _against_rivals(others: Sequence[Row]) -> list[Finding]:
     if not rivals:
         return []
     best = max(rivals, key=lambda row: float(row["right"]))
-    return [finding_of(_sentences().beside_rivals(best, _who(best["who"]), len(rivals)))]
-
-
-LEVEL = 0.05
-"""A difference between programs is stated below this adjusted p value [-]."""
-
-
-def _p(value: float) -> str:
-    text = probability(value)
-    return text if text.startswith("<") else f"= {text}"
+    return [finding_of(says.beside_rivals(best, _who(best["who"]), len(rivals)))]
 
 
 def _two_measures(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> list[Section]:
@@ -173,9 +173,7 @@ def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
     found = {
         row["who"]: _ratios(row) for row in rows[rows["measure"] == measure].to_dict("records")
     }
-    return [
-        finding_of(_sentences().fragility(name_and_unit(measure)[0], found[OURS], found[VOTES]))
-    ]
+    return [finding_of(says.fragility(name_and_unit(measure)[0], found[OURS], found[VOTES]))]
 
 
 def _ordering(fragility: pd.DataFrame) -> str:
@@ -214,11 +212,11 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         Column("judged", "Judged"),
     )
     best = max(agreement.to_dict("records"), key=lambda row: float(row["right"]))
-    text = _sentences().agreement_figure(best, _who(best["who"]), _level(study))
+    text = says.agreement_figure(best, _who(best["who"]), _level(study))
     drawn = agreement.assign(who=shown["who"])
     figure = figure_of(text, "agreement", lambda: agreement_figure(drawn))
     table = table_html(shown, columns, "Outcomes predicted, and the difference on the same tests.")
-    text = _sentences().agreement(_findings(tables)[0])
+    text = says.agreement(_findings(tables)[0])
     return section_of(text, "agreement", [figure, table, *_rocking(tables["rocking"])])
 
 
@@ -273,13 +271,13 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
     found = _fragility_found(fragility)
     own = fragility[fragility["measure"] == measure]
     figure = figure_of(
-        _sentences().beside_figure(found, name),
+        says.beside_figure(found, name),
         "fragility_beside",
         lambda: beside_figure(tests, own, measure, f"{name} [{unit}]"),
     )
     caption = "Curves of measured and of simulated outcomes."
     table = table_html(pd.DataFrame(rows), columns, caption)
-    return section_of(_sentences().curves(found, _level(study)), "fragility", [figure, table])
+    return section_of(says.curves(found, _level(study)), "fragility", [figure, table])
 
 
 def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
@@ -318,12 +316,12 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     if len(names) == 2:
         x, y = names
         draw = partial(tests_figure, tests, x, y, (labels[x], labels[y]))
-        parts.append(figure_of(_sentences().tests_figure(tests), "tests", draw))
+        parts.append(figure_of(says.tests_figure(tests), "tests", draw))
     parts += [
         table_html(shown, columns, "Tests by thirds of two measures."),
         table_html(wrong, wrong_columns, "Tests predicted wrong."),
     ]
-    return section_of(_sentences().tests(tests), "tests", parts)
+    return section_of(says.tests(tests), "tests", parts)
 
 
 def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
@@ -344,7 +342,7 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     )
     parts: list[Markup | FigureSpec] = []
     if not footprint.empty:
-        text = _sentences().footprint_figure(100 * (likely["left_m"] + likely["right_m"]))
+        text = says.footprint_figure(100 * (likely["left_m"] + likely["right_m"]))
         parts.append(figure_of(text, "footprint", lambda: footprint_figure(footprint, trials)))
     parts.append(
         text_table(
@@ -386,7 +384,7 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
         for name, edge in preferred_edges(trials, likely.index, study.unknowns).items()
     ]
     blocks = len(study.object.get("pedestal", ()))
-    text = _sentences().how_it_stood(blocks, len(likely), len(trials), edges)
+    text = says.how_it_stood(blocks, len(likely), len(trials), edges)
     return section_of(text, "object", parts)
 
 
@@ -402,4 +400,4 @@ def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Sect
     )
     steps = [" ".join(str(value) for value in step.values()) for step in study.conditioning]
     table = table_html(shown, columns, "Outcomes predicted right, by conditioning.")
-    return section_of(_sentences().conditioning(steps), "conditioning", [table])
+    return section_of(says.conditioning(steps), "conditioning", [table])

@@ -1,7 +1,6 @@
 """What a study found, said of its tables; the sentences stand in ``findings.j2``."""
 
 from collections.abc import Callable, Mapping
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -11,12 +10,12 @@ from rockfrag.fragility.curve_facts import Compared, compared_curves
 from rockfrag.report.part import Finding, finding_of
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import (
+    Macros,
     decimals_of,
     estimate,
     estimates,
     has_interval,
     listed,
-    macros,
     number,
     of_all,
     one_line,
@@ -28,27 +27,10 @@ FRICTION = 0.6
 
 _RATIO_DECIMALS = 3
 
-_MOST_CONFIGURATIONS = 6
-"""So many are named with their numbers in a sentence."""
-
-
-@cache
-def _sentences() -> Any:
-    """The macros of ``findings.j2``."""
-    words = {
-        "FRICTION": FRICTION,
-        "MOST_CONFIGURATIONS": _MOST_CONFIGURATIONS,
-        "RATIO_DECIMALS": _RATIO_DECIMALS,
-        "analyses": lambda n, total: of_all(n, total, "analysis", "analyses"),
-        "has_interval": has_interval,
-        "ratio_text": ratio_text,
-    }
-    return macros("rockfrag.report", "findings.j2", words)
-
 
 def _finding(name: str, **about: Any) -> Finding:
     """What a macro says."""
-    return finding_of(getattr(_sentences(), name)(**about))
+    return finding_of(getattr(says, name)(**about))
 
 
 def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
@@ -160,7 +142,7 @@ def mean_sentence(means: pd.DataFrame) -> str:
     """Say over which motions means are taken, and which had to be left out."""
     rows = means[means["by"] == "configuration"]
     most, of = int(rows["motions"].max()), int(rows["of"].max())
-    return one_line(_sentences().means(most, of))
+    return one_line(says.means(most, of))
 
 
 def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Finding:
@@ -181,6 +163,20 @@ def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Fin
 def ratio_text(row: Mapping[Any, Any]) -> str:
     """A ratio with its interval: ``1.010 [0.990, 1.030]``."""
     return estimate(row["ratio"], row["lower"], row["upper"], _RATIO_DECIMALS)
+
+
+says = Macros(
+    "rockfrag.report",
+    "findings.j2",
+    {
+        "FRICTION": FRICTION,
+        "MOST_CONFIGURATIONS": 6,  # so many are named with their numbers in a sentence
+        "RATIO_DECIMALS": _RATIO_DECIMALS,
+        "analyses": lambda n, total: of_all(n, total, "analysis", "analyses"),
+        "has_interval": has_interval,
+        "ratio_text": ratio_text,
+    },
+)
 
 
 def ratio_of(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> Callable[[str, str], str]:
@@ -249,7 +245,7 @@ def friction_sentence(validity: pd.DataFrame) -> str:
         (int((~(part["friction_demand"].astype(float) <= FRICTION)).sum()), len(part), where)
         for where, part in _sides(validity).items()
     ]
-    return one_line(_sentences().friction(beyond))
+    return one_line(says.friction(beyond))
 
 
 def _demands(validity: pd.DataFrame) -> list[str]:

@@ -1,9 +1,8 @@
 """The report of a measured table: its curves, the intensity-measure selection, and how well they fit."""
 
 from collections.abc import Callable, Mapping
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -16,9 +15,9 @@ from rockfrag.report.figures.fragility import calibration_figure, measures_figur
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, finding_of, section_of
 from rockfrag.report.provenance import provenance
-from rockfrag.report.sections.two_measures import two_measures_section
+from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import estimates, macros, one_line, probability, said
+from rockfrag.report.wording import Macros, estimates, one_line, probability, said
 from rockfrag.study.measured_table import MeasuredTable
 
 _CAPTIONS = {
@@ -28,10 +27,7 @@ _CAPTIONS = {
 }
 
 
-@cache
-def _sentences() -> Any:
-    """The macros of ``measured_page.j2``."""
-    return macros("rockfrag.report", "measured_page.j2", {})
+says = Macros("rockfrag.report", "measured_page.j2")
 
 
 def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
@@ -98,7 +94,7 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
         answer,
         sections,
         title=study.title,
-        lead=one_line(_sentences().lead(found.tests)),
+        lead=one_line(says.lead(found.tests)),
         provenance=provenance(study, {"Table": values}),
         basis="measured",
     )
@@ -107,12 +103,12 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
 def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, FigureSpec]) -> Answer:
     """What stands first: which measure, how strong it must be, and whether the curve fits."""
     name = found.choice.name
-    sentences = [finding_of(_sentences().choice(found.choice))]
+    sentences = [finding_of(says.choice(found.choice))]
     best = found.table[found.table["theta"].notna()]
     best = best[best["im"] == name] if name in set(best["im"]) else best
     if len(best):
         (theta,), (beta,) = (estimates(best.head(1), key) for key in ("theta", "beta"))
-        median = _sentences().median(best.iloc[0], theta, beta, _level(study))
+        median = says.median(best.iloc[0], theta, beta, _level(study))
         sentences.append(finding_of(median))
     doubtful = [
         found.fits[measure].fit.im
@@ -120,12 +116,12 @@ def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, Figu
         if goodness.p_value < 0.05
     ]
     if found.goodness:
-        sentences.append(finding_of(_sentences().shape(doubtful, len(found.goodness))))
+        sentences.append(finding_of(says.shape(doubtful, len(found.goodness))))
     return Answer(
         asked="How strong must shaking be to overturn the tested object, and which measure predicts it best?",
         sentences=sentences,
         figure=specs["measures"],
-        rests_on=said(_sentences().rests_on(found.tests)),
+        rests_on=said(says.rests_on(found.tests)),
         could_change=list(dict.fromkeys(note for note in found.table["warnings"] if note)),
     )
 
@@ -148,7 +144,7 @@ def _choice(choice: pd.DataFrame, best: Finding) -> Section:
     columns += [Column(name, f"p, {name.removeprefix('p_')}", numeric=True) for name in given]
     choice = choice.assign(**{name: [probability(p) for p in choice[name]] for name in given})
     table = table_html(choice, columns, "Measures compared on the same tests, best first.")
-    return section_of(_sentences().measures(best), "measure", [table])
+    return section_of(says.measures(best), "measure", [table])
 
 
 def _curves(
@@ -180,5 +176,5 @@ def _curves(
         table_html(goodness, fits, "Goodness of fit."),
         figures["calibration"],
     ]
-    text = _sentences().curves(len(goodness), level, notes)
+    text = says.curves(len(goodness), level, notes)
     return section_of(text, "fragility", parts)

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +15,7 @@ from rockfrag.report.figures.amplitudes import BAND, GREY
 from rockfrag.report.glossary import terms_used
 from rockfrag.report.live.embedded import TEMPLATES
 from rockfrag.report.part import Answer, FigureSpec, Section
-from rockfrag.report.wording import number
+from rockfrag.report.wording import estimates, number, probability
 
 _PIXELS_PER_POINT = 96 / 72 * 1.22
 _COLUMN = 252 * _PIXELS_PER_POINT
@@ -38,15 +38,38 @@ _SCHEME = {
 """Colours of drawings that follow the reader's scheme, light or dark, and their names in the style."""
 
 
+Row = Mapping[Any, Any]
+"""A row of a table."""
+
+Words = Callable[[pd.DataFrame], Iterable[str]]
+
+
 @dataclass(frozen=True)
 class Column:
     """A column of a table on the page."""
 
     name: str  # Column of the data
     title: str  # What its head says, with the unit
-    digits: int | None = None  # Decimals of numbers, or None for text
-    # Whether text is of numbers, such as an estimate with its limits, and stands to the right
-    numeric: bool = False
+    # Decimals of numbers, or what words the column of a table; None for text
+    shown: int | Words | None = None
+    numeric: bool = False  # Whether text is of numbers and stands to the right, as they do
+
+
+def by_row(words: Callable[[Row], str]) -> Words:
+    """Return what words a column row by row."""
+    return lambda table: [words(row) for row in table.to_dict("records")]
+
+
+def estimated(
+    name: str, title: str, decimals: int | None = None, limits: tuple[str, str] | None = None
+) -> Column:
+    """Return a column of estimates with their limits, see :func:`rockfrag.report.wording.estimates`."""
+    return Column(name, title, lambda table: estimates(table, name, decimals, limits))
+
+
+def p_values(name: str, title: str) -> Column:
+    """Return a column of p values."""
+    return Column(name, title, lambda table: map(probability, table[name]))
 
 
 def cell(value: Any, digits: int | None) -> str:
@@ -80,10 +103,14 @@ def table_html(
         caption += f" The first {MOST_TABLE_ROWS} of {len(table)}; {file} has all."
         table = table.iloc[:MOST_TABLE_ROWS]
     head = [(column.title, _kind(table, column)) for column in columns]
-    rows = [
-        [cell(row[column.name], column.digits) for column in columns]
-        for row in table.to_dict("records")
+    records = table.to_dict("records")
+    texts = [
+        column.shown(table)
+        if callable(column.shown)
+        else [cell(row[column.name], column.shown) for row in records]
+        for column in columns
     ]
+    rows = list(zip(*texts, strict=True))
     room = len(columns) + _LONG_COLUMN * [kind for _, kind in head].count("long")
     return framed(caption, head, rows, room)
 
@@ -107,7 +134,7 @@ def text_table(
 
 def _kind(table: pd.DataFrame, column: Column) -> str:
     """Class of a column's cells: numbers, texts that stay on one line, texts that wrap."""
-    if column.digits is not None or column.numeric:
+    if column.shown is not None or column.numeric:
         return "number"
     longest = table[column.name].astype(str).str.len().max()
     return "long" if longest > _LONGEST_LINE else "short"

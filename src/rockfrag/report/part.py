@@ -1,6 +1,6 @@
 """What a report is made of: parts, each with its words, tables and figures in one file.
 
-To add a part, write a module in ``report/sections/`` with one :class:`Part`, its words into ``sections.j2`` there,
+To add a part, write one :class:`Part` in a module of ``report/sections/``, its words into ``sections.j2`` there,
 and name it in ``report/sections/__init__.py`` where it should stand.
 """
 
@@ -177,16 +177,23 @@ class Results:
     @property
     def objects(self) -> list[str]:
         """Names of the objects tested, in the study's order."""
-        return list(
-            dict.fromkeys(configuration.names[-1] for configuration in self.study.configurations)
-        )
+        return list(dict.fromkeys(each.names[-1] for each in self.study.configurations))
+
+    @property
+    def slenderness(self) -> dict[str, float]:
+        """Height over width of each specimen by its name."""
+        return {name: block.slenderness for name, block in self.study.specimens.items()}
+
+    @property
+    def level(self) -> str:
+        """Confidence of the intervals of curves, in words."""
+        return f"{100 * self.study.fragility.confidence:g} %"
 
 
 @dataclass(frozen=True)
 class Part:
     """A part of the report."""
 
-    tables: tuple[str, ...]  # Names of the tables that it reads
     # Writes its section, or None where there is nothing to show
     section: Callable[[Results], Section | None]
     asked: Callable[[Study], bool] = lambda _: True  # Whether a study has it

@@ -1,30 +1,23 @@
 """The report of a study of bodies in space: medians over planar ones, and what they come from."""
 
 from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.figures.space import WORDS, fractions_figure, ratios_figure, words_of
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, Finding, Section, figure_of, finding_of
 from rockfrag.report.provenance import provenance
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import estimates, macros, one_line, said
+from rockfrag.report.wording import Macros, estimates, one_line, said
 from rockfrag.rocking.space_medians import LOSS, PLANAR, body_of
 from rockfrag.study.space import SpaceStudy
 
-
-@cache
-def _sentences() -> Any:
-    """The macros of ``space_page.j2``."""
-    return macros("rockfrag.report", "space_page.j2", {})
+says = Macros("rockfrag.report", "space_page.j2")
 
 
 def write_space_report(
@@ -38,7 +31,6 @@ def write_space_report(
 
     ``ground`` are the components of its records, both of each in turn.
     """
-    says = _sentences()
     ratios = figure_of(says.ratios_figure(), "ratios", lambda: ratios_figure(medians))
     levels = figure_of(says.fractions_figure(), "fractions", lambda: fractions_figure(fractions))
     findings = [_finding(base, medians) for base in study.bases]
@@ -81,7 +73,7 @@ def _finding(base: str, medians: pd.DataFrame) -> Finding:
     """What the second component does to one base, as the range of its rows."""
     rows = medians[(medians["base"] == base) & (medians["planar_impacts"] == LOSS)]
     spans = {name: f"{rows[name].min():.2f} to {rows[name].max():.2f}" for name in PLANAR}
-    return finding_of(_sentences().finding(base, spans))
+    return finding_of(says.finding(base, spans))
 
 
 def _table(medians: pd.DataFrame) -> Markup:

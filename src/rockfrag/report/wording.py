@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import pandas as pd
@@ -61,12 +63,17 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
     return f"{middle} [{low}, {high}]"
 
 
-def estimates(table: pd.DataFrame, name: str, decimals: int | None = None) -> list[str]:
-    """Estimates of a table in words, of a column and those of its limits, with ``_lower`` and ``_upper``.
+def estimates(
+    table: pd.DataFrame,
+    name: str,
+    decimals: int | None = None,
+    limits: tuple[str, str] | None = None,
+) -> list[str]:
+    """Estimates of a table in words, of a column and those of its limits, by default ``_lower`` and ``_upper``.
 
     The decimals are the same for all; by default they show three digits of the smallest value.
     """
-    values = table[[name, f"{name}_lower", f"{name}_upper"]].to_numpy(dtype=float)
+    values = table[[name, *(limits or (f"{name}_lower", f"{name}_upper"))]].to_numpy(dtype=float)
     if decimals is None:
         decimals = min(max((decimals_of(value) for value in values[:, 0]), default=3), 3)
     return [estimate(value, lower, upper, decimals) for value, lower, upper in values]
@@ -154,12 +161,27 @@ def sentence(words: str) -> str:
     return words[:1].upper() + words[1:]
 
 
-def macros(package: str, template: str, words: Mapping[str, Any]) -> Any:
-    """Return the macros of a template of sentences, which use the words given and those of this module."""
-    environment = sentences.environment(package)
-    environment.loader = ChoiceLoader([environment.loader, PackageLoader("rockfrag.report")])
-    environment.filters |= {"listed": listed, "sentence": sentence}
-    environment.globals |= {"agree": agree, "counted": counted, "number": number, "of_all": of_all}
-    environment.globals |= words
-    environment.globals["part"] = PART
-    return environment.get_template(template).module
+class Macros:
+    """Macros of a template of sentences, which use the words given and those of this module.
+
+    The template is read when the first of them is asked for.
+    """
+
+    def __init__(
+        self, package: str, template: str, words: Mapping[str, Any] = MappingProxyType({})
+    ) -> None:
+        self._of = (package, template, words)
+
+    def __getattr__(self, macro: str) -> Any:
+        """Return a macro by its name."""
+        return getattr(self._module, macro)
+
+    @cached_property
+    def _module(self) -> Any:
+        package, template, words = self._of
+        environment = sentences.environment(package)
+        environment.loader = ChoiceLoader([environment.loader, PackageLoader("rockfrag.report")])
+        environment.filters |= {"listed": listed, "sentence": sentence}
+        environment.globals |= {"agree": agree, "counted": counted, "number": number}
+        environment.globals |= {"of_all": of_all, "part": PART, **words}
+        return environment.get_template(template).module

@@ -16,7 +16,7 @@ from rockfrag.system.system import System, uplift_ratios
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
-    from rockfrag.fragility.ida_data import IdaData
+    from rockfrag.fragility.empirical import IdaData
 
     StateIdaCurves = dict[str, dict[tuple[str, str], IdaData]]
 
@@ -54,11 +54,10 @@ def floor_curves(
     limit state) and the columns of :func:`rockfrag.fragility.ida_curves.fragility_table`. A state that IDA curves
     count has the mean probability over all analyses; rocking starts at an exact peak acceleration, whose value in
     another measure varies from motion to motion. Fractions are points of the non-parametric fragility function,
-    of those that are rejected: see :func:`rockfrag.fragility.drawn_curves.fraction_points`.
+    of those that are rejected: see :func:`rockfrag.fragility.ida_curves.fraction_points`.
     """
-    from rockfrag.fragility.drawn_curves import fraction_points
     from rockfrag.fragility.estimators import fit_uplift, fragility_of
-    from rockfrag.fragility.ida_curves import fragility_row, with_measures
+    from rockfrag.fragility.ida_curves import fraction_points, fragility_row, with_measures
 
     floor_labels = {measure.label: measure.floor_label for measure in intensity_measures()}
     fractions = []

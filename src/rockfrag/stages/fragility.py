@@ -1,24 +1,26 @@
 """Fragility: curves of every configuration, the measure that predicts overturning best, exports."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pandas as pd
 
 from rockfrag.motions.declared import declared
 from rockfrag.outcomes.limit_states import OVERTURNS, LimitState, limit_states
+from rockfrag.shaketable.swept import Swept
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
+from rockfrag.stages.ida import ida_curves_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.stages.measure_selection import best_of, candidates, measure_selection
-from rockfrag.stages.read_ida_curves import ida_curves_of, rows_of
 from rockfrag.study.study import Study
 from rockfrag.system.system import System
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
-    from rockfrag.fragility.ida_data import IdaData
+    from rockfrag.fragility.empirical import IdaData
     from rockfrag.stages.floor_curves import StateIdaCurves
 
 
@@ -88,6 +90,28 @@ def _two_measures(job: Job[Study], measures: pd.DataFrame) -> Results:
     yield "fragility_cells", found.cells
 
 
+MOST_LEVELS = 200
+"""Intensity levels of a motion that stand in a table of tests; of more every so many-th does."""
+
+
+def rows_of(parts: Iterable[Swept]) -> pd.DataFrame:
+    """Put outcomes of IDA curves of one configuration into a table with a row a test.
+
+    Columns: ``earthquake``, ``floor``, ``motion``, ``amplitude_g`` and ``overturned`` (0 or 1).
+    """
+    tables = []
+    for part in parts:
+        chosen = slice(None, None, -(-part.amplitude_g.size // MOST_LEVELS))
+        amplitude = part.amplitude_g[chosen]
+        about = part.about[["earthquake", "floor", "motion"]]
+        rows = about.loc[about.index.repeat(amplitude.size)].reset_index(drop=True)
+        overturned = part.overturned[:, chosen].ravel().astype(np.int64)
+        tables.append(
+            rows.assign(amplitude_g=np.tile(amplitude, len(about)), overturned=overturned)
+        )
+    return pd.concat(tables, ignore_index=True)
+
+
 BY = ["configuration", "earthquake", "floor", "motion"]
 
 
@@ -110,9 +134,8 @@ def _states(study: Study) -> dict[str, tuple[LimitState, ...]]:
 
 def _rows(job: Job[Study], measures: pd.DataFrame) -> _IdaCurves:
     """IDA curves as tables, every outcome a row."""
-    from rockfrag.fragility.empirical import find_resurrections
+    from rockfrag.fragility.empirical import TableIda, find_resurrections
     from rockfrag.fragility.ida_curves import with_measures
-    from rockfrag.fragility.ida_data import TableIda
 
     ida = pd.concat(
         [pd.read_parquet(job.file(path)) for path in job.study.ida_files], ignore_index=True

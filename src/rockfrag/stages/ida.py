@@ -1,7 +1,8 @@
 """Every configuration under every motion at every amplitude: what all statistics start from."""
 
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +12,10 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from rockfrag.files import whole_file
-from rockfrag.outcomes.limit_states import ROCKS, limit_state_named, limit_states
+from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_state_named, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import Motion
-from rockfrag.shaketable.swept import fallen_names, labels_of
+from rockfrag.shaketable.swept import Swept, fallen_names, labels_of, read_swept
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 from rockfrag.system.system import System
@@ -45,24 +46,21 @@ def run(job: Job[Study]) -> Results:
 def run_part(job: Job[Study]) -> Results:
     """Write the IDA curve of every configuration under the job's part of the motions, a few motions at a time."""
     study, number = job.study, job.part
-    part = (number, study.ida_jobs)
+    part, amplitudes = (number, study.ida_jobs), study.amplitudes.values_g
     motions = job.motions("motions/floors", part)
     ups = job.motions("motions/vertical", part) if study.vertical else None
-    batch = max(FEWEST_AT_ONCE, ROWS_AT_ONCE // len(study.amplitudes.values_g))
+    batch = max(FEWEST_AT_ONCE, ROWS_AT_ONCE // len(amplitudes))
     histories = 0
+
+    def table(configuration: System, start: int) -> pa.Table:
+        here = slice(start, start + batch)
+        up = None if ups is None else ups[here]
+        return ida_table(configuration, motions[here], amplitudes, job.threads, up)
+
     for configuration in study.configurations:
         with whole_file(job.folder / study.ida_file(configuration, number)) as path:
-            tables = (
-                ida_table(
-                    configuration,
-                    motions[i : i + batch],
-                    study.amplitudes.values_g,
-                    job.threads,
-                    None if ups is None else ups[i : i + batch],
-                )
-                for i in range(0, len(motions), batch)
-            )
-            histories += _write(tables, path)
+            starts = range(0, len(motions), batch)
+            histories += _write((table(configuration, start) for start in starts), path)
         if ups is not None and not configuration.loose:
             _say_how_light(job, configuration, number)
         job.log.info("%s: %d histories so far", configuration.name, histories)
@@ -72,13 +70,19 @@ def run_part(job: Job[Study]) -> Results:
 
 def run_as_recorded(job: Job[Study]) -> Results:
     """Yield the outcomes under the motions as recorded."""
-    motions = job.motions("motions/floors")
-    ups = job.motions("motions/vertical") if job.study.vertical else None
-    each = [
-        as_recorded(configuration, motions, job.threads, ups)
-        for configuration in job.study.configurations
-    ]
+    motions, study = job.motions("motions/floors"), job.study
+    ups = job.motions("motions/vertical") if study.vertical else None
+    each = [as_recorded(system, motions, job.threads, ups) for system in study.configurations]
     yield "as_recorded", pd.concat(each, ignore_index=True)
+
+
+def ida_curves_of(
+    job: Job[Study], configuration: System, *, state: str = OVERTURNS
+) -> Iterator[Swept]:
+    """Yield the outcomes of a configuration, see :func:`rockfrag.shaketable.swept.read_swept`."""
+    parts = range(job.study.ida_jobs)
+    files = (job.file(job.study.ida_file(configuration, part)) for part in parts)
+    yield from read_swept(files, state=state)
 
 
 def _say_how_light(job: Job[Study], configuration: System, number: int) -> None:
@@ -86,32 +90,25 @@ def _say_how_light(job: Job[Study], configuration: System, number: int) -> None:
     from rockfrag.rocking.ensemble import LIGHT
 
     path = job.folder / job.study.ida_file(configuration, number)
-    least_gravity_ratio = pq.read_table(path, columns=["minimum_gravity_ratio"])[
-        "minimum_gravity_ratio"
-    ].to_numpy()
-    job.log.info(
-        "%s: the ground takes more than half of all weight in %d of %d histories",
-        configuration.name,
-        int((least_gravity_ratio < LIGHT).sum()),
-        least_gravity_ratio.size,
-    )
+    ratio = pq.read_table(path, columns=["minimum_gravity_ratio"])["minimum_gravity_ratio"]
+    light = int((ratio.to_numpy() < LIGHT).sum())
+    words = "%s: the ground takes more than half of all weight in %d of %d histories"
+    job.log.info(words, configuration.name, light, len(ratio))
 
 
 def _write(tables: Iterable[pa.Table], path: Path) -> int:
     """Write tables to one Parquet file, a row group each, and return the number of rows."""
     writer, rows = None, 0
-    try:
+    with ExitStack() as open_files:
         for table in tables:
-            # texts are read as texts, however compactly they are handed on here
             if writer is None:
-                writer = pq.ParquetWriter(
+                # texts are read as texts, however compactly they are handed on here
+                to_file = pq.ParquetWriter(
                     path, table.schema, compression="zstd", store_schema=False
                 )
+                writer = open_files.enter_context(to_file)
             writer.write_table(table)
             rows += table.num_rows
-    finally:
-        if writer is not None:
-            writer.close()
     return rows
 
 

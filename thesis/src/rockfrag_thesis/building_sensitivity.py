@@ -11,8 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.building.drift import judge_drift
-from rockfrag.building.floors import respond, response_motions
+from rockfrag.building.floors import judge_drift, respond, response_motions
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.settings import make_building
 from rockfrag.errors import InputError

@@ -3,16 +3,15 @@
 from collections.abc import Sequence
 
 from rockfrag.report.part import Part
-from rockfrag.report.sections.comparisons import COMPARISONS
-from rockfrag.report.sections.motions import MOTIONS
+from rockfrag.report.sections.amplitudes import COMPARISONS
+from rockfrag.report.sections.tested import MOTIONS
 from rockfrag.report.sections.validity import VALIDITY
 from rockfrag_thesis.sections.building import BUILDING
 from rockfrag_thesis.sections.counterparts import COUNTERPARTS
 from rockfrag_thesis.sections.floor_order import FLOOR_ORDER
 from rockfrag_thesis.sections.friction import FRICTION
-from rockfrag_thesis.sections.hypotheses import HYPOTHESES
+from rockfrag_thesis.sections.hypotheses import HYPOTHESES, MEASURED_HYPOTHESES
 from rockfrag_thesis.sections.inverse_problem import INVERSE_PROBLEM
-from rockfrag_thesis.sections.measured import MEASURED_HYPOTHESES
 from rockfrag_thesis.sections.printed import PRINTED
 from rockfrag_thesis.sections.sensitivity_analysis import SENSITIVITY_ANALYSIS
 from rockfrag_thesis.sections.signs import SIGNS

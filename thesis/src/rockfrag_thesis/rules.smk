@@ -2,7 +2,6 @@
 from rockfrag_thesis.settings import settings_of
 
 ASKED = settings_of(STUDY)
-ANALYSED = ASKED.sensitivity_analysis
 MEASURED = ["measured"] if STUDY.measured_tests else []
 BUILDINGS = ["building_sensitivity"] if ASKED.sensitivity else []
 
@@ -38,7 +37,7 @@ if ASKED.sensitivity:
     ADDED.append(rules.building_sensitivity.output)
 
 
-if ANALYSED:
+if ASKED.sensitivity_analysis:
 
     rule sensitivity_analysis:
         """Simulate what could produce an effect of the pedestal, one perturbed parameter of the ideal model at a time."""
@@ -52,12 +51,12 @@ if ANALYSED:
                     "sensitivity_analysis/friction_ratios",
                     "sensitivity_analysis/friction",
                 )
-                if ANALYSED.friction
+                if ASKED.friction
                 else []
             ),
             inverse_problem=(
                 table("sensitivity_analysis/inverse_problem")
-                if ANALYSED.wanted_percent
+                if ASKED.wanted_percent
                 else []
             ),
         log:

@@ -33,7 +33,7 @@ from rockfrag.assess.place import Place
 from rockfrag.assess.request import LONGEST_PERIOD, Request
 from rockfrag.assess.scale import STEPS
 from rockfrag.building.model import ModalDamping, ShearBuilding
-from rockfrag.building.modes import find_modes
+from rockfrag.building.response import find_modes
 from rockfrag.fragility.held_out import FOLDS, WORST_SCORE
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.fragility.vector import INTERACTION_LEVEL

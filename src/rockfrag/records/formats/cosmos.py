@@ -12,17 +12,8 @@ from typing import Any
 
 from obspy import UTCDateTime
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import (
-    QUANTITIES,
-    Section,
-    accelerations,
-    field_width,
-    integers,
-    positive_step,
-    reals,
-)
+from rockfrag.records.parsing import fortran_sections
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_at
@@ -85,7 +76,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 def _parse(text: TextFile) -> list[Channel]:
     if re.search(r"\bspectr", text.line(0), re.IGNORECASE):
         text.refuse("this file holds response spectra, not acceleration; give the V2 file")
-    return accelerations(text, _channels(text))
+    return fortran_sections.accelerations(text, _channels(text))
 
 
 def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
@@ -104,11 +95,11 @@ def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
     at_integers = text.find(_INTEGERS, first)
     if at_integers < 0:
         text.fail("no integer header below this line; the file is cut short", first)
-    whole = integers(text, *_block(text, at_integers, _INTEGERS, width=8))
+    whole = fortran_sections.integers(text, *_block(text, at_integers, _INTEGERS, width=8))
     at_reals = text.find(_REALS, at_integers)
     if at_reals < 0:
         text.fail("no real header below this line; the file is cut short", at_integers)
-    numbers = reals(text, *_block(text, at_reals, _REALS, width=15))
+    numbers = fortran_sections.reals(text, *_block(text, at_reals, _REALS, width=15))
     at_samples = _above_samples(text, at_reals)
     words = text.lines(first, at_integers)
     comments = [line for line in text.lines(at_reals, at_samples) if line.lstrip().startswith("|")]
@@ -122,7 +113,7 @@ def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
     latitude, longitude = (None if numbers[i] == unknown else numbers[i] for i in _PLACE)
     facts["details"] |= {"latitude": latitude, "longitude": longitude}
     facts["start_time"] = _start(whole, numbers, unknown)
-    return at_samples, positive_step(text, dt, at_reals), facts
+    return at_samples, fortran_sections.positive_step(text, dt, at_reals), facts
 
 
 def _above_samples(text: TextFile, at_reals: int) -> int:
@@ -146,22 +137,24 @@ def _block(
     count, lines = int(match[1]), int(match[2])
     if lines > len(text):
         text.fail(f"the header promises {lines} lines, the file has {len(text)}", line)
-    return line + 1, line + 1 + lines, field_width(text.line(line)) or width, count
+    return line + 1, line + 1 + lines, fortran_sections.field_width(text.line(line)) or width, count
 
 
-def _section(text: TextFile, line: int, dt: float) -> Section:
+def _section(text: TextFile, line: int, dt: float) -> fortran_sections.Section:
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("the line above the samples does not state their unit", line)
-    quantity = QUANTITIES.get(match["quantity"].upper()[:5], match["quantity"].lower())
+    quantity = fortran_sections.QUANTITIES.get(
+        match["quantity"].upper()[:5], match["quantity"].lower()
+    )
     unit = canonical_unit(match["unit"])
     if match["code"] is not None:
         unit = _UNITS_BY_CODE.get(int(match["code"]), unit)
     if unit in {"counts", "volts"}:
         text.refuse(f"the samples are raw {unit}; give the V1 or V2 file, in units of motion", line)
     stop = text.until(_END, line + 1)
-    width = field_width(text.line(line).split("ormat", 1)[-1])
-    return Section(quantity, int(match["count"]), line + 1, stop, width, dt, unit)
+    width = fortran_sections.field_width(text.line(line).split("ormat", 1)[-1])
+    return fortran_sections.Section(quantity, int(match["count"]), line + 1, stop, width, dt, unit)
 
 
 def _start(whole: list[int], numbers: list[float], unknown: float) -> UTCDateTime | None:

@@ -11,20 +11,11 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import (
-    CHANNEL_END,
-    QUANTITIES,
-    Section,
-    accelerations,
-    field_width,
-    positive_step,
-)
+from rockfrag.records.parsing import fortran_sections
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.time_value_pairs import is_pairs_header, read_pairs
-from rockfrag.records.parsing.timestamps import american_time
+from rockfrag.records.parsing.timestamps import american_time, is_pairs_header, read_pairs
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected\s+acc?elero(?:gram|graph)\b", re.IGNORECASE)
 _SPECTRA = re.compile(r"^\s*(?:response|fourier)\b.*\bspectr", re.IGNORECASE)
@@ -69,11 +60,11 @@ def _parse(text: TextFile) -> list[Channel]:
         text.refuse(
             "this file holds response spectra (volume 3), not acceleration; give the V2 file"
         )
-    return accelerations(text, _channels(text))
+    return fortran_sections.accelerations(text, _channels(text))
 
 
 def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
-    for first, stop in text.parts(_HEAD, CHANNEL_END):
+    for first, stop in text.parts(_HEAD, fortran_sections.CHANNEL_END):
         words = text.lines(first, min(stop, first + _MAX_HEADER))
         line = text.find(_VALUES, first, stop)
         if line < 0:
@@ -86,22 +77,24 @@ def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
             line = text.find(_VALUES, section.stop, stop)
 
 
-def _section(text: TextFile, line: int, stop: int) -> Section:
+def _section(text: TextFile, line: int, stop: int) -> fortran_sections.Section:
     words = text.line(line)
     match = _VOLUME_2.match(words) or _VOLUME_1.match(words)
     if match is None:
         text.fail("number of samples, interval or rate cannot be read here", line)
     stated = match.groupdict()
-    quantity = QUANTITIES[match["quantity"].upper()]
+    quantity = fortran_sections.QUANTITIES[match["quantity"].upper()]
     dt = float(stated["dt"]) if stated.get("dt") else 1 / float(stated["rate"])
     unit = _UNIT.search(match["rest"])
-    width = field_width(match["rest"]) or (10 if _VOLUME_2.match(words) else 9)
+    width = fortran_sections.field_width(match["rest"]) or (10 if _VOLUME_2.match(words) else 9)
     stated_unit = _DEFAULT_UNITS[quantity] if _VOLUME_2.match(words) else ""
     if unit:
         stated_unit = canonical_unit(unit["unit"]).replace("1/10g", "g/10")
-    dt = positive_step(text, dt, line)
+    dt = fortran_sections.positive_step(text, dt, line)
     end = min(stop, text.until(_END, line + 1))
-    return Section(quantity, int(match["count"]), line + 1, end, width, dt, stated_unit)
+    return fortran_sections.Section(
+        quantity, int(match["count"]), line + 1, end, width, dt, stated_unit
+    )
 
 
 def _described(values: Channel, lines: list[str]) -> Channel:

@@ -30,8 +30,8 @@ from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.report.wording import shortened
 
 if TYPE_CHECKING:
+    from rockfrag.fragility.checks import GoodnessOfFit
     from rockfrag.fragility.estimators import Fragility
-    from rockfrag.fragility.goodness import GoodnessOfFit
 
 GREY = "#777777"
 
@@ -42,7 +42,7 @@ def fragility_figure(
     """Draw fragility curves of one measure, a panel per configuration, with bands and the outcomes behind them.
 
     ``curves`` are rows of :func:`rockfrag.fragility.fragility_table`; theta is missing where there is no curve.
-    For bands and bins see :mod:`rockfrag.fragility.drawn_curves`. By default all panels have the nonparametric
+    For bands and bins see :mod:`rockfrag.fragility.ida_curves`. By default all panels have the nonparametric
     curve, with the lognormal one dotted, where the lognormal curve of one of them is rejected; figures that are
     compared with each other need the same.
     """

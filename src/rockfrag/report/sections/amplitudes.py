@@ -1,42 +1,83 @@
-"""Overturning amplitudes: of every test, and which amplitudes overturn."""
+"""Overturning amplitudes: as recorded, of every test, and side by side by object, floor and pedestal."""
 
 from functools import partial
+from typing import Any
 
 import pandas as pd
 
 from rockfrag.files import file_name
-from rockfrag.report.figures.ida import MOST_ROWS, outcome_map
-from rockfrag.report.findings import amplitudes_found, resurrections_found
+from rockfrag.pedestal.paired_tests import with_counterparts
+from rockfrag.report.figures import amplitudes as figures
+from rockfrag.report.figures import as_recorded, ida
+from rockfrag.report.findings import (
+    amplitudes_found,
+    mean_sentence,
+    objects_compared,
+    ratio_of,
+    recorded_found,
+    resurrections_found,
+)
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
-from rockfrag.report.sections.words import sentences
+from rockfrag.report.sections.words import says
+from rockfrag.report.sides import sides_of
 from rockfrag.report.wording import amplitude
 
+_MOTION = (Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion"))
+_MEANS = (
+    Column("what", "Of"),
+    Column("mean_g", "Geometric mean [g]", 3),
+    Column("motions", "Tests each", 0),
+    Column("of", "of", 0),
+)
 
-def _section(results: Results) -> Section:
+
+def _wide(table: pd.DataFrame, texts: list[str], about: tuple[str, ...]) -> pd.DataFrame:
+    """A row per motion, with what is known about it and a column of texts per configuration."""
+    rows: dict[tuple[Any, ...], dict[str, Any]] = {}
+    for row, text in zip(table.to_dict("records"), texts, strict=True):
+        known = {key: row[key] for key in about}
+        rows.setdefault(tuple(known.values()), known)[row["configuration"]] = text
+    return pd.DataFrame(list(rows.values())).fillna("–")
+
+
+def _as_recorded(results: Results) -> Section:
+    recorded = results.table("as_recorded")
+    names = recorded["configuration"].unique()
+    columns = [*_MOTION, Column("pga_g", "Peak [g]", 3), *(Column(name, name) for name in names)]
+    found = recorded_found(recorded)
+    motions = recorded["motion"].nunique()
+    text = says.as_recorded_figure(found, motions, as_recorded.MOST_ROWS)
+    figure = figure_of(text, "as_recorded", lambda: as_recorded.recorded_map(recorded))
+    texts = [_outcome(row) for row in recorded.to_dict("records")]
+    shown = _wide(recorded, texts, ("earthquake", "floor", "motion", "pga_g"))
+    caption = "Outcome under each motion as recorded."
+    table = table_html(shown, columns, caption, "as_recorded.csv")
+    return section_of(says.as_recorded(found), "as_recorded", [figure, table])
+
+
+def _outcome(row: dict[Any, Any]) -> str:
+    if row["overturned"]:
+        words = "overturns"
+    elif row["rocked"]:
+        words = "rocks"
+    else:
+        words = "slides" if row.get("peak_slip_m", 0.0) > 0 else "stays"
+    return f"{words} (sensitive)" if 0 < row["fraction_near"] < 1 else words
+
+
+def _amplitudes(results: Results) -> Section:
     resurrections = resurrections_found(results.table("resurrections"), results.table("tests"))
     tests = results.tests
     tests = tests[tests["repetition"] == tests["repetition"].min()]
-    columns = [
-        *(Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion")),
-        *(Column(name, f"{name} [g]", numeric=True) for name in tests["configuration"].unique()),
-    ]
+    names = tests["configuration"].unique()
+    columns = [*_MOTION, *(Column(name, f"{name} [g]", numeric=True) for name in names)]
+    texts = [amplitude(test) for test in tests.to_dict("records")]
+    shown = _wide(tests, texts, ("earthquake", "floor", "motion"))
     caption = "Overturning amplitude of every test (step protocol)."
-    table = table_html(_wide(tests), columns, caption, "tests.csv")
-    text = sentences().amplitudes(amplitudes_found(results.tests), resurrections)
+    table = table_html(shown, columns, caption, "tests.csv")
+    text = says.amplitudes(amplitudes_found(results.tests), resurrections)
     return section_of(text, "amplitudes", [table, *_maps(results)])
-
-
-def _wide(tests: pd.DataFrame) -> pd.DataFrame:
-    """A row per motion and a column per configuration, amplitudes and bounds as text."""
-    texts = tests.assign(text=[amplitude(test) for test in tests.to_dict("records")])
-    keys = ["earthquake", "floor", "motion"]
-    rows: dict[tuple[str, ...], dict[str, str]] = {}
-    for row in texts.to_dict("records"):
-        key = tuple(row[name] for name in keys)
-        about = rows.setdefault(key, dict(zip(keys, key, strict=True)))
-        about[row["configuration"]] = row["text"]
-    return pd.DataFrame(list(rows.values())).fillna("–")
 
 
 def _maps(results: Results) -> list[FigureSpec]:
@@ -45,12 +86,49 @@ def _maps(results: Results) -> list[FigureSpec]:
     for name in results.objects:
         own = outcomes[outcomes["object"] == name]
         configurations = list(dict.fromkeys(own["configuration"]))
-        ida_curves = resurrections[resurrections["configuration"].isin(configurations)]
-        fallen, motions = ida_curves["first_upper"].count(), ida_curves["motion"].nunique()
-        text = sentences().outcomes_figure(name, fallen, len(ida_curves), motions, MOST_ROWS)
-        draw = partial(outcome_map, own, configurations)
+        curves = resurrections[resurrections["configuration"].isin(configurations)]
+        fallen, motions = curves["first_upper"].count(), curves["motion"].nunique()
+        text = says.outcomes_figure(name, fallen, len(curves), motions, ida.MOST_ROWS)
+        draw = partial(ida.outcome_map, own, configurations)
         specs.append(figure_of(text, f"outcomes_{file_name(name)}", draw))
     return specs
 
 
-AMPLITUDES = Part(("tests", "resurrections"), _section)
+def _comparisons(results: Results) -> Section | None:
+    study, tests, means = results.study, results.tests, results.table("mean_amplitudes")
+    if len(tests) < 2:
+        return None
+    found, words = objects_compared(means, results.slenderness), mean_sentence(means)
+    known = means[means["mean_g"].notna()]
+    whole = known[known["by"] == "configuration"].assign(what=lambda t: t["configuration"])
+    floors = known[known["by"] == "floor"].assign(
+        what=lambda t: t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
+    )
+    text = says.by_object_figure(len(results.objects), words, study.has_pairs)
+    draw = partial(figures.amplitudes_by_object, tests, means)
+    parts: list[Any] = [figure_of(text, "amplitudes_by_object", draw)]
+    of_floors = tests["floor"].nunique()
+    if of_floors > 1:
+        text = says.by_floor_figure(of_floors)
+        draw = partial(figures.amplitudes_by_floor, tests, means)
+        parts.append(figure_of(text, "amplitudes_by_floor", draw))
+    if study.has_pairs:
+        parts.append(_scatter(results))
+    if len(whole) > 1:
+        parts.append(table_html(whole, _MEANS, "Means over the same motions."))
+    if len(set(floors["floor"])) > 1:
+        parts.append(table_html(floors, _MEANS, "Means over the same records and objects."))
+    return section_of(says.comparisons(found, words), "comparisons", parts)
+
+
+def _scatter(results: Results) -> FigureSpec:
+    about = sides_of(results.study)
+    ratio = ratio_of(results.table("pedestal/effects"), about)("whole", "all")
+    tests, _ = with_counterparts(results.tests, results.study.counterparts)
+    draw = partial(figures.pedestal_scatter, tests, ratio, about)
+    return figure_of(says.pedestal_scatter_figure(about, ratio), "with_and_without_pedestal", draw)
+
+
+AS_RECORDED = Part(_as_recorded)
+AMPLITUDES = Part(_amplitudes)
+COMPARISONS = Part(_comparisons)

@@ -14,25 +14,25 @@ from rockfrag.report.figures.amplitudes import (
     drawn_tests,
     plot_tests,
 )
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import Column, by_row, estimated, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
-from rockfrag.report.sections.pedestal import EFFECT_COLUMNS, shown_effects
-from rockfrag.report.sections.words import sentences
-from rockfrag.report.wording import amplitude, estimates
+from rockfrag.report.sections.pedestal import effect_columns, shown_effects
+from rockfrag.report.sections.words import says
+from rockfrag.report.wording import amplitude
 
 _TESTS = (
     Column("object", "Object"),
     Column("pedestal", "Side"),
     Column("earthquake", "Earthquake"),
     Column("floor", "Floor"),
-    Column("text", "Measured [g]", numeric=True),
+    Column("amplitude_g", "Measured [g]", by_row(amplitude)),
     Column("simulated_g", "Simulated [g]", 3),
     Column("ratio", "Measured / simulated", 2),
 )
 
 _CURVES = (
     Column("configuration", "Configuration"),
-    Column("theta_text", "Median θ [g]", numeric=True),
+    estimated("theta", "Median θ [g]"),
     Column("beta", "β", 3),
 )
 
@@ -40,24 +40,21 @@ _CURVES = (
 def _section(results: Results) -> Section:
     beside = results.table("measured/beside")
     ratio = np.log(beside["ratio"].dropna())
-    words = sentences().beside(len(beside), len(ratio), np.exp(ratio.mean()), ratio.std())
+    words = says.beside(len(beside), len(ratio), np.exp(ratio.mean()), ratio.std())
     parts: list[Markup | FigureSpec] = []
     if beside["simulated_g"].notna().any():
-        text = sentences().measured_beside_figure(words)
+        text = says.measured_beside_figure(words)
         parts.append(figure_of(text, "measured_beside", lambda: measured_beside(beside)))
-    shown = beside.assign(text=[amplitude(row) for row in beside.to_dict("records")])
-    curves = results.table("measured/fragility")
-    curves = curves.assign(theta_text=estimates(curves, "theta"))
-    effects = results.table("measured/effects")
+    curves, effects = results.table("measured/fragility"), results.table("measured/effects")
     parts += [
-        table_html(shown, _TESTS, "Measured tests beside simulated ones."),
+        table_html(beside, _TESTS, "Measured tests beside simulated ones."),
         table_html(curves, _CURVES, "Fragility from the measured tests."),
     ]
     if len(effects):
         caption = "Measured effect of the pedestal."
-        parts.append(table_html(shown_effects(effects), EFFECT_COLUMNS, caption))
+        parts.append(table_html(shown_effects(effects), effect_columns(), caption))
     notes = results.table("measured/notes")["note"]
-    return section_of(sentences().measured(words, notes), "measured", parts)
+    return section_of(says.measured(words, notes), "measured", parts)
 
 
 def measured_beside(beside: pd.DataFrame) -> Figure:
@@ -80,8 +77,4 @@ def measured_beside(beside: pd.DataFrame) -> Figure:
         return figure
 
 
-MEASURED = Part(
-    ("measured/beside", "measured/fragility", "measured/effects", "measured/notes"),
-    _section,
-    asked=lambda study: study.measured_tests is not None,
-)
+MEASURED = Part(_section, asked=lambda study: study.measured_tests is not None)

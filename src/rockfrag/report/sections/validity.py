@@ -8,7 +8,7 @@ import pandas as pd
 from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section, section_of
-from rockfrag.report.sections.words import sentences
+from rockfrag.report.sections.words import says
 from rockfrag.stages.validity import MOST_TESTED
 
 _COLUMNS = (
@@ -38,7 +38,7 @@ def _section(results: Results) -> Section | None:
         sliding = results.table("sliding")
         shown = sliding.assign(largest_slip_cm=100 * sliding["largest_slip_m"])
         table = table_html(shown, _SLIDING, "Sliding and flight in all analyses.")
-        return section_of(sentences().sliding(sliding_found(sliding)), "validity", [table])
+        return section_of(says.sliding(sliding_found(sliding)), "validity", [table])
     validity = results.table("validity")
     if validity.empty:
         return None
@@ -48,7 +48,7 @@ def _section(results: Results) -> Section | None:
     ]
     caption = "Friction coefficient needed, and tests with lift-off."
     all_tests = max(row["tests"] for row in rows) < MOST_TESTED
-    text = sentences().validity(model_allowed(validity)[0], all_tests)
+    text = says.validity(model_allowed(validity)[0], all_tests)
     return section_of(text, "validity", [table_html(pd.DataFrame(rows), _COLUMNS, caption)])
 
 
@@ -66,4 +66,4 @@ def _row(name: str, side: str, part: pd.DataFrame) -> dict[str, Any]:
     }
 
 
-VALIDITY = Part(("validity",), _section)
+VALIDITY = Part(_section)

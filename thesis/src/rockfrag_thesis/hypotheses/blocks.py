@@ -1,5 +1,6 @@
 """C1, C3 to C8 and C20: the single block."""
 
+import itertools
 import math
 
 import numpy as np
@@ -11,7 +12,7 @@ from rockfrag.rocking.restitution import RestitutionFit, quarter_period, restitu
 from rockfrag.rocking.spectra import uniform_block
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
-from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, SEEN, most
+from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, SEEN, decided, most
 from rockfrag_thesis.hypotheses.setting import (
     EXACT,
     Floats,
@@ -87,14 +88,13 @@ def c4(setting: Setting) -> Result:
     """Restitution of simulated impacts over sizes, speeds and slendernesses."""
     law = {name: 1 - 1.5 * math.sin(block.alpha) ** 2 for name, block in setting.blocks.items()}
     worst = 0.0
-    for name, block in setting.blocks.items():
-        for period in (0.5, 6.0):
-            for start in (0.1, 0.9):
-                uniform = uniform_block(block.alpha, period)
-                response = simulate(uniform, np.zeros(64), period / 32, theta0=start * block.alpha)
-                row = response.contact_events.query("kind == 'impact'").iloc[0]
-                found = row["omega_after"][0] / row["omega_before"][0]
-                worst = max(worst, abs(found / law[name] - 1))
+    for name, period, start in itertools.product(law, (0.5, 6.0), (0.1, 0.9)):
+        alpha = setting.blocks[name].alpha
+        uniform = uniform_block(alpha, period)
+        response = simulate(uniform, np.zeros(64), period / 32, theta0=start * alpha)
+        row = response.contact_events.query("kind == 'impact'").iloc[0]
+        found = row["omega_after"][0] / row["omega_before"][0]
+        worst = max(worst, abs(found / law[name] - 1))
     return Result(
         Finding.FOR if worst < EXACT else Finding.AGAINST,
         f"e = {listed(law)}; largest relative difference of a simulated impact {below(worst)}",
@@ -129,14 +129,9 @@ def c5(setting: Setting) -> Result:
         max(abs(fit.lower - fit.computed), abs(fit.upper - fit.computed)) < QUOTED
         for fit in fits.values()
     ]
-    finding = Finding.OPEN
-    if all(apart):
-        finding = Finding.FOR
-    elif not any(apart) and all(close):
-        finding = Finding.AGAINST
     name, fit = max(fits.items(), key=lambda item: abs(item[1].restitution - item[1].computed))
     return Result(
-        finding,
+        decided(all(apart), not any(apart) and all(close)),
         "; ".join(
             f"{k} {f.restitution:.4f} [{f.lower:.4f}, {f.upper:.4f}], computed {f.computed:.4f}"
             for k, f in fits.items()
@@ -244,14 +239,9 @@ def least_overturning_amplitudes(
     setting: Setting, bodies: list[Block], restitution: list[float]
 ) -> Floats:
     """Least overturning amplitude of `AMPLITUDES_G`, shape (bodies, motions); NaN if none does [g]."""
-    motions = setting.sample
-    found = overturns(
-        bodies,
-        motions,
-        scales=np.array([factors_to_pga(motion, AMPLITUDES_G) for motion in motions]),
-        restitution=restitution,
-        threads=setting.threads,
-    )
+    motions, threads = setting.sample, setting.threads
+    scales = np.array([factors_to_pga(motion, AMPLITUDES_G) for motion in motions])
+    found = overturns(bodies, motions, scales=scales, restitution=restitution, threads=threads)
     first = found.overturned.argmax(axis=2)
     return np.where(found.overturned.any(axis=2), AMPLITUDES_G[first], np.nan)
 

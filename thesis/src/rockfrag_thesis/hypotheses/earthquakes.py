@@ -10,10 +10,9 @@ from rockfrag.pedestal.cluster_means import Estimate
 from rockfrag.pedestal.power import LEVEL as POWER_LEVEL
 from rockfrag.pedestal.power import POWER
 from rockfrag_thesis.hypotheses.evidence import Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
-from rockfrag_thesis.hypotheses.jackknife import jackknife
+from rockfrag_thesis.hypotheses.hypothesis import Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import Part, Parts, Size, order_hypothesis
-from rockfrag_thesis.hypotheses.outcomes import LEVEL, p_nonzero
+from rockfrag_thesis.hypotheses.outcomes import LEVEL, decided, jackknife, p_nonzero
 
 EARTHQUAKES = FRIULI, KOBE, LOMA_PRIETA, NORTHRIDGE = (
     "Friuli",
@@ -99,14 +98,10 @@ MOTIONS = 12
 """Motions of the thesis."""
 
 
-def detectable_correlation(n: int) -> float:
-    """Smallest correlation that n independent motions show with 80 % power at 5 % (Fisher's z)."""
-    z = float(stats.norm.ppf(1 - POWER_LEVEL / 2) + stats.norm.ppf(POWER))
-    return math.tanh(z / math.sqrt(n - 3))
+_Z = float(stats.norm.ppf(1 - POWER_LEVEL / 2) + stats.norm.ppf(POWER))
 
-
-COULD_BE_FOUND = detectable_correlation(MOTIONS)
-"""Correlation that the thesis's motions could have shown, had they been independent [-]."""
+COULD_BE_FOUND = math.tanh(_Z / math.sqrt(MOTIONS - 3))
+"""Correlation that as many independent motions show with 80 % power at 5 % [-] (Fisher's z)."""
 
 
 def _motions_with_measures(tests: Evidence) -> pd.DataFrame:
@@ -170,14 +165,9 @@ def c52(tests: Evidence) -> Result:
         max(estimate.p_above(-bound), estimate.p_below(bound)) for estimate in found.values()
     )
     p_some = min(1.0, p[strongest] * len(p) / 2)
-    finding = Finding.OPEN
-    if p_some < LEVEL:
-        finding = Finding.AGAINST
-    elif p_none < LEVEL:
-        finding = Finding.FOR
     estimate = found[strongest]
     return Result(
-        finding,
+        decided(p_none < LEVEL <= p_some, p_some < LEVEL),
         f"motions: {n}; earthquakes: {joined['earthquake'].nunique()}; "
         + ", ".join(
             f"{name} ρ = {math.tanh(each.mean):.2f} [{math.tanh(each.lower):.2f}, {math.tanh(each.upper):.2f}]"

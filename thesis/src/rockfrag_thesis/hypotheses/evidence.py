@@ -12,10 +12,17 @@ from rockfrag.pedestal.cluster_means import Estimate, contrast, mean_effect
 from rockfrag.pedestal.paired_tests import Pairs, check_tests, pair_tests, pedestals_apart
 from rockfrag.system.blocks import Block
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
-from rockfrag_thesis.specimens import THESIS_BODIES
 
 PEDESTAL = "P"
 """Name of the pedestal among the specimens."""
+
+THESIS_BODIES: Mapping[str, Block] = {
+    "T1": Block(0.124, 0.372, 2.172),
+    "T2": Block(0.124, 0.496, 2.790),
+    "T3": Block(0.124, 0.620, 3.456),
+    "P": Block(0.184, 0.208, 2.300),
+}
+"""Towers and pedestal of Table 3.1, as in ``config/specimens.csv``, for tables of tests without their own."""
 
 
 @dataclass(frozen=True)
@@ -67,12 +74,20 @@ class Evidence:
     @cached_property
     def amplitudes(self) -> pd.DataFrame:
         """Two rows per pair: side ("P" or "NP"), ln_a, a_g, slenderness and the pair's columns."""
-        rows = _sides(self.table)
-        return rows.assign(
-            side=np.where(rows["ped"] == 1, "P", "NP"),
-            a_g=np.exp(rows["ln_a"]),
-            slenderness=rows["object"].map(self.slenderness),
-        )
+        kept = self.table[["object", "earthquake", "floor", "motion", "s_c"]]
+        # the resolution of a test is half the width of its step [-], half that of its pair
+        sides = [
+            kept.assign(
+                ped=ped,
+                ln_a=np.log(self.table[column]),
+                resolution=self.table["resolution"] / 2,
+                side=side,
+            )
+            for ped, side, column in ((0, "NP", "a_np_g"), (1, "P", "a_p_g"))
+        ]
+        rows = pd.concat(sides, ignore_index=True)
+        slenderness = rows["object"].map(self.slenderness)
+        return rows.assign(a_g=np.exp(rows["ln_a"]), slenderness=slenderness)
 
     def part(self, **levels: str) -> pd.DataFrame:
         """Pairs at the given levels, such as ``floor="GF", object="T1"``; raises Undecidable if there is none."""
@@ -111,17 +126,3 @@ class Evidence:
 
 def _plain(name: str) -> str:
     return "".join(letter for letter in name.lower() if letter.isalnum())
-
-
-def _sides(pairs: pd.DataFrame) -> pd.DataFrame:
-    """Turn pairs into two tests each, with ln_a and ped (0 or 1).
-
-    ``resolution`` of a test is half the width of its step [-], half that of its pair.
-    """
-    sides = [
-        pairs[["object", "earthquake", "floor", "motion", "s_c"]].assign(
-            ped=value, ln_a=np.log(pairs[column]), resolution=pairs["resolution"] / 2
-        )
-        for value, column in ((0, "a_np_g"), (1, "a_p_g"))
-    ]
-    return pd.concat(sides, ignore_index=True)

@@ -20,6 +20,7 @@ from rockfrag_thesis.hypotheses.outcomes import (
     SEVERAL_INTERVALS,
     finding_of,
     known,
+    ratios,
 )
 
 PAIRS = "pairs of tests, means by earthquake"
@@ -88,9 +89,7 @@ def order(parts: Parts, *, unit: str = "earthquake", more: str = "") -> Result:
     return Result(
         finding,
         _listed(parts, decisive),
-        estimate.ratio,
-        estimate.ratio_lower,
-        estimate.ratio_upper,
+        *ratios(estimate),
         p=p,
         p_of=p_of,
         remark="; ".join(notes),

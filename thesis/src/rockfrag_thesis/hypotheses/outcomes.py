@@ -15,13 +15,16 @@ A rule errs in at most 2.5 % of tables each way, whatever the truth is that make
 """
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 
-from rockfrag.pedestal.cluster_means import Estimate
+from rockfrag.pedestal.cluster_means import Estimate, t_estimate
 from rockfrag.pedestal.power import power_note
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result
 
 LEVEL = 0.025
 """Error of a rule, each way [-]: that of one end of a 95 % interval."""
+
 
 SEEN = 0.10
 """Least mean change of overturning amplitude that the thesis's tests could show with 80 % power [-].
@@ -46,9 +49,7 @@ def p_nonzero(estimate: Estimate) -> float:
 
 def finding_of(p_for: float, p_against: float) -> Finding:
     """Finding from the one-sided p values of a hypothesis's being false and of its being true."""
-    if p_for < LEVEL:
-        return Finding.FOR
-    return Finding.AGAINST if p_against < LEVEL else Finding.OPEN
+    return decided(p_for < LEVEL, p_against < LEVEL)
 
 
 def same(
@@ -73,20 +74,38 @@ def same(
     return Result(
         finding,
         figure,
-        estimate.ratio,
-        estimate.ratio_lower,
-        estimate.ratio_upper,
+        *ratios(estimate),
         p=min(1.0, 2 * min(inside, outside)),
-        p_of=_difference(bound, inside <= outside),
+        # the hypothesis whose p value is the smaller one
+        p_of=f"a difference {'of' if inside <= outside else 'below'} {100 * bound:g} %"
+        f"{' or more' if inside <= outside else ''}",
         remark="; ".join(notes),
     )
 
 
-def _difference(bound: float, large: bool) -> str:
-    """The hypothesis whose p value is the smaller one."""
-    return (
-        f"a difference {'of' if large else 'below'} {100 * bound:g} %{' or more' if large else ''}"
-    )
+def jackknife(whole: float, without: Sequence[float]) -> Estimate:
+    """Figure of all data with its t interval from what it is without each earthquake in turn, shape (k,).
+
+    It is centred on ``whole``, with the standard error of Tukey's k pseudovalues (1958) and k - 1 degrees of
+    freedom; a figure that is not finite is a TooFewUnitsError.
+    """
+    k = len(without)
+    pseudo = t_estimate([k * whole - (k - 1) * fewer for fewer in without])
+    half = (pseudo.upper - pseudo.lower) / 2
+    zero = Estimate(whole, pseudo.se, k, whole - half, whole + half, math.nan)
+    return replace(zero, p=2 * min(zero.p_above(0.0), zero.p_below(0.0)))
+
+
+def decided(so: bool, not_so: bool) -> Finding:
+    """Finding on a hypothesis that some figures show to be so, and others not to be; open where none does."""
+    if so:
+        return Finding.FOR
+    return Finding.AGAINST if not_so else Finding.OPEN
+
+
+def ratios(estimate: Estimate) -> tuple[float, float, float]:
+    """An estimate of a log ratio and its limits as ratios [-]."""
+    return estimate.ratio, estimate.ratio_lower, estimate.ratio_upper
 
 
 def most(count: int, total: int) -> Finding:
@@ -96,6 +115,5 @@ def most(count: int, total: int) -> Finding:
 
 def all_of(*findings: Finding) -> Finding:
     """Finding on a conjunction: one against suffices, support needs all."""
-    if Finding.AGAINST in findings:
-        return Finding.AGAINST
-    return Finding.FOR if all(finding is Finding.FOR for finding in findings) else Finding.OPEN
+    against = Finding.AGAINST in findings
+    return decided(not against and set(findings) == {Finding.FOR}, against)

@@ -9,7 +9,7 @@ from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import Part, order
-from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, ONE_INTERVAL, same
+from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, ONE_INTERVAL, decided, same
 
 MOTIONS = 12
 UNCOUNTED = 10.0
@@ -110,13 +110,9 @@ def c57(tests: Evidence) -> Result:
         raise Undecidable("friction_demand and least_normal_force_n are empty")
     demand = need["friction_demand"]
     opened = int((need["least_normal_force_n"] <= 0).sum())
-    finding = Finding.OPEN
-    if opened or demand.max() > ROUGH:
-        finding = Finding.AGAINST
-    elif demand.max() < SMOOTH:
-        finding = Finding.FOR
+    refuted = bool(opened or demand.max() > ROUGH)
     return Result(
-        finding,
+        decided(not refuted and demand.max() < SMOOTH, refuted),
         f"friction needed: median {demand.median():.2f}, largest {demand.max():.2f}; tests that need more than "
         f"{SMOOTH}: {int((demand > SMOOTH).sum())} of {len(need)}; tests in which a contact opens: {opened}",
         float(demand.max()),

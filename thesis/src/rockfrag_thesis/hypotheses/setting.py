@@ -13,10 +13,10 @@ from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Body, Response, Stack, simulate
+from rockfrag_thesis.hypotheses.evidence import PEDESTAL, THESIS_BODIES
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 from rockfrag_thesis.hypotheses.motion_spectra import MotionSpectra
 from rockfrag_thesis.printed_tables import uplift_accelerations
-from rockfrag_thesis.specimens import THESIS_BODIES
 
 Floats = NDArray[np.float64]
 FreeRocking = Mapping[str, tuple[ArrayLike, ArrayLike]]
@@ -69,18 +69,15 @@ class Setting:
     @property
     def sample(self) -> list[Motion]:
         """At most `SAMPLE` of the motions, evenly spaced in their order."""
-        motions = self.motions
-        step = max(1, math.ceil(len(motions) / SAMPLE))
-        return motions[::step]
+        return self.motions[:: max(1, math.ceil(len(self.motions) / SAMPLE))]
 
     @property
     def where(self) -> str:
         """Which histories were looked at, in words."""
-        several = f"{len(self.sample)}"
-        if len(self.sample) < len(self.motions):
-            several += f" of {len(self.motions)}"
+        more = f" of {len(self.motions)}" if len(self.sample) < len(self.motions) else ""
         peaks = ", ".join(f"{peak:g}" for peak in PEAKS_G)
-        return f"stacks: {len(self.assemblies)}; motions: {several}, scaled to {peaks} g"
+        stacks = len(self.assemblies)
+        return f"stacks: {stacks}; motions: {len(self.sample)}{more}, scaled to {peaks} g"
 
     @cached_property
     def histories(self) -> list[Response]:
@@ -95,11 +92,8 @@ class Setting:
     @cached_property
     def impacts(self) -> pd.DataFrame:
         """Impacts of all histories, a row each, as in `rockfrag.rocking.Response.contact_events`."""
-        parts = [
-            history.contact_events[history.contact_events["kind"] == "impact"]
-            for history in self.histories
-        ]
-        return pd.concat(parts, ignore_index=True)
+        found = pd.concat([each.contact_events for each in self.histories], ignore_index=True)
+        return found[found["kind"] == "impact"]
 
     @cached_property
     def spectra(self) -> MotionSpectra:
@@ -115,16 +109,12 @@ class Setting:
     @cached_property
     def rocking_mode_3(self) -> dict[str, float]:
         """Likewise each stack held together as one body (thesis eq. 2.21, 2.22) [m/s²]."""
-        return {
-            name: uplift_accelerations(assembly)[0] for name, assembly in self.assemblies.items()
-        }
+        return {name: uplift_accelerations(stack)[0] for name, stack in self.assemblies.items()}
 
     @cached_property
     def rocking_mode_4(self) -> dict[str, float]:
         """Likewise the statue of each stack on a still pedestal (thesis eq. 2.24, 2.25) [m/s²]."""
-        return {
-            name: uplift_accelerations(assembly)[1] for name, assembly in self.assemblies.items()
-        }
+        return {name: uplift_accelerations(stack)[1] for name, stack in self.assemblies.items()}
 
     @cached_property
     def pedestal_too(self) -> dict[str, float]:
@@ -149,11 +139,11 @@ def make_setting(
     stacks: Mapping[str, Stack] | None = None,
 ) -> Setting:
     """Put each tower on the pedestal if no stack is given."""
-    blocks, stacks = dict(specimens), dict(stacks or {})
-    pedestal = blocks.pop("P", None)
+    blocks = dict(specimens)
+    pedestal = blocks.pop(PEDESTAL, None)
     if pedestal is not None and not stacks:
         stacks = {f"P&{name}": Stack(pedestal, block) for name, block in blocks.items()}
-    return Setting(blocks, pedestal, stacks, list(motions), seed, free_rocking, threads)
+    return Setting(blocks, pedestal, stacks or {}, list(motions), seed, free_rocking, threads)
 
 
 def bisect(happens: Callable[[float], bool], low: float, high: float, tolerance: float) -> float:
@@ -186,29 +176,19 @@ def starts_at(body: Body, acceleration: float) -> bool:
 
 def require_thesis_specimens(setting: Setting) -> None:
     """Raise Undecidable unless the specimens are those of which the thesis printed figures."""
-    given: dict[str, Block] = dict(setting.objects)
-    if setting.pedestal is not None:
-        given["P"] = setting.pedestal
-    for name, body in THESIS_BODIES.items():
-        if name not in given or not same_block(given[name], body):
-            raise Undecidable(f"the printed figures are of other specimens: {name} differs")
-    for name, stack in setting.stacks.items():
-        if not same_block(stack.lower, THESIS_BODIES["P"]):
+    given: dict[str, Block | None] = {**setting.objects, PEDESTAL: setting.pedestal}
+    lower = {name: (stack.lower, THESIS_BODIES[PEDESTAL]) for name, stack in setting.stacks.items()}
+    bodies = {name: (given.get(name), body) for name, body in THESIS_BODIES.items()} | lower
+    for name, (block, body) in bodies.items():
+        if block is None or not same_block(block, body):
             raise Undecidable(f"the printed figures are of other specimens: {name} differs")
 
 
 def same_block(block: Block, other: Block) -> bool:
     """Whether two blocks have the same size and mass but for rounding, and are uniform."""
-    uniform = (
-        block.inertia is None and block.cg_height is None and not block.cg_offset and not block.lean
-    )
-    return uniform and bool(
-        np.allclose(
-            (block.width, block.height, block.mass),
-            (other.width, other.height, other.mass),
-            rtol=1e-6,
-        )
-    )
+    uniform = block.inertia is block.cg_height is None and not block.cg_offset and not block.lean
+    own, wanted = ((each.width, each.height, each.mass) for each in (block, other))
+    return uniform and bool(np.allclose(own, wanted, rtol=1e-6))
 
 
 def listed(values: Mapping[str, float], form: str = ".3f") -> str:

@@ -9,6 +9,7 @@ import pandas as pd
 from rockfrag.pedestal.cluster_means import Estimate, contrast, slope_effect, t_estimate
 from rockfrag.pedestal.power import power_note
 from rockfrag.system.blocks import Stack
+from rockfrag_thesis.hypotheses import outcomes
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import (
@@ -19,16 +20,7 @@ from rockfrag_thesis.hypotheses.orders import (
     order,
     order_hypothesis,
 )
-from rockfrag_thesis.hypotheses.outcomes import (
-    LEVEL,
-    NO_ERROR,
-    ONE_INTERVAL,
-    SEEN,
-    SEVERAL_INTERVALS,
-    all_of,
-    p_nonzero,
-    same,
-)
+from rockfrag_thesis.hypotheses.outcomes import LEVEL, SEEN, decided, p_nonzero, ratios, same
 
 TOWERS = ("T1", "T2", "T3")
 """The towers from the squattest to the most slender."""
@@ -51,7 +43,7 @@ def _earthquake_means(tests: Evidence) -> pd.DataFrame:
     25,
     evidence=AMPLITUDES,
     rule=f"ln a falls with H/B; mean of T2 within ±{100 * SEEN:.0f} % of the middle between T1 and T3",
-    error_rate=SEVERAL_INTERVALS,
+    error_rate=outcomes.SEVERAL_INTERVALS,
 )
 def c25(tests: Evidence) -> Result:
     """The slope, and the bend at T2; equilibrium alone (a as B/H) has a bend of -6 %."""
@@ -61,7 +53,7 @@ def c25(tests: Evidence) -> Result:
     falls = order({"fall of a per unit of H/B": Part(_fall(tests.amplitudes))})
     straight = same(bend, f"T2 over the straight line {bend.text()}")
     return Result(
-        all_of(falls.finding, straight.finding),
+        outcomes.all_of(falls.finding, straight.finding),
         f"{straight.figure}; {falls.figure}",
         straight.estimate,
         straight.lower,
@@ -91,7 +83,7 @@ def c26(tests: Evidence) -> Parts:
     27,
     evidence=PAIRS,
     rule=f"decrease from T1 to T3 with P over that without, earthquake by earthquake, within ±{100 * SEEN:.0f} %",
-    error_rate=ONE_INTERVAL,
+    error_rate=outcomes.ONE_INTERVAL,
 )
 def c27(tests: Evidence) -> Result:
     """Equal relative decrease from T1 to T3."""
@@ -131,20 +123,15 @@ def c28(tests: Evidence) -> Result:
     p_differ = {name: len(pairs) * p_nonzero(pair) for name, pair in pairs.items()}
     widest = min(p_differ, key=p_differ.__getitem__)
     alike = [same(pair, "") for pair in pairs.values()]
-    finding = Finding.OPEN
-    if p_differ[widest] < LEVEL:
-        finding = Finding.FOR
-    elif all(statement.finding is Finding.FOR for statement in alike):
-        finding = Finding.AGAINST
+    all_alike = all(statement.finding is Finding.FOR for statement in alike)
+    finding = decided(p_differ[widest] < LEVEL, all_alike)
     pair = pairs[widest]
     p_alike = max(each.p for each in alike)
     means = ", ".join(f"{floor} {math.exp(-fall):.3f}" for floor, fall in table.mean().items())
     return Result(
         finding,
         f"mean of the most slender tower over that of the squattest: {means}; decrease on {widest} {pair.text()}",
-        pair.ratio,
-        pair.ratio_lower,
-        pair.ratio_upper,
+        *ratios(pair),
         p=min(1.0, p_differ[widest], p_alike),
         p_of="no difference" if p_differ[widest] <= p_alike else "a difference of 10 % or more",
         remark=power_note(pair) if finding is Finding.OPEN else "",
@@ -172,7 +159,7 @@ def stack_slenderness(tests: Evidence) -> pd.DataFrame:
     evidence="dimensions and masses of the specimens",
     rule="height of the common centre of gravity over half the pedestal's width against the tower's H/B: "
     "false if no stack is the more slender",
-    error_rate=NO_ERROR,
+    error_rate=outcomes.NO_ERROR,
 )
 def c30(tests: Evidence) -> Result:
     """Geometry of the stack; about its strength see C29."""
@@ -213,7 +200,7 @@ def c53(tests: Evidence) -> Parts:
     evidence=AMPLITUDES,
     rule="the trends a on H/B (the thesis's), ln a on H/B and a on B/H through T1 and T2 prolonged to T3: "
     f"true if all miss its mean, false if the thesis's own is within ±{100 * SEEN:.0f} %",
-    error_rate=SEVERAL_INTERVALS,
+    error_rate=outcomes.SEVERAL_INTERVALS,
 )
 def c54(tests: Evidence) -> Result:
     """Error of three extrapolations to T3; scatter alone makes none of them miss the mean."""
@@ -233,18 +220,12 @@ def c54(tests: Evidence) -> Result:
     p_miss = max(p_nonzero(error) for error in errors.values())
     own = errors["a on H/B"]
     reaches = same(own, "")
-    finding = Finding.OPEN
-    if p_miss < LEVEL:
-        finding = Finding.FOR
-    elif reaches.finding is Finding.FOR:
-        finding = Finding.AGAINST
+    finding = decided(p_miss < LEVEL, reaches.finding is Finding.FOR)
     return Result(
         finding,
         "predicted over observed mean of T3: "
         + ", ".join(f"{name} {error.text()}" for name, error in errors.items()),
-        own.ratio,
-        own.ratio_lower,
-        own.ratio_upper,
+        *ratios(own),
         p=min(1.0, p_miss, reaches.p),
         p_of="no error" if p_miss <= reaches.p else reaches.p_of,
         remark=power_note(own) if finding is Finding.OPEN else "",

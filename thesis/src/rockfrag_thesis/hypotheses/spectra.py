@@ -13,9 +13,17 @@ from rockfrag.pedestal.cluster_means import Estimate
 from rockfrag.rocking import overturns
 from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
-from rockfrag_thesis.hypotheses.jackknife import jackknife
 from rockfrag_thesis.hypotheses.motion_spectra import PERIODS, SIZES
-from rockfrag_thesis.hypotheses.outcomes import LEVEL, NO_ERROR, SEEN, known, most
+from rockfrag_thesis.hypotheses.outcomes import (
+    NO_ERROR,
+    SEEN,
+    decided,
+    finding_of,
+    jackknife,
+    known,
+    most,
+    ratios,
+)
 from rockfrag_thesis.hypotheses.setting import Floats, Setting
 
 DAMPINGS = (0.02, 0.10)
@@ -207,13 +215,8 @@ def c18(setting: Setting) -> Result:
     if not total or not compared:
         raise Undecidable("too few spectra can be ordered")
     oscillators, rocking = changed / total, exchanged / compared
-    finding = Finding.OPEN
-    if rocking > oscillators:
-        finding = Finding.FOR
-    elif rocking < oscillators:
-        finding = Finding.AGAINST
     return Result(
-        finding,
+        decided(rocking > oscillators, rocking < oscillators),
         f"{exchanged} of {compared} pairs of rocking spectra change their order with slenderness, {changed} "
         f"of {total} pairs of oscillator spectra with damping",
         rocking - oscillators,
@@ -261,53 +264,32 @@ def c19(setting: Setting) -> Result:
     if len(set(groups)) < 3:
         raise Undecidable("there are fewer than three earthquakes")
     peak = np.array([motion.pga for motion in motions])
-    found = overturns(
-        blocks,
-        motions,
-        scales=AMPLITUDES_G * GRAVITY / peak[:, np.newaxis],
-        threads=setting.threads,
-    ).overturned
-    falls = found.any(axis=2)
-    pga = np.where(falls, np.log(AMPLITUDES_G[found.argmax(axis=2)]), np.nan)
+    scales = AMPLITUDES_G * GRAVITY / peak[:, np.newaxis]
+    fell = overturns(blocks, motions, scales=scales, threads=setting.threads).overturned
+    falls = fell.any(axis=2)
+    pga = np.where(falls, np.log(AMPLITUDES_G[fell.argmax(axis=2)]), np.nan)
     if (falls.sum(axis=1) < 3).all():
         raise Undecidable("no block overturns under three motions at these amplitudes")
     sa = np.log([spectrum.pseudo_acceleration for spectrum in setting.spectra.oscillator(0.05)])
-    own = np.array(
-        [
-            [
-                np.interp(math.log(2 * math.pi / block.frequency()), np.log(PERIODS), row)
-                for row in sa
-            ]
-            for block in blocks
-        ]
-    )
+    periods = np.log([2 * math.pi / block.frequency() for block in blocks])
+    own = np.column_stack([np.interp(periods, np.log(PERIODS), row) for row in sa])
     at_sa = pga + own - np.log(peak)
     at_pgv = pga + np.log([pgv(motion) for motion in motions]) - np.log(peak)
-    ratios = {
-        "PGA": dispersion_ratio(at_sa, pga, groups),
-        "PGV": dispersion_ratio(at_sa, at_pgv, groups),
-    }
-    p_more = min(known(ratio.p_above(0.0)) for ratio in ratios.values())
-    p_less = max(known(ratio.p_below(0.0)) for ratio in ratios.values())
-    finding = Finding.OPEN
-    if p_more < LEVEL:
-        finding = Finding.FOR
-    elif p_less < LEVEL:
-        finding = Finding.AGAINST
-    decisive = max(ratios.values(), key=lambda ratio: ratio.mean)
+    others = {"PGA": pga, "PGV": at_pgv}
+    found = {name: dispersion_ratio(at_sa, other, groups) for name, other in others.items()}
+    p_more = min(known(ratio.p_above(0.0)) for ratio in found.values())
+    p_less = max(known(ratio.p_below(0.0)) for ratio in found.values())
     spread = {
         name: float(np.nanmean(np.nanstd(values, axis=1, ddof=1)))
-        for name, values in (("PGA", pga), ("PGV", at_pgv), ("Sa(2π/p)", at_sa))
+        for name, values in {**others, "Sa(2π/p)": at_sa}.items()
     }
     return Result(
-        finding,
+        finding_of(p_more, p_less),
         "standard deviation of ln at overturning: "
         + ", ".join(f"{name} {value:.2f}" for name, value in spread.items())
         + "; Sa over "
-        + ", ".join(f"{name} {ratio.text()}" for name, ratio in ratios.items()),
-        decisive.ratio,
-        decisive.ratio_lower,
-        decisive.ratio_upper,
+        + ", ".join(f"{name} {ratio.text()}" for name, ratio in found.items()),
+        *ratios(max(found.values(), key=lambda ratio: ratio.mean)),
         remark=f"motions: {len(motions)} of {len(set(groups))} earthquakes; mean over "
         f"blocks ({len(blocks)} of them), each over the motions that overturned it",
     )

@@ -1,1 +1,5 @@
 """Sections of the report that only a study with the keys of the thesis has; `parts` puts them in order."""
+
+from rockfrag.report.wording import Macros
+
+says = Macros("rockfrag_thesis.sections", "sections.j2")

@@ -2,12 +2,26 @@
 
 from functools import partial
 
+import pandas as pd
+from matplotlib.figure import Figure
+
+from rockfrag.figure_style import COLUMN_WIDTH, OKABE_ITO, one_panel
+from rockfrag.report.figures.amplitudes import GREY, MARKERS
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section, figure_of, section_of
+from rockfrag.report.wording import shortened
 from rockfrag.study.study import Study
-from rockfrag_thesis.figures.building import AXIS_NAMES, floor_amplitudes
-from rockfrag_thesis.sections.words import sentences
+from rockfrag_thesis.sections import says
 from rockfrag_thesis.settings import settings_of
+
+AXIS_NAMES = {
+    "first_period_s": "First period of the elastic building [s]",
+    "damping_ratio": "Damping ratio",
+    "base_shear": "Shear strength of the masonry / weight",
+    "ground_scale": "Scale factor on the records of the masonry building",
+    "floors": "Levels of the floors",
+}
+"""The building's assumptions that a study may vary, for a reader."""
 
 _COLUMNS = (
     Column("axis", "Assumption"),
@@ -26,24 +40,53 @@ def _section(results: Results) -> Section:
     means = results.table("building_sensitivity/means")
     floors = means[(means["by"] == "floor") & (means["pedestal"] == "NP")]
     varied = floors[floors["axis"] != "reference"]
-    axes = list(dict.fromkeys(varied["axis"]))
     span = varied.groupby(["axis", "floor"], sort=False)["mean_g"].agg(["min", "max"]).reset_index()
-    span = span.assign(axis=[AXIS_NAMES.get(axis, axis) for axis in span["axis"]])
+    span = span.assign(axis=span["axis"].map(AXIS_NAMES))
     variants = means.drop_duplicates("label")
     doubtful = int((~variants["credible"].astype(bool)).sum())
     figures = [
         figure_of(
-            sentences().building_figure(AXIS_NAMES.get(axis, axis)),
+            says.building_figure(AXIS_NAMES[axis]),
             f"building_{axis}",
             partial(floor_amplitudes, means, axis),
         )
-        for axis in axes
+        for axis in dict.fromkeys(varied["axis"])
     ]
     table = table_html(span, _COLUMNS, "Range of the mean amplitude on each floor.")
     known = span[span["min"] > 0].to_dict("records")
     most = max(known, key=lambda row: float(row["max"] / row["min"]), default=None)
-    text = sentences().building(most, doubtful, len(variants))
+    text = says.building(most, doubtful, len(variants))
     return section_of(text, "building", [*figures, table])
 
 
-BUILDING = Part(("building_sensitivity/means",), _section, asked=varies_building)
+def floor_amplitudes(means: pd.DataFrame, axis: str) -> Figure:
+    """Draw the mean overturning amplitude of lone objects on each floor along one assumption.
+
+    ``means`` are those by floor of every variant, with its ``axis``, ``label``, ``value`` and ``credible``.
+    """
+    rows = means[(means["axis"] == axis) & (means["by"] == "floor") & (means["pedestal"] == "NP")]
+    rows = rows.sort_values("value", kind="stable")
+    labels = list(dict.fromkeys(rows["label"]))
+    place = {label: number for number, label in enumerate(labels)}
+    values = [f"{value:g}" for value in rows.drop_duplicates("label")["value"]]
+    with one_panel(COLUMN_WIDTH, 2.8) as (figure, axes):
+        for number, (floor, own) in enumerate(rows.groupby("floor", sort=False)):
+            axes.plot(
+                own["label"].map(place),
+                own["mean_g"],
+                color=OKABE_ITO[number % len(OKABE_ITO)],
+                marker=MARKERS[number % len(MARKERS)],
+                ms=3.5,
+                label=str(floor),
+            )
+            doubtful = own[~own["credible"].astype(bool)]
+            axes.plot(doubtful["label"].map(place), doubtful["mean_g"], "x", color=GREY, ms=6)
+        names = values if len(set(values)) == len(labels) else list(map(shortened, labels))
+        axes.set_xticks(range(len(labels)), names, rotation=90 if len(labels) > 8 else 0)
+        axes.set_ylim(bottom=0)
+        axes.set(xlabel=AXIS_NAMES[axis], ylabel="Mean overturning amplitude [g]")
+        figure.legend(loc="outside upper center", ncols=4)
+    return figure
+
+
+BUILDING = Part(_section, asked=varies_building)

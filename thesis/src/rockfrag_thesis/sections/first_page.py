@@ -1,16 +1,47 @@
-"""What stands first on the page of a study that is compared with the thesis."""
+"""What stands first where a study is compared: what the thesis reports, what the model gives, and what would.
 
+Sentences are made of tables alone, so that every number in them can be looked up there.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, one_panel
 from rockfrag.report.answer import could_change, questions, rests_on, study_answer
-from rockfrag.report.findings import FRICTION
-from rockfrag.report.part import Answer, Results, figure_of
-from rockfrag.report.wording import said
+from rockfrag.report.figures.amplitudes import BAND, GREY
+from rockfrag.report.figures.effects import NONE, ratio_axis
+from rockfrag.report.findings import FRICTION, ratio_text
+from rockfrag.report.part import Answer, Finding, Results, figure_of, finding_of
+from rockfrag.report.wording import counted, listed, one_line, said
 from rockfrag.shaketable.definitions import DEFINITION
-from rockfrag_thesis.figures.answer import has_thesis_floors, ratios_figure
-from rockfrag_thesis.first_page import first_page
-from rockfrag_thesis.sections.inverse_problem import asks_inverse_problem
+from rockfrag_thesis.hypotheses.floors import FIFTH, FLOORS, GROUND, THIRD
+from rockfrag_thesis.hypotheses.hypothesis import Finding as Evidence
+from rockfrag_thesis.sections import says
+from rockfrag_thesis.sections.inverse_problem import asks_inverse_problem, goals, mechanism_name
 from rockfrag_thesis.sections.sensitivity_analysis import asks_sensitivity_analysis
-from rockfrag_thesis.sections.words import sentences
+from rockfrag_thesis.sections.signs import perturbations_by_floor
 from rockfrag_thesis.settings import settings_of
+
+DISCOVERY_RATE = 0.05
+"""Level of the false discovery rate at which a perturbation counts as changing the ratio [-]."""
+
+MOST_NAMED = 3
+"""So many perturbations are named with their ratios; the table has all."""
+
+REPORTED_SIDE = {GROUND: 1, THIRD: -1, FIFTH: -1}
+"""Whether the thesis reports a ratio above (1) or below one (-1) on a floor (sections 4.3 and 4.4)."""
+
+_ON_FLOOR = {
+    Evidence.FOR: "reproduced",
+    Evidence.AGAINST: "not reproduced",
+    Evidence.OPEN: "undecided",
+    Evidence.BOUNDED: "{} of 10 % or more is excluded, a smaller one is not",
+}
 
 
 def thesis_answer(results: Results) -> Answer:
@@ -19,28 +50,20 @@ def thesis_answer(results: Results) -> Answer:
     if not study.has_pairs:
         return study_answer(results)
     effects = results.table("pedestal/effects")
-    sensitivity_analysis = (
-        results.table("sensitivity_analysis/effects") if asks_sensitivity_analysis(study) else None
-    )
-    inverse_problem = (
-        results.table("sensitivity_analysis/inverse_problem")
-        if asks_inverse_problem(study)
-        else None
-    )
-    settings = settings_of(study).sensitivity_analysis
-    wanted = {} if settings is None else settings.wanted_percent
+    analysis = "sensitivity_analysis"
     found = first_page(
-        effects, results.table("hypotheses"), sensitivity_analysis, inverse_problem, wanted
+        effects,
+        results.table("hypotheses"),
+        results.table(f"{analysis}/effects") if asks_sensitivity_analysis(study) else None,
+        results.table(f"{analysis}/inverse_problem") if asks_inverse_problem(study) else None,
+        settings_of(study).wanted_percent,
     )
     here = effects[effects["definition"] == DEFINITION]
+    text = says.answer_figure(found[0].headline, has_thesis_floors(here))
     return Answer(
         asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
         sentences=found,
-        figure=figure_of(
-            sentences().answer_figure(found[0].headline, has_thesis_floors(here)),
-            "answer",
-            lambda: ratios_figure(here),
-        ),
+        figure=figure_of(text, "answer", lambda: ratios_figure(here)),
         advice=_advice(results),
         rests_on=rests_on(results),
         could_change=could_change(results),
@@ -55,4 +78,122 @@ def _advice(results: Results) -> list[str]:
         return []
     with_pedestal = validity[validity["pedestal"] == "P"]
     beyond = int((~(with_pedestal["friction_demand"].astype(float) <= FRICTION)).sum())
-    return said(sentences().advice(beyond, len(with_pedestal), FRICTION))
+    return said(says.advice(beyond, len(with_pedestal), FRICTION))
+
+
+def first_page(
+    effects: pd.DataFrame,
+    hypotheses: pd.DataFrame,
+    sensitivity_analysis: pd.DataFrame | None = None,
+    inverse_problem: pd.DataFrame | None = None,
+    wanted_percent: Mapping[str, float] | None = None,
+) -> list[Finding]:
+    """Say what the thesis reports, what the simulations of a study give, and what would give an effect.
+
+    ``effects`` are of the study's simulations, ``hypotheses`` the table of all, ``sensitivity_analysis`` the
+    effects of perturbed parameters, ``inverse_problem`` those that come closest to ``wanted_percent``, the change
+    of P/NP on the ``ground`` and ``above`` it [%].
+    """
+    here = effects[effects["definition"] == DEFINITION]
+    found = [_reported(here, hypotheses.set_index("number"))]
+    if sensitivity_analysis is not None and len(sensitivity_analysis):
+        would = _what_would(sensitivity_analysis)
+        if inverse_problem is not None and len(inverse_problem) and wanted_percent:
+            nearest = _inverted(inverse_problem, wanted_percent)
+            would = replace(would, numbers=f"{would.numbers} {nearest}")
+        found.append(would)
+    return found
+
+
+def _reported(effects: pd.DataFrame, hypotheses: pd.DataFrame) -> Finding:
+    """Say what the thesis reports beside what the model gives, and the table of hypotheses's words for it."""
+    of_floors = effects[effects["scope"] == "floor"].to_dict("records")
+    on_floors = {row["level"]: row for row in of_floors}
+    found = {number: Evidence(value) for number, value in hypotheses["finding"].items()}
+    all_pairs = effects[effects["scope"] == "whole"].to_dict("records")
+    whole = ratio_text(all_pairs[0]) if all_pairs else "no pair with both amplitudes known"
+    if not set(FLOORS) <= set(on_floors):
+        return finding_of(says.other_floors(whole))
+    ratios = [f"{floor} {ratio_text(on_floors[floor])}" for floor in FLOORS]
+    pairs = sum(int(on_floors[floor]["pairs"]) for floor in FLOORS)
+    stated = {GROUND: (35, "a gain"), THIRD: (36, "a decrease"), FIFTH: (37, "a decrease")}
+    outcomes = [
+        f"{floor}: {_ON_FLOOR[found[number]].format(change)}"
+        for floor, (number, change) in stated.items()
+    ]
+    # the pedestal matters so little where C12 is true of all landings
+    lifts_briefly = hypotheses["estimate"].to_dict().get(12) == 1
+    about = (found[35].name, ratios, whole, pairs, outcomes, lifts_briefly)
+    return finding_of(says.reported(*about))
+
+
+def _what_would(sensitivity_analysis: pd.DataFrame) -> Finding:
+    """Say which perturbations change the ratio, and which have the thesis's pattern."""
+    table = perturbations_by_floor(sensitivity_analysis)
+    simulated, computed = table[~table["arithmetic"]], table[table["arithmetic"]]
+    patterned = list(table.loc[table["beyond_chance"], "name"])
+    changing = simulated[simulated["p_adjusted"] < DISCOVERY_RATE]
+    size = np.log(simulated["ratio"]).abs()
+    largest = simulated.loc[size.nlargest(MOST_NAMED).index].to_dict("records")
+    strong = [f"{row['name']} ({ratio_text(row)})" for row in largest]
+    about = (patterned, len(table), len(changing), len(simulated), DISCOVERY_RATE)
+    return finding_of(says.what_would(*about, strong, computed["ratio"]))
+
+
+def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]) -> str:
+    """Say which perturbation, or which two, come closest to the effect asked for, and how close."""
+    everywhere = inverse_problem["acts_on"] == "all floors"
+    pairs = inverse_problem["factor_2"] != ""
+    kinds = {
+        "single one": everywhere & ~pairs,
+        "pair": everywhere & pairs,
+        "one acting at one place only": ~everywhere,
+    }
+    nearest = []
+    for what, rows in kinds.items():
+        for row in inverse_problem[rows].head(1).to_dict("records"):
+            both = listed([f"{row[name]:.3f}" for name in wanted_percent])
+            mechanism = mechanism_name(row) + _ACTING[row["acts_on"]]
+            nearest.append(f"the closest {what} gives {both} ({mechanism})")
+    reached = int(inverse_problem["reaches"].sum())
+    return one_line(says.inverted(reached, len(inverse_problem), goals(wanted_percent), nearest))
+
+
+_ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above the ground alone"}
+
+
+def has_thesis_floors(effects: pd.DataFrame) -> bool:
+    """Whether effects have a floor of which the thesis reports a direction."""
+    return bool(set(effects.loc[effects["scope"] == "floor", "level"]) & set(REPORTED_SIDE))
+
+
+def ratios_figure(effects: pd.DataFrame) -> Figure:
+    """Draw the ratio with over without pedestal, of all pairs and on each floor, of effects of one definition."""
+    whole, floors = effects[effects["scope"] == "whole"], effects[effects["scope"] == "floor"]
+    rows = [("all pairs", row) for row in whole.to_dict("records")]
+    rows += [(str(row["level"]), row) for row in floors.to_dict("records")]
+    with one_panel(COLUMN_WIDTH, 1.0 + 0.33 * len(rows)) as (figure, axes):
+        axes.axvspan(*NONE, color=BAND, lw=0)
+        axes.axvline(1.0, color=GREY, lw=0.8)
+        drawn = [1 / 1.25, 1.25]
+        for y, (name, row) in enumerate(rows):
+            limits = [row["lower"], row["upper"]]
+            if np.isfinite(limits).all() and limits[0] < limits[1]:
+                axes.plot(limits, [y, y], color=BLUE, lw=1.4)
+                drawn += limits
+            axes.plot(row["ratio"], y, "o", mec=BLUE, mfc="white", ms=5)
+            drawn.append(row["ratio"])
+            if side := REPORTED_SIDE.get(name):
+                arrow = {"arrowstyle": "-|>", "color": ORANGE, "lw": 1.8}
+                axes.annotate("", (1.2**side, y), (1.115**side, y), arrowprops=arrow)
+        names = [f"{name} ({counted(int(row['pairs']), 'pair')})" for name, row in rows]
+        axes.set_yticks(range(len(rows)), names)
+        axes.set_ylim(len(rows) - 0.5, -0.5)
+        axes.tick_params(axis="y", length=0)
+        ratio_axis(axes, drawn)
+        handles = [Line2D([], [], color=BLUE, marker="o", mfc="white", label="simulated")]
+        if has_thesis_floors(effects):
+            words = "direction in the thesis"
+            handles.append(Line2D([], [], color=ORANGE, lw=1.8, marker=">", label=words))
+        figure.legend(handles=handles, loc="outside upper center", ncols=2, handlelength=1.6)
+    return figure

@@ -1,17 +1,33 @@
-"""The thesis's hypotheses on floors where the building is another."""
+"""The thesis's hypotheses on floors where the building is another: order and margins."""
 
 from dataclasses import replace
 from functools import partial
+from textwrap import fill
 
+import numpy as np
+import pandas as pd
 from markupsafe import Markup
+from matplotlib.axes import Axes
+from matplotlib.colors import SymLogNorm
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, GREEN, ORANGE, WIDEST, one_panel
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.shaketable.definitions import DEFINITION
-from rockfrag_thesis.figures.building import AXIS_NAMES
-from rockfrag_thesis.figures.floors import floor_hypotheses, floor_order
-from rockfrag_thesis.sections.building import varies_building
-from rockfrag_thesis.sections.words import sentences
+from rockfrag_thesis.floor_order import HYPOTHESES, TIE
+from rockfrag_thesis.sections import says
+from rockfrag_thesis.sections.building import AXIS_NAMES, varies_building
+
+FLOOR_STYLES = {
+    "GF": ("ground floor", BLUE, "o"),
+    "F3": ("3rd floor", ORANGE, "s"),
+    "F5": ("5th floor", GREEN, "^"),
+}
+
+MEANINGFUL = 0.02
+"""Margins below this mean nothing: the amplitudes of an IDA curve are 1 or 2 % apart."""
 
 _COLUMNS = (
     Column("axis", "Assumption"),
@@ -25,28 +41,93 @@ def _section(results: Results) -> Section:
     margins = results.table("building_sensitivity/margins")
     rows = margins[margins["definition"] == DEFINITION]
     order = rows[(rows["axis"] == "first_period_s") & (rows["hypothesis"] == "order")]
-    holds = [f"{value:g} s" for value in order.loc[order["margin"] > 0.02, "value"]]
+    holds = [f"{value:g} s" for value in order.loc[order["margin"] > MEANINGFUL, "value"]]
     varied = rows[rows["axis"] != "reference"]
     span = varied.groupby(["axis", "hypothesis"], sort=False)["margin"].agg(["min", "max"])
     # adding zero turns a negative zero into a plain one
     shown = ((100 * span).round(1) + 0.0).reset_index()
     shown["axis"] = shown["axis"].map(AXIS_NAMES)
     ends = (100 * float(value) for value in (span["min"].min(), span["max"].max()))
-    section = section_of(sentences().floor_order(holds, len(order), *ends), "sensitivity", [])
+    section = section_of(says.floor_order(holds, len(order), *ends), "sensitivity", [])
     parts: list[Markup | FigureSpec] = []
     if len(order):
-        means = results.table("building_sensitivity/means")
-        draw = partial(floor_order, means, margins, DEFINITION)
-        text = sentences().order_figure(section.message)
-        parts.append(figure_of(text, "sensitivity_order", draw))
+        draw = partial(
+            floor_order, results.table("building_sensitivity/means"), margins, DEFINITION
+        )
+        parts.append(figure_of(says.order_figure(section.message), "sensitivity_order", draw))
     for axis in dict.fromkeys(varied["axis"]):
         draw = partial(floor_hypotheses, margins, axis, DEFINITION)
-        text = sentences().margins_figure(AXIS_NAMES[axis])
+        text = says.margins_figure(AXIS_NAMES[axis])
         parts.append(figure_of(text, f"sensitivity_hypotheses_{axis}", draw))
     parts.append(table_html(shown, _COLUMNS, "Range of the margins of each hypothesis."))
     return replace(section, parts=parts)
 
 
-FLOOR_ORDER = Part(
-    ("building_sensitivity/margins", "building_sensitivity/means"), _section, asked=varies_building
-)
+def floor_order(means: pd.DataFrame, margins: pd.DataFrame, definition: str) -> Figure:
+    """Draw the mean overturning amplitude of lone objects on each floor against the first period.
+
+    Shaded are the periods at which the order is the thesis's, ground highest and 3rd lowest. For ``margins`` see
+    :func:`rockfrag_thesis.floor_order.margins_table`.
+    """
+    means = means[(means["axis"] == "first_period_s") & (means["by"] == "floor")]
+    means = means[means["pedestal"] == "NP"]
+    by_floor = means.pivot_table(index="value", columns="floor", values="mean_g", dropna=False)
+    margins = margins[(margins["axis"] == "first_period_s") & (margins["hypothesis"] == "order")]
+    order = margins[margins["definition"] == definition].sort_values("value")
+    with one_panel(COLUMN_WIDTH, 2.9) as (figure, axes):
+        for floor, (name, colour, marker) in FLOOR_STYLES.items():
+            of_floor = by_floor[floor]
+            axes.plot(by_floor.index, of_floor, color=colour, marker=marker, ms=3, label=name)
+        axes.set_ylim(bottom=0)
+        _shade(axes, order["value"].to_numpy(), order["margin"].to_numpy())
+        axes.set(xlabel="First period [s]", ylabel="Mean overturning amplitude,\nlone objects [g]")
+        handles, labels = axes.get_legend_handles_labels()
+        handles += [Patch(color="#bbbbbb"), Patch(color="#e8e8e8")]
+        labels += ["the thesis's order", f"by less than {100 * MEANINGFUL:.0f} %"]
+        figure.legend(handles, labels, loc="outside upper center", ncols=2)
+    return figure
+
+
+def _shade(axes: Axes, periods: np.ndarray, margins: np.ndarray) -> None:
+    """Shade the surroundings of each period where the order holds, half-way to its neighbours."""
+    if periods.size == 0:
+        return
+    middles = (periods[1:] + periods[:-1]) / 2
+    edges = np.concatenate([periods[:1], middles, periods[-1:]])
+    for left, right, margin in zip(edges[:-1], edges[1:], margins, strict=True):
+        if margin > TIE:
+            colour = "#bbbbbb" if margin > MEANINGFUL else "#e8e8e8"
+            axes.axvspan(left, right, color=colour, lw=0, zorder=0)
+
+
+def floor_hypotheses(margins: pd.DataFrame, axis: str, definition: str) -> Figure:
+    """Draw by how much each hypothesis about floors holds along an assumption such as ``first_period_s``."""
+    chosen = margins[(margins["axis"] == axis) & (margins["definition"] == definition)]
+    chosen = chosen[chosen["hypothesis"].isin(list(HYPOTHESES))]
+    chosen = chosen.sort_values("value", kind="stable")
+    labels = list(dict.fromkeys(chosen["label"]))
+    values = [f"{value:g}" for value in dict.fromkeys(chosen["value"])]
+    table = chosen.pivot_table(index="hypothesis", columns="label", values="margin")
+    table = table.reindex(index=list(HYPOTHESES), columns=labels)
+    with one_panel(WIDEST, 4.6) as (figure, axes):
+        largest = 100 * max(0.1, float(np.nanmax(np.abs(table.to_numpy()), initial=0.0)))
+        norm = SymLogNorm(linthresh=1, vmin=-largest, vmax=largest)
+        image = axes.imshow(100 * table.to_numpy(), norm=norm, cmap="PuOr", aspect="auto")
+        # a dot where a hypothesis holds by enough to mean something
+        rows, columns = np.nonzero(table.to_numpy() > MEANINGFUL)
+        axes.plot(columns, rows, "o", color="black", ms=2)
+        ticks = values if len(set(values)) == len(labels) else labels
+        axes.set_xticks(range(len(labels)), ticks, rotation=90)
+        axes.set_xlabel(AXIS_NAMES[axis])
+        names = [fill(f"{number}  {text}", 48) for number, text in HYPOTHESES.items()]
+        axes.set_yticks(range(len(names)), names, fontsize=7)
+        axes.tick_params(length=0)
+        axes.spines[:].set_visible(False)
+        marks = [-50, -10, -1, 0, 1, 10, 50]
+        bar = figure.colorbar(image, ax=axes, pad=0.01, ticks=marks)
+        bar.ax.set_yticklabels([str(mark) for mark in marks])
+        bar.set_label("Margin [%], positive: holds")
+    return figure
+
+
+FLOOR_ORDER = Part(_section, asked=varies_building)

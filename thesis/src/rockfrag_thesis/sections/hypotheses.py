@@ -1,15 +1,17 @@
 """The thesis's hypotheses with what was found of each, and where it contradicts itself."""
 
+import math
+from collections import Counter
 from collections.abc import Sequence
 
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import Column, Row, table_html
 from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.wording import probability, spelled
 from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
-from rockfrag_thesis.hypotheses_html import hypotheses_html, outcomes_by_kind
-from rockfrag_thesis.sections.words import sentences
+from rockfrag_thesis.sections import says
 
 _CONTRADICTIONS = (
     Column("hypotheses", "Hypotheses"),
@@ -17,14 +19,11 @@ _CONTRADICTIONS = (
     Column("why", "Why"),
     Column("in_these_tests", "In these tests"),
 )
-
-
 _KINDS = (
     Column("kind", "Kind of hypothesis"),
     Column("hypotheses", "Hypotheses"),
     Column("outcomes", "Found"),
 )
-
 
 SHORT = {
     EXCLUDED: "undecided but below 10 %",
@@ -32,16 +31,29 @@ SHORT = {
 }
 """Outcomes in a sentence that counts them."""
 
+_HYPOTHESIS = Markup(
+    '<div class="hypothesis {finding}"><p><strong>C{row[number]}</strong> {row[hypothesis]} '
+    '<span class="meta">({row[source]})</span></p><p><span class="outcome">{row[outcome]}</span> '
+    '<span class="meta">({row[kind]}; {row[basis]})</span>: {figure}</p><p class="meta">{rule}</p></div>'
+)
+
 
 def _section(results: Results) -> Section:
     hypotheses, contradictions = results.table("hypotheses"), results.table("contradictions")
-    kinds = outcomes_by_kind(hypotheses)
     parts = [
-        table_html(kinds, _KINDS, "What was found, by kind of hypothesis."),
+        table_html(outcomes_by_kind(hypotheses), _KINDS, "What was found, by kind of hypothesis."),
         hypotheses_html(hypotheses),
         table_html(contradictions, _CONTRADICTIONS, "Where the thesis contradicts itself."),
     ]
     return outcomes_section("hypotheses", "The thesis’s hypotheses", hypotheses, parts)
+
+
+def _measured(results: Results) -> Section | None:
+    hypotheses = results.table("measured/hypotheses")
+    if hypotheses.empty:
+        return None
+    title, parts = "The thesis’s hypotheses on measured tests", [hypotheses_html(hypotheses)]
+    return outcomes_section("measured_hypotheses", title, hypotheses, parts)
 
 
 def outcomes_section(
@@ -51,7 +63,42 @@ def outcomes_section(
     outcomes = hypotheses["outcome"].value_counts()
     counts = [f"{count} {SHORT.get(str(outcome), outcome)}" for outcome, count in outcomes.items()]
     inferred, tested = int(hypotheses["p"].notna().sum()), hypotheses["number"].nunique()
-    return section_of(sentences().hypotheses(title, tested, counts, inferred), anchor, parts)
+    return section_of(says.hypotheses(title, tested, counts, inferred), anchor, parts)
 
 
-HYPOTHESES = Part(("hypotheses", "contradictions"), _section, asked=lambda study: study.has_pairs)
+def hypotheses_html(hypotheses: pd.DataFrame) -> Markup:
+    """Render the table of hypotheses, a box a hypothesis, coloured by the finding."""
+    boxes = [
+        _HYPOTHESIS.format(
+            row=row,
+            figure=spelled(row["figure"]),
+            finding=row["finding"].replace(" ", "-"),
+            rule=spelled(". ".join(_rule(row)) + "."),
+        )
+        for row in hypotheses.to_dict("records")
+    ]
+    return Markup('<div class="table of hypotheses">{}</div>').format(Markup("").join(boxes))
+
+
+def _rule(row: Row) -> list[str]:
+    """How a row was tested, how often that errs, and what else there is to say."""
+    parts = [f"Evidence: {row['evidence']}", f"Rule: {row['rule']}", f"Error: {row['error_rate']}"]
+    if not math.isnan(row["p"]):
+        p, adjusted = probability(row["p"]), probability(row["p_holm"])
+        what = f" of “{row['p_of']}”" if row["p_of"] else ""
+        parts.append(f"p value{what}: {p}; adjusted for all hypotheses (Holm): {adjusted}")
+    return [*parts, f"Remark: {row['remark']}"] if row["remark"] else parts
+
+
+def outcomes_by_kind(hypotheses: pd.DataFrame) -> pd.DataFrame:
+    """How many hypotheses of each kind have each outcome: kind, hypotheses, outcomes (in words)."""
+    rows = []
+    for kind, part in hypotheses.groupby("kind", sort=False):
+        counts = Counter(part["outcome"]).most_common()
+        words = ", ".join(f"{count} {outcome}" for outcome, count in counts)
+        rows.append((kind, len(part), words))
+    return pd.DataFrame(rows, columns=["kind", "hypotheses", "outcomes"])
+
+
+HYPOTHESES = Part(_section, asked=lambda study: study.has_pairs)
+MEASURED_HYPOTHESES = Part(_measured, asked=lambda study: study.measured_tests is not None)

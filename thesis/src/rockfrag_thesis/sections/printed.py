@@ -9,7 +9,7 @@ from markupsafe import Markup
 from rockfrag.report.page import framed
 from rockfrag.report.part import Part, Results, Section, section_of
 from rockfrag.report.wording import number
-from rockfrag_thesis.sections.words import sentences
+from rockfrag_thesis.sections import says
 
 _CAPTIONS = {
     "table_3_1": "Table 3.1: critical angle, radius, frequency parameter and slenderness of the "
@@ -27,7 +27,7 @@ def _section(results: Results) -> Section:
     wrong = known[~known["agrees"].astype(bool)]
     names = list(wrong["name"] + " " + wrong["quantity"])
     parts = [comparison_html(results.table(name), caption) for name, caption in _CAPTIONS.items()]
-    text = sentences().printed(len(known) - len(wrong), len(known), names)
+    text = says.printed(len(known) - len(wrong), len(known), names)
     return section_of(text, "printed", parts)
 
 
@@ -63,4 +63,4 @@ def _compared(row: Mapping[str, Any] | None) -> Markup:
     )
 
 
-PRINTED = Part(tuple(_CAPTIONS), _section)
+PRINTED = Part(_section)

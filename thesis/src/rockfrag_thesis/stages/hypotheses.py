@@ -68,7 +68,7 @@ def _hypotheses(job: Job[Study]) -> Results:
 
 def _standing(job: Job[Study]) -> pd.DataFrame:
     """Return which definitions stand when motion and body differ a little."""
-    from rockfrag.stages.protocol import protocol_of
+    from rockfrag.stages.tests import protocol_of
     from rockfrag_thesis.standing import standing_definitions
 
     study = job.study

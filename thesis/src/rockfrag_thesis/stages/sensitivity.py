@@ -1,7 +1,7 @@
 """The building as an axis: one of its assumptions changed at a time."""
 
 from rockfrag.stages.job import Job, Results
-from rockfrag.stages.protocol import protocol_of
+from rockfrag.stages.tests import protocol_of
 from rockfrag.study.study import Study
 from rockfrag.yaml_file import read_yaml
 from rockfrag_thesis.settings import settings_of

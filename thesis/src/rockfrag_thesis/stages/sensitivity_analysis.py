@@ -1,7 +1,6 @@
 """The explanation study: which perturbed parameters of the ideal model could produce a pedestal effect."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
 
 import numpy as np
 import pandas as pd
@@ -9,10 +8,10 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.stages.job import Job, Results
-from rockfrag.stages.protocol import protocol_of
+from rockfrag.stages.tests import protocol_of
 from rockfrag.study.study import Study
 from rockfrag.system.blocks import Stack
-from rockfrag_thesis.settings import SensitivityAnalysis, settings_of
+from rockfrag_thesis.settings import settings_of
 
 SIMULATED_PAIRS = 3
 """Closest pairs of perturbed parameters that are simulated together, since adding them up is an approximation."""
@@ -20,7 +19,7 @@ SIMULATED_PAIRS = 3
 
 def run(job: Job[Study]) -> Results:
     """Yield the ratio P/NP for every perturbed parameter of the ideal model, and effects."""
-    settings, motions = _settings(job.study), job.motions("motions/floors")
+    settings, motions = settings_of(job.study), job.motions("motions/floors")
     ratios, effects = sensitivity_analysis_tables(
         job.study,
         motions,
@@ -71,21 +70,15 @@ def sensitivity_analysis_tables(
         with_references,
     )
 
-    settings = _settings(study)
+    settings = settings_of(study).sensitivity_analysis
     stacks = tested_stacks(study)
     ideal_cases = [ideal_case(object_name, stack) for object_name, stack in stacks.items()]
     rng = np.random.default_rng(study.seed)
     cases = list(ideal_cases)
     for object_name, stack in stacks.items():
-        cases += factor_cases(object_name, stack, asdict(settings))
-        cases += perturbed_cases(
-            object_name,
-            stack,
-            settings.tolerance_percent / 100,
-            settings.tolerance_restitution,
-            settings.replicates,
-            rng,
-        )
+        cases += factor_cases(object_name, stack, settings)
+        spread = (settings["tolerance_percent"] / 100, settings["tolerance_restitution"])
+        cases += perturbed_cases(object_name, stack, *spread, settings["replicates"], rng)
     intensity_levels = protocol_of(study).amplitudes()
     of = len(cases)
     rows = case_ratios(
@@ -93,21 +86,13 @@ def sensitivity_analysis_tables(
     )
     ideal = rows[rows["factor"] == "ideal"]
     parts = [rows[rows["factor"] != "ideal"]]
-    for step in settings.step_percent:
+    for step in settings["step_percent"]:
         other = protocol_of(study, step).amplitudes()
         table = case_ratios(ideal_cases, motions, other, threads)
         parts.append(table.assign(factor="step_percent", level=step))
-    parts.append(mass_error_rows(ideal, stacks, settings.table_mass_kg))
+    parts.append(mass_error_rows(ideal, stacks, settings["table_mass_kg"]))
     ratios = with_references(pd.concat(parts, ignore_index=True), ideal)
     return ratios, _in_order(where_laws_agree(explain(ratios), LAW_OF))
-
-
-def _settings(study: Study) -> SensitivityAnalysis:
-    """What a study says under ``sensitivity_analysis``."""
-    settings = settings_of(study).sensitivity_analysis
-    if settings is None:
-        raise ValueError("the study asks for no sensitivity analysis")
-    return settings
 
 
 def friction_tables(
@@ -120,7 +105,7 @@ def friction_tables(
     """
     from rockfrag_thesis.sensitivity_analysis.friction_grid import friction_effects, friction_ratios
 
-    tried = _settings(study).friction
+    tried = settings_of(study).friction
     ratios = friction_ratios(
         tested_stacks(study),
         motions,
@@ -161,7 +146,7 @@ def inverse_problem_table(
         perturbed_case,
     )
 
-    percents = _settings(study).wanted_percent
+    percents = settings_of(study).wanted_percent
     wanted = {name: 1 + percent / 100 for name, percent in percents.items()}
     stacks = tested_stacks(study)
     neutral = dict(NEUTRAL)

@@ -1,0 +1,213 @@
+"""Fragility: curves by object, in two measures and by floor, and the measure that predicts best."""
+
+import math
+from functools import partial
+
+import pandas as pd
+from markupsafe import Markup
+
+from rockfrag.files import file_name
+from rockfrag.fragility.checks import REJECTION, TAILS
+from rockfrag.fragility.curve_facts import REJECTED, compared_curves
+from rockfrag.fragility.vector import INTERACTION_LEVEL
+from rockfrag.fragility.vector_tables import VectorTables, describe_pair
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
+from rockfrag.report.answer import has_one_record
+from rockfrag.report.figures.fragility import fragility_figure
+from rockfrag.report.figures.two_measures import two_measures_figure
+from rockfrag.report.findings import ONE_MOTION, strength_found
+from rockfrag.report.page import Column, Row, estimated, p_values, table_html
+from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
+from rockfrag.report.sections.words import says
+from rockfrag.report.wording import decimals_of, estimates, number, sentence
+from rockfrag.stages.measure_selection import best_of
+
+_TWO_MEASURES = (
+    Column("configuration", "Object"),
+    Column("pair", "Measures"),
+    Column("c0", "b₀", 2),
+    Column("c1", "b₁", 2),
+    Column("c2", "b₂", 2),
+    Column("c12", "b₁₂", 2),
+    Column("aic", "AIC", 1),
+    Column("p_interaction", "p of no interaction", 3),
+    Column("p_fit", "p of the fit", 3),
+)
+_FLOORS = (
+    Column("configuration", "Configuration"),
+    Column("floor", "Floor"),
+    Column("state_text", "Limit state"),
+    Column("im", "Measure"),
+    estimated("theta", "Median θ [g]"),
+    estimated("beta", "Dispersion β"),
+)
+_MEASURES = (
+    Column("configuration", "Configuration"),
+    Column("im", "Recommended"),
+    Column("beta_amplitude", "β", 3),
+    Column("auc", "AUC", 3),
+    Column("chosen_fraction", "Fraction of bootstrap samples in which it is best", 2),
+    Column("words", "Reasons"),
+)
+
+
+def _fragility(results: Results) -> Section:
+    if has_one_record(results):
+        return Section("fragility", "Fragility", f"{ONE_MOTION.headline}.", [ONE_MOTION.text])
+    order = {configuration.name: i for i, configuration in enumerate(results.study.configurations)}
+    curves = results.table("fragility").sort_values(
+        "configuration", key=lambda names: names.map(order), kind="stable"
+    )
+    known = curves["theta"].notna()
+    known_curves = curves[known]
+    without = list(dict.fromkeys(curves.loc[~known, "configuration"]))
+    found = strength_found(known_curves, results.level)
+    rejected = int((known_curves["p_fit"] < REJECTED).sum())
+    total, notes = len(known_curves), _notes(curves)
+    text = says.fragility(found, results.level, rejected, total, REJECTED, without, notes)
+    figures, tables = _figures(results, curves), _tables(known_curves, results.level)
+    return section_of(text, "fragility", [*figures, *tables])
+
+
+def _notes(curves: pd.DataFrame) -> list[str]:
+    """Warnings of the curves, without those that the tables show number by number."""
+    notes = [REJECTION.sub("", str(note)).strip() for note in curves["warnings"] if note]
+    tails = any(TAILS in note for note in notes)
+    others = dict.fromkeys(rest for note in notes if (rest := note.replace(TAILS, "").strip()))
+    return [*others, *([TAILS] if tails else [])]
+
+
+def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
+    bands, bins = results.table("fragility_bands"), results.table("fragility_bins")
+    measure = str(results.table("fragility")["im"].iloc[0])
+    same = curves[(curves["im"] == measure) & (curves["estimator"] == "mean_probability")]
+    same, nonparametric, _ = compared_curves(same)
+    specs = []
+    for name in results.objects:
+        own = [each.name for each in results.study.configurations if each.names[-1] == name]
+        chosen = same[same["configuration"].isin(own)]
+        medians = [
+            f"{row['configuration']} {number(row['theta'], decimals_of(row['theta']))} {row['unit']}"
+            for row in chosen.dropna(subset=["theta"]).to_dict("records")
+        ]
+        text = says.fragility_figure(name, measure, results.level, nonparametric, medians)
+        band, points = (
+            table[table["configuration"].isin(own) & (table["im"] == measure)]
+            for table in (bands, bins)
+        )
+        draw = partial(fragility_figure, chosen, band, points, nonparametric)
+        specs.append(figure_of(text, f"fragility_{file_name(name)}", draw))
+    return specs
+
+
+def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
+    """One narrow table per intensity measure and reading."""
+    tables = []
+    for (measure, unit, definition), rows in curves.groupby(
+        ["im", "unit", "estimator"], sort=False
+    ):
+        shown = rows.assign(lean=[_lean(row) for row in rows.to_dict("records")])
+        columns = [
+            Column("configuration", "Configuration"),
+            estimated("theta", f"Median θ [{unit}]"),
+            estimated("beta", "Dispersion β"),
+            p_values("p_fit", "p of the fit"),
+            Column("lean", "Most influential"),
+        ]
+        if (rows["p_fit"] < REJECTED).any():
+            columns += [
+                estimated("theta_isotonic", "Nonparametric median"),
+                estimated("beta_isotonic", "Nonparametric β"),
+            ]
+        caption = f"{sentence(str(measure))}, {str(definition).replace('_', ' ')}, with {level} intervals."
+        tables.append(table_html(shown, columns, caption))
+    return tables
+
+
+def _lean(row: Row) -> str:
+    """Group without which the median would change most, and by what factor."""
+    if not row["influential"] or not math.isfinite(row["influence"]):
+        return "–"
+    return f"{row['influential']} (× {number(row['influence'], 2)})"
+
+
+def _two_measures(results: Results) -> Section | None:
+    names = ("two_measures", "contours", "cells")
+    tables = VectorTables(*(results.table(f"fragility_{name}") for name in names))
+    return two_measures_section(tables, results.study.fragility.confidence)
+
+
+def two_measures_section(tables: VectorTables, confidence: float) -> Section | None:
+    """Return the section of fits in two measures; None where no tests allowed one."""
+    fits = tables.fits
+    found = fits[fits["method"] != "none"]
+    if found.empty:
+        return None
+    pairs = [describe_pair(a, b) for a, b in zip(found["first"], found["second"], strict=True)]
+    text = says.two_measures(
+        ", ".join(dict.fromkeys(pairs)),
+        len(found),
+        int((found["p_fit"] < REJECTED).sum()),
+        INTERACTION_LEVEL,
+        f"{100 * confidence:g} %",
+        list(dict.fromkeys(fits["warnings"])),
+    )
+    shown, caption = found.assign(pair=pairs), "Fits in two measures."
+    table = table_html(shown, _TWO_MEASURES, caption, "fragility_two_measures")
+    return section_of(text, "two-measures", [*_contours(tables, shown), table])
+
+
+def _contours(tables: VectorTables, found: pd.DataFrame) -> list[FigureSpec]:
+    keys = ["configuration", "first", "second"]
+    specs = []
+    for pair, row in zip(found["pair"], found[keys].to_dict("records"), strict=True):
+        own, tests = (
+            t[(t[keys] == pd.Series(row)).all(axis=1)] for t in (tables.contours, tables.cells)
+        )
+        caption = (
+            f"{row['configuration']}: probability of overturning in {pair}. Lines are fitted, the band holds the "
+            "median; squares show the fraction of tests that overturned by cell, rising in both measures."
+        )
+        name = file_name(f"two_measures_{'_'.join(map(str, row.values()))}")
+        draw = partial(two_measures_figure, own, tests)
+        specs.append(FigureSpec(name, caption, caption, draw))
+    return specs
+
+
+def _floor_curves(results: Results) -> Section | None:
+    """Fragility on each floor in the peak of that floor's own motion, for each limit state."""
+    curves = results.table("fragility_floors")
+    shown = curves[(curves["measure"] == "pga_g") & curves["theta"].notna()]
+    if has_one_record(results) or shown.empty:
+        return None
+    # hidden files are the workflow's own marks
+    names = (path.name for path in (results.folder / "exports").iterdir() if path.is_file())
+    files = sorted(name for name in names if not name.startswith("."))
+    labels = {state.name: state.label for state in limit_states()}
+    shown = shown.assign(
+        state_text=shown["state"].map(labels), theta_text=estimates(shown, "theta")
+    )
+    fallen = shown[shown["state"] == OVERTURNS].to_dict("records")
+    weakest = min(fallen, key=lambda row: float(row["theta"]), default=None)
+    caption = f"Curves by floor, with {results.level} intervals where there are any."
+    table = table_html(shown, _FLOORS, caption)
+    return section_of(says.floor_curves(weakest, files), "floor_curves", [table])
+
+
+def _measures(results: Results) -> Section:
+    choice = results.table("measure_selection")
+    asked = results.study.fragility.measures
+    best = choice[choice["recommended"].astype(bool)]
+    named = set(best["configuration"])
+    none = [name for name in dict.fromkeys(choice["configuration"]) if name not in named]
+    better = list(dict.fromkeys(best.loc[~best["measure"].isin(list(asked)), "im"]))
+    compared = choice["measure"].nunique()
+    text = says.measures(best_of(choice, asked), better, compared, none)
+    caption = "Recommended measure of each configuration, with reasons."
+    return section_of(text, "measures", [table_html(best, _MEASURES, caption)])
+
+
+FRAGILITY = Part(_fragility)
+TWO_MEASURES = Part(_two_measures, asked=lambda study: bool(study.fragility.pairs))
+FLOOR_CURVES = Part(_floor_curves)
+MEASURES = Part(_measures)

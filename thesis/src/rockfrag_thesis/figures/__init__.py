@@ -1,1 +1,0 @@
-"""Counterparts of the thesis's figures, from the tables of a study."""
