@@ -102,8 +102,8 @@ def plain_log(axes: Axes, which: str) -> None:
     near = (1.0, 2.0, 3.0, 5.0, 7.0)
     for name in which:
         axes.set(**{f"{name}scale": "log"})
-        axis = axes.xaxis if name == "x" else axes.yaxis
-        low, high = axis.get_view_interval()
+        axis, ends = (axes.xaxis, axes.get_xlim) if name == "x" else (axes.yaxis, axes.get_ylim)
+        low, high = ends()
         decades = np.log10(high / low)
         # fewer ticks over more decades
         known = ((1.0, near), (2.5, (1.0, 2.0, 5.0)), (4.0, (1.0, 3.0)), (np.inf, (1.0,)))

@@ -229,7 +229,7 @@ def _fourier(panel: Axes, motion: Motion) -> None:
 def _logarithmic(panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> None:
     """Draw a positive curve on logarithmic axes, over five decades at most."""
     largest = float(y.max()) if y.size and y.max() > 0 else 1.0
-    panel.plot(x, np.maximum(y, 1e-9 * largest), color=colour, linewidth=0.8)
+    panel.loglog(x, np.maximum(y, 1e-9 * largest), color=colour, linewidth=0.8)
     lowest = max(float(y.min()) if y.size else 0.0, 1e-5 * largest)
     panel.set_ylim(0.7 * lowest, 2 * largest)
     style.plain_log(panel, "xy")
