@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from scipy.signal import butter, sosfilt
 
 from rockfrag.engines.spatial import run_in_space
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.system.blocks import Block
 

@@ -22,8 +22,7 @@ from .fragility.lognormal import fit_lognormal as fit_lognormal
 from .motions.measures import measure_motion as measure_motion
 from .motions.spectra import response_spectrum as response_spectrum
 from .outcomes.outcomes import Outcomes as Outcomes
-from .records.ground_motion import GroundMotion as GroundMotion
-from .records.motion import Motion as Motion
+from .records.motion import GroundMotion as GroundMotion, Motion as Motion
 from .records.read import read_motion as read_motion
 from .records.write import write_motion as write_motion
 from .rocking.ensemble import overturns as overturns

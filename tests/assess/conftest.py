@@ -8,7 +8,7 @@ import pytest
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Request, make_request
 from rockfrag.engines.spatial import run_in_space
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system import Block
 
 

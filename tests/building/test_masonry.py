@@ -5,8 +5,14 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from rockfrag.building.floors import floor_motions, respond
-from rockfrag.building.hysteresis import FORCE, MEMORY, law_parameters, move, storey_envelopes
-from rockfrag.building.inelastic import respond_hysteretically
+from rockfrag.building.inelastic import (
+    FORCE,
+    MEMORY,
+    law_parameters,
+    move,
+    respond_hysteretically,
+    storey_envelopes,
+)
 from rockfrag.building.response import respond_elastically
 from rockfrag.building.settings import make_building
 from rockfrag.errors import InputError

@@ -1,6 +1,6 @@
 """One body with friction, by the contact kernels alone: what tests hold beside pure rocking and other programs."""
 
-from rockfrag.engines.planar.history import contact_run, response_of
+from rockfrag.engines.planar.cases import contact_run, response_of
 from rockfrag.rocking.inputs import ground_motion
 from rockfrag.rocking.options import system_of
 from rockfrag.units import GRAVITY

@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import AMPLITUDES_G, Standing, live_in_space
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer

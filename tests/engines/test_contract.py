@@ -7,8 +7,7 @@ from rockfrag.engines import contract
 from rockfrag.engines.contract import Request, Wish
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import empty_outcomes
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.system.blocks import Block, Column, Stack
 from rockfrag.system.body import Interval, RigidBody

@@ -5,9 +5,9 @@ import pandas as pd
 import pytest
 
 from rockfrag.fragility.counted import count_ida
+from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.ida_curves import outcome_bins, with_measures
-from rockfrag.fragility.ida_data import TableIda
 from rockfrag.fragility.measure_selection import area_under_curve
 from rockfrag.shaketable.swept import Swept
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from rockfrag.fragility.checks import goodness_of_fit
+from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fit_cloud
-from rockfrag.fragility.goodness import goodness_of_fit
 from rockfrag.fragility.ida_curves import tables_of_ida_curves
-from rockfrag.fragility.ida_data import TableIda
 from rockfrag.fragility.observations import observations_from_table
 from rockfrag.report.figures.fragility import calibration_figure, measures_figure
 

@@ -8,8 +8,8 @@ import pytest
 from scipy import stats
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.checks import goodness_of_fit
 from rockfrag.fragility.estimators import fit_cloud, fit_step_tests
-from rockfrag.fragility.goodness import goodness_of_fit
 from rockfrag.fragility.ida_curves import fragility_table
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.measure_selection import area_under_curve, recommend_measure

@@ -11,8 +11,7 @@ from rockfrag.errors import InputError
 from rockfrag.motions import pga, pgv, rotate, rotd
 from rockfrag.motions.directions import turned
 from rockfrag.motions.intensity import spectral_acceleration
-from rockfrag.motions.rotation import rotate_to_azimuth, stronger_direction
-from rockfrag.motions.time_base import common_time
+from rockfrag.motions.rotation import common_time, rotate_to_azimuth, stronger_direction
 from rockfrag.records.motion import Motion
 
 

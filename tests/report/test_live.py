@@ -9,17 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockfrag.engines.contract import Engine
 from rockfrag.errors import InputError
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import MOST_SAMPLES, carried, live_kernel, swept
 from rockfrag.report.live.frames import frames_svg, outlines
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page
 from rockfrag.rocking import Block, Column, Stack, overturns
-from rockfrag.rocking.browser import InPage
 from rockfrag.rocking.options import system_of
 from rockfrag.system.system import turned_about_vertical
 
@@ -88,7 +85,6 @@ def test_what_the_kernel_of_the_page_does_not_know_is_left_out_by_name():
     assert [body["name"] for body in data_of(html)["bodies"]] == list(BODIES)
     assert "and so not: measured, slippery, drums." in html
     assert live_kernel({"measured": held}, [motion()]) == ""
-    assert isinstance(InPage(), Engine)
 
 
 def test_the_outcomes_are_those_of_the_table_it_is_given():

@@ -17,6 +17,7 @@ from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
+from ..oracle.standing import upper_on_contact
 from .node import in_node, needs_node
 
 HISTORY = ["theta1", "omega1", "theta2", "omega2", "c1", "c2", "alpha1", "alpha2", "work"]
@@ -106,7 +107,7 @@ def some_restitution(rng, body: Body):
 
     if isinstance(body, Block):
         return of(body)
-    ground, interface = of(body.lower), of(body.contact_upper)
+    ground, interface = of(body.lower), of(upper_on_contact(body))
     return [(ground, interface), (None, interface), (ground, None)][rng.integers(0, 3)]
 
 

@@ -17,6 +17,7 @@ from rockfrag.rocking.measured_restitution import largest_restitution
 from rockfrag.rocking.options import system_of
 
 from ..oracle.rocking_model import Model
+from ..oracle.standing import upper_on_contact
 
 STILL = np.zeros(300)
 OUTCOME = np.dtype([("c", np.int64, 2), ("omega", np.float64, 2), ("gave_way", np.int64)])
@@ -81,7 +82,7 @@ def plain(body, restitution, old, closes, theta, omega):
 
 def measured(stack, factor, law):
     """Every interface at a factor on what conserves momentum, as far as a lone block allows it."""
-    blocks = stack.lower, stack.contact_upper
+    blocks = stack.lower, upper_on_contact(stack)
 
     def of(block, pivot):
         wanted = factor * max(0.05, block.momentum_restitution(-pivot))
@@ -113,7 +114,7 @@ def test_without_a_measured_value_momentum_is_conserved_and_nothing_gives_way():
         of_momentum = compiled(stack, None, *case)
         for law in ("position", "couple"):
             found = compiled(stack, measured(stack, 1.0, law), *case)
-            blocks = stack.lower, stack.contact_upper
+            blocks = stack.lower, upper_on_contact(stack)
             if min(b.momentum_restitution(s) for b in blocks for s in (1, -1)) > 0.05:
                 assert found[1] == pytest.approx(of_momentum[1], abs=1e-9)
         assert of_momentum[2] == 0

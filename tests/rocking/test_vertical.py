@@ -8,6 +8,7 @@ from rockfrag.laws import law_names
 from rockfrag.rocking import MeasuredRestitution
 
 from ..oracle.rocking_integrator import simulate_reference
+from ..oracle.standing import upper_on_contact
 
 # random bodies may lose contact, and pure rocking is what these tests are about
 pytestmark = pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
@@ -104,7 +105,7 @@ def follow_the_plain_one(seed, law):
     rng = np.random.default_rng(seed)
     restitution = None
     if law is not None:
-        blocks = (body,) if isinstance(body, Block) else (body.lower, body.contact_upper)
+        blocks = (body,) if isinstance(body, Block) else (body.lower, upper_on_contact(body))
         values = [
             min(block.momentum_restitution(s) for s in (1, -1)) * rng.uniform(0.8, 1.04)
             for block in blocks

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.worst_direction import worst_direction
 from rockfrag.system.blocks import Block

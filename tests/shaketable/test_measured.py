@@ -11,8 +11,7 @@ from rockfrag.fragility.censored import brackets_from_table, fit_brackets
 from rockfrag.pedestal.paired_tests import pair_tests
 from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.laboratory_table import read_measured
-from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.steps import GeometricSteps
+from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.tests_table import COLUMNS
 
 from .made import ida_table

@@ -17,11 +17,13 @@ from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.protocols import (
     Accelerometer,
     ForceOverMass,
+    ForceSteps,
+    GeometricSteps,
+    LinearSteps,
     Outcome,
     Protocol,
     measured,
 )
-from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
 from rockfrag.shaketable.tests_table import COLUMNS
 
 from .made import ida_table

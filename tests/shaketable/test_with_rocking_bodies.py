@@ -11,9 +11,8 @@ from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.shaketable.definitions import tests_from_ida as read_ida
-from rockfrag.shaketable.protocols import Protocol
+from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.shaker import Shaker, shaker_table
-from rockfrag.shaketable.steps import GeometricSteps
 from rockfrag.study.configurations import configuration_of, each_alone
 from rockfrag.system.blocks import Block
 from rockfrag_thesis.building_sensitivity import building_sensitivity, building_variants

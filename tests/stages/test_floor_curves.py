@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import with_measures
-from rockfrag.fragility.ida_data import TableIda
 from rockfrag.stages.floor_curves import export_curves, floor_curves
 from rockfrag.system.blocks import Block
 

@@ -4,8 +4,7 @@ import numpy as np
 
 from rockfrag import Block, Stack
 from rockfrag.records.motion import Motion
-from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.steps import GeometricSteps
+from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag_thesis.standing import SIZES, standing_definitions
 
 TOWER = Block(0.124, 0.372, 2.172)

@@ -14,8 +14,7 @@ import pytest
 from scipy import stats
 
 from rockfrag.pedestal.cluster_means import contrast, equivalence, mean_effect, t_estimate
-from rockfrag.pedestal.multiplicity import holm
-from rockfrag.pedestal.power import power_of_t
+from rockfrag.pedestal.power import holm, power_of_t
 
 from .documented import document
 from .made import drawn, pairs_of

@@ -8,8 +8,7 @@ from markupsafe import Markup
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.live.space import Standing, live_in_space
 

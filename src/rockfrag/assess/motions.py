@@ -14,8 +14,7 @@ from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
 from rockfrag.errors import InputError
 from rockfrag.motions.declared import IntensityMeasure
-from rockfrag.motions.rotation import rotate
-from rockfrag.motions.time_base import common_time
+from rockfrag.motions.rotation import common_time, rotate
 from rockfrag.records.catalogue import load_motion, load_motions
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.motion import Motion

@@ -13,14 +13,13 @@ from scipy import stats
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
-from rockfrag.engines.spatial.robustness import PERTURBATION
+from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.fragility.observations import Observations
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.plausibility import LARGEST_PEAK
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
 from rockfrag.rocking.inputs import checked_threads
 from rockfrag.system.blocks import Body

@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rockfrag.building.hysteresis import shear_strengths
-from rockfrag.building.inelastic import respond_hysteretically
+from rockfrag.building.inelastic import respond_hysteretically, shear_strengths
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.response import BuildingResponse, respond_elastically
 from rockfrag.records.motion import Motion

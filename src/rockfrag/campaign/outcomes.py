@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.outcomes.outcomes import Outcomes
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
 from rockfrag.rocking.inputs import checked_threads
 from rockfrag.system.system import System

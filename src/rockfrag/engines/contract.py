@@ -38,7 +38,7 @@ from numpy.typing import NDArray
 from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
@@ -159,7 +159,7 @@ def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[
     return frozenset(wish for wish, there in made.items() if there)
 
 
-def by_wishes(engine: Engine, system: System, motion: GroundMotion, request: Request) -> Support:
+def by_wishes(engine: Any, system: System, motion: GroundMotion, request: Request) -> Support:
     """Return what ``meets`` alone says of an engine: the usual body of ``supports``."""
     return Support(wishes(system, motion, request) - engine.meets)
 
@@ -182,13 +182,7 @@ def _load_built_in() -> None:
 
 
 def register_engine(engine: Engine, before: str | None = None) -> Engine:
-    """Add an engine to the registry, behind all others or before the one of a name.
-
-    Raises
-    ------
-    InputError
-        If the name is taken, or there is no engine to put it before.
-    """
+    """Add an engine to the registry, behind all others or before the one of a name; its name must not be taken."""
     names = [other.name for other in engines()]
     if engine.name in names:
         raise InputError(f"engine {engine.name!r} is registered already; give it another name.")

@@ -70,20 +70,8 @@ def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64
         upward = end_to_end(
             [per_gravity * motion.z.acceleration for motion in cases.motions if motion.z]
         )
-    highest, lowest, ahead_high, ahead_low = _extremes(horizontal, offsets)
-    _, _, upward_high, upward_low = _extremes(upward, offsets)
-    motions = Motions(
-        samples=horizontal,
-        vertical=upward,
-        highest=highest,
-        lowest=lowest,
-        ahead_high=ahead_high,
-        ahead_low=ahead_low,
-        upward_high=upward_high,
-        upward_low=upward_low,
-        offsets=offsets,
-        lasts=offsets[:-1] + sizes - 1,
-    )
+    extremes = *_extremes(horizontal, offsets), *_extremes(upward, offsets)[2:]
+    motions = Motions(horizontal, upward, *extremes, offsets, lasts=offsets[:-1] + sizes - 1)
     return motions, number.reshape(times.shape), dts[np.newaxis, :] / times
 
 

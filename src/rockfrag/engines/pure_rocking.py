@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
+from rockfrag.engines.contract import Cases, Request, Support, Wish, by_wishes
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system import geometry
 from rockfrag.system.system import System
 
@@ -37,25 +37,20 @@ class PureRocking:
             return Support(reason="the lower body's face is not as wide as its base")
         return Support(reason=_REASONS.get(geometry.failed_stability_check(system.pile), ""))
 
-    def run(self, cases: Cases) -> Outcomes:
-        """Return the outcomes of cases; here none."""
-        raise NotImplementedError
-
-    def history(self, case: Case) -> Any:
-        """Return the response of a case; here none, as lanes keep no history."""
-        raise NotImplementedError
-
     def _by_lanes(
-        self, cases: Cases, kernel: Any, worker: Callable[[], Any], ensemble: Any, motions: Any
+        self, cases: Cases, kernel: Any, worker: Callable[[], Any], sampled: Any, **told: Any
     ) -> Outcomes:
-        """Return what lanes make of an ensemble."""
-        from rockfrag.engines.kernels.lanes.case import OUTCOME
+        """Return what lanes make of motions ``sampled`` for an ensemble, and of what its kernel is ``told``."""
+        from rockfrag.engines.kernels.lanes.case import OUTCOME, Ensemble
         from rockfrag.engines.lanes import integrate, write_lanes
 
-        found = np.empty(ensemble.count, OUTCOME)
+        motions, rows, intervals = sampled
+        count = len(cases.systems) * cases.scales.size
+        ensemble = Ensemble(np.array([0]), count, rows=rows, intervals=intervals, **told)
+        found = np.empty(count, OUTCOME)
         integrate(kernel, worker, cases.threads, ensemble, motions, found)
         outcomes = empty_outcomes(cases.names, cases.scales, (self.name,))
-        write_lanes(outcomes, found.reshape(cases.shape), ensemble.intervals[:, :, np.newaxis])
+        write_lanes(outcomes, found.reshape(cases.shape), intervals[:, :, np.newaxis])
         return outcomes
 
 
@@ -68,27 +63,18 @@ class LoneBlocks(PureRocking):
     def run(self, cases: Cases) -> Outcomes:
         """Return the outcomes of cases."""
         from rockfrag.engines.kernels.lanes import block
-        from rockfrag.engines.kernels.lanes.case import Ensemble
         from rockfrag.engines.lanes import sampled
 
-        g = cases.request.g
-        motions, rows, intervals = sampled(cases, 1.0)
+        g, made = cases.request.g, sampled(cases, 1.0)
+        intervals = made[2]
         pivots = np.empty((*intervals.shape, 2), block.PIVOT)
         for i, system in enumerate(cases.systems):
             pivots[i] = _pivots(system, g, block.PIVOT)
         pivots["swing"] *= intervals[:, :, np.newaxis] ** 2
         pivots["per_swing"] /= intervals[:, :, np.newaxis] ** 2
-        ensemble = Ensemble(
-            counter=np.array([0]),
-            count=len(cases.systems) * cases.scales.size,
-            bodies=pivots,
-            factors=cases.scales / g,
-            rows=rows,
-            intervals=intervals,
-            parts=np.ones(intervals.shape),
-            free=np.zeros(intervals.shape, np.int64),
-        )
-        return self._by_lanes(cases, block.integrate_blocks, block.worker, ensemble, motions)
+        parts, free = np.ones(intervals.shape), np.zeros(intervals.shape, np.int64)
+        told = {"bodies": pivots, "factors": cases.scales / g, "parts": parts, "free": free}
+        return self._by_lanes(cases, block.integrate_blocks, block.worker, made, **told)
 
 
 def _pivots(system: System, g: float, dtype: np.dtype[np.void]) -> NDArray[np.void]:
@@ -118,26 +104,21 @@ class TwoBlocks(PureRocking):
         """Return the outcomes of cases."""
         from rockfrag.engines.kernels.equations import BODY
         from rockfrag.engines.kernels.lanes import stack_case
-        from rockfrag.engines.kernels.lanes.case import Ensemble
         from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
         from rockfrag.engines.lanes import sampled
         from rockfrag.engines.records import body_record
         from rockfrag.engines.steps import STACK_STEP, free_samples, step_count
 
         g, step = cases.request.g, STACK_STEP * cases.request.step
-        motions, rows, intervals = sampled(cases, 1.0 / g)
-        each = list(zip(cases.systems, intervals, strict=True))
-        ensemble = Ensemble(
-            counter=np.array([0]),
-            count=len(cases.systems) * cases.scales.size,
+        made = sampled(cases, 1.0 / g)
+        each = list(zip(cases.systems, made[2], strict=True))
+        return self._by_lanes(
+            *(cases, integrate_stacks, stack_case.worker, made),
             bodies=np.array([body_record(system, g=g) for system in cases.systems], BODY),
             factors=cases.scales,
-            rows=rows,
-            intervals=intervals,
             parts=1.0 / np.array([step_count(system, h, g, step) for system, h in each]),
             free=np.array([free_samples(system, h, g) for system, h in each]),
         )
-        return self._by_lanes(cases, integrate_stacks, stack_case.worker, ensemble, motions)
 
 
 LONE_BLOCKS, TWO_BLOCKS = LoneBlocks(), TwoBlocks()

@@ -4,22 +4,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rockfrag import figure_style as style
 from rockfrag.engines.response import Response
-from rockfrag.figure_style import (
-    BLACK,
-    BLUE,
-    COLUMN_WIDTH,
-    OKABE_ITO,
-    ORANGE,
-    RED,
-    figure_style,
-    new_figure,
-)
 from rockfrag.system import geometry
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
-MOST_ROCKING_MODES = len(OKABE_ITO)  # rows of patterns; more are counted
+MOST_ROCKING_MODES = len(style.OKABE_ITO)  # rows of patterns; more are counted
 _ROCKING_MODES = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 
 
@@ -28,16 +19,18 @@ def response_figure(response: Response, title: str) -> Figure:
     critical, names = critical_angles(response.system), response.system.names
     single = len(names) == 1
     # the object has its colour wherever it stands
-    colours = [BLUE, ORANGE, *OKABE_ITO[2:]][: len(names)][::-1]
+    colours = [style.BLUE, style.ORANGE, *style.OKABE_ITO[2:]][: len(names)][::-1]
     slides = bool((response.slides != 0).any())
     heights = [2, 3, 2, 2] if slides else [2, 3, 2]
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 0.6 * sum(heights))
+    with style.figure_style():
+        figure = style.new_figure(style.COLUMN_WIDTH, 0.6 * sum(heights))
         panels = figure.subplots(
             len(heights), 1, sharex=True, gridspec_kw={"height_ratios": heights}
         )
         ground, rotation, *between, rocking_mode = panels
-        ground.plot(response.time, response.ground_acceleration / GRAVITY, color=BLACK, lw=0.5)
+        ground.plot(
+            response.time, response.ground_acceleration / GRAVITY, color=style.BLACK, lw=0.5
+        )
         ground.set_ylabel("Ground [g]")
         ground.set_title(title, loc="left")
         for i, name in enumerate(names):
@@ -56,13 +49,13 @@ def response_figure(response: Response, title: str) -> Figure:
         rotation.set_ylabel("Rotation / critical [-]")
         impacts = response.contact_events.loc[response.contact_events["kind"] == "impact", "time"]
         rotation.plot(
-            impacts, np.zeros(len(impacts)), "|", color=BLACK, ms=5, mew=0.5, label="impact"
+            impacts, np.zeros(len(impacts)), "|", color=style.BLACK, ms=5, mew=0.5, label="impact"
         )
         if not single or len(impacts):
             rotation.legend(loc="upper right", ncols=3)
         if response.overturned:
             for panel in panels:
-                panel.axvline(response.overturning_time, color=RED, lw=0.8)
+                panel.axvline(response.overturning_time, color=style.RED, lw=0.8)
         for panel in between:
             _slips(panel, response, colours)
         _rocking_modes(rocking_mode, response)
@@ -97,12 +90,12 @@ def _rocking_modes(panel: Axes, response: Response) -> None:
     if len(seen) > MOST_ROCKING_MODES:
         # of a long column the number of bodies that rock or fly tells more than a row for each pattern
         moving = (response.state != 0).sum(axis=1)
-        panel.step(response.time, moving, color=BLACK, lw=0.6)
+        panel.step(response.time, moving, color=style.BLACK, lw=0.6)
         panel.set_ylabel("Open contacts")
         return
     for row, name in enumerate(seen):
         times = response.time[labels == name]
-        panel.plot(times, np.full(times.size, row), "|", color=OKABE_ITO[row], ms=6, mew=0.6)
+        panel.plot(times, np.full(times.size, row), "|", color=style.OKABE_ITO[row], ms=6, mew=0.6)
     panel.set_yticks(range(len(seen)), seen)
     panel.set_ylim(-0.6, max(len(seen), 1) - 0.4)
     panel.set_ylabel("Pattern")

@@ -64,8 +64,7 @@ class Single(PureRocking):
         needed = int(found[-1]["contact_events"])
         if needed > 4096:
             found = _integrated(case, needed)
-        record, shaking, history, contact_events, summary = found
-        return _response(case.system, record, shaking, history, contact_events[:needed], summary)
+        return _response(case.system, *found)
 
 
 def samples_of(case: Case) -> tuple[Array, Array, Array, NDArray[Any]]:
@@ -160,13 +159,13 @@ def _response(
     record: np.void,
     shaking: Any,
     history: Records,
-    contact_events: Records,
+    found: Records,
     summary: np.void,
 ) -> Response:
-    """Put the response of a system together."""
+    """Put the response of a system together, of whose contact events so many were found."""
     from rockfrag.engines.forces import centres, contact_forces
 
-    n = len(history)
+    n, contact_events = len(history), found[: int(summary["contact_events"])]
     blocks = list(BLOCKS[-system.count :])
     theta, omega, alpha, state = (
         np.column_stack([history[name + block] for block in blocks])

@@ -1,4 +1,7 @@
-"""What is said beside every fitted curve: whether it describes the data, and which motion moves it most."""
+"""What is said beside every fitted curve: whether it describes the data, and which motion moves it most.
+
+The test is of the deviance, by a parametric bootstrap.
+"""
 
 import re
 from dataclasses import dataclass, replace
@@ -7,16 +10,175 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy import special
 from statsmodels.stats.diagnostic import lilliefors
 
+from rockfrag.errors import InputError
+from rockfrag.fragility.batch_glm import Link, fit_batch
 from rockfrag.fragility.censored import Brackets
 from rockfrag.fragility.curve_facts import REJECTED
+from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
-from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
-from rockfrag.fragility.observations import Observations
+from rockfrag.fragility.observations import Floats, Observations, cells
 from rockfrag.sentences import sayer
+from rockfrag.short_repr import short_repr
+
+BINS = 10  # bins of about equal numbers of tests in which observed and fitted numbers are compared
+CELLS = 60
+"""Cells of the measure in which simulated outcomes are refitted; finer ones move p values by one replicate."""
+
+
+@dataclass(frozen=True)
+class GoodnessOfFit:
+    """How well a curve describes the outcomes it was fitted to.
+
+    Attributes
+    ----------
+    deviance
+        Binomial deviance of bins of the measure against the curve.
+    p_value
+        Fraction of data sets simulated from the curve (and refitted) whose deviance is at least as
+        large.
+    dependence
+        What was simulated, see :func:`goodness_of_fit`.
+    brier
+        Mean squared difference of outcome and fitted probability.
+    calibration
+        One row per bin: ``im``, ``tests``, ``predicted`` (mean fitted probability), ``observed``,
+        ``observed_lower``, ``observed_upper`` (90 % binomial limits).
+    words
+        The finding in one sentence.
+    """
+
+    deviance: float
+    p_value: float
+    dependence: str
+    brier: float
+    calibration: pd.DataFrame
+    words: str
+
+    __repr__ = short_repr
+
+
+def goodness_of_fit(
+    outcomes: Observations,
+    fit: FragilityFit,
+    *,
+    dependence: Literal["tests", "motions"] | None = None,
+    replicates: int = 200,
+    seed: int = 0,
+) -> GoodnessOfFit:
+    """Compare the deviance with that of data simulated from the curve (parametric bootstrap).
+
+    ``dependence``: ``tests`` simulates each outcome by itself; ``motions`` gives each motion one capacity from the
+    curve, so that its outcomes hang together as in an incremental dynamic analysis. None takes ``motions`` where
+    motions have more than one row.
+    """
+    if not np.isfinite(fit.theta):
+        raise InputError(f"goodness of fit: there is no curve to judge ({fit.method}).")
+    if dependence is None:
+        dependence = "motions" if outcomes.is_swept else "tests"
+    code = cells(outcomes.im, BINS, outcomes.trials)[0]
+    probability = fit.probability(outcomes.im)
+
+    def by_bin(values: Floats) -> Floats:
+        return np.asarray(np.bincount(code, values))
+
+    trials = by_bin(outcomes.trials)
+    expected = by_bin(outcomes.trials * probability)
+    observed = by_bin(outcomes.overturned)
+    deviance = float(binned_deviance(observed, expected, trials))
+    rng = np.random.default_rng(seed)
+    # cells within the bins: what is simulated and refitted, however many tests there are
+    shifted = outcomes.log_im + code * 1e3
+    cell, values = cells(shifted, CELLS)
+    apart = np.unique(code * values.size + cell, return_inverse=True)[1]
+    if apart.max() >= values.size:
+        # a cell reached over the end of a bin
+        cell, values = apart, np.bincount(apart, shifted) / np.bincount(apart)
+    home = np.asarray(np.rint(values / 1e3), dtype=np.intp)
+    tests = np.asarray(np.bincount(cell, outcomes.trials), dtype=np.float64)
+    if dependence == "tests":
+        fraction = np.bincount(cell, outcomes.trials * probability) / tests
+        drawn = rng.binomial(
+            tests.astype(np.int64), np.minimum(fraction, 1.0), size=(replicates, fraction.size)
+        ).astype(np.float64)
+    else:
+        size = (replicates, outcomes.n_motions)
+        draw = rng.normal(size=size) if fit.link == "probit" else rng.logistic(size=size)
+        drawn = outcomes.drawn(np.log(fit.theta) + fit.beta * draw, cell)
+    design = np.column_stack([np.ones(values.size), values - 1e3 * home])
+    start = np.array(fit.coefficients)
+    simulated = refitted_deviance(design, drawn, tests, home, link=fit.link, start=start)
+    p_value = float((1 + np.sum(simulated >= deviance - 1e-9)) / (1 + simulated.size))
+    lower, upper = wilson_interval(observed, trials)
+    calibration = pd.DataFrame(
+        {
+            "im": np.exp(by_bin(outcomes.trials * outcomes.log_im) / trials),
+            "tests": trials.astype(np.int64),
+            "predicted": expected / trials,
+            "observed": observed / trials,
+            "observed_lower": lower,
+            "observed_upper": upper,
+        }
+    ).sort_values("im", ignore_index=True)
+    miss = outcomes.overturned * (1 - probability) ** 2
+    miss += (outcomes.trials - outcomes.overturned) * probability**2
+    outcome = "not rejected"
+    if p_value < REJECTED:
+        outcome = "rejected; use the nonparametric monotone curve"
+    return GoodnessOfFit(
+        deviance,
+        p_value,
+        dependence,
+        float(miss.sum() / outcomes.n),
+        calibration,
+        f"Deviance {deviance:.1f} in {len(calibration)} bins, p = {p_value:.3f} (parametric bootstrap of "
+        f"{dependence}): the curve is {outcome}.",
+    )
+
+
+def binned_deviance(observed: Floats, expected: Floats, trials: Floats) -> Floats:
+    """Binomial deviance of numbers of overturned tests in bins against expected ones, over the last axis [-]."""
+    survived = trials - observed
+    # a bin that the curve calls impossible may not lie there by rounding alone
+    expected = np.clip(expected, 1e-12 * trials, (1 - 1e-12) * trials)
+    terms = special.xlogy(observed, observed / expected)
+    terms = terms + special.xlogy(survived, survived / (trials - expected))
+    return np.asarray(2.0 * terms.sum(axis=-1))
+
+
+def refitted_deviance(
+    design: Floats,
+    drawn: Floats,
+    trials: Floats,
+    bins: NDArray[np.intp],
+    *,
+    link: Link = "probit",
+    start: Floats | None = None,
+) -> Floats:
+    """Deviance in bins of numbers of overturned tests, (replicates, rows), from curves fitted to them anew.
+
+    ``trials`` and ``bins`` are those of each row of the ``design``; replicates without a curve are left out.
+    """
+    # the penalty keeps separated data sets finite and hardly moves the others
+    batch = fit_batch(
+        design,
+        drawn,
+        np.broadcast_to(trials, drawn.shape),
+        link=link,
+        penalised=True,
+        tolerance=1e-4,
+        start=start,
+    )
+    usable = np.isfinite(batch.coefficients).all(axis=1)
+    eta = batch.coefficients[usable] @ design.T
+    probability = special.ndtr(eta) if link == "probit" else special.expit(eta)
+    member = (bins[:, None] == np.arange(bins.max() + 1)).astype(np.float64)
+    return binned_deviance(drawn[usable] @ member, (trials * probability) @ member, trials @ member)
+
 
 TAILS = (
     "The limits of β assume lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
@@ -68,7 +230,7 @@ def checks_of_outcomes(
 ) -> Checks:
     """Judge a curve fitted to outcomes.
 
-    ``dependence`` and ``seed`` are those of :func:`rockfrag.fragility.goodness.goodness_of_fit`.
+    ``dependence`` and ``seed`` are those of :func:`rockfrag.fragility.checks.goodness_of_fit`.
     """
     p_fit, residual, test = float("nan"), float("nan"), "none"
     found = None

@@ -1,4 +1,4 @@
-"""What the outcomes say without a curve: shares in bins and near a value, structural resurrections.
+"""What the outcomes say without a curve: fractions in bins and near a value, structural resurrections.
 
 Rocking bodies overturn at one amplitude and survive a larger one; a fitted curve cannot show it, so
 these stand beside it.
@@ -7,14 +7,22 @@ these stand beside it.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.observations import Floats, Observations, positive, read_observations
-from rockfrag.fragility.pooling import cells
+from rockfrag.fragility.observations import (
+    Floats,
+    Observations,
+    cells,
+    observations_from_table,
+    positive,
+    read_observations,
+)
 from rockfrag.shaketable.swept import Swept
 
 
@@ -151,3 +159,39 @@ def _resurrections(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str
         "resurrections": closed,
         "window_width": width,
     }
+
+
+class IdaData(Protocol):
+    """IDA curves of one configuration."""
+
+    def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
+        """Structural resurrections, a row a motion: :func:`rockfrag.fragility.empirical.find_resurrections`."""
+
+    def outcomes(self, column: str) -> Observations:
+        """All outcomes with a measure."""
+
+    def motions(self) -> pd.DataFrame:
+        """One row per motion."""
+
+
+@dataclass(frozen=True)
+class TableIda:
+    """IDA curves as a table with a row per motion and amplitude."""
+
+    table: pd.DataFrame  # with ``motion``, ``overturned``, the amplitude and the measures
+    earthquake: str | None = "earthquake"  # column of the earthquake; None where motions have none
+    motion: str = "motion"  # column of the motion
+
+    def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
+        """See :class:`IdaData`."""
+        return find_resurrections(self.table, amplitude=amplitude, by=by)
+
+    def outcomes(self, column: str) -> Observations:
+        """See :class:`IdaData`."""
+        return observations_from_table(
+            self.table, column, motion=self.motion, earthquake=self.earthquake, source="ida"
+        )
+
+    def motions(self) -> pd.DataFrame:
+        """See :class:`IdaData`."""
+        return self.table.drop_duplicates(self.motion)

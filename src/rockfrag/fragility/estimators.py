@@ -15,7 +15,7 @@ from rockfrag.fragility.censored import (
     fit_brackets,
 )
 from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_outcomes
-from rockfrag.fragility.ida_data import IdaData, TableIda
+from rockfrag.fragility.empirical import IdaData, TableIda
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.keywords import named_keywords

@@ -12,9 +12,9 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.fragility import censored
+from rockfrag.fragility.empirical import IdaData, TableIda
 from rockfrag.fragility.held_out import capacity_scores
 from rockfrag.fragility.ida_curves import scale_power, with_measures
-from rockfrag.fragility.ida_data import IdaData, TableIda
 from rockfrag.fragility.measure_selection import (
     MeasureSelection,
     dependence_p_value,

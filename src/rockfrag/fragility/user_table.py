@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pandas as pd
 
+from rockfrag.fragility.checks import GoodnessOfFit
 from rockfrag.fragility.empirical import fraction_in_bins
 from rockfrag.fragility.estimators import Fragility, fragility_of
-from rockfrag.fragility.goodness import GoodnessOfFit
 from rockfrag.fragility.ida_curves import fragility_row, table_hash
 from rockfrag.fragility.measure_selection import MeasureSelection, recommend_measure
 from rockfrag.fragility.observations import Observations, observations_from_table

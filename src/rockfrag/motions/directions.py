@@ -10,8 +10,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.motions.processing import process
-from rockfrag.motions.rotation import rotate_to_azimuth, stronger_direction
-from rockfrag.motions.time_base import common_time
+from rockfrag.motions.rotation import common_time, rotate_to_azimuth, stronger_direction
 from rockfrag.records.catalogue import load_component, load_motion, scaled
 from rockfrag.records.motion import Motion
 

@@ -71,23 +71,9 @@ _STATES: dict[str, LimitState] = {}
 
 
 def limit_state(name: str, order: int, label: str, **more: Any) -> Callable[[Predicate], Predicate]:
-    """Declare the function below as the predicate of a limit state.
+    """Declare the function below as the predicate of a limit state, with what :class:`LimitState` has.
 
-    Parameters
-    ----------
-    name
-        Short name.
-    order
-        Its place among the others, the milder first.
-    label
-        What figures and reports call it.
-    more
-        As of :class:`LimitState`.
-
-    Raises
-    ------
-    InputError
-        If the name is taken, or is not one word, as exports write several in a line.
+    The name must not be taken, and is one word, as exports write several in a line.
     """
     if not name.isidentifier():
         raise InputError(f"limit state {name!r}: expected one word of letters, digits and _.")

@@ -10,10 +10,9 @@ import pandas as pd
 
 from rockfrag.pedestal import cluster_means
 from rockfrag.pedestal.cluster_means import Array
-from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.pedestal.paired_tests import SAY, Pairs, pair_tests
 from rockfrag.pedestal.permutation import WITHOUT_COLUMNS, leave_one_earthquake_out, sign_flip_test
-from rockfrag.pedestal.power import detectable_ratio
+from rockfrag.pedestal.power import benjamini_hochberg, detectable_ratio, holm
 from rockfrag.short_repr import short_repr
 
 SCOPES: Mapping[str, tuple[str, ...]] = {

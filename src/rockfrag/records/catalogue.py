@@ -217,7 +217,7 @@ def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) 
         path = fetch_fdsn(name, records)
     elif source == "url":
         path = records / "url" / f"{row['sha256'][:16]}-{name.rpartition('/')[2] or 'record'}"
-        from rockfrag.records.sources.url import fetch_url
+        from rockfrag.records.sources.wheel import fetch_url
 
         fetch_url(name, row["sha256"], path)
     else:

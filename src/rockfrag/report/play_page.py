@@ -9,8 +9,7 @@ from markupsafe import Markup
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import AMPLITUDES_G, live_kernel, space
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding, finding_of

@@ -17,14 +17,13 @@ from rockfrag.errors import InputError
 from rockfrag.files import file_name
 from rockfrag.motions.intensity import pgd, pgv, predominant_period
 from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
-from rockfrag.plain_text import printable
 from rockfrag.records.catalogue import is_catalogue
-from rockfrag.records.integration import integrate
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import Motion, integrate
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import Record, motion_of, read_record
-from rockfrag.records.sources.folder import files_of
+from rockfrag.records.sources.archive import files_of
+from rockfrag.tabular import printable
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 COLUMNS = (

@@ -6,8 +6,7 @@ from pathlib import Path
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.figures.space import WORDS, fractions_figure, ratios_figure, words_of
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Column, table_html

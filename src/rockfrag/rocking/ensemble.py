@@ -143,7 +143,9 @@ def overturns(
     >>> overturns([upper, stack], motion, scales=[2.0, 3.0, 5.0]).overturned.shape
     (2, 1, 3)
     """
-    options = Options(
+    cases = prepared(
+        *(bodies, motions, dt, scales),
+        forces=forces,
         restitution=restitution,
         friction=friction,
         vertical=vertical,
@@ -154,7 +156,6 @@ def overturns(
         step=step,
         threads=threads,
     )
-    cases = prepared(bodies, motions, dt, scales, forces=forces, **options)
     inputs.check_case_count(len(cases.systems) * cases.scales.size)
     return shaken(cases)
 
@@ -174,13 +175,7 @@ def prepared(
     factors = inputs.checked_scales(scales, shaking)
     g = options.get("g", GRAVITY)
     positive_number("g", g, "m/s²")
-    systems = systems_of(
-        body_list,
-        options.get("friction"),
-        options.get("restitution"),
-        options.get("theta0"),
-        options.get("omega0"),
-    )
+    systems = systems_of(body_list, dict(options))
     request = Request(
         forces=inputs.checked_switch("forces", forces),
         linear=inputs.checked_switch("linear", options.get("linear", False)),
@@ -208,12 +203,8 @@ def shaken(cases: Cases) -> Outcomes:
         outcomes.minimum_gravity_ratio[:] = 1.0 + least / cases.request.g
     # a body that is answered in space leaves the ground where it has to, and so do more than two bodies
     in_space = any(motion.y is not None for motion in cases.motions)
-    stuck = np.array(
-        [
-            not system.loose and system.count < 3 and (system.planar or not in_space)
-            for system in cases.systems
-        ]
-    )
+    held = [not system.loose and system.count < 3 for system in cases.systems]
+    stuck = np.array(held) & np.array([system.planar or not in_space for system in cases.systems])
     if stuck.any() and not cases.request.forces:
         _warn_of_weight(outcomes.minimum_gravity_ratio[stuck])
         _warn_of_lifting(cases, outcomes, stuck)
@@ -236,13 +227,8 @@ def overturned_cases(
         column[order] = np.arange(mine.size) - np.repeat(np.cumsum(counts) - counts, counts)
         scales = np.zeros((used.size, int(counts.max())))
         scales[row, column] = scale[mine]
-        some = replace(
-            cases,
-            systems=(cases.systems[number],),
-            motions=tuple(cases.motions[m] for m in used),
-            scales=scales,
-            threads=1,
-        )
+        systems, motions = (cases.systems[number],), tuple(cases.motions[m] for m in used)
+        some = replace(cases, systems=systems, motions=motions, scales=scales, threads=1)
         overturned[mine] = run_cases(some).overturned[0, row, column]
 
     with ThreadPoolExecutor(cases.threads) as pool:

@@ -10,19 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag import plausibility
 from rockfrag.engines.contract import Cases
 from rockfrag.engines.steps import MOST_SAMPLES, STEP, step_count
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_array, shown, whole_number
-from rockfrag.plausibility import (
-    LARGEST_IN_G,
-    LONGEST_STEP,
-    gravity_warning,
-    interval_warning,
-    peak_warning,
-)
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.system.blocks import SystemLike, as_system, is_system
 from rockfrag.system.system import uplift_ratios
 
@@ -200,16 +193,6 @@ def _listed_motions(motions: Any, name: str = "motions") -> list[MotionLike]:
     return each
 
 
-def check_one_per_body(name: str, given: object, count: int) -> None:
-    """Say in one sentence if what is given per body is not a list with an entry for each."""
-    if given is None:
-        return
-    if not isinstance(given, (list, tuple, np.ndarray)):
-        raise InputError(f"{name}: expected a list with one entry per body, got {shown(given)}.")
-    if len(given) != count:
-        raise InputError(f"{name}: expected {count} entries, one per body, got {len(given)}.")
-
-
 def checked_scales(scales: ArrayLike, motions: Sequence[GroundMotion]) -> NDArray[np.float64]:
     """Return factors on the accelerations as an array of shape (motions, scales)."""
     if isinstance(scales, np.ndarray):
@@ -285,13 +268,17 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     own = (Motion, GroundMotion)
     plain = any(not isinstance(motion, own) for motion in _listed_motions(given))
     # a stronger motion is hardly one in g, and needs no look at the bodies
-    doubtful = plain and 0 < peak <= LARGEST_IN_G
+    doubtful = plain and 0 < peak <= plausibility.LARGEST_IN_G
     least = g * min(min(uplift_ratios(system)) for system in cases.systems) if doubtful else None
     longest = max(motion.dt for motion in cases.motions)
-    if longest > LONGEST_STEP:
+    if longest > plausibility.LONGEST_STEP:
         # what is far too long is refused before it is doubted
         for system in cases.systems:
             step_count(system, longest, g, STEP)
-    for quality_flag in (peak_warning(peak, least), gravity_warning(g), interval_warning(longest)):
+    for quality_flag in (
+        plausibility.peak_warning(peak, least),
+        plausibility.gravity_warning(g),
+        plausibility.interval_warning(longest),
+    ):
         if quality_flag:
             warnings.warn(quality_flag, UnitWarning, stacklevel=stacklevel)

@@ -70,19 +70,11 @@ def impact_laws(
         law, given = restitution.law, restitution.value
     if given is None:
         return (BY_MOMENTUM,) * system.count
-    if isinstance(given, dict) or system.count == 1:
-        each = each_contact(name, given, system.count)
-    elif isinstance(given, (tuple, list, np.ndarray)) and len(given) == system.count:
-        each = tuple(given)
-    else:
-        wanted = (
-            "a pair (ground, interface)"
-            if system.count == 2
-            else f"{system.count} entries from below"
-        )
-        raise InputError(
-            f"{name}: a stack takes {wanted}, each of which may be None, got {shown(given)}."
-        )
+    wanted = (
+        "a pair (ground, interface)" if system.count == 2 else f"{system.count} entries from below"
+    )
+    wanted = f"a stack takes {wanted}, each of which may be None"
+    each = each_contact(name, given, system.count, wanted)
     places = ("block",) if system.count == 1 else ("ground", "interface")
     return tuple(
         _law_of(f"{name} of the {places[min(k, 1)]}", law, value, shape, system.count == 1)

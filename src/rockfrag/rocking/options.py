@@ -1,7 +1,7 @@
 """Options of every door as people write them, and the system that they make of a body."""
 
 import numbers
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import shown
-from rockfrag.rocking.inputs import check_one_per_body, checked_start
+from rockfrag.rocking.inputs import checked_start
 from rockfrag.rocking.measured_restitution import Restitution, impact_laws
 from rockfrag.system.blocks import SystemLike, as_system
 from rockfrag.system.contact import Friction, checked_friction
@@ -55,33 +55,27 @@ def system_of(
     return replace(system, contacts=tuple(contacts), start=start)
 
 
-def systems_of(
-    bodies: Sequence[SystemLike],
-    friction: FrictionInput | None = None,
-    restitution: Sequence[Restitution] | None = None,
-    theta0: Sequence[StartInput] | None = None,
-    omega0: Sequence[StartInput] | None = None,
-) -> tuple[System, ...]:
+def systems_of(bodies: Sequence[SystemLike], options: Mapping[str, Any]) -> tuple[System, ...]:
     """Return the systems that bodies and their options, as of :func:`rockfrag.rocking.overturns`, are."""
     count = len(bodies)
-    each = _friction_of_each(friction, count)
-    for name, given in (("restitution", restitution), ("theta0", theta0), ("omega0", omega0)):
-        check_one_per_body(name, given, count)
-    nothing: list[Any] = [None] * count
-    several = count > 1
-    return tuple(
-        system_of(*written, f"[{i}]" if several else "")
-        for i, written in enumerate(
-            zip(
-                bodies,
-                each,
-                nothing if restitution is None else restitution,
-                nothing if theta0 is None else theta0,
-                nothing if omega0 is None else omega0,
-                strict=True,
-            )
-        )
+    friction = _friction_of_each(options.get("friction"), count)
+    restitution, theta0, omega0 = (
+        _one_per_body(name, options.get(name), count)
+        for name in ("restitution", "theta0", "omega0")
     )
+    names = [f"[{i}]" if count > 1 else "" for i in range(count)]
+    return tuple(map(system_of, bodies, friction, restitution, theta0, omega0, names))
+
+
+def _one_per_body(name: str, given: Any, count: int) -> list[Any]:
+    """Return what is given per body, a list with an entry for each, or nothing for any."""
+    if given is None:
+        return [None] * count
+    if not isinstance(given, (list, tuple, np.ndarray)):
+        raise InputError(f"{name}: expected a list with one entry per body, got {shown(given)}.")
+    if len(given) != count:
+        raise InputError(f"{name}: expected {count} entries, one per body, got {len(given)}.")
+    return list(given)
 
 
 def _friction_of_each(friction: Any, count: int) -> list[Any]:
@@ -111,22 +105,15 @@ def frictions_of(count: int, friction: object, name: str = "friction") -> list[F
         if count == 2
         else ["ground", *[f"interface {k}" for k in range(1, count)]]
     )
-    given: Sequence[object]
     if isinstance(friction, np.ndarray) and friction.ndim == 0:
         friction = friction.item()
-    if isinstance(friction, (numbers.Real, Friction, dict)) or count == 1:
-        given = each_contact(name, friction, count)
-    elif isinstance(friction, (list, tuple, np.ndarray)) and len(friction) == count:
-        given = list(friction)
-    elif count == 2:
-        raise InputError(
-            f"{name}: a stack takes (ground, interface), each a coefficient or a pair (static, kinetic), got "
-            f"{shown(friction)}."
-        )
-    else:
-        raise InputError(
-            f"{name}: expected one entry for each of {count} contacts, got {shown(friction)}."
-        )
+    wanted = (
+        "a stack takes (ground, interface), each a coefficient or a pair (static, kinetic)"
+        if count == 2
+        else f"expected one entry for each of {count} contacts"
+    )
+    shared = isinstance(friction, (numbers.Real, Friction))
+    given = each_contact(name, friction, count, "" if shared else wanted)
     return [
         checked_friction(f"{name} of the {place}", value)
         for place, value in zip(places, given, strict=True)

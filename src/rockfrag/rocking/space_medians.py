@@ -11,11 +11,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.engines.spatial import run_in_space
-from rockfrag.engines.spatial.robustness import PERTURBATION
+from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.motions.rotation import rotate
 from rockfrag.plausibility import STONE
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.space_sweep import Sweep
 from rockfrag.system.blocks import Block

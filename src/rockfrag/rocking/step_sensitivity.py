@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.input_checks import whole_number
 from rockfrag.keywords import named_keywords
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import Options, overturned_cases, prepared
 from rockfrag.rocking.inputs import MotionLike
 from rockfrag.short_repr import short_repr

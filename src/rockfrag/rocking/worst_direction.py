@@ -8,8 +8,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.keywords import named_keywords
-from rockfrag.motions.rotation import rotate
-from rockfrag.motions.time_base import common_time
+from rockfrag.motions.rotation import common_time, rotate
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.thresholds import find_thresholds

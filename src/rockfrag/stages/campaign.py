@@ -24,7 +24,7 @@ from rockfrag.motions.processing import process
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.records.sources.url import fetch_url
+from rockfrag.records.sources.wheel import fetch_url
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import PULSE_MEASURES, CampaignStudy
 from rockfrag.system.blocks import Block, Column

@@ -16,7 +16,7 @@ from rockfrag.system.system import System, uplift_ratios
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
-    from rockfrag.fragility.ida_data import IdaData
+    from rockfrag.fragility.empirical import IdaData
 
     StateIdaCurves = dict[str, dict[tuple[str, str], IdaData]]
 

@@ -20,7 +20,7 @@ from rockfrag.system.system import System
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
-    from rockfrag.fragility.ida_data import IdaData
+    from rockfrag.fragility.empirical import IdaData
     from rockfrag.stages.floor_curves import StateIdaCurves
 
 
@@ -134,9 +134,8 @@ def _states(study: Study) -> dict[str, tuple[LimitState, ...]]:
 
 def _rows(job: Job[Study], measures: pd.DataFrame) -> _IdaCurves:
     """IDA curves as tables, every outcome a row."""
-    from rockfrag.fragility.empirical import find_resurrections
+    from rockfrag.fragility.empirical import TableIda, find_resurrections
     from rockfrag.fragility.ida_curves import with_measures
-    from rockfrag.fragility.ida_data import TableIda
 
     ida = pd.concat(
         [pd.read_parquet(job.file(path)) for path in job.study.ida_files], ignore_index=True

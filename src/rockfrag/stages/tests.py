@@ -4,8 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import pandas as pd
 
-from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.steps import GeometricSteps
+from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.swept import Swept
 from rockfrag.stages.ida import ida_curves_of
 from rockfrag.stages.job import Job, Results

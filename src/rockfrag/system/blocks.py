@@ -11,25 +11,17 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, TypeGuard
+from typing import Any, NamedTuple, TypeGuard
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number, shown
 from rockfrag.keywords import named_fields
 from rockfrag.plausibility import inertia_warning, light_giant_warning
 from rockfrag.system import geometry
+from rockfrag.system import system as systems
 from rockfrag.system.body import Interval, RigidBody, Tensor, checked_tensor
 from rockfrag.system.contact import Contact
-from rockfrag.system.system import (
-    MOST_BODIES,
-    System,
-    box,
-    common_centre,
-    cylinder,
-    round_inertia,
-    standing_centres,
-    stands,
-)
+from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 
@@ -154,18 +146,9 @@ class Block:
             self._check_number("inertia", "kg m²", positive_number)
 
     @classmethod
-    def from_edges(
-        cls,
-        left: float,
-        right: float,
-        *,
-        cg_height: float,
-        height: float,
-        mass: float,
-        inertia: float,
-    ) -> "Block":
+    def from_edges(cls, left: float, right: float, **more: Any) -> "Block":
         """Make a block of the distances of its edges to the left and the right of the centre of gravity [m]."""
-        return cls(left + right, height, mass, inertia, cg_height, (left - right) / 2)
+        return cls(width=left + right, cg_offset=(left - right) / 2, **more)
 
     @property
     def in_space(self) -> bool:
@@ -190,10 +173,12 @@ class Block:
         """The block as a body of a system."""
         centre = (self.cg_offset, 0.0, self.h)
         if self.round:
-            return cylinder(self.width, self.height, self.mass, self.inertia, centre, "block")
+            return systems.cylinder(
+                self.width, self.height, self.mass, self.inertia, centre, "block"
+            )
         if self.depth is not None:
             sides = self.width, self.depth, self.height
-            return box(*sides, self.mass, self.inertia, centre, "block")
+            return systems.box(*sides, self.mass, self.inertia, centre, "block")
         ends = Interval(-self.width / 2, self.width / 2)
         return RigidBody(self.mass, self.shape.inertia, centre, ends, self.height, ends, "block")
 
@@ -211,7 +196,7 @@ class Block:
         size = self.width, self.height, self.mass
         inertia = self.inertia[1][1] if isinstance(self.inertia, tuple) else self.inertia
         if inertia is None:
-            inertia = round_inertia(*size) if self.round else math.nan
+            inertia = systems.round_inertia(*size) if self.round else math.nan
         cg_height = math.nan if self.cg_height is None else self.cg_height
         return geometry.shape_of(*size, inertia, cg_height, self.cg_offset, self.lean)
 
@@ -277,8 +262,7 @@ class Stack:
 
     The two touch where the statue's base and the pedestal's top overlap.  A statue that reaches beyond its
     pedestal rocks on the pedestal's upper edge, a point of both bodies as long as neither slides; so the ends
-    of the overlap are the pivots, and all equations are those of a statue whose base is as wide as the overlap
-    (``contact_upper``).
+    of the overlap are the pivots, and all equations are those of a statue whose base is as wide as the overlap.
 
     Parameters
     ----------
@@ -345,22 +329,6 @@ class Stack:
         lower, upper = self.lower, self.upper
         return geometry.pile_of(lower.shape, upper.shape, lower.height, lower.lean, self.offset)
 
-    @cached_property
-    def contact_upper(self) -> Block:
-        """The statue as it stands on the contact: itself, or one whose base is no wider than the overlap."""
-        pile = self.pile
-        if pile.upper is pile.above:
-            return self.upper
-        aside = Vector((pile.low + pile.high) / 2 - self.offset, 0.0)
-        centre = self.upper.centre.minus(aside).turned(-self.upper.lean)
-        made = Block(
-            *(pile.high - pile.low, self.upper.height, self.upper.mass),
-            *(self.upper.centroidal_inertia, centre.y, centre.x, self.upper.lean),
-        )
-        # to the last bit what the kernels know, without the turn there and back
-        vars(made)["shape"] = pile.upper
-        return made
-
     def common_arm(self, ground_pivot: int) -> Vector:
         """Vector from the pedestal's pivot to the common centre of gravity [m]."""
         return Vector(*geometry.common_arm(self.pile, ground_pivot))
@@ -404,8 +372,10 @@ class Column:
         for block in self.blocks:
             if not isinstance(block, Block):
                 raise InputError(f"Column: expected blocks from below, got {shown(block)}.")
-        if not 1 <= len(self.blocks) <= MOST_BODIES:
-            raise InputError(f"Column: expected 1 to {MOST_BODIES} blocks, got {len(self.blocks)}.")
+        if not 1 <= len(self.blocks) <= systems.MOST_BODIES:
+            raise InputError(
+                f"Column: expected 1 to {systems.MOST_BODIES} blocks, got {len(self.blocks)}."
+            )
         offsets = (0.0,) * (len(self.blocks) - 1) if self.offsets is None else tuple(self.offsets)
         if len(offsets) != len(self.blocks) - 1:
             raise InputError(
@@ -415,7 +385,7 @@ class Column:
         for offset in offsets:
             real_number("Column: offsets", offset, "metres")
         object.__setattr__(self, "offsets", offsets)
-        if not stands(self.system()):
+        if not systems.stands(self.system()):
             raise InputError(
                 "Column: the blocks above one contact have their common centre of gravity beside it, so the "
                 "column cannot stand."
@@ -428,9 +398,9 @@ class Column:
 
     def rigidly_joined(self) -> Block:
         """Return all blocks as one rigid body on the lowest base."""
-        x, y = common_centre(self.system())
+        x, y = systems.common_centre(self.system())
         inertia = 0.0
-        for block, at in zip(self.blocks, standing_centres(self.system()), strict=True):
+        for block, at in zip(self.blocks, systems.standing_centres(self.system()), strict=True):
             apart = (at[0] - x) ** 2 + (at[1] - y) ** 2
             inertia += block.centroidal_inertia + block.mass * apart
         height = sum(block.height for block in self.blocks)

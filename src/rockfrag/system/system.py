@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from rockfrag.elementary import sin_cos
 from rockfrag.errors import InputError
 from rockfrag.input_checks import shown
@@ -192,14 +194,18 @@ def uplift_ratios(system: System) -> tuple[float, ...]:
     return tuple(min(abs(x) / y if y > 0 else math.inf for x, y in pair) for pair in arms)
 
 
-def each_contact(name: str, given: object, count: int) -> tuple[object, ...]:
+def each_contact(name: str, given: Any, count: int, wanted: str = "") -> tuple[Any, ...]:
     """Return what is given for each contact of a system, from the ground up.
 
-    It is one value for all contacts; or a mapping with ``ground`` and ``interface``, the latter one value for all
-    contacts above the ground or a list with one for each.
+    It is a mapping with ``ground`` and ``interface``, the latter one value for all contacts above the ground or a
+    list with one for each; or one value for all, or, of several where it is said what is ``wanted``, one for each.
     """
     if not isinstance(given, dict):
-        return (given,) * count
+        if count == 1 or not wanted:
+            return (given,) * count
+        if isinstance(given, (list, tuple, np.ndarray)) and len(given) == count:
+            return tuple(given)
+        raise InputError(f"{name}: {wanted}, got {shown(given)}.")
     unknown = [key for key in given if key not in ("ground", "interface")]
     if unknown or (count == 1 and "interface" in given):
         wrong = shown(unknown[0] if unknown else "interface")

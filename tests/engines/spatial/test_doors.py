@@ -7,13 +7,13 @@ import pytest
 from rockfrag import find_thresholds, overturns, simulate
 from rockfrag.cli import main
 from rockfrag.engines.contract import Case
-from rockfrag.engines.spatial import robustness, run_in_space
+from rockfrag.engines.spatial import body as bodies
+from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import kernel_body
 from rockfrag.engines.spatial.engine import ENGINE
 from rockfrag.engines.spatial.outcome import run_case
 from rockfrag.errors import InputError
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import AMPLITUDES_G
 from rockfrag.report.wording import number
 from rockfrag.rocking.parquet import stream_overturns
@@ -93,7 +93,7 @@ def test_a_response_draws_the_path_of_its_axis_and_its_plan(peak_g, said):
 
 
 def test_a_spread_moves_vertices_and_turns_the_body_by_no_more_than_it_says():
-    other, turned = robustness.perturbed(BOX, 0.01, np.random.default_rng([0, 0, 0]))
+    other, turned = bodies.perturbed(BOX, 0.01, np.random.default_rng([0, 0, 0]))
     moved = np.array(other.bodies[0].base.vertices) - np.array(BOX.bodies[0].base.vertices)
     assert 0 < np.abs(moved).max() <= 0.0035
     assert 0 < abs(turned) <= 0.01

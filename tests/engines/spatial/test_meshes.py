@@ -8,8 +8,7 @@ from rockfrag.campaign.outcomes import simulate_tests
 from rockfrag.campaign.trials import sample_trials
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.errors import InputError
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.system import Block, Contact, System
 from rockfrag.system.mesh import read_shape
 

@@ -1,7 +1,7 @@
 """Thesis eq. 2.1 to 2.20: the lone block, here block 2 on a block 1 that stands still."""
 
+import mpmath
 import numpy as np
-import sympy as sp
 from numpy import abs as mag
 from numpy import arctanh, cos, cosh, sign, sin, sqrt
 
@@ -82,15 +82,16 @@ def rate_of_departure(s: System) -> Array:
     return sqrt(-slope / inertia)
 
 
-def general_solution(s: System) -> tuple[Array, Array]:
-    """Value and second derivative of 2.18 with random constants, by sympy."""
-    t, c1, c2, rate_, critical = sp.symbols("t C1 C2 p theta_c", real=True)
-    theta = c1 * sp.cosh(rate_ * t) + c2 * sp.sinh(rate_ * t) + critical
-    functions = [
-        sp.lambdify((t, c1, c2, rate_, critical), f) for f in (theta, sp.diff(theta, t, 2))
-    ]
-    value, second = (f(s.th1, s.a, s.q1, p(s), s.tc2) for f in functions)
-    return value, second
+def general_solution(s: System, order: int) -> Array:
+    """Derivative of 2.18 with random constants."""
+
+    def derivative(t: float, c1: float, c2: float, rate: float, critical: float) -> float:
+        def theta(t: float) -> float:
+            return c1 * mpmath.cosh(rate * t) + c2 * mpmath.sinh(rate * t) + critical
+
+        return float(mpmath.diff(theta, t, order))
+
+    return np.vectorize(derivative)(s.th1, s.a, s.q1, p(s), s.tc2)
 
 
 def standing_pivot(theta: Array, half_width: Array) -> Array:
@@ -211,8 +212,8 @@ EQUATIONS = [
     ),
     Equation(
         "2.18",
-        lambda s: general_solution(s)[1],
-        lambda s: p(s) ** 2 * (general_solution(s)[0] - s.tc2),  # what 2.15 wants of θ''
+        lambda s: general_solution(s, 2),
+        lambda s: p(s) ** 2 * (general_solution(s, 0) - s.tc2),  # what 2.15 wants of θ''
     ),
     Equation(
         "2.19",

@@ -1,14 +1,16 @@
-"""Random two-block systems in random states, with the thesis's symbols, and the true quantities."""
+"""Random two-block systems in random states, with the thesis's symbols, and the true quantities.
+
+The truth is the chain of bodies in ``tests/oracle/rocking_model.py``, which follows from the positions of the
+centres alone and knows no formula of the thesis.
+"""
 
 import numpy as np
 
-from .lagrange import derived
+from rockfrag.system import Block, Stack
+
+from ...oracle.rocking_model import LinearModel, Model, pivots
 
 Array = np.ndarray
-
-
-BODY = ("b1", "h1", "m1", "ic1", "b2", "h2", "m2", "ic2", "g")
-STATE = ("th1", "th2", "w1", "w2", "q1", "q2", "xg", "vg", "a")
 
 
 class System:
@@ -44,10 +46,46 @@ class System:
         """Return the state of pattern 4, block 1 at rest."""
         return self.with_(th1=0.0, w1=0.0, q1=0.0)
 
+    def models(self, kind: type[Model] = Model) -> list[Model]:
+        """Return the chain of each system."""
+        return [kind(stack, g) for stack, g in zip(self.stacks(), self.g, strict=True)]
+
+    def stacks(self) -> list[Stack]:
+        """Return the systems as the package takes them."""
+        sizes = np.array(
+            [
+                2 * self.b1,
+                2 * self.h1,
+                self.m1,
+                self.ic1,
+                2 * self.b2,
+                2 * self.h2,
+                self.m2,
+                self.ic2,
+            ]
+        )
+        return [
+            Stack(Block(*lower), Block(*upper))
+            for lower, upper in sizes.T.reshape(-1, 2, 4).tolist()
+        ]
+
     def get(self, name: str, s1: float, s2: float) -> Array:
-        """Evaluate one of the derived quantities for these pivots."""
-        body, state = ([self.given[key] for key in keys] for keys in (BODY, STATE))
-        return derived()[name](*body, float(s1), float(s2), *state)
+        """Evaluate one of the true quantities for these pivots."""
+        kind = LinearModel if name == "linear_motion" else Model
+        state = np.array(
+            [
+                [self.th1, self.th2],
+                [self.w1, self.w2],
+                [self.q1, self.q2],
+                [self.xg, self.a],
+                [self.vg, self.g],
+            ]
+        )
+        found = [
+            true_quantity(name, model, (s1, s2), values)
+            for model, values in zip(self.models(kind), np.moveaxis(state, -1, 0), strict=True)
+        ]
+        return np.array(found).T
 
     def moments(self, s1: float, s2: float) -> Array:
         """Left-hand sides of Lagrange's equations, shape (2, n)."""
@@ -85,54 +123,33 @@ def error(found: Array, true: Array) -> Array:
     return np.abs(found - true) / np.maximum(np.maximum(np.abs(true), typical), 1e-300)
 
 
-# ------------------------------------------------------------------------ impacts
+def true_quantity(name: str, model: Model, at: tuple[float, float], state: Array) -> Array:
+    """One quantity of one system whose pivots are ``at``."""
+    theta, omega, turning, (xg, a), (vg, g) = state
+    if name.endswith("motion"):
+        mass, force = model.terms(at, theta, omega, (a, g))
+        return mass @ turning + force
+    arms, field = model.arms(at) * np.exp(-1j * theta), model.fields(at, theta)
+    points = xg + model.middle[0] + at[0] * model.half[0] + np.array([0, arms[1, 0]])
+    centres, velocities = points + np.diag(arms), vg + field @ omega
+    vectors = {
+        "pivot": points, "centre": centres, "velocity": velocities,
+        "acceleration": a + field @ turning - arms @ omega**2,
+    }  # fmt: skip
+    if name[:-1] in vectors:
+        found = vectors[name[:-1]][int(name[-1]) - 1]
+        return np.array([found.real, found.imag])
+    if name == "potential":
+        return g * model.mass @ centres.imag
+    return (model.mass @ abs(velocities) ** 2 + model.inertia @ omega**2) / 2
 
 
-def angular_momentum(s: System, s1: float, s2: float, about: Array, whole: bool) -> Array:
-    """Clockwise angular momentum about a point, of the whole system or of block 2 alone."""
-    parts = []
-    for i, inertia, mass, omega in ((1, s.ic1, s.m1, s.w1), (2, s.ic2, s.m2, s.w2)):
-        if i == 1 and not whole:
-            continue
-        arm = s.get(f"centre{i}", s1, s2) - about
-        v = s.get(f"velocity{i}", s1, s2)
-        parts.append(inertia * omega + mass * (arm[1] * v[0] - arm[0] * v[1]))
-    return sum(parts)
-
-
-def impact_map(s: System, old: tuple[int, int], new: tuple[int, int]) -> tuple[Array, Array]:
-    """Velocities after an impact by conservation of angular momentum about the new pivots.
-
-    The whole system keeps it about block 1's new pivot and block 2 about its own; of what is stuck
-    after the impact only the part that does not pass impulses to unknown points is used.  ``old`` and
-    ``new`` are contact states; the ground does not move during the impact.
-    """
-    s = s.with_(vg=0.0, xg=0.0)
-    o1, o2 = old[0] or 1, old[1] or 1
-    n1, n2 = new[0] or 1, new[1] or 1
-    about1, about2 = s.get("pivot1", n1, n2), s.get("pivot2", n1, n2)
-
-    def momenta(state: System, s1: int, s2: int) -> Array:
-        return np.array(
-            [
-                angular_momentum(state, s1, s2, about1, whole=True),
-                angular_momentum(state, s1, s2, about2, whole=False),
-            ]
-        )
-
-    before = momenta(s, o1, o2)
-    first = momenta(s.with_(w1=1.0, w2=0.0), n1, n2)
-    two = momenta(s.with_(w1=0.0, w2=1.0), n1, n2)
-    nothing = np.zeros_like(s.b1)
-    if new == (0, 0):
-        return nothing, nothing
-    if new[0] == 0:
-        return nothing, before[1] / two[1]
-    if new[1] == 0:
-        both = before[0] / (first[0] + two[0])
-        return both, both
-    det = first[0] * two[1] - first[1] * two[0]
-    return (
-        (before[0] * two[1] - before[1] * two[0]) / det,
-        (first[0] * before[1] - first[1] * before[0]) / det,
-    )
+def impact_map(s: System, old: tuple[int, int], new: tuple[int, int]) -> Array:
+    """Velocities after an impact that conserves angular momentum about the new pivots, shape (2, n)."""
+    theta, omega = np.array([s.th1, s.th2]).T, np.array([s.w1, s.w2]).T
+    return np.array(
+        [
+            model.projected(pivots(new), new, old, *state)
+            for model, *state in zip(s.models(), theta, omega, strict=True)
+        ]
+    ).T

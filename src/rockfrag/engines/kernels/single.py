@@ -9,16 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.engines.kernels import contact_states, record, roots
+from rockfrag.engines.kernels import contact_states, equations, record, roots
 from rockfrag.engines.kernels.chatter import HISTORY, RESTORING, Ahead, dies_out, fill_restoring
 from rockfrag.engines.kernels.demand import add_demand, ask_impulses, no_demand
-from rockfrag.engines.kernels.equations import (
-    STATE,
-    accelerations,
-    ground_hold,
-    interface_hold,
-    kinetic_energy,
-)
 from rockfrag.engines.kernels.impact import impact, stuck
 from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, kernel
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series
@@ -56,7 +49,7 @@ class Scratch(NamedTuple):
 def scratch() -> Scratch:
     """Memory for one integration."""
     return Scratch(
-        *np.zeros(3, STATE),
+        *np.zeros(3, equations.STATE),
         np.zeros(1, SERIES)[0],
         np.zeros(1, RESTORING)[0],
         np.zeros(8, record.BALANCE),
@@ -148,16 +141,9 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
             _move(state, series, at, step.length)
             lifts = record.note_demand(body, step, series, at, work, summary)
             if lifts != roots.NEVER and math.isnan(summary.lost_contact):
-                summary.lost_contact = (k + (sub + tau + lifts * remaining) / substeps) * shaking.dt
-                record.keep_contact_event(
-                    body,
-                    summary.lost_contact,
-                    record.LIFTING,
-                    state,
-                    state,
-                    contact_events,
-                    summary,
-                )
+                clock = (k + (sub + tau + lifts * remaining) / substeps) * shaking.dt
+                summary.lost_contact, kind = clock, record.LIFTING
+                record.keep_contact_event(body, clock, kind, state, state, contact_events, summary)
             if moves:
                 work.beyond[0] = record.track(
                     work.balances, state, series, at, step.length, summary
@@ -245,12 +231,12 @@ def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, for
         n2 = 0 if slow2 else n2
         w1, w2 = stuck(body, state, n1, n2)
         kind = record.CHATTER
-    before = kinetic_energy(body, state)
+    before = equations.kinetic_energy(body, state)
     state.c1, state.c2, state.omega1, state.omega2 = n1, n2, w1, w2
     level = state.theta1 == 0.0 and state.theta2 == 0.0
     speed = max(abs(w1), abs(w2))
     if kind == record.CLOSING and level and (n1 != 0 or n2 != 0) and speed < restoring.fastest:
-        fraction = math.sqrt(kinetic_energy(body, state) / before)
+        fraction = math.sqrt(equations.kinetic_energy(body, state) / before)
         # a pedestal that is thrown about lengthens the flights of the statue
         safety = 1.03 if body.fixed else 1.5
         if dies_out(speed, fraction, safety, restoring, chatter_tolerance.drop, ahead):
@@ -274,11 +260,11 @@ def _hold_at(body, contact, step, series, tau, trial):
     trial.omega2 = roots.slope(two, tau) / step.length
     trial.ground = step.ground + step.rise * tau
     trial.gravity = step.gravity + step.lift * tau
-    alpha1, alpha2 = accelerations(body, trial.c1, trial.c2, trial)
+    alpha1, alpha2 = equations.accelerations(body, trial.c1, trial.c2, trial)
     if contact == contact_states.GROUND:
-        least, _ = ground_hold(body, trial.c2, trial, alpha2)
+        least, _ = equations.ground_hold(body, trial.c2, trial, alpha2)
     else:
-        least, _ = interface_hold(body, trial.c1, trial, alpha1)
+        least, _ = equations.interface_hold(body, trial.c1, trial, alpha1)
     return least
 
 

@@ -9,14 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rockfrag.elementary import sin_cos
-from rockfrag.engines.kernels.equations import (
-    coupling,
-    first_moment1,
-    first_moment2,
-    inertia1,
-    inertia2,
-    pivot,
-)
+from rockfrag.engines.kernels import equations
 from rockfrag.engines.kernels.jit import fma, inlined_kernel, kernel
 
 ORDER = 7  # order of the series: with p h ≤ 0.1 the remainder is below 1e-13 rad
@@ -122,11 +115,11 @@ def _weight(body, moment, step, rotation, k):
 def _fill_two(body, c1, c2, step, series):
     """Series of both rotations of patterns 1 and 2; the first two coefficients of both angles are there."""
     hh = step.length * step.length
-    s1, s2 = pivot(c1), pivot(c2)
-    m11 = inertia1(body, s1, s2)
-    m22 = inertia2(body, s2)
-    e, f = coupling(body, s1, s2)
-    moment1, moment2 = first_moment1(body, s1, s2), first_moment2(body, s2)
+    s1, s2 = equations.pivot(c1), equations.pivot(c2)
+    m11 = equations.inertia1(body, s1, s2)
+    m22 = equations.inertia2(body, s2)
+    e, f = equations.coupling(body, s1, s2)
+    moment1, moment2 = equations.first_moment1(body, s1, s2), equations.first_moment2(body, s2)
     linear = body.linear > 0
     first, two, between = series.one, series.two, series.between
     for k in range(ORDER - 1):
@@ -182,14 +175,14 @@ def fill_series(body, state, step, series):
         return
     first.angle[1] = state.omega1 * step.length
     two.angle[1] = state.omega2 * step.length
-    s1, s2 = pivot(c1), pivot(c2)
+    s1, s2 = equations.pivot(c1), equations.pivot(c2)
     if c1 == 0:
-        _fill_one(body, first_moment2(body, s2), inertia2(body, s2), step, two)
+        _fill_one(body, equations.first_moment2(body, s2), equations.inertia2(body, s2), step, two)
     elif c2 == 0:
-        v1x, v1y = first_moment1(body, s1, s2)
-        v2x, v2y = first_moment2(body, s2)
-        e, _ = coupling(body, s1, s2)
-        whole = inertia1(body, s1, s2) + 2.0 * e + inertia2(body, s2)
+        v1x, v1y = equations.first_moment1(body, s1, s2)
+        v2x, v2y = equations.first_moment2(body, s2)
+        e, _ = equations.coupling(body, s1, s2)
+        whole = equations.inertia1(body, s1, s2) + 2.0 * e + equations.inertia2(body, s2)
         _fill_one(body, (v1x + v2x, v1y + v2y), whole, step, first)
         for k in range(ORDER + 1):
             two.angle[k] = first.angle[k]

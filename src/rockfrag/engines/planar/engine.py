@@ -10,7 +10,7 @@ from rockfrag.engines import contract
 from rockfrag.engines.contract import Wish
 from rockfrag.engines.response import ROCKING_MODES, Response, with_slips
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 
 
@@ -38,20 +38,17 @@ class PlanarContact:
 
     def run(self, cases: contract.Cases) -> Outcomes:
         """Return the outcomes of cases."""
-        from rockfrag.engines.planar.ensemble import contact_outcomes
+        from rockfrag.engines.planar.cases import contact_outcomes
 
         outcomes = empty_outcomes(cases.names, cases.scales, (self.name,))
         richest = max(cases.motions, key=lambda motion: len(motion.components))
-        stuck = [without_friction(system) for system in cases.systems]
-        rocking = [
-            i
-            for i, system in enumerate(stuck)
-            if self._pure(system, richest, cases.request) is not None
-        ]
+        stuck = [system.held() for system in cases.systems]
+        pure = [self._pure(system, richest, cases.request) for system in stuck]
+        rocking = [i for i, engine in enumerate(pure) if engine is not None]
         if rocking:
-            pure = contract.run_cases(replace(cases, systems=tuple(stuck[i] for i in rocking)))
-            outcomes = replace(outcomes, engines=(self.name, *pure.engines))
-            merge_outcomes(outcomes, rocking, pure)
+            held = contract.run_cases(replace(cases, systems=tuple(stuck[i] for i in rocking)))
+            outcomes = replace(outcomes, engines=(self.name, *held.engines))
+            merge_outcomes(outcomes, rocking, held)
         found = contact_outcomes(cases)
         for i, count in enumerate(outcomes.counts):
             self._write(outcomes, i, count, found[i], everything=i not in rocking)
@@ -95,23 +92,16 @@ class PlanarContact:
 
     def history(self, case: contract.Case) -> Response:
         """Return the response of a case."""
-        from rockfrag.engines.planar.ensemble import COARSE_CLOSING
-        from rockfrag.engines.planar.history import contact_run, response_of
+        from rockfrag.engines.planar.cases import COARSE_CLOSING, contact_run, response_of
 
         motion, g = scaled(case.motion, case.scale), case.request.g
         # as outcomes have it, so that history and outcome are of one response
         found = contact_run(case.system, motion, g, closing=COARSE_CLOSING)
-        pure = replace(case, system=without_friction(case.system))
+        pure = replace(case, system=case.system.held())
         engine = self._pure(pure.system, motion, pure.request)
         if found.loose or engine is None:
             return response_of(found)
         return without_slip(replace(engine.history(pure), system=case.system))
-
-
-def without_friction(system: System) -> System:
-    """Return the system whose contacts never slide."""
-    contacts = tuple(replace(contact, friction=None) for contact in system.contacts)
-    return replace(system, contacts=contacts)
 
 
 def scaled(motion: GroundMotion, factor: float) -> GroundMotion:

@@ -11,12 +11,11 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
-from rockfrag.engines.spatial.body import kernel_body, later_peaks
+from rockfrag.engines.spatial.body import kernel_body, later_peaks, perturbed
 from rockfrag.engines.spatial.outcome import AFTER, SpatialOutcome, history_table, run_case
-from rockfrag.engines.spatial.robustness import perturbed
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system.blocks import Block, as_system
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY

@@ -79,23 +79,9 @@ def run_case(
     out = np.zeros(kernel.OUTCOME)
     case: Any = np.zeros(1, CASE)[0]
     later = later_peaks(acceleration) if peaks is None else peaks
-    extra = math.ceil(AFTER / dt)
+    steps = dt, g, math.ceil(AFTER / dt), tolerance, CUT_OFF
     with compiling_alone(kernel.integrate):
-        kernel.integrate(
-            body,
-            acceleration,
-            later,
-            scale,
-            dt,
-            g,
-            extra,
-            tolerance,
-            CUT_OFF,
-            y,
-            history,
-            out,
-            case,
-        )
+        kernel.integrate(body, acceleration, later, scale, *steps, y, history, out, case)
     kept = ~np.isnan(history[:, 0])
     return _outcome(body, out, case["counters"], y), history[kept]
 

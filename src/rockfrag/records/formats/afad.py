@@ -10,10 +10,8 @@ import re
 from obspy import UTCDateTime
 
 from rockfrag.records.formats.esm import time_of
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import positive_step
-from rockfrag.records.parsing.header_keys import header_keys, number_of
+from rockfrag.records.parsing.format import Channel, Format
+from rockfrag.records.parsing.fortran_sections import header_keys, number_of, positive_step
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 

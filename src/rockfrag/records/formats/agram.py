@@ -10,8 +10,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import Section, accelerations, positive_step
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile

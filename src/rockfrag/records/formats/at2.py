@@ -15,13 +15,10 @@ from obspy import Stream
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import QUANTITIES, positive_step
-from rockfrag.records.parsing.header_keys import first_match
+from rockfrag.records.parsing.format import Channel, Format, one_trace, stated_unit
+from rockfrag.records.parsing.fortran_sections import QUANTITIES, first_match, positive_step
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile, last_row
-from rockfrag.records.parsing.written_trace import one_trace, stated_unit
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
 _COUNT = re.compile(rf"\bNPTS\s*[=:]\s*(?P<npts>{_NUMBER})", re.IGNORECASE)

@@ -9,8 +9,7 @@ real number, and must agree with the duration.
 
 import re
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import CHANNEL_END, positive_step
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile

@@ -13,8 +13,7 @@ from typing import Any
 from obspy import UTCDateTime
 
 from rockfrag.records.parsing import fortran_sections
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_at

@@ -12,12 +12,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from rockfrag.records.parsing import fortran_sections
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.time_value_pairs import is_pairs_header, read_pairs
-from rockfrag.records.parsing.timestamps import american_time
+from rockfrag.records.parsing.timestamps import american_time, is_pairs_header, read_pairs
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected\s+acc?elero(?:gram|graph)\b", re.IGNORECASE)
 _SPECTRA = re.compile(r"^\s*(?:response|fourier)\b.*\bspectr", re.IGNORECASE)

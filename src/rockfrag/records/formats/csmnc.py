@@ -7,8 +7,7 @@ first sample, and is kept as a fact but not taken for the start.
 
 import re
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile

@@ -8,8 +8,7 @@ import re
 
 from obspy import UTCDateTime
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile

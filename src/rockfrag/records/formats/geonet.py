@@ -9,10 +9,8 @@ import re
 
 from obspy import UTCDateTime
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import integers, positive_step, reals
-from rockfrag.records.parsing.header_keys import first_match
+from rockfrag.records.parsing.format import Channel, Format
+from rockfrag.records.parsing.fortran_sections import first_match, integers, positive_step, reals
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import clock_time
 

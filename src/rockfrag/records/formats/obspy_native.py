@@ -21,9 +21,8 @@ from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
 from rockfrag.errors import InputError
 from rockfrag.records.foreign_files import foreign_kind
-from rockfrag.records.parsing.channel import Channel, cut_short_step
-from rockfrag.records.parsing.format import head_lines
-from rockfrag.records.parsing.number_table import first_odd_row
+from rockfrag.records.parsing.format import Channel, cut_short_step, head_lines
+from rockfrag.records.parsing.number_fields import first_odd_row
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import (
     HEAD_BYTES,

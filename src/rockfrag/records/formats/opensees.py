@@ -16,13 +16,11 @@ from obspy import Stream
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format, one_trace, stated_unit
 from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.number_fields import NumberError, parse_separated
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
 from rockfrag.records.parsing.text_file import TextFile, read_text
-from rockfrag.records.parsing.written_trace import one_trace, stated_unit
 
 _SERIES = re.compile(r"^[^#\n]*?(?:\btimeSeries\s+[\"']?Path\b|[{\"]\s*Series\s+-)", re.I | re.M)
 _SERIES_BYTES = re.compile(_SERIES.pattern.encode(), re.I | re.M)

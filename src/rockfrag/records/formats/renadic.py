@@ -8,12 +8,10 @@ import re
 from dataclasses import replace
 from pathlib import PurePath
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import CHANNEL_END
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.time_value_pairs import read_pairs
-from rockfrag.records.parsing.timestamps import american_time
+from rockfrag.records.parsing.timestamps import american_time, read_pairs
 
 _FIRST = re.compile(r"^\s*UNCORRECTED\s+ACCELEROGRAM\s+DATA\b", re.IGNORECASE)
 _HEAD = re.compile(rb"^[ \t]*UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA\b", re.I | re.M)

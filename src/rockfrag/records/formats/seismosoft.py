@@ -6,12 +6,10 @@ import re
 from obspy import Stream
 
 from rockfrag.files import write_text
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format, one_trace, stated_unit
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import step_of_times
-from rockfrag.records.parsing.written_trace import one_trace, stated_unit
 
 _COLUMNS = re.compile(
     r"^\s*time\s*[\[(]\s*(?:s|sec|seconds)\s*[\])][\s,;]+"

@@ -13,12 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import integers, positive_step, reals
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.time_value_pairs import pairs_of
-from rockfrag.records.parsing.timestamps import time_at
+from rockfrag.records.parsing.timestamps import pairs_of, time_at
 
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
 _FIRST_DATA = _TEXT_LINES + _INTEGER_LINES + _REAL_LINES

@@ -12,10 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import field_width, in_rows, positive_step
-from rockfrag.records.parsing.header_keys import header_keys
+from rockfrag.records.parsing.format import Channel, Format
+from rockfrag.records.parsing.fortran_sections import (
+    field_width,
+    header_keys,
+    in_rows,
+    positive_step,
+)
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 

@@ -6,11 +6,10 @@ Each text line has its length in columns 73 and 74, which tells the format from 
 import re
 from dataclasses import replace
 
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import CHANNEL_END
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.time_value_pairs import read_pairs
+from rockfrag.records.parsing.timestamps import read_pairs
 
 _FIRST = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME\s+I\b", re.IGNORECASE)
 _HEAD = re.compile(

@@ -13,10 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.records.formats.usc import place_of
-from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.format import Format
-from rockfrag.records.parsing.fortran_sections import Section, accelerations, positive_step
-from rockfrag.records.parsing.header_keys import first_match
+from rockfrag.records.parsing.format import Channel, Format
+from rockfrag.records.parsing.fortran_sections import (
+    Section,
+    accelerations,
+    first_match,
+    positive_step,
+)
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rockfrag.records.parsing.number_table import NumberTable
+from rockfrag.records.parsing.number_fields import NumberTable
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
 
 _TIME = re.compile(

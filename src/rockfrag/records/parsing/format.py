@@ -1,16 +1,107 @@
-"""A record format as ObsPy wants it: a test for it and a reader."""
+"""A record format as ObsPy wants it: a test for it, a reader of its channels, and what every writer checks."""
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
-from obspy import Stream, UTCDateTime
+import numpy as np
+from numpy.typing import NDArray
+from obspy import Stream, Trace, UTCDateTime
+from obspy.core import AttribDict
 
 from rockfrag.errors import InputError
+from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing import text_file
-from rockfrag.records.parsing.channel import Channel, cut_short_step
+from rockfrag.records.parsing.quantities import TO_SI
+from rockfrag.tabular import printable
+
+_FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
+
+
+def cut_short_step(promised: int, found: int) -> dict[str, Any]:
+    """Return the step of the provenance of a file with fewer samples than its header promises."""
+    return {
+        "step": "read a file that is cut short",
+        "samples_promised": promised,
+        "samples_read": found,
+    }
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One acceleration history as a file stores it."""
+
+    npts: int  # number of samples
+    dt: float  # sampling interval [s]
+    # gives the samples in the unit of the file, shape (npts,)
+    samples: Callable[[], NDArray[np.float64]]
+    unit: str = ""  # canonical unit (``g``, ``cm/s2``, …); empty if the file does not state it
+    # time of the first sample, or None if the file does not state it; a time before 1900 or after
+    # 2100 is a mistake of the header and counts as not stated
+    start_time: UTCDateTime | None = None
+    # network, station, location, code: the SEED names as far as the file has them; a station without
+    # a code has its name here
+    network: str = ""
+    station: str = ""
+    location: str = ""
+    code: str = ""
+    component: str = ""  # orientation as the file words it (``090``, ``N10E``, ``UP``)
+    member: str = ""  # name of the file within an archive of several records, else empty
+    # whether this is a raw recording, whose mean is the zero of the sensor and not motion
+    raw: bool = False
+    # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        # what a file says goes to terminals and tables, and may hold anything
+        for name in ("network", "station", "location", "code", "component", "member"):
+            object.__setattr__(self, name, printable(getattr(self, name)))
+        shown = {k: printable(v) if isinstance(v, str) else v for k, v in self.details.items()}
+        object.__setattr__(self, "details", shown)
+        if self.start_time is not None and not _FIRST < self.start_time < _LAST:
+            object.__setattr__(self, "start_time", None)
+
+    def check(self, name: str) -> None:
+        """Check that number of samples and interval can be those of a record; ``name`` is its file's."""
+        if self.npts < 1:
+            raise InputError(f"{name}: the header promises {self.npts} samples.")
+        if not SHORTEST_STEP <= self.dt <= LONGEST_STEP:
+            raise InputError(
+                f"{name}: a sampling interval of {self.dt:g} s is none of a strong-motion record (from "
+                f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} s); mend the header, or give the true one with dt=."
+            )
+
+    @property
+    def label(self) -> str:
+        """Name to choose the channel by: its code, else its orientation, with its member if any."""
+        return f"{self.member} {self.code or self.component}".strip()
+
+    def trace(self, headonly: bool) -> Trace:
+        """Return the channel as an ObsPy trace, what SEED names have no room for in ``stats.rockfrag``."""
+        facts = {
+            "unit": self.unit,
+            "quantity": "acceleration",
+            "component": self.component,
+            "start_time_stated": self.start_time is not None,
+            **{key: value for key, value in self.details.items() if value not in ("", None)},
+        }
+        header = {
+            "network": self.network,
+            "station": self.station,
+            "location": self.location,
+            "channel": self.label,
+            "delta": self.dt,
+            "npts": self.npts,
+            "rockfrag": AttribDict(facts),
+        }
+        if self.start_time is not None:
+            header["starttime"] = self.start_time
+        if headonly:
+            return Trace(header=header)
+        return Trace(data=self.samples(), header=header)
+
 
 _LONGEST = 1_000  # characters of a line that are looked at to recognise a format
 
@@ -129,3 +220,26 @@ def _lines_of(head: bytes) -> tuple[str, ...]:
         # the last line of a head is cut anywhere
         lines = lines[:-1]
     return tuple(line[:_LONGEST].rstrip() for line in lines)
+
+
+def one_trace(
+    stream: Stream, filename: str | os.PathLike[str]
+) -> tuple[Trace, NDArray[np.float64]]:
+    """Return the only trace of a stream and its samples, shape (n,)."""
+    if len(stream) != 1:
+        raise InputError(f"{filename}: a file holds one trace, not {len(stream)}; choose one.")
+    samples = np.asarray(stream[0].data, dtype=np.float64)
+    if samples.size == 0 or not np.isfinite(samples).all():
+        raise InputError(f"{filename}: a record needs at least one sample, and all of them finite.")
+    return stream[0], samples
+
+
+def stated_unit(trace: Trace, filename: str | os.PathLike[str]) -> str:
+    """Return the unit of acceleration that ``stats.rockfrag.unit`` states."""
+    unit = str(trace.stats.get("rockfrag", {}).get("unit") or "")
+    if unit not in TO_SI:
+        raise InputError(
+            f"{filename}: the trace does not state a unit of acceleration; set stats.rockfrag = "
+            "{'unit': 'g'} (or 'cm/s2', 'm/s2', …) once it is known."
+        )
+    return unit

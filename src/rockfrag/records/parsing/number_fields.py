@@ -1,4 +1,4 @@
-"""Numbers out of text: fast, independent of the locale, and strict.
+"""Numbers and rows of numbers out of text: fast, independent of the locale, and strict.
 
 The fast way is numpy's own parser of separated numbers, which rounds correctly. Anything it cannot
 take is looked at line by line, so that the error names the line.
@@ -7,6 +7,7 @@ take is looked at line by line, so that the error names the line.
 import re
 import warnings
 from contextlib import suppress
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,3 +102,146 @@ def _line_of_bad_field(padded: list[bytes], width: int) -> int:
             except NumberError:
                 return number
     return 0
+
+
+_NUMERAL = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[EeDd][+-]?\d+)?"
+_NUMBERS = re.compile(rf"(?>{_NUMERAL} )*+")
+_COMMENT = re.compile(r"^\s*(?:#|%|!|//)")
+_BLANK = re.compile(r"^[\s,;\"]*$")
+_TOUCHING = re.compile(r"(?<=[\d.])([+-])(?=\d*\.)")
+_WITH_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[EeDd][+-]?\d+)?$")
+_NEARLY_A_NUMBER = re.compile(
+    r"[+-]?(?:nan|inf(?:inity)?)$|\*{3,}$|(?=\D*\d)[\d.+\-eEdDxXp_*]+$", re.I
+)
+_DATE = re.compile(r"\d{1,4}-\d{1,2}-\d{1,4}")
+_MARKS = " \t#%!/\"'"
+_RUN = 4  # rows of one width, one below the other, that are samples and not a header of numbers
+LOOKED_AT = 300  # first lines of a file from which its layout is told
+
+
+@dataclass(frozen=True)
+class NumberTable:
+    """Where the samples of a text file start and what stands above them."""
+
+    start: int  # first row of samples, from zero
+    columns: int  # numbers in it
+    # number (from zero) and words of each line of words above, without the marks of comments
+    words: tuple[tuple[int, str], ...]
+    # number (from zero) and numbers of each row of numbers above that is not one of the samples
+    numbers: tuple[tuple[int, tuple[str, ...]], ...]
+    decimal_comma: bool  # whether a comma is the decimal sign although no semicolon separates
+
+    @property
+    def title(self) -> str:
+        """First line of words, or an empty string."""
+        return self.words[0][1] if self.words else ""
+
+
+def number_table(lines: list[str]) -> NumberTable | None:
+    """Find the first row of samples and what stands above it; None if there is no such row."""
+    comma = has_decimal_commas(lines)
+    rows = {
+        number: numbers
+        for number, line in enumerate(lines)
+        if (numbers := numbers_of(line, comma)) and are_numbers(numbers)
+    }
+    start = _first_run(lines, rows)
+    if start is None:
+        return None
+    words = tuple(
+        (number, line.strip(_MARKS))
+        for number, line in enumerate(lines[:start])
+        if number not in rows and line.strip(_MARKS)
+    )
+    above = tuple((number, tuple(found)) for number, found in rows.items() if number < start)
+    return NumberTable(start, len(rows[start]), words, above, comma)
+
+
+def _first_run(lines: list[str], rows: dict[int, list[str]]) -> int | None:
+    """Return the first of some rows of one width, one below the other, or of those that go on to the last."""
+    last = max(rows, default=-1)
+    run: list[int] = []
+    for number in range(last + 1):
+        if is_blank(lines[number]):
+            continue
+        if run and number in rows and len(rows[run[0]]) != len(rows[number]):
+            if number == last and len(run) > 1:
+                break
+            run = []
+        run = [*run, number] if number in rows else []
+        if len(run) == _RUN:
+            break
+    return run[0] if run else None
+
+
+def first_odd_row(lines: list[str]) -> int | None:
+    """Return the first line (from zero) that keeps mostly numeric text from being plain text."""
+    table = number_table(lines)
+    if table is None:
+        return None
+    filled = [i for i in range(table.start, len(lines)) if not is_blank(lines[i])]
+    wide = {i: len(numbers_of(lines[i])) == table.columns for i in filled}
+    odd = [i for i in filled if not (wide[i] and is_row(lines[i]))]
+    return odd[0] if odd and 2 * len(odd) < len(filled) else None
+
+
+def is_blank(line: str) -> bool:
+    """Tell whether a line has nothing but blanks and separators, as spreadsheets leave."""
+    return bool(_BLANK.match(line))
+
+
+def is_comment(line: str) -> bool:
+    """Tell whether a line is marked as a comment."""
+    return bool(_COMMENT.match(line))
+
+
+def is_damaged_row(line: str) -> bool:
+    """Tell whether a line is a row of numbers of which some are none: ``0.02 nan``, ``*****``."""
+    words = numbers_of(line)
+    return bool(words) and all(
+        are_numbers([word]) or (_NEARLY_A_NUMBER.match(word) and not _DATE.search(word))
+        for word in words
+    )
+
+
+def is_row(line: str) -> bool:
+    """Tell whether a line is numbers and nothing else."""
+    return are_numbers(numbers_of(line))
+
+
+def are_numbers(words: list[str]) -> bool:
+    """Tell whether words, one or more, are all numbers."""
+    return bool(words) and _NUMBERS.fullmatch(" ".join([*words, ""])) is not None
+
+
+def numbers_of(line: str, decimal_comma: bool = False) -> list[str]:
+    """Split a line at blanks and semicolons, or at blanks and commas where it has no semicolon.
+
+    Fortran's fields that touch, as in ``-.12E-01-.13E-01``, are told apart by their signs.
+    """
+    separator = ";" if ";" in line or decimal_comma else ","
+    return _TOUCHING.sub(r" \1", line.replace(separator, " ")).split()
+
+
+def has_decimal_commas(lines: list[str]) -> bool:
+    """Tell whether the commas of rows without semicolons can only be decimal signs.
+
+    So they are where blanks separate numbers that all have one, or where a number such as ``0,012``
+    would begin with a zero if the comma separated.
+    """
+    rows = [line.split() for line in lines if "," in line and is_row(line)]
+    if not rows or any("." in word or ";" in word for row in rows for word in row):
+        return False
+    with_comma = [word for row in rows for word in row if "," in word]
+    if not all(_WITH_DECIMAL_COMMA.match(word) for word in with_comma):
+        return False
+    several = all(len(row) > 1 for row in rows)
+    return several or any(re.search(r",0\d", word) for word in with_comma)
+
+
+def number_in(word: str) -> float:
+    """Return a number whose decimal sign may be a comma and whose exponent a D."""
+    try:
+        return float(word)
+    except ValueError:
+        return float(word.replace(",", ".").upper().replace("D", "E"))

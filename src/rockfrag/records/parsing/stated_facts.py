@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
-from rockfrag.records.parsing.number_table import number_in
+from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
 
 _VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[EeDd][+-]?\d+)?"

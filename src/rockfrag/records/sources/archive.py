@@ -1,4 +1,4 @@
-"""Archives of records, as data centres send them: zip and tar, unpacked within bounds."""
+"""The files that may be records, of a folder or of an archive (zip and tar), unpacked within bounds."""
 
 import lzma
 import os
@@ -10,13 +10,13 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import Path, PurePath, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import IO
 
 from rockfrag.errors import InputError, errors_of
-from rockfrag.plain_text import printable
 from rockfrag.records.parsing.text_file import MAX_BYTES, read_head
+from rockfrag.tabular import printable
 
 MAX_MEMBERS = 5_000  # files of an archive; a download of a data centre has some hundred
 MAX_TOTAL = 2 * MAX_BYTES  # bytes that an archive may unpack to
@@ -157,4 +157,31 @@ def _by_number(name: str) -> list[tuple[int, str]]:
     return [
         (int(part), "") if part.isdecimal() and len(part) < 19 else (-1, part)
         for part in re.split(r"(\d+)", name)
+    ]
+
+
+_NO_RECORDS = frozenset(
+    (".xml", ".pdf", ".md", ".json", ".html", ".htm", ".png", ".jpg", ".svg", ".yaml", ".yml")
+)
+"""Endings of what lies beside records: descriptions of stations, papers, pictures, facts."""
+
+
+def is_no_record(name: str) -> bool:
+    """Tell whether a file of a folder or an archive is passed over, by its name."""
+    path = PurePath(name)
+    return (
+        path.name.startswith((".", "_SearchResults", "README", "LICENSE", "LICENCE"))
+        or path.suffix.lower() in _NO_RECORDS
+    )
+
+
+def files_of(folder: str | os.PathLike[str]) -> list[Path]:
+    """Return the files below a folder that may be records, in order of name."""
+    found = sorted(path for path in Path(folder).rglob("*") if not path.is_dir())
+    inside = Path(folder)
+    return [
+        path
+        for path in found
+        if not is_no_record(path.name)
+        and not any(part.startswith(".") for part in path.relative_to(inside).parts)
     ]

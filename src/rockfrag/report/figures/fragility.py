@@ -18,8 +18,8 @@ from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.report.wording import shortened
 
 if TYPE_CHECKING:
+    from rockfrag.fragility.checks import GoodnessOfFit
     from rockfrag.fragility.estimators import Fragility
-    from rockfrag.fragility.goodness import GoodnessOfFit
 
 GREY = "#777777"
 

@@ -11,8 +11,7 @@ import numpy as np
 
 from rockfrag.engines.contract import Request, Support, Wish
 from rockfrag.engines.pure_rocking import PureRocking
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.system.system import System
 
 _FOLDER = Path(__file__).parent

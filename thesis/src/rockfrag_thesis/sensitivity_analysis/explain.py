@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import equivalence, mean_effects
-from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
+from rockfrag.pedestal.power import benjamini_hochberg, holm
 from rockfrag.tabular import join_rows
 
 COLUMNS = ("factor", "level", "reference", "object", "earthquake", "floor", "ratio")

@@ -12,11 +12,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.engines.contract import Cases, Request
-from rockfrag.engines.planar.ensemble import contact_outcomes
+from rockfrag.engines.planar.cases import contact_outcomes
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.pedestal.cluster_means import mean_effects
-from rockfrag.records.ground_motion import GroundMotion
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Body, Stack
 from rockfrag.system.system import uplift_ratios

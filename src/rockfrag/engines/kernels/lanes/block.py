@@ -10,31 +10,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rockfrag.elementary import acos, cos
+from rockfrag.engines.kernels import taylor
 from rockfrag.engines.kernels.by_reference import by_reference
 from rockfrag.engines.kernels.chatter import Ahead, block_dies_out
 from rockfrag.engines.kernels.contact_states import HALF_TURN
 from rockfrag.engines.kernels.impact import block_impact
 from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, kernel, lowest_bit, take_next
-from rockfrag.engines.kernels.lanes.case import (
-    BLOCK,
-    OUTCOME,
-    QUIET,
-    next_samples,
-    next_uplift,
-    place_of,
-    weight_of,
-    weights_ahead,
-)
+from rockfrag.engines.kernels.lanes import case as cases
 from rockfrag.engines.kernels.roots import NEVER, crossing, graze, hops
 from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP
-from rockfrag.engines.kernels.taylor import (
-    ORDER,
-    keep_rates,
-    quick_sine_cosine,
-    rate_at,
-    rates_of_one,
-    travel,
-)
 
 LANES = 64  # as many as ``next_samples`` has bits for
 TOUCHES, FALLS = 1.0, 2.0  # flags of a lane: it may have touched, or falls for certain
@@ -77,7 +61,7 @@ LANE = np.dtype(
         ("factor", _F, LANES), ("signed", _F, LANES),  # scale of the motion over g, and that times the side
         ("flag", _F, LANES),
         ("when", _F, LANES),  # time in the step at which ψ passes θc
-        ("rates", _F, (ORDER - 1, LANES)),  # Taylor coefficients 1 to 6 of ψ'
+        ("rates", _F, (taylor.ORDER - 1, LANES)),  # Taylor coefficients 1 to 6 of ψ'
     ],
     align=True,
 )  # fmt: skip
@@ -94,7 +78,7 @@ class Worker(NamedTuple):
 
 def worker() -> Worker:
     """Memory for one thread."""
-    return Worker(np.zeros(1, LANE)[0], np.zeros(LANES, OUTCOME))
+    return Worker(np.zeros(1, LANE)[0], np.zeros(LANES, cases.OUTCOME))
 
 
 @kernel
@@ -127,14 +111,14 @@ def _advance(lane, upward):
         a = lane.ground[i]
         a_end = lane.ground_end[i]
         w = omega * left
-        s, c = quick_sine_cosine(psi)
+        s, c = taylor.quick_sine_cosine(psi)
         u = lane.weight[i] if upward else 1.0
         u_end = lane.weight_end[i] if upward else 1.0
         weight = u, u_end - u, upward
-        rates = rates_of_one((s, c), w, kappa * left * left, (a, a_end - a), weight)
-        end = psi + travel(rates, 1.0)
-        v = rate_at(rates, 1.0)
-        keep_rates(lane.rates, i, rates)
+        rates = taylor.rates_of_one((s, c), w, kappa * left * left, (a, a_end - a), weight)
+        end = psi + taylor.travel(rates, 1.0)
+        v = taylor.rate_at(rates, 1.0)
+        taylor.keep_rates(lane.rates, i, rates)
         crest = lane.crest[i] - lane.heavy[i] * c + lane.bound[i] * s
         certain = (w < 0.0) & (0.5 * omega * omega >= kappa * crest)
         grazes = (w > 0.0) & (v < 0.0)
@@ -142,7 +126,7 @@ def _advance(lane, upward):
         lies = end <= angle - HALF_TURN
         # leaves, and may fall back and be pulled open again before the sample is over
         falls_back = hops(angle - psi, -w, -v, -rates[1])
-        flag = TOUCHES if touches | grazes | lies | falls_back else QUIET
+        flag = TOUCHES if touches | grazes | lies | falls_back else cases.QUIET
         flag = FALLS if certain else flag
         lane.flag[i] = flag
         # the turning point of a parabola lies between the samples
@@ -184,7 +168,7 @@ def integrate_blocks(ensemble, motions, worker, outcomes):
     while busy > 0:
         passes += 1
         advance(lane, upward)
-        stops = next_samples(lane, lane.signed, LANES, motions)
+        stops = cases.next_samples(lane, lane.signed, LANES, motions)
         _find_impacts(lane, stops)
         while stops != 0:
             i = lowest_bit(stops)
@@ -193,7 +177,7 @@ def integrate_blocks(ensemble, motions, worker, outcomes):
                 continue
             if lane.flag[i] == FALLS:
                 _fall(lane, i, tallies[i])
-            elif lane.flag[i] != QUIET:
+            elif lane.flag[i] != cases.QUIET:
                 _take_contact_event(lane, i, tallies[i], ensemble, motions)
             else:
                 lane.tau[i] = 0.0
@@ -310,19 +294,19 @@ def _contact_event(lane, i, tally):
     elif w <= 0.0 and v < 0.0 and min(gap, 0.0) + 0.5 * rates[1] >= 0.0:
         # may fall back within the step and be pulled open again before its end
         for part in range(1, 8):
-            if min(gap, 0.0) + travel(rates, part / 8) >= 0.0:
+            if min(gap, 0.0) + taylor.travel(rates, part / 8) >= 0.0:
                 t = _flight(gap, rates, part / 8)
                 break
     if t > 1.0:
         _note(tally, end, v, angle, kappa)
         if w < 0.0 and v > 0.0:
-            low = psi + travel(rates, w / (w - v * left))
+            low = psi + taylor.travel(rates, w / (w - v * left))
             _note(tally, low, 0.0, angle, kappa)
         return t, end, v, False
-    v = max(0.0, rate_at(rates, t)) / left
+    v = max(0.0, taylor.rate_at(rates, t)) / left
     if gap >= 0.0:
         # the highest point of a flight that begins and ends in this step
-        low = psi + travel(rates, 0.5 * t)
+        low = psi + taylor.travel(rates, 0.5 * t)
         _note(tally, low, v, angle, kappa)
     tally.fast = max(tally.fast, v)
     return t, angle, v, False
@@ -388,7 +372,7 @@ def _rise(lane, i, ensemble, motions):
     if lane.fell[i] != 0 or lane.side[i] != 0 or k >= last or factor == 0.0:
         return
     interval = -_pivot(lane, i, 1, ensemble).tan, _pivot(lane, i, -1, ensemble).tan
-    k, tau, ground, _ = next_uplift(motions, k, lane.tau[i], last, factor, interval)
+    k, tau, ground, _ = cases.next_uplift(motions, k, lane.tau[i], last, factor, interval)
     if k >= 0:
         # it rocks towards the side that the ground comes from
         side = -1 if ground > 0.0 else 1
@@ -440,7 +424,7 @@ def _put_down(lane, i, tally, outcome):
 @inlined_kernel
 def _take_up(lane, i, number, ensemble, motions):
     """Begin a case in a lane, at rest."""
-    body, motion, scale = place_of(number, ensemble)
+    body, motion, scale = cases.place_of(number, ensemble)
     lane.case[i], lane.body[i], lane.motion[i] = number, body, motion
     lane.low[i], lane.fast[i], lane.near[i] = 1.0, 0.0, math.inf
     lane.factor[i] = ensemble.factors[motion, scale]
@@ -470,17 +454,17 @@ def _place(lane, i, ensemble, motions):
     after = signed * motions.samples[k + 1]
     lane.ground[i] = before + tau * (after - before)
     lane.ground_end[i] = after
-    light = weight_of(motions, k, factor)
-    heavy = weight_of(motions, k + 1, factor)
+    light = cases.weight_of(motions, k, factor)
+    heavy = cases.weight_of(motions, k + 1, factor)
     lane.weight[i], lane.weight_end[i] = light + tau * (heavy - light), heavy
     lane.part_left[i] = 1.0 - tau
     pivot = _pivot(lane, i, side, ensemble)
     lane.angle[i], lane.kappa[i] = pivot.alpha, pivot.swing
     lane.per_angle[i], lane.per_speed[i] = pivot.per_alpha, pivot.per_swing
     # largest A that can still push the block on this pivot back down
-    most, least = motions.ahead_high[k // BLOCK], motions.ahead_low[k // BLOCK]
+    most, least = motions.ahead_high[k // cases.BLOCK], motions.ahead_low[k // cases.BLOCK]
     bound = max(max(0.0, factor * most * side), factor * least * side)
-    light, heavy = weights_ahead(motions, k, factor)
+    light, heavy = cases.weights_ahead(motions, k, factor)
     lane.bound[i], lane.heavy[i] = bound, heavy
     lane.crest[i] = math.sqrt(light * light + bound * bound) + (heavy - light)
     if light <= 0.0:

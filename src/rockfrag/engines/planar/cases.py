@@ -1,26 +1,22 @@
-"""One body, one motion, with friction, flight and vertical motion."""
+"""Planar systems under motions with friction, flight and vertical motion: many outcomes, or one history."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.engines import response as responses
+from rockfrag.engines.contract import Cases
 from rockfrag.engines.kernels.single import GRAZING_SPEED
+from rockfrag.engines.lanes import intervals_of
 from rockfrag.engines.planar import integrate as contact
-from rockfrag.engines.planar.ensemble import started
-from rockfrag.engines.planar.records import posed, system_record, working_memory
-from rockfrag.engines.response import (
-    FLIGHT,
-    Response,
-    contact_event_table,
-    energy_table,
-    sampled_demand,
-    with_slips,
-)
+from rockfrag.engines.planar import records
+from rockfrag.engines.response import FLIGHT, Response
 from rockfrag.engines.steps import STEP, free_samples, step_count
-from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
@@ -30,6 +26,11 @@ Ints = NDArray[np.int64]
 CLOSING = 1e-6
 """Parting speed over √(g b) below which a contact stays closed after an impact, where the history is kept."""
 
+COARSE_CLOSING = 1e-4
+"""Parting speed over √(g b) below which a contact stays closed after an impact, where only the outcome matters."""
+
+CHUNK = 4  # cases that a thread takes at once
+
 _KINDS = {
     contact.IMPACT: "impact",
     contact.PARADOX: "paradox",
@@ -38,6 +39,57 @@ _KINDS = {
 }
 _STATES = np.array([FLIGHT, -1, +1, 0])
 """Contact state of an interface whose closed ends are the bits (left, right) of a number."""
+
+
+def contact_outcomes(grid: Cases, wanted: NDArray[np.bool_] | None = None) -> NDArray[np.void]:
+    """Integrate the ``wanted`` cases of systems × motions × scales, all if None; the others are left zero."""
+    g, step, dts = grid.request.g, grid.request.step, intervals_of(grid)
+    wanted = np.ones(grid.shape, dtype=bool) if wanted is None else wanted
+    table = np.zeros(len(grid.systems), records.BODY)
+    starts = np.zeros((len(grid.systems), 2, 3 * records.MOST))
+    for i, system in enumerate(grid.systems):
+        table[i] = records.system_record(system, g)
+        starts[i] = records.posed(table[i], *started(system))
+    ups = [motion.z.acceleration for motion in grid.motions if motion.z is not None]
+    sizes = [motion.x.acceleration.size for motion in grid.motions]
+    cases = contact.Cases(
+        bodies=table,
+        starts=starts,
+        horizontal=np.concatenate([motion.x.acceleration for motion in grid.motions]),
+        vertical=np.concatenate(ups) if ups else np.zeros(0),
+        offsets=np.concatenate([[0], np.cumsum(sizes)]),
+        dts=dts,
+        factors=grid.scales,
+        substeps=np.array([step_count(system, dts, g, step) for system in grid.systems]),
+        free_samples=np.array([free_samples(system, dts, g) for system in grid.systems]),
+    )
+    outcome = np.zeros(wanted.size, records.OUTCOME)
+    numbers = np.flatnonzero(wanted)
+    book = contact.Book(np.zeros((0, 0)), np.zeros((0, 0)))
+
+    firsts = iter(range(0, numbers.size, CHUNK))
+
+    def work(memory: np.void) -> None:
+        for first in firsts:
+            chunk = numbers[first : first + CHUNK]
+            contact.integrate_cases(chunk, cases, COARSE_CLOSING, book, memory, outcome)
+
+    memories = [records.working_memory() for _ in range(grid.threads)]
+    contact.integrate_cases(numbers[:0], cases, COARSE_CLOSING, book, memories[0], outcome)
+    if grid.threads == 1:
+        work(memories[0])
+    else:
+        with ThreadPoolExecutor(grid.threads) as pool:
+            list(pool.map(work, memories))
+    return outcome.reshape(wanted.shape)
+
+
+def started(system: System) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Rotations [rad] and angular velocities [rad/s] of the bodies at the start."""
+    zeros = (0.0,) * system.count
+    return (
+        (zeros, zeros) if system.start is None else (system.start.rotation, system.start.velocity)
+    )
 
 
 class ContactRun(NamedTuple):
@@ -71,14 +123,14 @@ def contact_run(
     """
     values, interval = motion.x.acceleration, motion.dt
     up = np.zeros(0) if motion.z is None else motion.z.acceleration
-    p = system_record(system, g)
+    p = records.system_record(system, g)
     blocks = int(p["count"])
-    start = posed(p, *started(system))
+    start = records.posed(p, *started(system))
     substeps = int(step_count(system, interval, g, STEP))
     free = int(free_samples(system, interval, g))
     shaking = contact.Shaking(values, up, interval, 1.0, substeps, free)
     history = np.zeros((values.size + free, contact.history_columns(blocks)))
-    work = working_memory()
+    work = records.working_memory()
     capacity = 4096
     while True:
         contact_events = np.zeros((capacity, contact.contact_event_columns(blocks)))
@@ -127,7 +179,7 @@ def response_of(run: ContactRun) -> Response:
         impacts=int(work["impacts"]),
         grazings=int((table["kind"].eq("impact") & (meets < GRAZING_SPEED)).sum()),
         given_way=int(work["given_way"]),
-        friction_demand=sampled_demand(normal, shear),
+        friction_demand=responses.sampled_demand(normal, shear),
         least_normal_force=np.asarray(normal.min(axis=0)),
         lost_contact=math.nan,
         paradoxes=int(work["paradoxes"]),
@@ -153,10 +205,10 @@ def _contact_events(contact_events: Array, blocks: int) -> pd.DataFrame:
         for kind, change in zip(contact_events[:, 1], changes, strict=True)
     ]
     energies = contact_events[:, 4], contact_events[:, 5]
-    table = contact_event_table(
+    table = responses.contact_event_table(
         contact_events[:, 0], kinds, (before, after), (old, new), theta, energies
     )
-    return with_slips(table, after, slides, slip)
+    return responses.with_slips(table, after, slides, slip)
 
 
 def _kind_of_change(before: Ints, after: Ints, slid: Ints, slides: Ints) -> str:
@@ -185,4 +237,4 @@ def _energies(p: np.void, time: Array, history: Array, contact_events: Array) ->
     closes[:, -1] = True
     losses = contact_events[:, 0], closes.argmax(axis=1), loss
     work, rubbed = history[:, -4], history[:, -3]
-    return energy_table(time, kinetic, potential, work, losses, rubbed, contacts=blocks)
+    return responses.energy_table(time, kinetic, potential, work, losses, rubbed, contacts=blocks)
