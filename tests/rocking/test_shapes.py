@@ -116,7 +116,7 @@ def test_a_mesh_inside_out_is_turned(tmp_path: Path):
     [
         ({"mass": None}, "either the mass or the density"),
         ({"density": 2000.0}, "either the mass or the density"),
-        ({"mass": -1.0}, "mass must be a positive number"),
+        ({"mass": -1.0}, "mass: expected a positive number"),
         ({"metres_per_unit": 0.3048}, "kg/m³, which no solid object has"),
         ({"metres_per_unit": 1000.0}, "m large"),
     ],

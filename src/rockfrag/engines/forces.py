@@ -4,6 +4,8 @@ The forces follow from the absolute accelerations of the centres of gravity: N2 
 T2 = m2 x2'', and the sums over both blocks at the ground.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,32 +19,38 @@ Array = NDArray[np.float64]
 Pair = tuple[float, float]
 
 
+Way = tuple[NDArray[np.bool_], Pair, Pair, Pair]
+
+
+def _ways(system: System, state: NDArray[np.int64]) -> Iterator[Way]:
+    """Yield the rows of each way to rock, and the arms of the lower body, of the upper one's foot, and of that."""
+    signs = np.where(state == 0, 1, state)
+    for side in (+1, -1):
+        arm = geometry.arm(system.shapes[0], side)
+        if system.count == 1:
+            yield signs[:, 0] == side, arm, (0.0, 0.0), (0.0, 0.0)
+            continue
+        for two in (+1, -1):
+            rows = (signs[:, 0] == side) & (signs[:, 1] == two)
+            foot = geometry.reach(system.pile, side, two)
+            yield rows, arm, foot, geometry.upper_arm(system.pile, two)
+
+
 def centres(system: System, state: NDArray[np.int64], theta: Array) -> Array:
     """Centres of gravity of bodies that rock without sliding, relative to the ground [m], shape (n, blocks, 2)."""
     found = np.zeros((*theta.shape, 2))
     sine, cosine = _sines(theta)
-    signs = np.where(state == 0, 1, state)
 
     def turned(arm: Pair, rows: NDArray[np.bool_], block: int) -> Array:
         s, c = sine[rows, block], cosine[rows, block]
         return np.column_stack([arm[0] * c + arm[1] * s, -arm[0] * s + arm[1] * c])
 
-    lowest = system.shapes[0]
-    if system.count == 1:
-        for pivot in (+1, -1):
-            rows, arm = signs[:, 0] == pivot, geometry.arm(lowest, pivot)
-            found[rows, 0] = turned(arm, rows, 0)
-            found[rows, 0, 0] += lowest.x - arm[0]
-        return found
-    pile = system.pile
-    for side in (+1, -1):
-        arm = geometry.arm(lowest, side)
-        for two in (+1, -1):
-            rows = (signs[:, 0] == side) & (signs[:, 1] == two)
-            found[rows, 0] = turned(arm, rows, 0)
-            found[rows, 1] = turned(geometry.reach(pile, side, two), rows, 0)
-            found[rows, 1] += turned(geometry.upper_arm(pile, two), rows, 1)
-            found[rows, :, 0] += lowest.x - arm[0]
+    for rows, arm, foot, above in _ways(system, state):
+        found[rows, 0] = turned(arm, rows, 0)
+        if system.count == 2:
+            found[rows, 1] = turned(foot, rows, 0)
+            found[rows, 1] += turned(above, rows, 1)
+        found[rows, :, 0] += system.shapes[0].x - arm[0]
     return found
 
 
@@ -68,34 +76,27 @@ def contact_forces(
     friction = np.zeros_like(theta)
     sine, cosine = _sines(theta)
 
-    signs = np.where(state == 0, 1, state)
-
     def acceleration(arm: Pair, rows: NDArray[np.bool_], block: int) -> tuple[Array, Array]:
         """Acceleration of the tip of ``arm`` that turns clockwise about its foot [m/s²]."""
         s, c, w, q = (values[rows, block] for values in (sine, cosine, omega, alpha))
         x, y = arm[0] * c + arm[1] * s, -arm[0] * s + arm[1] * c
         return q * y - w * w * x, -q * x - w * w * y
 
-    lowest = system.shapes[0]
+    mass = system.shapes[0].mass
+    for rows, arm, foot, above in _ways(system, state):
+        x1, y1 = acceleration(arm, rows, 0)
+        friction[rows, 0], normal[rows, 0] = mass * (ground[rows] + x1), mass * (gravity[rows] + y1)
+        if system.count == 2:
+            upper = system.pile.upper.mass
+            xd, yd = acceleration(foot, rows, 0)
+            x2, y2 = acceleration(above, rows, 1)
+            friction[rows, 1] = upper * (ground[rows] + xd + x2)
+            normal[rows, 1] = upper * (gravity[rows] + yd + y2)
+            friction[rows, 0] += friction[rows, 1]
+            normal[rows, 0] += normal[rows, 1]
     if system.count == 1:
-        for pivot in (+1, -1):
-            rows = signs[:, 0] == pivot
-            ax, ay = acceleration(geometry.arm(lowest, pivot), rows, 0)
-            friction[rows, 0] = lowest.mass * (ground[rows] + ax)
-            normal[rows, 0] = lowest.mass * (gravity[rows] + ay)
         return normal, friction
     pile = system.pile
-    m1, m2 = pile.lower.mass, pile.upper.mass
-    for side in (+1, -1):
-        for two in (+1, -1):
-            rows = (signs[:, 0] == side) & (signs[:, 1] == two)
-            x1, y1 = acceleration(geometry.arm(lowest, side), rows, 0)
-            xd, yd = acceleration(geometry.reach(pile, side, two), rows, 0)
-            x2, y2 = acceleration(geometry.upper_arm(pile, two), rows, 1)
-            friction[rows, 1] = m2 * (ground[rows] + xd + x2)
-            normal[rows, 1] = m2 * (gravity[rows] + yd + y2)
-            friction[rows, 0] = friction[rows, 1] + m1 * (ground[rows] + x1)
-            normal[rows, 0] = normal[rows, 1] + m1 * (gravity[rows] + y1)
     # of the interface so far upright and level: the pedestal's top turns with it
     x, y = pile.right[0] - pile.left[0], pile.right[1] - pile.left[1]
     length = hypot(x, y)

@@ -9,14 +9,8 @@ import math
 
 from scipy.optimize import brentq
 
-from rockfrag.errors import InputError
+from rockfrag.input_checks import positive_number
 from rockfrag.units import GRAVITY
-
-
-def _positive(**values: float) -> None:
-    for name, value in values.items():
-        if not (math.isfinite(value) and value > 0):
-            raise InputError(f"{name}: must be a positive number, got {value}.")
 
 
 def one_sine_pulse(omega: float, p: float) -> float:
@@ -25,7 +19,8 @@ def one_sine_pulse(omega: float, p: float) -> float:
     Zhang & Makris (2001): x p ∫ exp(-p (t - t0)) sin ωt dt = 1 from ω t0 = asin(1/x) to ω t = 2π; overturning
     after an impact may need less.
     """
-    _positive(omega=omega, p=p)
+    positive_number("omega", omega, "rad/s")
+    positive_number("p", p, "1/s")
     phase = 2 * math.pi
 
     def part(angle: float) -> float:
@@ -48,5 +43,6 @@ def housner_velocity(alpha: float, p: float) -> float:
     Housner (1963): θc = v √(m R / (g I_O)), by equating energies; with v the velocity spectrum's
     ordinate he gave it as the earthquake that overturns half of such blocks.
     """
-    _positive(alpha=alpha, p=p)
+    positive_number("alpha", alpha, "radians")
+    positive_number("p", p, "1/s")
     return alpha * GRAVITY / p

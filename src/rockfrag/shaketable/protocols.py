@@ -122,10 +122,7 @@ class Accelerometer:
     clip_g: float
 
     def __post_init__(self) -> None:
-        if not self.clip_g > 0:
-            raise InputError(
-                f"accelerometer: clip_g must be a positive number of g, got {self.clip_g}."
-            )
+        positive_number("accelerometer: clip_g", self.clip_g, "g")
 
     def measure(self, amplitude_g: float, configuration: str) -> float:
         """Return the measured amplitude [g]."""
@@ -183,10 +180,7 @@ class Protocol:
     measurement: Measurement | None = None
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.limit_g) and self.limit_g > 0):
-            raise InputError(
-                f"protocol: limit_g must be a positive number of g, got {self.limit_g}."
-            )
+        positive_number("protocol: limit_g", self.limit_g, "g")
         if not (type(self.repetitions) is int and self.repetitions >= 1):
             raise InputError(
                 f"protocol: repetitions must be a whole number from 1, got {self.repetitions}."

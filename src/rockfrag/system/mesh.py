@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from rockfrag.errors import InputError
+from rockfrag.input_checks import positive_number
 from rockfrag.plausibility import LARGEST_SIZE, MEAN_DENSITIES
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
@@ -272,8 +273,10 @@ def read_shape(
             "(0.001 for millimetres, 0.3048 for feet)."
         )
     volume = float(mesh.volume)
-    given = density if density is not None else _positive(path, "mass", mass) / volume
-    weight = _positive(path, "density", given) * volume
+    given = (
+        density if density is not None else positive_number(f"{path}: mass", mass, "kg") / volume
+    )
+    weight = positive_number(f"{path}: density", given, "kg/m³") * volume
     if not MEAN_DENSITIES[0] <= given <= MEAN_DENSITIES[1]:
         raise InputError(
             f"{path}: {weight:.4g} kg in {volume:.4g} m³ are {given:.4g} kg/m³, which no solid object has; "
@@ -286,12 +289,6 @@ def read_shape(
         volume=volume,
         name=Path(path).name,
     )
-
-
-def _positive(path: str | os.PathLike[str], name: str, value: float | None) -> float:
-    if value is None or not (math.isfinite(value) and value > 0):
-        raise InputError(f"{path}: {name} must be a positive number, got {value}.")
-    return float(value)
 
 
 def _closed_mesh(path: Path, hull: bool) -> Any:

@@ -6,18 +6,9 @@ every kernel on the way; that is most of the code it would make, and time goes b
 
 from typing import Any
 
-from numba import types
+from numba import extending, types
 from numba.core import cgutils
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
-from numba.extending import (
-    NativeValue,
-    intrinsic,
-    lower_getattr_generic,
-    models,
-    register_model,
-    typeof_impl,
-    unbox,
-)
 
 
 class Reference(types.Type):  # type: ignore[misc]
@@ -31,19 +22,19 @@ class Reference(types.Type):  # type: ignore[misc]
 def by_reference(named_tuple: Any) -> Any:
     """Mark a class of named tuples whose values kernels get by reference."""
 
-    @typeof_impl.register(named_tuple)  # type: ignore[untyped-decorator]
+    @extending.typeof_impl.register(named_tuple)  # type: ignore[untyped-decorator]
     def of_value(values: Any, context: Any) -> Reference:
         return Reference(
             types.BaseTuple.from_types(
-                [typeof_impl(value, context) for value in values], named_tuple
+                [extending.typeof_impl(value, context) for value in values], named_tuple
             )
         )
 
     return named_tuple
 
 
-@register_model(Reference)
-class _Pointer(models.PrimitiveModel):  # type: ignore[misc]
+@extending.register_model(Reference)
+class _Pointer(extending.models.PrimitiveModel):  # type: ignore[misc]
     def __init__(self, manager: Any, reference: Reference) -> None:
         pointed = manager.lookup(reference.tuple_type).get_value_type()
         super().__init__(manager, reference, pointed.as_pointer())
@@ -58,13 +49,13 @@ class _Fields(AttributeTemplate):  # type: ignore[misc]
         return reference.tuple_type.types[names.index(name)] if name in names else None
 
 
-@lower_getattr_generic(Reference)  # type: ignore[untyped-decorator]
+@extending.lower_getattr_generic(Reference)  # type: ignore[untyped-decorator]
 def _field(context: Any, builder: Any, reference: Reference, pointer: Any, name: str) -> Any:
     at = reference.tuple_type.fields.index(name)
     return builder.load(cgutils.gep_inbounds(builder, pointer, 0, at))
 
 
-@intrinsic
+@extending.intrinsic
 def referred(typing_context, values):  # type: ignore[no-untyped-def]
     """Return a reference to a named tuple that a kernel has made itself, for as long as that kernel runs."""
 
@@ -74,8 +65,8 @@ def referred(typing_context, values):  # type: ignore[no-untyped-def]
     return Reference(values)(values), generate
 
 
-@unbox(Reference)  # type: ignore[untyped-decorator]
+@extending.unbox(Reference)  # type: ignore[untyped-decorator]
 def _from_python(reference: Reference, value: Any, call: Any) -> Any:
     given = call.unbox(reference.tuple_type, value)
     place = cgutils.alloca_once_value(call.builder, given.value)
-    return NativeValue(place, cleanup=given.cleanup, is_error=given.is_error)
+    return extending.NativeValue(place, cleanup=given.cleanup, is_error=given.is_error)

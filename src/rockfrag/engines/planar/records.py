@@ -229,10 +229,6 @@ def posed(p: np.void, theta: Sequence[float], omega: Sequence[float]) -> NDArray
     start = np.zeros((2, 3 * MOST))
     standing = p["standing"]
 
-    def turned(x: float, y: float, angle: float) -> NDArray[np.float64]:
-        s, c = sin_cos(angle)
-        return np.array([x * c + y * s, -x * s + y * c])
-
     for k in range(int(p["count"])):
         below = (theta[k - 1], omega[k - 1]) if k else (0.0, 0.0)
         end = 1 if ((theta[k] - below[0]) or (omega[k] - below[1])) >= 0 else 0
@@ -241,10 +237,10 @@ def posed(p: np.void, theta: Sequence[float], omega: Sequence[float]) -> NDArray
         speed = np.zeros(2)
         if k:
             at = slice(3 * k - 3, 3 * k - 1)
-            arm = turned(pivot[0] - standing[at][0], pivot[1] - standing[at][1], below[0])
+            arm = _turned(pivot - standing[at], below[0])
             pivot = start[0, at] + arm
             speed = start[1, at] + below[1] * np.array([arm[1], -arm[0]])
-        arm = -turned(corner[0], corner[1], theta[k])
+        arm = -_turned(corner, theta[k])
         start[0, 3 * k : 3 * k + 2] = pivot + arm
         start[1, 3 * k : 3 * k + 2] = speed + omega[k] * np.array([arm[1], -arm[0]])
         start[0, 3 * k + 2], start[1, 3 * k + 2] = theta[k], omega[k]

@@ -5,19 +5,11 @@ import math
 from rockfrag.elementary import atan2, sin_cos
 from rockfrag.engines.kernels.jit import entry_kernel, kernel
 from rockfrag.engines.kernels.roots import narrowed
+from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _step as step
-from rockfrag.engines.spatial._algebra import (
-    cross,
-    norm,
-    normalise,
-    rotation,
-    to_body,
-    to_world,
-    turn,
-)
 
 RIM_START = 1e-7
 """Tilt with which a round base begins to roll: at none its contact has no direction [rad]."""
@@ -76,7 +68,7 @@ def set_field(field, acceleration, k, scale, dt, g):
 @kernel
 def lies_still(body, pull):
     """Whether a flat body rests whichever way it is pulled."""
-    level = norm(pull[0], pull[1])
+    level = algebra.norm(pull[0], pull[1])
     return (
         level * body.height < -pull[2] * body.nearest * (1 - 1e-9)
         and level < -body.static * pull[2]
@@ -88,7 +80,7 @@ def rest_ends(body, y, field, tau, dt):
     """When the ground no longer carries the body at rest, -1 if it does: concave margins need only ends."""
     if lies_still(body, forces.pull_at(field, dt)):
         return -1.0
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     if modes.rest_margin(body, y, rows, forces.pull_at(field, dt)) >= 0:
         return -1.0
     above = modes.rest_margin(body, y, rows, forces.pull_at(field, tau))
@@ -110,17 +102,17 @@ def rest_ends(body, y, field, tau, dt):
 @kernel
 def leave_rest(body, y, tau, s):
     """Choose how the body leaves rest: slides, or tips over an edge, a vertex or the rim."""
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     pull = forces.pull_at(s.field, tau)
     small = 1e-9 * s.field[6]
-    level = norm(pull[0], pull[1])
+    level = algebra.norm(pull[0], pull[1])
     s.rests = 0
     whole = modes.rest_margin(body, y, rows, pull)
     if -body.static * pull[2] - level < small or whole < -small:
         slide_or_jump(body, y, tau, s, pull, level, whole < -small)
         return
     if body.rim > 0:
-        b = to_body(rows, (pull[0], pull[1], 0.0))
+        b = algebra.to_body(rows, (pull[0], pull[1], 0.0))
         centre = -pull[2] / body.height
         start_rolling(
             body, y, b[0] - centre * body.centre[0], b[1] - centre * body.centre[1], pull, s
@@ -144,7 +136,7 @@ def slide_or_jump(body, y, tau, s, pull, level, jumps):
     """Leave rest by sliding on the whole base, or, after a jump of the ground's acceleration, in any way."""
     if jumps and modes.choose_mode(body, tau, y, s):
         return
-    n = modes.touching(body, y, rotation(y), s)
+    n = modes.touching(body, y, algebra.rotation(y), s)
     for i in range(n):
         s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
         s.direction[i, 0], s.direction[i, 1] = pull[0] / level, pull[1] / level
@@ -170,7 +162,7 @@ def add_edge(body, y, rows, pull, i, j, small, s):
 @kernel
 def start_rolling(body, y, x, z, pull, s):
     """Tilt a round body by RIM_START towards a direction of the base, by the work of the ground's pull."""
-    size = max(norm(x, z), 1e-300)
+    size = max(algebra.norm(x, z), 1e-300)
     u = (x / size, z / size)
     a, b, c = y[0], y[1], y[2]
     tilt_about(body, y, u, RIM_START)
@@ -186,9 +178,9 @@ def tilt_about(body, y, u, tilt):
     """Give a flat body a small tilt, with its lowest point towards u in the base, where that point was."""
     modes.lay_flat(body, y)
     p = (body.centre[0] + body.rim * u[0], body.centre[1] + body.rim * u[1], -body.height)
-    before = solid.position_of_base(y, rotation(y), p)
-    turn(y, (-tilt * u[1], tilt * u[0], 0.0))
-    after = solid.position_of_base(y, rotation(y), p)
+    before = solid.position_of_base(y, algebra.rotation(y), p)
+    algebra.turn(y, (-tilt * u[1], tilt * u[0], 0.0))
+    after = solid.position_of_base(y, algebra.rotation(y), p)
     y[0] += before[0] - after[0]
     y[1] += before[1] - after[1]
 
@@ -196,13 +188,13 @@ def tilt_about(body, y, u, tilt):
 @kernel
 def pass_flat(body, y, s):
     """Let a rim pass through flat: its contact turns by a fixed angle and the body tilts up again."""
-    up = rotation(y)[2]
+    up = algebra.rotation(y)[2]
     u, sine = solid.rim_direction(up)
-    sinking = cross(up, solid.omega_of(y))
+    sinking = algebra.cross(up, solid.omega_of(y))
     if sinking[0] * up[0] + sinking[1] * up[1] >= 0.0:
         return
     before = solid.energy(body, y, s.field[6])
-    rate = norm(sinking[0], sinking[1])
+    rate = algebra.norm(sinking[0], sinking[1])
     angle = body.slide_turn if s.slides[0] == forces.SLIDES else body.pass_turn
     if sinking[0] * u[1] - sinking[1] * u[0] > 0:
         angle = -angle
@@ -221,7 +213,7 @@ def rise(body, y, u, rate, s):
     """Let a body that is next to flat tilt up about the rim's point towards u at a rate."""
     y[10], y[11] = -rate * u[1], rate * u[0]
     if s.slides[0] == forces.SLIDES:
-        rows = rotation(y)
+        rows = algebra.rotation(y)
         p = solid.arm(body, rows[2], solid.rim_contact(body))
         y[9] -= solid.point_velocity(y, rows, p)[2]
     else:
@@ -231,7 +223,7 @@ def rise(body, y, u, rate, s):
 @kernel
 def lowest_open(body, y, s):
     """Number of the lowest open point."""
-    up = rotation(y)[2]
+    up = algebra.rotation(y)[2]
     lowest, found = 1e300, 0
     for i in range(solid.first_candidate(body), solid.last_candidate(body)):
         if not step.is_closed(s, i):
@@ -244,7 +236,7 @@ def lowest_open(body, y, s):
 @kernel
 def rising(body, y, i):
     """Velocity upwards of point i."""
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     return solid.point_velocity(y, rows, solid.arm(body, rows[2], i))[2]
 
 
@@ -252,7 +244,7 @@ def rising(body, y, i):
 def guess_landing(body, h, y, below, s):
     """When in a step the point that is lowest after it lands, by the cubic through gaps and velocities."""
     i = lowest_open(body, s.new, s)
-    above, fall = solid.gap(body, y, rotation(y)[2], i), h * rising(body, y, i)
+    above, fall = solid.gap(body, y, algebra.rotation(y)[2], i), h * rising(body, y, i)
     end = h * rising(body, s.new, i)
     square = 3.0 * (below - above) - 2.0 * fall - end
     cube = 2.0 * (above - below) + fall + end
@@ -311,12 +303,12 @@ def locate(body, tau, h, y, s):
 @kernel
 def stop_slips(body, y, s):
     """Let points whose slip has ended stick, before the mode is chosen anew."""
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     for i in range(s.count):
         if s.slides[i] == forces.SLIDES:
             p = solid.arm(body, rows[2], s.closed[i])
-            turned = to_world(rows, cross(solid.omega_of(y), p))
-            if norm(y[7] + turned[0], y[8] + turned[1]) < 2 * modes.AT_REST:
+            turned = algebra.to_world(rows, algebra.cross(solid.omega_of(y), p))
+            if algebra.norm(y[7] + turned[0], y[8] + turned[1]) < 2 * modes.AT_REST:
                 s.slides[i] = forces.STICKS
     modes.hold(body, y, rows, s)
 
@@ -375,7 +367,7 @@ def happen(body, what, tau, y, cut, stuck, s):
     before = solid.energy(body, y, g) - y[solid.WORK]
     if what == modes.LANDS:
         modes.impact(body, y, 0, s)
-        rows = rotation(y)
+        rows = algebra.rotation(y)
         if body.rim == 0.0 and modes.count_touching(body, y, rows) >= 3:
             # the points that open begin with no gap, not with one of rounding
             modes.lay_flat(body, y)
@@ -418,9 +410,9 @@ def critical_tangent(body, up):
 @kernel
 def note_peaks(body, y, start, out):
     """Keep the largest tilt, speed and walk; return the cosine of the tilt."""
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     up = rows[2]
-    sine = norm(up[0], up[1])
+    sine = algebra.norm(up[0], up[1])
     if sine > 1e-9:
         critical = critical_tangent(body, up)
         # x / (1 + x²) < arc tangent of x < x, so most states need no arc tangent
@@ -460,9 +452,9 @@ def fall_is_certain(body, y, peaks, scale, g):
     It does if its centre of mass, over the base's furthest point, leans further than the steepest effective
     gravity to come.
     """
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     up = rows[2]
-    sine = norm(up[0], up[1])
+    sine = algebra.norm(up[0], up[1])
     # sine and cosine of the tilt beyond, times the same length
     beyond = sine * body.height - up[2] * body.furthest
     if beyond <= 0:
@@ -470,14 +462,14 @@ def fall_is_certain(body, y, peaks, scale, g):
     within = up[2] * body.height + sine * body.furthest
     if beyond * (g - scale * peaks[1]) <= within * scale * peaks[0]:
         return False
-    turning = cross(up, solid.omega_of(y))
+    turning = algebra.cross(up, solid.omega_of(y))
     return up[0] * turning[0] + up[1] * turning[1] > 0
 
 
 @kernel
 def note_fall(y, s, time, out):
     """Write down how the body fell, and when it lies or, before that, when its fall is certain."""
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     out[FELL], out[CERTAIN_TIME] = 1.0, time
     out[FALL_AZIMUTH] = atan2(rows[1][2], rows[0][2])
     out[FALL_FIRST] = s.closed[0] if s.count > 0 else -1
@@ -507,7 +499,7 @@ def cannot_fall(body, y, s, g):
 def small_rim(body, y, tau, cut, s):
     """Let a round body lie flat whose wobble is below the cut-off while the ground would carry it flat."""
     pull = forces.pull_at(s.field, tau)
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     if s.count != 1:
         return
     small = cut * body.barrier
@@ -526,7 +518,7 @@ def small_rim(body, y, tau, cut, s):
 def wobble_energy(body, y, rows, g):
     """Energy of the motion that tilts a body, which is what it would lose by lying down [J/kg]."""
     tilting = 0.5 * (body.inertia[0, 0] * y[10] ** 2 + body.inertia[1, 1] * y[11] ** 2)
-    return tilting + 0.5 * y[9] ** 2 + g * body.rim * norm(rows[2][0], rows[2][1])
+    return tilting + 0.5 * y[9] ** 2 + g * body.rim * algebra.norm(rows[2][0], rows[2][1])
 
 
 @kernel
@@ -566,7 +558,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         what = modes.NOTHING
     for i in range(solid.SIZE):
         y[i] = s.new[i]
-    normalise(y)
+    algebra.normalise(y)
     if what != modes.NOTHING:
         out[CONTACT_EVENTS] += 1
         note_loss(happen(body, what, tau + h, y, cut, stuck, s), out)
@@ -592,8 +584,8 @@ def note_loss(loss, out):
 @kernel
 def look_after_rim(body, y, tau, cut, ahead, s, out):
     """Pass a rolling rim through flat, or let it rest."""
-    up = rotation(y)[2]
-    if s.count == 1 and norm(up[0], up[1]) < FLAT_PASS:
+    up = algebra.rotation(y)[2]
+    if s.count == 1 and algebra.norm(up[0], up[1]) < FLAT_PASS:
         before = solid.energy(body, y, s.field[6])
         pass_flat(body, y, s)
         note_loss(before - solid.energy(body, y, s.field[6]), out)
@@ -618,7 +610,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
         out[i] = 0.0
     set_field(s.field, acceleration, 0, scale, dt, g)
     started = solid.energy(body, y, g)
-    start = solid.position_of_base(y, rotation(y), (0.0, 0.0, -body.height))
+    start = solid.position_of_base(y, algebra.rotation(y), (0.0, 0.0, -body.height))
     before = heading(y)
     s.count = s.rests = s.jammed = s.goes_on = 0
     for i in range(modes.COUNTERS):
@@ -692,8 +684,8 @@ def give_up(body, tau, y, s):
     """End a wobble that cannot be followed any more; return the energy lost."""
     before = solid.energy(body, y, s.field[6])
     s.counters[modes.UNSOLVED] += 1
-    up = rotation(y)[2]
-    if body.rim > 0 and norm(up[0], up[1]) < 1e-3:
+    up = algebra.rotation(y)[2]
+    if body.rim > 0 and algebra.norm(up[0], up[1]) < 1e-3:
         y[9] = y[10] = y[11] = 0.0
         modes.lay_flat(body, y)
     if not modes.choose_mode(body, tau, y, s):
@@ -711,6 +703,6 @@ def force_step(body, tau, dt, y, s):
         h *= 0.25
     for i in range(solid.SIZE):
         y[i] = s.new[i]
-    normalise(y)
+    algebra.normalise(y)
     s.counters[modes.UNSOLVED] += 1
     return tau + h

@@ -4,20 +4,9 @@ import math
 
 from rockfrag.elementary import atan2
 from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
-from rockfrag.engines.spatial._algebra import (
-    cross,
-    dot,
-    minus,
-    norm,
-    rotation,
-    scaled,
-    times,
-    to_body,
-    to_world,
-    turn,
-)
 from rockfrag.engines.spatial._cone import solve_cones
 
 TOUCH = 1e-10
@@ -47,7 +36,7 @@ def touching(body, y, rows, s):
     """Fill in s.which with the points that touch, at most MOST, the fastest to approach; return their number."""
     n = 0
     speed = s.vector
-    if body.rim > 0 and norm(rows[2][0], rows[2][1]) < 1e-9:
+    if body.rim > 0 and algebra.norm(rows[2][0], rows[2][1]) < 1e-9:
         return stand_on_feet(body, y, rows, s)
     for i in range(solid.first_candidate(body), solid.last_candidate(body)):
         if solid.gap(body, y, rows[2], i) > TOUCH:
@@ -71,9 +60,9 @@ def stand_on_feet(body, y, rows, s):
     """Fill in s.which with four points of a flat rim, the first where the body would tip; return their number."""
     p = (body.centre[0], body.centre[1], -body.height)
     u = solid.point_velocity(y, rows, p)
-    if norm(u[0], u[1]) < AT_REST:
+    if algebra.norm(u[0], u[1]) < AT_REST:
         u = (s.field[0], s.field[1], 0.0)
-    front = to_body(rows, (u[0], u[1], 0.0))
+    front = algebra.to_body(rows, (u[0], u[1], 0.0))
     each = body.count // forces.MOST
     part = atan2(front[1], front[0]) / (2 * math.pi)
     first = math.floor(part * body.count + 0.5) % body.count
@@ -93,7 +82,7 @@ def fill_edges(body, y, rows, which, n, s):
         p = solid.position_of_base(y, rows, solid.arm(body, rows[2], which[i]))
         for j in range(n):
             q = solid.position_of_base(y, rows, solid.arm(body, rows[2], which[j]))
-            length = max(norm(q[0] - p[0], q[1] - p[1]), 1e-300)
+            length = max(algebra.norm(q[0] - p[0], q[1] - p[1]), 1e-300)
             s.edge[i, j, 0] = (q[0] - p[0]) / length
             s.edge[i, j, 1] = (q[1] - p[1]) / length
 
@@ -136,7 +125,7 @@ def hold(body, y, rows, s):
 @kernel
 def impact(body, y, least, s):
     """Solve an impact of all points that touch, and hold those that hardly leave."""
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     n = touching(body, y, rows, s)
     prepare_impact(body, y, rows, n, s)
     fill_edges(body, y, rows, s.which, n, s)
@@ -162,7 +151,7 @@ def keep_slow_contacts(body, y, rows, n, found, s):
         if forces.in_set(found, i) or leaving < s.close:
             slow = slow or not forces.in_set(found, i)
             s.closed[count] = s.which[i]
-            slip = norm(s.after[3 * i], s.after[3 * i + 1])
+            slip = algebra.norm(s.after[3 * i], s.after[3 * i + 1])
             s.slides[count] = forces.SLIDES if slip > max(s.close, AT_REST) else forces.STICKS
             count += 1
     s.count, s.rests = count, 0
@@ -189,7 +178,7 @@ def still(body, y):
 @kernel
 def rest_margin(body, y, rows, pull):
     """Least margin of acceleration by which the body rests: over the edges of its base, and of friction."""
-    level = norm(pull[0], pull[1])
+    level = algebra.norm(pull[0], pull[1])
     margin = -body.static * pull[2] - level
     if body.rim > 0:
         return min(margin, topple_margin(body, rows, pull))
@@ -211,33 +200,33 @@ def rest_margin(body, y, rows, pull):
 @kernel
 def topple_margin(body, rows, pull):
     """Margin by which the ground carries a round body that is flat, whatever it slides."""
-    centre = to_world(rows, (body.centre[0], body.centre[1], 0.0))
+    centre = algebra.to_world(rows, (body.centre[0], body.centre[1], 0.0))
     x = body.height * pull[0] + pull[2] * centre[0]
     y = body.height * pull[1] + pull[2] * centre[1]
-    return (-body.rim * pull[2] - norm(x, y)) / body.height
+    return (-body.rim * pull[2] - algebra.norm(x, y)) / body.height
 
 
 @kernel
 def carried_flat(body, y, rows, pull):
     """Whether a round body that is flat, and slides or is about to, stays on its face."""
-    if body.rim == 0.0 or norm(rows[2][0], rows[2][1]) > 1e-9 or abs(y[9]) > LEAVES:
+    if body.rim == 0.0 or algebra.norm(rows[2][0], rows[2][1]) > 1e-9 or abs(y[9]) > LEAVES:
         return False
-    if norm(y[10], y[11]) > LEAVES / body.rim:
+    if algebra.norm(y[10], y[11]) > LEAVES / body.rim:
         return False
-    off = norm(body.centre[0], body.centre[1])
+    off = algebra.norm(body.centre[0], body.centre[1])
     if body.kinetic * body.height + off < body.rim:
         return True
-    return norm(y[7], y[8]) < AT_REST and topple_margin(body, rows, pull) >= 0
+    return algebra.norm(y[7], y[8]) < AT_REST and topple_margin(body, rows, pull) >= 0
 
 
 @kernel
 def slide_flat(body, y, rows, pull, s):
     """Let a round body slide on four points of its face, those that do not slip yet the way it is pulled."""
-    level = max(norm(pull[0], pull[1]), 1e-300)
+    level = max(algebra.norm(pull[0], pull[1]), 1e-300)
     n = touching(body, y, rows, s)
     for i in range(n):
         u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.which[i]))
-        speed = norm(u[0], u[1])
+        speed = algebra.norm(u[0], u[1])
         s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
         if speed > AT_REST:
             s.direction[i, 0], s.direction[i, 1] = u[0] / speed, u[1] / speed
@@ -259,7 +248,7 @@ def edge_normal(body, y, rows, i, j):
     """Outward normal of an edge in the plan, and its distance from the centre of mass."""
     p = solid.position_of_base(y, rows, solid.arm(body, rows[2], i))
     q = solid.position_of_base(y, rows, solid.arm(body, rows[2], j))
-    length = norm(q[0] - p[0], q[1] - p[1])
+    length = algebra.norm(q[0] - p[0], q[1] - p[1])
     normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
     return normal, normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
 
@@ -286,22 +275,22 @@ def come_to_rest(body, y, s):
 def lay_flat(body, y):
     """Turn the base into the ground's plane by the least rotation, and set it down."""
     for _ in range(3):
-        up = rotation(y)[2]
-        turn(y, (-up[1], up[0], 0.0))
+        up = algebra.rotation(y)[2]
+        algebra.turn(y, (-up[1], up[0], 0.0))
     y[2] = body.height
 
 
 @kernel
 def choose_mode(body, tau, y, s):
     """Choose the mode that follows for the points that touch and do not leave; return whether one was found."""
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     pull = forces.pull_at(s.field, tau)
     lies = still(body, y) and count_touching(body, y, rows) >= 3
     if lies and rest_margin(body, y, rows, pull) >= 0:
         come_to_rest(body, y, s)
         return True
     if carried_flat(body, y, rows, pull):
-        slip = norm(y[7], y[8]) + body.rim * abs(y[12])
+        slip = algebra.norm(y[7], y[8]) + body.rim * abs(y[12])
         if slip < 2 * AT_REST and rest_margin(body, y, rows, pull) >= 0:
             come_to_rest(body, y, s)
         else:
@@ -336,7 +325,7 @@ def pick_closed(body, y, rows, slow, s):
         if u[2] > LEAVES:
             continue
         s.which[kept] = s.which[i]
-        speed = norm(u[0], u[1])
+        speed = algebra.norm(u[0], u[1])
         s.given[kept] = speed > slow
         slipping += s.given[kept]
         if s.given[kept]:
@@ -350,7 +339,7 @@ def pick_closed(body, y, rows, slow, s):
 def solve_forces(body, y, rows, pull, n, s):
     """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do."""
     forces.fill_delassus(body, rows, s.which, n, s.delassus)
-    forces.fill_accelerations(body, y, rows, to_body(rows, pull), s.which, n, s.free)
+    forces.fill_accelerations(body, y, rows, algebra.to_body(rows, pull), s.which, n, s.free)
     fill_edges(body, y, rows, s.which, n, s)
     return solve_cones(s, n, 0)
 
@@ -370,9 +359,9 @@ def write_mode(body, y, rows, n, found, s):
             s.slides[count] = forces.SLIDES
             s.direction[count, 0], s.direction[count, 1] = s.way[i, 0], s.way[i, 1]
         else:
-            shear = norm(s.impulse[3 * i], s.impulse[3 * i + 1])
+            shear = algebra.norm(s.impulse[3 * i], s.impulse[3 * i + 1])
             limit = s.friction[i] * s.impulse[3 * i + 2]
-            size = norm(u, v)
+            size = algebra.norm(u, v)
             if size > 1e-9 and shear > limit * (1 - 1e-9):
                 s.slides[count] = forces.SLIDES
                 s.direction[count, 0], s.direction[count, 1] = u / size, v / size
@@ -388,7 +377,7 @@ def insist(body, what, s):
     """Open the contact that pulls most, or slide the one furthest out of its cone, where a mode comes again."""
     worst, value = 0, 1e300
     for i in range(s.count):
-        shear = norm(s.lam[i, 0], s.lam[i, 1])
+        shear = algebra.norm(s.lam[i, 0], s.lam[i, 1])
         here = s.lam[i, 2] if what == OPENS else body.static * s.lam[i, 2] - shear
         if here < value and (what == OPENS or s.slides[i] == forces.STICKS):
             worst, value = i, here
@@ -399,7 +388,7 @@ def insist(body, what, s):
                 s.direction[i, k], s.anchor[i, k] = s.direction[i + 1, k], s.anchor[i + 1, k]
         s.count -= 1
     else:
-        shear = norm(s.lam[worst, 0], s.lam[worst, 1])
+        shear = algebra.norm(s.lam[worst, 0], s.lam[worst, 1])
         s.slides[worst] = forces.SLIDES
         for k in range(2):
             s.direction[worst, k] = -s.lam[worst, k] / shear
@@ -415,13 +404,13 @@ def jam(body, y, s):
         s.slides[i] = forces.STICKS
     s.jammed = 1
     anchor_all(body, y, s)
-    hold(body, y, rotation(y), s)
+    hold(body, y, algebra.rotation(y), s)
 
 
 @kernel
 def anchor_all(body, y, s):
     """Note where the closed points are in the plan."""
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     for k in range(s.count):
         p = solid.position_of_base(y, rows, solid.arm(body, rows[2], s.closed[k]))
         s.anchor[k, 0], s.anchor[k, 1] = p[0], p[1]
@@ -430,7 +419,7 @@ def anchor_all(body, y, s):
 @kernel
 def settle(body, y, s):
     """Put a state back on the conditions of its mode, from which steps drift by their error."""
-    rows = rotation(y)
+    rows = algebra.rotation(y)
     kind = forces.kind_of(s)
     if kind in (forces.PIVOT, forces.HINGE):
         i = s.closed[0]
@@ -438,17 +427,17 @@ def settle(body, y, s):
         omega = solid.omega_of(y)
         if kind == forces.HINGE:
             q = solid.arm(body, rows[2], s.closed[1])
-            e = minus(q, p)
-            omega = scaled(dot(e, omega) / dot(e, e), e)
+            e = algebra.minus(q, p)
+            omega = algebra.scaled(algebra.dot(e, omega) / algebra.dot(e, e), e)
             y[10], y[11], y[12] = omega
-        moved = to_world(rows, p)
+        moved = algebra.to_world(rows, p)
         y[2] = -moved[2]
         if i != solid.rim_contact(body):
             y[0], y[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
-        y[7], y[8], y[9] = to_world(rows, cross(p, omega))
+        y[7], y[8], y[9] = algebra.to_world(rows, algebra.cross(p, omega))
     elif kind in (forces.GENERAL, forces.SLIDER):
         close_gaps(body, y, rows, s)
-        hold(body, y, rotation(y), s)
+        hold(body, y, algebra.rotation(y), s)
 
 
 @kernel
@@ -475,4 +464,4 @@ def lift_at(body, y, rows, i, size):
     """Displace the body as a small vertical impulse at point i would."""
     p = solid.arm(body, rows[2], i)
     y[2] += size
-    turn(y, scaled(size, times(body.inverse, cross(p, rows[2]))))
+    algebra.turn(y, algebra.scaled(size, algebra.times(body.inverse, algebra.cross(p, rows[2]))))

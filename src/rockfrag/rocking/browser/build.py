@@ -32,13 +32,7 @@ from rockfrag.engines.spatial._body import MOST_VERTICES
 from rockfrag.engines.spatial.body import NEVER_SLIDES
 from rockfrag.engines.spatial.outcome import AFTER, CUT_OFF, RESTS, TOLERANCE
 from rockfrag.engines.steps import FREE_TIME, STACK_STEP, STEP
-from rockfrag.rocking.browser.ensemble import (
-    SHAKEN,
-    count_blocks,
-    count_stacks,
-    describe_shaken,
-    multiply_add,
-)
+from rockfrag.rocking.browser import ensemble
 from rockfrag.rocking.browser.entry import CALL, describe, integrate_call
 from rockfrag.rocking.browser.space import SPACE, describe_solid, integrate_solid
 from rockfrag.units import GRAVITY
@@ -65,18 +59,19 @@ def build_integrate() -> bytes:
 
 def build_ensemble(*, fused: bool) -> bytes:
     """Return the bytes of the module that counts outcomes, with fused multiply-adds or without."""
-    call, table, whole = np.zeros(1, SHAKEN)[0], np.zeros((1, 1)), np.zeros((1, 1), np.int64)
+    call = np.zeros(1, ensemble.SHAKEN)[0]
+    table, whole = np.zeros((1, 1)), np.zeros((1, 1), np.int64)
     motions = table, whole, table, whole, np.zeros(1), table, whole, np.zeros(1, OUTCOME)
     entries: Entries = {
-        "describe": (describe_shaken, (call,)),
-        "multiplyAdd": (multiply_add, (call,)),
-        "countBlocks": (count_blocks, (call, np.zeros((1, 1, 2), PIVOT), *motions)),
-        "countStacks": (count_stacks, (call, table, *motions)),
+        "describe": (ensemble.describe_shaken, (call,)),
+        "multiplyAdd": (ensemble.multiply_add, (call,)),
+        "countBlocks": (ensemble.count_blocks, (call, np.zeros((1, 1, 2), PIVOT), *motions)),
+        "countStacks": (ensemble.count_stacks, (call, table, *motions)),
     }
     constants = {
         "gravity": GRAVITY, "step": STEP, "stack_step": STACK_STEP, "free_time": FREE_TIME, "block": BLOCK,
     }  # fmt: skip
-    records = {"call": SHAKEN, "body": BODY, "pivot": PIVOT, "outcome": OUTCOME}
+    records = {"call": ensemble.SHAKEN, "body": BODY, "pivot": PIVOT, "outcome": OUTCOME}
     return _module(entries, records, constants, fused=fused)
 
 

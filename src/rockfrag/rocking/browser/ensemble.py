@@ -15,12 +15,7 @@ from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.engines.kernels.lanes.stack_constants import IMPACT, ONE, TWO
 from rockfrag.engines.kernels.taylor import SERIES
 from rockfrag.laws import momentum, position
-from rockfrag.rocking.browser.entry import (
-    BLOCK,
-    note_frequencies,
-    note_frequencies_of_pile,
-    shape_of,
-)
+from rockfrag.rocking.browser import entry
 from rockfrag.system import geometry
 
 _F, _I = np.float64, np.int64
@@ -30,7 +25,7 @@ SHAKEN = np.dtype(
     [
         # what describe reads: whether the ratios of impacts are told, those of the pedestal and of the statue, NaN
         # where momentum's count, and the factor on each
-        ("statue", BLOCK), ("pedestal", BLOCK), ("stacked", _I),
+        ("statue", entry.BLOCK), ("pedestal", entry.BLOCK), ("stacked", _I),
         ("told", _I), ("below", _F), ("above", _F), ("livelier", _F),
         # what it leaves; the least acceleration at which a contact opens [g], and constants of the right and left
         # pivot of a lone block
@@ -64,7 +59,7 @@ def multiply_add(call):
 def describe_shaken(call):
     """Describe a block, or one on a pedestal, to the lanes; gravity stands in its record already."""
     body, g = call.body[0], call.body[0].gravity
-    upper, lower = shape_of(call.statue), shape_of(call.pedestal)
+    upper, lower = entry.shape_of(call.statue), entry.shape_of(call.pedestal)
     told = call.told != 0
     body.measured = told
     call.fault = geometry.STANDS if geometry.can_stand(upper) else geometry.FALLS_ALONE
@@ -72,7 +67,7 @@ def describe_shaken(call):
     if call.stacked == 0:
         geometry.fill_block(body, upper)
         call.centre[0], call.centre[1], call.centre[2] = upper.x, upper.y, upper.inertia
-        note_frequencies(call, upper, g)
+        entry.note_frequencies(call, upper, g)
         for pivot in (1, -1):
             after = geometry.momentum_restitution(upper, -pivot)
             if told:
@@ -91,7 +86,7 @@ def describe_shaken(call):
     whole = geometry.joined(pile)
     call.centre[0], call.centre[1], call.centre[2] = whole.x, whole.y, whole.inertia
     _fill_laws(call, lower, pile.upper)
-    note_frequencies_of_pile(call, pile, g)
+    entry.note_frequencies_of_pile(call, pile, g)
     for pivot in (1, -1):
         _note_uplift(call, geometry.common_arm(pile, pivot))
         _note_uplift(call, geometry.upper_arm(pile, pivot))
