@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.figure_style import figure_style, new_figure, save_figure
 from rockfrag.files import FORMULA, check_name, csv_text, file_name, write_table
-from rockfrag.fragility.identifiers import identifiers
+from rockfrag.fragility.curve_facts import identifiers
 from rockfrag.report.page import Column, inline_svg, table_html
 
 HOSTILE = st.one_of(

@@ -7,9 +7,9 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.observations import observations_from_table
+from rockfrag.keywords import RENAMED, check_names
 from rockfrag.pedestal.paired_tests import check_tests
 from rockfrag.records.catalogue import read_catalogue
-from rockfrag.renamed_keys import RENAMED, check_names
 from rockfrag.schema import checked
 from rockfrag.tabular import read_rows
 

@@ -343,8 +343,7 @@ def _history(contact_events, everything: bool) -> str:  # type: ignore[no-untype
 
 def _check_config(options: argparse.Namespace) -> int:
     from rockfrag.stages.running import results_folder
-    from rockfrag.study.loading import load_any
-    from rockfrag.study.records import check_records
+    from rockfrag.study.loading import check_records, load_any
     from rockfrag.study.study import Study
 
     study = load_any(options.file)

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockfrag.errors import InputError
-from rockfrag.plain_text import printable
 from rockfrag.records.wording import for_command_line
+from rockfrag.tabular import printable
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -18,9 +18,9 @@ from jsonschema import Draft202012Validator, ValidationError
 from jsonschema.validators import extend
 
 from rockfrag.errors import InputError, errors_of
-from rockfrag.plain_text import unfit_character
+from rockfrag.keywords import renamed
 from rockfrag.plugins import plugins
-from rockfrag.renamed_keys import renamed
+from rockfrag.tabular import unfit_character
 from rockfrag.units import other_names, quantity, split_name
 
 LARGEST_WHOLE = 2**53

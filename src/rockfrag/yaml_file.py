@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from rockfrag.errors import InputError
-from rockfrag.plain_text import read_text, unfit_character
+from rockfrag.tabular import read_text, unfit_character
 
 MOST_BYTES = 256 * 1024  # largest configuration; three thousand names of motions are a third of it
 MOST_VALUES, DEEPEST = 20_000, 20

@@ -11,8 +11,7 @@ from scipy.signal import butter, sosfilt, sosfreqz
 from rockfrag import motions as m
 from rockfrag.errors import InputError
 from rockfrag.motions import conditioning, filtering, intensity, processing, scaling
-from rockfrag.records import integration
-from rockfrag.records.motion import Motion, read_motion_set, write_motion_set
+from rockfrag.records.motion import Motion, integrate, read_motion_set, write_motion_set
 from rockfrag.units import GRAVITY as G
 
 
@@ -248,7 +247,7 @@ def test_filtered_motion_with_pads_comes_to_rest(record):
     # 1.5 × order / corner seconds of zeros in all (Converse & Brady)
     motion = Motion(record.acceleration + 0.02, 0.01)
     filtered = filtering.highpass(conditioning.pad(motion, 30.0, 30.0), 0.1, 4)
-    velocity, displacement = integration.integrate(filtered.acceleration, filtered.dt)
+    velocity, displacement = integrate(filtered.acceleration, filtered.dt)
     assert abs(velocity[-1]) < 1e-3 * np.abs(velocity).max()
     assert abs(displacement[-1]) < 0.02 * np.abs(displacement).max()
 

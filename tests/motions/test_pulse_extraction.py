@@ -12,8 +12,7 @@ from scipy.signal import correlate
 from rockfrag import motions as m
 from rockfrag.motions import conditioning, filtering
 from rockfrag.motions import pulse_extraction as searched
-from rockfrag.records import integration
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import Motion, integrate
 
 
 @settings(max_examples=8, deadline=None)
@@ -55,7 +54,7 @@ def thinned_gain(velocity, dt, period, cycles):
 
 def plain_search(motion):
     """The strongest pulse with every period, number of cycles and place tried."""
-    velocity, _ = integration.integrate(motion.acceleration, motion.dt)
+    velocity, _ = integrate(motion.acceleration, motion.dt)
     shortest = max(searched.SHORTEST_PERIOD, 10 * motion.dt)
     longest = min(searched.LONGEST_PERIOD, motion.time[-1])
     step = math.log(searched.PERIOD_RATIO)
@@ -104,7 +103,7 @@ def test_search_finds_what_trying_everything_finds(noise, kind, seed):
 
 def test_taking_the_pulse_away_takes_its_share_of_the_velocity(noise):
     motion = noise(3, 1500, tapered=True)
-    velocity, _ = integration.integrate(motion.acceleration, motion.dt)
+    velocity, _ = integrate(motion.acceleration, motion.dt)
     pulse = m.strongest_pulse(motion)
     half = pulse.cycles * pulse.period / 2
     t = motion.time - pulse.time

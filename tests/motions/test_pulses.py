@@ -10,14 +10,13 @@ from hypothesis import strategies as st
 from rockfrag import motions as m
 from rockfrag.errors import InputError
 from rockfrag.motions import spectra
-from rockfrag.records import integration
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import Motion, integrate
 
 DT = 0.002
 
 
 def at_the_end(motion: Motion) -> tuple[float, float]:
-    velocity, displacement = integration.integrate(motion.acceleration, motion.dt)
+    velocity, displacement = integrate(motion.acceleration, motion.dt)
     return float(velocity[-1]), float(displacement[-1])
 
 
@@ -85,7 +84,7 @@ def test_symmetry_of_ricker_wavelets_is_what_they_are_called_for():
 @pytest.mark.parametrize("phase_deg", [0.0, 45.0, 90.0, -120.0])
 def test_velocity_pulse_integrates_to_its_definition(cycles, phase_deg):
     pulse = m.mavroeidis_papageorgiou(0.6, 1.2, cycles, phase_deg, 0.001)
-    velocity, _ = integration.integrate(pulse.acceleration, pulse.dt)
+    velocity, _ = integrate(pulse.acceleration, pulse.dt)
     t = pulse.time - cycles * 1.2 / 2
     envelope = 0.6 / 2 * (1 + np.cos(2 * np.pi * t / (cycles * 1.2)))
     expected = envelope * np.cos(2 * np.pi * t / 1.2 + math.radians(phase_deg))

@@ -8,7 +8,7 @@ import pytest
 from rockfrag import motions as m
 from rockfrag.errors import InputError
 from rockfrag.motions import intensity
-from rockfrag.records import integration
+from rockfrag.records.motion import integrate
 from rockfrag.units import GRAVITY as G
 
 MODEL = {
@@ -79,7 +79,7 @@ def test_frequency_falls_as_the_model_says(ensemble):
 
 def test_evolutionary_motion_comes_to_rest(ensemble):
     for motion in ensemble[:5]:
-        velocity, displacement = integration.integrate(motion.acceleration, motion.dt)
+        velocity, displacement = integrate(motion.acceleration, motion.dt)
         assert abs(velocity[-1]) < 1e-3 * m.pgv(motion)
         assert abs(displacement[-1]) < 1e-3 * intensity.pgd(motion)
 
@@ -100,7 +100,7 @@ def test_spectrum_compatible_motion_meets_its_target(seed):
 
 def test_spectrum_compatible_motion_starts_and_ends_at_rest():
     motion = m.spectrum_compatible(2, PERIODS, TARGET_G, dt=0.02)
-    velocity, displacement = integration.integrate(motion.acceleration, motion.dt)
+    velocity, displacement = integrate(motion.acceleration, motion.dt)
     assert motion.acceleration[0] == pytest.approx(0.0, abs=1e-12)
     assert velocity[-1] == pytest.approx(0.0, abs=1e-9)
     assert displacement[-1] == pytest.approx(0.0, abs=1e-9)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import PPoly, make_interp_spline
 
-from rockfrag.records.integration import integrate, peak_displacement, peak_velocity
+from rockfrag.records.motion import integrate, peak_displacement, peak_velocity
 from rockfrag.units import GRAVITY
 
 TABLE_3_3 = [

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.records.integration import integrate
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import Motion, integrate
 from rockfrag.shaketable.shaker import (
     Shaker,
     produced_motion,

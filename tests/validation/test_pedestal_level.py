@@ -16,8 +16,7 @@ from scipy import stats
 from rockfrag.pedestal.cluster_means import contrast, equivalence, mean_effect, t_estimate
 from rockfrag.pedestal.power import holm, power_of_t
 
-from .documented import document
-from .made import drawn, pairs_of
+from .made import document, drawn, pairs_of
 
 SEED = 20261121
 DATA_SETS = 20_000

@@ -16,7 +16,7 @@ import pytest
 from rockfrag.pedestal.cluster_means import contrast, mean_effect, slope_effect
 from rockfrag.pedestal.paired_tests import pair_tests
 
-from .documented import document
+from .made import document
 
 SEED = 20261121
 EARTHQUAKES = ("Friuli", "Kobe", "Loma Prieta", "Northridge")

@@ -1,7 +1,7 @@
 """The counted fractions of motions as a fragility function that OpenQuake reads (NRML 0.5, discrete)."""
 
 from rockfrag.assess.answer import Assessment
-from rockfrag.fragility.identifiers import identifiers
+from rockfrag.fragility.curve_facts import identifiers
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.fragility.nrml import model_text
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.building.model import RayleighDamping, ShearBuilding
-from rockfrag.motions.spectra import oscillator_response
 from rockfrag.records.motion import Motion
 from rockfrag.short_repr import short_repr
 
@@ -140,6 +139,9 @@ class BuildingResponse:
 
 def respond_elastically(building: ShearBuilding, motion: Motion) -> BuildingResponse:
     """Superpose the modes, each exact for a ground acceleration linear between samples."""
+    # compiled, which the checks of a building need not wait for
+    from rockfrag.motions.spectra import oscillator_response
+
     modes = find_modes(building)
     displacement = np.zeros((building.storeys, motion.acceleration.size))
     acceleration = np.zeros_like(displacement)

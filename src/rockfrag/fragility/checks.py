@@ -21,8 +21,7 @@ from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
-from rockfrag.fragility.observations import Floats, Observations
-from rockfrag.fragility.pooling import cells
+from rockfrag.fragility.observations import Floats, Observations, cells
 from rockfrag.sentences import sayer
 from rockfrag.short_repr import short_repr
 

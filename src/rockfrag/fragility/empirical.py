@@ -18,11 +18,11 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.observations import (
     Floats,
     Observations,
+    cells,
     observations_from_table,
     positive,
     read_observations,
 )
-from rockfrag.fragility.pooling import cells
 from rockfrag.shaketable.swept import Swept
 
 

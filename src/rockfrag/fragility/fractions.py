@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import optimize, stats
 
 from rockfrag.fragility import intervals
-from rockfrag.fragility.observations import Floats, Observations
-from rockfrag.fragility.pooling import cells, counts
+from rockfrag.fragility.observations import Floats, Observations, cells, counts
 
 ENDS = (0.1587, 0.8413)
 """Shares one standard deviation below and above the median of a lognormal curve [-]."""

@@ -11,8 +11,7 @@ from scipy import special, stats
 
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.censored import Brackets, bracket_log_scores
-from rockfrag.fragility.observations import Floats
-from rockfrag.fragility.pooling import MOST_VALUES, cells, counts
+from rockfrag.fragility.observations import MOST_VALUES, Floats, cells, counts
 
 FOLDS = 20  # groups are held out one by one up to so many, and beyond in so many blocks
 WORST_SCORE = -20.0  # log score of an outcome that a curve calls impossible [-]

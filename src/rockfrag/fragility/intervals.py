@@ -16,8 +16,7 @@ from scipy import special, stats
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch, separated
 from rockfrag.fragility.lognormal import LEAST_SLOPE
-from rockfrag.fragility.observations import Floats, Grouped, Observations, Over
-from rockfrag.fragility.pooling import cells, counts
+from rockfrag.fragility.observations import Floats, Grouped, Observations, Over, cells, counts
 from rockfrag.short_repr import short_repr
 
 FEWEST_GROUPS = 4  # fewest groups for which the jackknife's coverage was validated

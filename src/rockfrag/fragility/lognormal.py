@@ -16,8 +16,7 @@ from statsmodels.tools.sm_exceptions import (
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import Link, fit_batch, log_terms, separated
-from rockfrag.fragility.observations import Floats, Observations
-from rockfrag.fragility.pooling import cells
+from rockfrag.fragility.observations import Floats, Observations, cells
 from rockfrag.keywords import named_keywords
 from rockfrag.sentences import sayer
 from rockfrag.short_repr import short_repr

@@ -13,8 +13,7 @@ from scipy import constants, special
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.fragility.checks import REJECTION
-from rockfrag.fragility.curve_facts import curve_facts
-from rockfrag.fragility.identifiers import StateCurve, curves_by_name
+from rockfrag.fragility.curve_facts import StateCurve, curve_facts, curves_by_name
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.declared import declared, measure_labelled
 from rockfrag.outcomes.limit_states import limit_states

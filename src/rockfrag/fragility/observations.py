@@ -1,4 +1,4 @@
-"""The observations that every fragility estimator starts from, checked once at the door."""
+"""The observations that every fragility estimator starts from, checked once at the door, and their pooling."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.errors import InputError
+from rockfrag.keywords import check_names
 from rockfrag.motions.declared import measure_of, split_column
-from rockfrag.renamed_keys import check_names
 from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]  # an array of floating-point numbers
@@ -276,3 +276,32 @@ def observations_from_table(
     earthquakes = motions if earthquake is None else labels(table, earthquake, source)
     name, unit = name_and_unit(im)
     return Observations(values, failed, counts, motions, earthquakes, name, unit)
+
+
+MOST_VALUES = 1000
+"""Different values of a measure that are kept apart; more fall into as many cells of equal counts."""
+
+
+def cells(
+    measure: Floats, most: int = MOST_VALUES, tests: Floats | None = None
+) -> tuple[NDArray[np.intp], Floats]:
+    """Put each row into a cell of equal or neighbouring values; its number, (n,), and the mean of each cell.
+
+    Means rise.  Up to ``most`` different values have a cell each; of more, cells have about equally many rows, or
+    ``tests`` where their number in each row is given.
+    """
+    values, cell = np.unique(measure, return_inverse=True)
+    if values.size <= most:
+        return cell, values
+    count = np.bincount(cell, tests)
+    middle = np.cumsum(count) - 0.5 * count
+    coarse = np.unique((middle / count.sum() * most).astype(np.intp), return_inverse=True)[1]
+    cell = coarse[cell]
+    return cell, np.bincount(cell, measure) / np.bincount(cell)
+
+
+def counts(group: NDArray[np.intp], cell: NDArray[np.intp], weight: Floats) -> Floats:
+    """Sum weights by group and cell, shape (groups, cells)."""
+    groups, columns = int(group.max()) + 1, int(cell.max()) + 1
+    flat = np.bincount(group * columns + cell, weight, minlength=groups * columns)
+    return np.asarray(flat.reshape(groups, columns))

@@ -9,8 +9,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_table, write_text
-from rockfrag.fragility.curve_facts import curve_facts
-from rockfrag.fragility.identifiers import StateCurve, curves_by_name
+from rockfrag.fragility.curve_facts import StateCurve, curve_facts, curves_by_name
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.declared import declared
 from rockfrag.outcomes.limit_states import limit_state_named

@@ -18,8 +18,8 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.fragility import observations
 from rockfrag.fragility.observations import Floats, name_and_unit
-from rockfrag.plain_text import table_encoding
 from rockfrag.plausibility import LARGEST_PEAK
+from rockfrag.tabular import table_encoding
 from rockfrag.units import DIMENSIONS, convert
 
 ROWS = 100_000  # rows that are read at a time

@@ -12,12 +12,12 @@ from rockfrag.fragility.checks import binned_deviance, refitted_deviance
 from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.observations import (
     Floats,
+    cells,
     labels,
     name_and_unit,
     positive,
     read_observations,
 )
-from rockfrag.fragility.pooling import cells
 from rockfrag.fragility.vector import VectorFragility, design_of, fit_vector
 
 BINS = 10  # bins of the fitted probability in which observed and fitted numbers are compared

@@ -15,8 +15,7 @@ from rockfrag.errors import InputError
 from rockfrag.input_checks import number_from_zero, positive_number, real_number
 from rockfrag.motions.checks import MOST_SAMPLES, whole
 from rockfrag.motions.intensity import arias_times, bracketed_times
-from rockfrag.records.integration import integrate
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import Motion, integrate
 from rockfrag.units import GRAVITY
 
 

@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from rockfrag.input_checks import number_from_zero, positive_number
 from rockfrag.motions.declared import intensity_measure
-from rockfrag.records.integration import peak_displacement, peak_velocity
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import Motion, peak_displacement, peak_velocity
 from rockfrag.units import GRAVITY
 
 if TYPE_CHECKING:

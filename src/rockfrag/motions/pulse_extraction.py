@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from rockfrag.machine_code import cached_njit
-from rockfrag.records.integration import integrate
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import Motion, integrate
 from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]

@@ -20,8 +20,7 @@ from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number
 from rockfrag.motions.checks import plain, whole
 from rockfrag.motions.spectra import oscillator_response, response_spectrum
-from rockfrag.records.integration import integrate
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import Motion, integrate
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]

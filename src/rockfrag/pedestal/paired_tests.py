@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.renamed_keys import check_names
+from rockfrag.keywords import check_names
 from rockfrag.sentences import sayer
 from rockfrag.short_repr import short_repr
 

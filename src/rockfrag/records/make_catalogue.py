@@ -11,7 +11,6 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.plain_text import printable
 from rockfrag.records.catalogue import COLUMNS, is_catalogue
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 from rockfrag.records.parsing.text_file import NotAcceleration
@@ -19,6 +18,7 @@ from rockfrag.records.peer_search import FILE_NAME, PeerRecord, read_search_resu
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import Record, motion_of, read_record
 from rockfrag.records.sources.archive import files_of, is_archive, unpacked
+from rockfrag.tabular import printable
 
 _PERPENDICULAR = 5.0  # degrees by which two components may be off a right angle and still be a pair
 

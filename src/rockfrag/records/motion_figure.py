@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
-from rockfrag.records.integration import integrate
+from rockfrag.records.motion import integrate
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]

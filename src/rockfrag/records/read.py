@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from rockfrag.errors import InputError
 from rockfrag.files import sha256_of
 from rockfrag.keywords import named_keywords
-from rockfrag.plain_text import printable
 from rockfrag.records.formats import HEADED, plain
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.motion import Motion
@@ -27,6 +26,7 @@ from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.quality_flags import STRONGEST_G
 from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked
 from rockfrag.short_repr import short_repr
+from rockfrag.tabular import printable
 from rockfrag.units import GRAVITY
 
 FORMATS = (*HEADED, plain.FORMAT)  # those read here; ObsPy reads some others

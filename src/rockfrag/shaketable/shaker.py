@@ -18,8 +18,7 @@ from rockfrag.input_checks import number_from_zero, positive_number
 from rockfrag.motions.conditioning import pad
 from rockfrag.motions.filtering import highpass
 from rockfrag.motions.scaling import scale_to_pga
-from rockfrag.records.integration import integrate
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import Motion, integrate
 from rockfrag.schema import checked
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag.yaml_file import read_yaml

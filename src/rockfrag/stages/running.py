@@ -11,8 +11,7 @@ from rockfrag.files import write_text
 from rockfrag.processes import end_with
 from rockfrag.stages.job import Job
 from rockfrag.stages.log import logged
-from rockfrag.study.loading import AnyStudy, any_study
-from rockfrag.study.records import check_records
+from rockfrag.study.loading import AnyStudy, any_study, check_records
 from rockfrag.study.study import Study
 
 RESULTS = Path("results")

@@ -1,7 +1,7 @@
 """Reading a study before anything runs, with every check that can be made beforehand.
 
 Nothing is checked twice: :func:`any_study` makes the one object that command line, rules and jobs
-use. Only what is in the user's records is left to :mod:`rockfrag.study.records`, as it takes seconds.
+use. Only what is in the user's records is left to :mod:`rockfrag.study.loading`, as it takes seconds.
 """
 
 import os
@@ -16,8 +16,9 @@ from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names, file_name, is_file
 from rockfrag.laws import law_names
+from rockfrag.plausibility import peak_warning
 from rockfrag.plugins import plugins_asked
-from rockfrag.records.catalogue import read_catalogue
+from rockfrag.records.catalogue import own_records, read_catalogue, repeated_motions
 from rockfrag.schema import checked
 from rockfrag.shaketable.shaker import read_shaker
 from rockfrag.study import measured_table
@@ -32,7 +33,7 @@ from rockfrag.study.configurations import (
 )
 from rockfrag.study.heading import check_file, checked_steps, existing_file, heading_of
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
-from rockfrag.study.study import Amplitudes, FragilitySettings, Study
+from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
 from rockfrag.system.blocks import Block
 from rockfrag.system.system import System
 from rockfrag.yaml_file import read_yaml
@@ -237,3 +238,55 @@ def _check_measured_tests(study: Study, path: Path) -> None:
             raise InputError(
                 f"{path}: column object: expected one of the specimens {', '.join(known)}, found {name}."
             )
+
+
+_FOUND: dict[tuple[object, ...], list[str]] = {}
+"""What was found of the records as they are: a run is checked by itself and by Snakemake, in one process."""
+
+
+def check_records(study: Study) -> list[str]:
+    """Read every record that lies in a folder of the user's own, once in a process as long as none changes.
+
+    Returns warnings: of accelerations that look as if in another unit, of records that will be left out.
+    """
+    columns = ("file", "second", "vertical")
+    files = own_records(study.catalogue, study.catalogue_file.parent, columns)
+    states = map(_state, [study.catalogue_file, *files])
+    asked = (tuple(study.catalogue["name"]), study.keep_going, study.vertical, *states)
+    if asked not in _FOUND:
+        _FOUND[asked] = _read_all(study)
+    return [*_FOUND[asked]]
+
+
+def _state(path: Path) -> tuple[str, int, int]:
+    """Path, size and time of the last change of a file; what is not there has neither."""
+    try:
+        found = os.stat(path)
+    except (OSError, ValueError):
+        return str(path), 0, 0
+    return str(path), found.st_size, found.st_mtime_ns
+
+
+def _read_all(study: Study) -> list[str]:
+    from rockfrag.motions.directions import motion_and_vertical, motion_of_row
+
+    warnings = [f"{study.catalogue_file}: {line}" for line in repeated_motions(study.catalogue)]
+    folder = study.catalogue_file.parent
+    for row in study.catalogue[study.catalogue["source"] == "folder"].to_dict("records"):
+        where = f"{study.catalogue_file}, motion {row['name']}"
+        try:
+            named = {str(k): v for k, v in row.items()}
+            if study.vertical:
+                motion, _ = motion_and_vertical(named, folder, Path(RECORDS_FOLDER))
+            else:
+                motion = motion_of_row(named, folder, Path(RECORDS_FOLDER))
+            if motion.pga == 0:
+                raise InputError("the record is zero throughout; leave it out.")
+        except InputError as error:
+            if not study.keep_going:
+                raise InputError(f"{where}: {error}") from None
+            warnings.append(f"{where} will be left out: {error}")
+            continue
+        if quality_flag := peak_warning(motion.pga):
+            warnings.append(f"{where}: {quality_flag}.")
+    return warnings

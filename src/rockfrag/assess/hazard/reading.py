@@ -9,7 +9,7 @@ from rockfrag.assess.hazard import nrml, openquake_csv, table, usgs
 from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.hazard.found import Found
 from rockfrag.errors import InputError
-from rockfrag.plain_text import read_text
+from rockfrag.tabular import read_text
 
 LARGEST_FILE = 50_000_000
 """Bytes of a hazard file; that of one site has some thousand."""

@@ -15,8 +15,8 @@ from tempfile import TemporaryDirectory
 from typing import IO
 
 from rockfrag.errors import InputError, errors_of
-from rockfrag.plain_text import printable
 from rockfrag.records.parsing.text_file import MAX_BYTES, read_head
+from rockfrag.tabular import printable
 
 MAX_MEMBERS = 5_000  # files of an archive; a download of a data centre has some hundred
 MAX_TOTAL = 2 * MAX_BYTES  # bytes that an archive may unpack to
