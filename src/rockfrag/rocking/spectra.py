@@ -49,11 +49,7 @@ class RockingSpectrum:
 
 
 def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
-    """Return the uniform block of critical angle α [rad] and apparent period 2π/p [s].
-
-    Its size follows from p = √(3g/4R) (Housner, 1963); its density is 1000 kg/m³ for a depth of 1 m, which
-    matters to nothing.
-    """
+    """Return the uniform block of critical angle α [rad] and period 2π/p [s], p = √(3g/4R) (Housner, 1963)."""
     if not 0 < alpha < math.pi / 2:
         raise InputError(f"alpha: a critical angle lies between 0 and π/2 rad, got {alpha}.")
     if not (math.isfinite(period) and period > 0):
