@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.study.loading import load_any, study_from
+from rockfrag.study.loading import any_study, load_any
 
 from .conftest import SPECIMENS, study_content, write_study
 
@@ -141,7 +141,7 @@ ANYTHING = st.recursive(
 def test_no_value_of_any_key_gives_anything_but_a_study_or_one_sentence(study_folder, key, value):
     content = {**study_content(), key: value}
     try:
-        study_from(content, study_folder / "study.yaml")
+        any_study(content, study_folder / "study.yaml")
     except InputError as error:
         assert "\n" not in str(error)
         assert key in str(error)

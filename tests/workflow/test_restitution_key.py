@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.study.loading import study_from
+from rockfrag.study.loading import any_study
 from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
 from rockfrag.yaml_file import read_yaml
 
@@ -14,7 +14,7 @@ SMOKE = Path(__file__).parents[2] / "config" / "smoke.yaml"
 
 def study_with(restitution):
     content = read_yaml(SMOKE)
-    return study_from(
+    return any_study(
         {**content, "bodies": {**content["bodies"], "restitution": restitution}}, SMOKE
     )
 
@@ -33,7 +33,7 @@ def test_each_block_brings_what_was_measured_of_it():
 
 
 def test_without_the_key_momentum_is_conserved():
-    configurations = study_from(read_yaml(SMOKE), SMOKE).configurations
+    configurations = any_study(read_yaml(SMOKE), SMOKE).configurations
     laws = {under.law.name for configuration in configurations for under in configuration.contacts}
     assert laws == {"momentum"}
 
