@@ -5,16 +5,11 @@ import pytest
 from scipy import stats
 
 from rockfrag.pedestal import permutation
-from rockfrag.pedestal.cluster_means import (
-    contrast,
-    mean_effect,
-    slope_effect,
-    t_estimate,
-    unit_means,
-)
+from rockfrag.pedestal.cluster_means import mean_effect, t_estimate, unit_means
 from rockfrag.pedestal.paired_tests import pair_tests
 from rockfrag.pedestal.permutation import leave_one_earthquake_out, sign_flip_test
 from rockfrag.pedestal.study import rank_probabilities
+from rockfrag_thesis.hypotheses.contrasts import contrast, slope_effect
 
 
 def test_t_on_units_is_the_one_sample_t_test():

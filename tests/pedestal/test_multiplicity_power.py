@@ -7,14 +7,8 @@ import pytest
 from statsmodels.stats.multitest import multipletests
 
 from rockfrag.pedestal.cluster_means import Estimate, equivalence, t_estimate
-from rockfrag.pedestal.power import (
-    benjamini_hochberg,
-    detectable_ratio,
-    holm,
-    power_note,
-    power_of_t,
-    units_needed,
-)
+from rockfrag.pedestal.power import benjamini_hochberg, detectable_ratio, holm
+from rockfrag_thesis.hypotheses.contrasts import power_note, power_of_t, units_needed
 
 P = np.array([0.01, 0.04, 0.039, 0.2, 0.6])
 
