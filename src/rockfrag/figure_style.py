@@ -98,23 +98,19 @@ def one_panel(width: float, height: float) -> Iterator[tuple[Figure, Axes]]:
 
 
 def plain_log(axes: Axes, which: str) -> None:
-    """Label a logarithmic axis, ``x`` or ``y``, with 0.1, 0.2, 0.5, 1, … instead of powers of ten."""
-    axis = axes.xaxis if which == "x" else axes.yaxis
-    low, high = axes.get_xlim() if which == "x" else axes.get_ylim()
-    decades = np.log10(high / low)
+    """Make axes logarithmic, ``x``, ``y`` or ``xy``, with ticks such as 0.1, 0.2, 0.5 instead of powers of ten."""
     near = (1.0, 2.0, 3.0, 5.0, 7.0)
-    steps: tuple[float, ...] = (
-        near
-        if decades < 1
-        else (1.0, 2.0, 5.0)
-        if decades < 2.5
-        else (1.0, 3.0)
-        if decades < 4
-        else (1.0,)
-    )
-    axis.set_major_locator(LogLocator(base=10.0, subs=steps, numticks=30))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())
+    for name in which:
+        axes.set(**{f"{name}scale": "log"})
+        axis, ends = (axes.xaxis, axes.get_xlim) if name == "x" else (axes.yaxis, axes.get_ylim)
+        low, high = ends()
+        decades = np.log10(high / low)
+        # fewer ticks over more decades
+        known = ((1.0, near), (2.5, (1.0, 2.0, 5.0)), (4.0, (1.0, 3.0)), (np.inf, (1.0,)))
+        steps = next(steps for most, steps in known if decades < most)
+        axis.set_major_locator(LogLocator(base=10.0, subs=steps, numticks=30))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def letter_panels(axes: Iterable[Axes], size: float = 8.5) -> None:

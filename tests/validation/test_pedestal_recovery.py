@@ -17,7 +17,7 @@ from rockfrag.pedestal.cluster_means import mean_effect
 from rockfrag.pedestal.paired_tests import pair_tests
 from rockfrag_thesis.hypotheses.contrasts import contrast, slope_effect
 
-from .documented import document
+from .made import document
 
 SEED = 20261121
 EARTHQUAKES = ("Friuli", "Kobe", "Loma Prieta", "Northridge")

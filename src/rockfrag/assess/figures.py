@@ -27,17 +27,11 @@ def fractions_figure(found: Assessment) -> Figure:
             ends += [shown.min(), shown.max()] if shown.size else [levels[0], levels[-1]]
         if found.level is not None:
             axes.axvline(found.level.value, color="#555555", linestyle="--", linewidth=0.9)
-            axes.annotate(
-                "the site",
-                (found.level.value, 98),
-                xytext=(3, 0),
-                textcoords="offset points",
-                va="top",
-                color="#555555",
-            )
+            at = (found.level.value, 98)
+            words = axes.annotate("the site", at, (3, 0), textcoords="offset points", va="top")
+            words.set_color("#555555")
             ends.append(found.level.value)
         axes.set(
-            xscale="log",
             xlim=(0.8 * min(ends), 1.25 * max(ends)),
             ylim=(0, 100),
             xlabel=f"{found.measure.imt} of the ground [{found.measure.unit}]",
@@ -51,11 +45,8 @@ def fractions_figure(found: Assessment) -> Figure:
 
 def sources_figure(found: Assessment) -> Figure:
     """How much each source of uncertainty adds to the interval."""
-    known = {
-        NAMES[name]: value
-        for name, value in sorted(found.main.sources.items(), key=lambda item: item[1])
-        if np.isfinite(value)
-    }
+    ranked = sorted(found.main.sources.items(), key=lambda item: item[1])
+    known = {NAMES[name]: value for name, value in ranked if np.isfinite(value)}
     with one_panel(COLUMN_WIDTH, 0.6 + 0.24 * len(known)) as (figure, axes):
         axes.barh(list(known), list(known.values()), color=BLUE, height=0.6)
         axes.set(xlabel="Standard deviation on the scale of the interval")

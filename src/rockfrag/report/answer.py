@@ -2,19 +2,8 @@
 
 import numpy as np
 
+from rockfrag.report import findings
 from rockfrag.report.figures.answer import strength_figure
-from rockfrag.report.findings import (
-    FRICTION,
-    ONE_MOTION,
-    amplitudes_found,
-    friction_sentence,
-    headline_curves,
-    objects_compared,
-    pedestal_effect,
-    recorded_found,
-    resurrections_found,
-    strength_found,
-)
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results, figure_of
 from rockfrag.report.sides import sides_of
 from rockfrag.report.wording import Macros, said, sentence
@@ -36,7 +25,7 @@ MOST_NAMED = 4
 """So many objects are named in the question."""
 
 
-says = Macros("rockfrag.report", "answer.j2", {"FEW": FEW, "FRICTION": FRICTION})
+says = Macros("rockfrag.report", "answer.j2", {"FEW": FEW, "FRICTION": findings.FRICTION})
 
 
 def study_answer(results: Results) -> Answer:
@@ -71,20 +60,22 @@ def has_one_record(results: Results) -> bool:
 
 def sentences(results: Results) -> list[Finding]:
     """How strong the shaking must be, what the motions do as recorded, and what the pedestal changes."""
-    recorded = recorded_found(results.table("as_recorded"))
+    recorded = findings.recorded_found(results.table("as_recorded"))
     found = [_strength(results), recorded]
     if has_one_record(results):
-        return [amplitudes_found(results.tests), recorded, ONE_MOTION]
+        return [findings.amplitudes_found(results.tests), recorded, findings.ONE_MOTION]
     if results.study.has_pairs:
         return [
             *found,
-            pedestal_effect(results.table("pedestal/effects"), sides_of(results.study))[0],
+            findings.pedestal_effect(results.table("pedestal/effects"), sides_of(results.study))[0],
         ]
 
-    resurrections = resurrections_found(results.table("resurrections"), results.table("tests"))
+    resurrections = findings.resurrections_found(
+        results.table("resurrections"), results.table("tests")
+    )
     return [
         *found,
-        *objects_compared(results.table("mean_amplitudes"), results.slenderness),
+        *findings.objects_compared(results.table("mean_amplitudes"), results.slenderness),
         resurrections,
     ][:3]
 
@@ -92,14 +83,14 @@ def sentences(results: Results) -> list[Finding]:
 def _strength(results: Results) -> Finding:
     curves = results.table("fragility")
     known = curves[curves["theta"].notna()]
-    return strength_found(known, results.level) or amplitudes_found(results.tests)
+    return findings.strength_found(known, results.level) or findings.amplitudes_found(results.tests)
 
 
 def advice(results: Results) -> list[str]:
     """What to do: the weakest first, and what would make the result more robust."""
     weakest: list[str] = []
     if not has_one_record(results):
-        curves = headline_curves(results.table("fragility")).rows
+        curves = findings.headline_curves(results.table("fragility")).rows
         curves = curves[curves["theta"].notna()]
         if len(curves) > 1 and curves["theta"].min() < curves["theta"].max():
             # within what three digits tell
@@ -111,7 +102,9 @@ def advice(results: Results) -> list[str]:
 
 def _needs_friction(results: Results) -> bool:
     """Whether any test needs more friction than dry stone has."""
-    return bool((~(results.table("validity")["friction_demand"].astype(float) <= FRICTION)).any())
+    return bool(
+        (~(results.table("validity")["friction_demand"].astype(float) <= findings.FRICTION)).any()
+    )
 
 
 def _earthquakes(results: Results) -> int:
@@ -119,7 +112,7 @@ def _earthquakes(results: Results) -> int:
 
 
 def _figure(results: Results) -> FigureSpec:
-    curves = headline_curves(results.table("fragility")).rows
+    curves = findings.headline_curves(results.table("fragility")).rows
     # amplitudes are peaks of acceleration; a median in another measure has no place beside them
     curves = curves[(curves["unit"] == "g") & curves["theta"].notna()]
     if has_one_record(results):
@@ -158,7 +151,7 @@ def _friction_words(results: Results) -> list[str]:
     validity = results.table("validity")
     if validity.empty:
         return []
-    needed = friction_sentence(validity) if _needs_friction(results) else ""
+    needed = findings.friction_sentence(validity) if _needs_friction(results) else ""
     return said(says.sliding(needed))
 
 

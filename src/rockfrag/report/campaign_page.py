@@ -14,12 +14,7 @@ from rockfrag.campaign.trials import preferred_edges
 from rockfrag.campaign.validation import FEWEST_VOTERS
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector_tables import VectorTables
-from rockfrag.report.figures.campaign import (
-    agreement_figure,
-    beside_figure,
-    footprint_figure,
-    tests_figure,
-)
+from rockfrag.report.figures import campaign as figures
 from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import (
     Answer,
@@ -214,7 +209,7 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
     best = max(agreement.to_dict("records"), key=lambda row: float(row["right"]))
     text = says.agreement_figure(best, _who(best["who"]), _level(study))
     drawn = agreement.assign(who=shown["who"])
-    figure = figure_of(text, "agreement", lambda: agreement_figure(drawn))
+    figure = figure_of(text, "agreement", lambda: figures.agreement_figure(drawn))
     table = table_html(shown, columns, "Outcomes predicted, and the difference on the same tests.")
     text = says.agreement(_findings(tables)[0])
     return section_of(text, "agreement", [figure, table, *_rocking(tables["rocking"])])
@@ -273,7 +268,7 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
     figure = figure_of(
         says.beside_figure(found, name),
         "fragility_beside",
-        lambda: beside_figure(tests, own, measure, f"{name} [{unit}]"),
+        lambda: figures.beside_figure(tests, own, measure, f"{name} [{unit}]"),
     )
     caption = "Curves of measured and of simulated outcomes."
     table = table_html(pd.DataFrame(rows), columns, caption)
@@ -315,7 +310,7 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     parts: list[Markup | FigureSpec] = []
     if len(names) == 2:
         x, y = names
-        draw = partial(tests_figure, tests, x, y, (labels[x], labels[y]))
+        draw = partial(figures.tests_figure, tests, x, y, (labels[x], labels[y]))
         parts.append(figure_of(says.tests_figure(tests), "tests", draw))
     parts += [
         table_html(shown, columns, "Tests by thirds of two measures."),
@@ -343,7 +338,9 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     parts: list[Markup | FigureSpec] = []
     if not footprint.empty:
         text = says.footprint_figure(100 * (likely["left_m"] + likely["right_m"]))
-        parts.append(figure_of(text, "footprint", lambda: footprint_figure(footprint, trials)))
+        parts.append(
+            figure_of(text, "footprint", lambda: figures.footprint_figure(footprint, trials))
+        )
     parts.append(
         text_table(
             {

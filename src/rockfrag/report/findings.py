@@ -7,19 +7,9 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.fragility.curve_facts import Compared, compared_curves
+from rockfrag.report import wording
 from rockfrag.report.part import Finding, finding_of
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
-from rockfrag.report.wording import (
-    Macros,
-    decimals_of,
-    estimate,
-    estimates,
-    has_interval,
-    listed,
-    number,
-    of_all,
-    one_line,
-)
 from rockfrag.shaketable.definitions import DEFINITION
 
 FRICTION = 0.6
@@ -41,9 +31,9 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     rows = found.rows[found.rows["theta"].notna()]
     if rows.empty:
         return None
-    decimals = min(max(decimals_of(value, 2) for value in rows["theta"]), 3)
-    texts = estimates(rows, "theta", decimals)
-    printed = [number(value, decimals) for value in rows["theta"]]
+    decimals = min(max(wording.decimals_of(value, 2) for value in rows["theta"]), 3)
+    texts = wording.estimates(rows, "theta", decimals)
+    printed = [wording.number(value, decimals) for value in rows["theta"]]
     least, most = (
         printed[int(place)] for place in (rows["theta"].argmin(), rows["theta"].argmax())
     )
@@ -124,9 +114,9 @@ def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> l
         own = own.sort_values("slenderness", kind="stable")
         if own["slenderness"].nunique() < 2:
             continue
-        each = listed(
+        each = wording.listed(
             [
-                f"{row['configuration']} {number(row['mean_g'], 3)} g"
+                f"{row['configuration']} {wording.number(row['mean_g'], 3)} g"
                 for row in own.to_dict("records")
             ]
         )
@@ -142,7 +132,7 @@ def mean_sentence(means: pd.DataFrame) -> str:
     """Say over which motions means are taken, and which had to be left out."""
     rows = means[means["by"] == "configuration"]
     most, of = int(rows["motions"].max()), int(rows["of"].max())
-    return one_line(says.means(most, of))
+    return wording.one_line(says.means(most, of))
 
 
 def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Finding:
@@ -162,18 +152,18 @@ def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Fin
 
 def ratio_text(row: Mapping[Any, Any]) -> str:
     """A ratio with its interval: ``1.010 [0.990, 1.030]``."""
-    return estimate(row["ratio"], row["lower"], row["upper"], _RATIO_DECIMALS)
+    return wording.estimate(row["ratio"], row["lower"], row["upper"], _RATIO_DECIMALS)
 
 
-says = Macros(
+says = wording.Macros(
     "rockfrag.report",
     "findings.j2",
     {
         "FRICTION": FRICTION,
         "MOST_CONFIGURATIONS": 6,  # so many are named with their numbers in a sentence
         "RATIO_DECIMALS": _RATIO_DECIMALS,
-        "analyses": lambda n, total: of_all(n, total, "analysis", "analyses"),
-        "has_interval": has_interval,
+        "analyses": lambda n, total: wording.of_all(n, total, "analysis", "analyses"),
+        "has_interval": wording.has_interval,
         "ratio_text": ratio_text,
     },
 )
@@ -188,7 +178,7 @@ def ratio_of(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> Callable[[s
         if found.empty:
             return "no pair with both amplitudes known"
         row = found.to_dict("records")[0]
-        return f"{about.ratio} {estimate(row['ratio'], row['lower'], row['upper'], 2)}"
+        return f"{about.ratio} {wording.estimate(row['ratio'], row['lower'], row['upper'], 2)}"
 
     return text
 
@@ -209,7 +199,7 @@ def _by_floor(rows: pd.DataFrame, about: Sides) -> list[Finding]:
     if len(rows) < 2:
         return []
     limits = rows[["lower", "upper"]].to_numpy(dtype=float)
-    known = np.array([has_interval(low, high, _RATIO_DECIMALS) for low, high in limits])
+    known = np.array([wording.has_interval(low, high, _RATIO_DECIMALS) for low, high in limits])
     clear = known & ((rows["lower"] > 1) | (rows["upper"] < 1))
     each = rows.to_dict("records")
     return [_finding("floors", rows=each, known=known.any(), clear=int(clear.sum()), about=about)]
@@ -245,7 +235,7 @@ def friction_sentence(validity: pd.DataFrame) -> str:
         (int((~(part["friction_demand"].astype(float) <= FRICTION)).sum()), len(part), where)
         for where, part in _sides(validity).items()
     ]
-    return one_line(says.friction(beyond))
+    return wording.one_line(says.friction(beyond))
 
 
 def _demands(validity: pd.DataFrame) -> list[str]:

@@ -12,19 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from rockfrag import figure_style as style
 from rockfrag.errors import InputError
-from rockfrag.figure_style import (
-    BLUE,
-    GREEN,
-    ORANGE,
-    PAGE_WIDTH,
-    PURPLE,
-    RED,
-    figure_style,
-    new_figure,
-    plain_log,
-    save_figure,
-)
 from rockfrag.files import file_name
 from rockfrag.motions.intensity import pgd, pgv, predominant_period
 from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
@@ -176,7 +165,7 @@ def draw_record(motion: Motion, path: str | os.PathLike[str]) -> None:
     """
     if Path(path).suffix not in (".png", ".svg"):
         raise InputError(f"{path}: a picture is written as .png or .svg.")
-    save_figure(record_figure(motion), path)
+    style.save_figure(record_figure(motion), path)
 
 
 def record_figure(motion: Motion) -> Figure:
@@ -184,17 +173,17 @@ def record_figure(motion: Motion) -> Figure:
     velocity, displacement = integrate(motion.acceleration, motion.dt)
     cm = CENTIMETRES_PER_METRE
     histories = (
-        (motion.acceleration / GRAVITY, "Acceleration [g]", BLUE),
-        (velocity * cm, "Velocity [cm/s]", GREEN),
-        (displacement * cm, "Displacement [cm]", ORANGE),
+        (motion.acceleration / GRAVITY, "Acceleration [g]", style.BLUE),
+        (velocity * cm, "Velocity [cm/s]", style.GREEN),
+        (displacement * cm, "Displacement [cm]", style.ORANGE),
     )
     peaks = (
         f"{motion.pga / GRAVITY:.3f} g",
         f"{pgv(motion) * cm:.2f} cm/s",
         f"{pgd(motion) * cm:.2f} cm",
     )
-    with figure_style():
-        figure = new_figure(PAGE_WIDTH, 4.2)
+    with style.figure_style():
+        figure = style.new_figure(style.PAGE_WIDTH, 4.2)
         left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.7, 1))[0]
         panels = left.subplots(3, 1, sharex=True)
         for panel, (values, label, colour), peak in zip(panels, histories, peaks, strict=True):
@@ -214,7 +203,7 @@ def _history(
     largest = int(np.abs(values).argmax())
     panel.axhline(0, color="#999999", linewidth=0.6)
     panel.plot(motion.time, values, color=colour, linewidth=0.6)
-    panel.plot(motion.time[largest], values[largest], "o", color=RED, markersize=3)
+    panel.plot(motion.time[largest], values[largest], "o", color=style.RED, markersize=3)
     highest = 1.2 * abs(values[largest]) or 1.0
     panel.set_ylim(-highest, highest)
     panel.set_ylabel(label)
@@ -224,14 +213,14 @@ def _history(
 def _response(panel: Axes, motion: Motion) -> None:
     spectrum = response_spectrum(motion, _SPECTRUM_PERIODS, _DAMPING)
     values = spectrum.pseudo_acceleration / GRAVITY
-    _logarithmic(panel, _SPECTRUM_PERIODS, values, BLUE)
+    _logarithmic(panel, _SPECTRUM_PERIODS, values, style.BLUE)
     panel.set_xlabel("Period [s]")
     panel.set_ylabel("PSA, 5 % damping [g]")
 
 
 def _fourier(panel: Axes, motion: Motion) -> None:
     frequency, amplitude = fourier_amplitude(motion)
-    _logarithmic(panel, frequency[1:], amplitude[1:], PURPLE)
+    _logarithmic(panel, frequency[1:], amplitude[1:], style.PURPLE)
     panel.set_xlabel("Frequency [Hz]")
     panel.set_ylabel("Fourier amplitude [m/s]")
 
@@ -242,8 +231,7 @@ def _logarithmic(panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], co
     panel.loglog(x, np.maximum(y, 1e-9 * largest), color=colour, linewidth=0.8)
     lowest = max(float(y.min()) if y.size else 0.0, 1e-5 * largest)
     panel.set_ylim(0.7 * lowest, 2 * largest)
-    plain_log(panel, "x")
-    plain_log(panel, "y")
+    style.plain_log(panel, "xy")
     panel.grid(visible=True, which="major")
 
 

@@ -7,16 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.campaign.comparison import (
-    REPEATS,
-    agreement_row,
-    by_region,
-    cross_validated_threshold,
-    fragility_beside,
-    judged_tests,
-    majority_of_repeats,
-    paired_row,
-)
+from rockfrag.campaign import comparison
 from rockfrag.campaign.outcomes import simulate_tests
 from rockfrag.campaign.table_motions import (
     check_peaks,
@@ -70,7 +61,7 @@ def run(job: Job[CampaignStudy]) -> Results:
         "%d tests under %d motions: %.1f %% of the outcomes right",
         len(tests), groups.max() + 1, 100 * (validated.outcomes == measured).mean(),
     )  # fmt: skip
-    yield "tests", judged_tests(tests, validated, measured)
+    yield "tests", comparison.judged_tests(tests, validated, measured)
     yield "trials", _judged_trials(trials, outcomes, measured, groups)
     plane = None
     if trials.planar:
@@ -84,7 +75,7 @@ def run(job: Job[CampaignStudy]) -> Results:
     yield "contours", both.contours
     yield "cells", both.cells
     first, second = (*campaign.measures, campaign.measures[0])[:2]
-    yield "regions", by_region(tests, first, second, validated.outcome, measured)
+    yield "regions", comparison.by_region(tests, first, second, validated.outcome, measured)
     yield "conditioning", _conditioning(job, campaign, thing, validated, groups)
     yield "contact", _contact(study, thing, trials, outcomes, measured)
     yield "footprint", _footprint(study, thing, trials, outcomes == measured, groups)
@@ -194,18 +185,20 @@ def _agreement(
     measured = tests[MEASURED].to_numpy()
     rivals = {} if plane is None else {IN_PLANE: plane.outcomes}
     for name in campaign.measures:
-        rivals[f"threshold on {name}"] = cross_validated_threshold(
+        rivals[f"threshold on {name}"] = comparison.cross_validated_threshold(
             tests[name].to_numpy(), measured, groups, **study.division
         )
     if len(campaign.measures) > 1:
         both = list(campaign.measures[:2])
-        rivals[f"probit on {' and '.join(both)}"] = cross_validated_threshold(
+        rivals[f"probit on {' and '.join(both)}"] = comparison.cross_validated_threshold(
             tests[both].to_numpy(), measured, groups, **study.division
         )
     codes = {f"code {name}": campaign.codes[name].to_numpy() for name in campaign.codes}
-    rows = [agreement_row(OURS, validated.outcomes, measured, groups, level)]
-    if (majority := majority_of_repeats(tests["motion"].to_numpy(), measured)) is not None:
-        rivals[REPEATS] = majority
+    rows = [comparison.agreement_row(OURS, validated.outcomes, measured, groups, level)]
+    if (
+        majority := comparison.majority_of_repeats(tests["motion"].to_numpy(), measured)
+    ) is not None:
+        rivals[comparison.REPEATS] = majority
     ours = np.atleast_2d(validated.outcomes)
     for name, outcomes in {**rivals, **codes}.items():
         # other programs may have done a part of the tests only: all are compared on that part
@@ -216,11 +209,13 @@ def _agreement(
             raise InputError(
                 f"{name}: its tests are of a single input motion; give those of two or more."
             )
-        row = agreement_row(name, theirs, measured[given], own_groups, level)
-        row |= paired_row(ours[:, given], theirs, measured[given], own_groups, level, study.seed)
+        row = comparison.agreement_row(name, theirs, measured[given], own_groups, level)
+        row |= comparison.paired_row(
+            ours[:, given], theirs, measured[given], own_groups, level, study.seed
+        )
         rows.append(row)
     table = pd.DataFrame(rows)
-    judged = dict.fromkeys(codes, "as given") | {REPEATS: "by repeats of the same test"}
+    judged = dict.fromkeys(codes, "as given") | {comparison.REPEATS: "by repeats of the same test"}
     table["judged"] = table["who"].map(judged).fillna("by other motions")
     return table
 
@@ -236,7 +231,9 @@ def _rocking(
         outcomes, campaign.tests[MEASURED].to_numpy(), groups, asked=rocked, **study.division
     )
     noted = campaign.tests["rocked"].to_numpy()
-    return pd.DataFrame([agreement_row(OURS, found.outcomes, noted, groups, study.confidence)])
+    return pd.DataFrame(
+        [comparison.agreement_row(OURS, found.outcomes, noted, groups, study.confidence)]
+    )
 
 
 def _fragility(
@@ -244,7 +241,7 @@ def _fragility(
 ) -> pd.DataFrame:
     measured = campaign.tests[MEASURED].to_numpy()
     parts = [
-        fragility_beside(
+        comparison.fragility_beside(
             campaign.tests[name].to_numpy(),
             measured,
             {OURS: validated.outcome, VOTES: validated.mean_votes},
@@ -281,7 +278,7 @@ def _conditioning(
     study = job.study
     measured = campaign.tests[MEASURED].to_numpy()
     about = (measured, groups, study.confidence)
-    as_configured = agreement_row("as configured", validated.outcomes, *about)
+    as_configured = comparison.agreement_row("as configured", validated.outcomes, *about)
     rows = [as_configured | {"trials": study.trials}]
     fewer = max(16, study.trials // VARIED_FRACTION)
     trials = sample_trials(thing, study.unknowns, fewer, study.seed)
@@ -291,7 +288,7 @@ def _conditioning(
     }.items():
         outcomes, _ = simulate_tests(trials.systems, _motions(study, campaign, steps), job.threads)
         found = cross_validate(outcomes, measured, groups, **study.division)
-        rows.append(agreement_row(name, found.outcomes, *about) | {"trials": fewer})
+        rows.append(comparison.agreement_row(name, found.outcomes, *about) | {"trials": fewer})
         job.log.info("conditioning %s", name)
     return pd.DataFrame(rows).rename(columns={"who": "conditioning"})
 

@@ -5,14 +5,7 @@ from collections.abc import Hashable
 import numpy as np
 from matplotlib.figure import Figure
 
-from rockfrag.figure_style import (
-    BLUE,
-    COLUMN_WIDTH,
-    ORANGE,
-    WIDEST,
-    one_panel,
-    plain_log,
-)
+from rockfrag import figure_style as style
 from rockfrag.survival.answer import Constrained
 
 MOST_BRANCHES_SHOWN = 20
@@ -28,10 +21,10 @@ def curves_figure(found: Constrained) -> Figure:
     measure = found.site.measure
     curves = found.result.curves(measure)
     level = curves["level"].to_numpy()
-    with one_panel(COLUMN_WIDTH, 2.8) as (figure, axes):
+    with style.one_panel(style.COLUMN_WIDTH, 2.8) as (figure, axes):
         for when, colour, line, words in (
-            ("before", ORANGE, "--", "before"),
-            ("after", BLUE, "-", "after survival"),
+            ("before", style.ORANGE, "--", "before"),
+            ("after", style.BLUE, "-", "after survival"),
         ):
             axes.fill_between(
                 level,
@@ -46,14 +39,11 @@ def curves_figure(found: Constrained) -> Figure:
             )
         rates = curves[["mean_before", "mean_after"]].to_numpy()
         axes.set(
-            xscale="log",
-            yscale="log",
             ylim=(max(rates[-1].min(), 1e-6), min(rates[0].max() * 1.5, 10.0)),
             xlabel=f"{measure.imt} of the ground [{measure.unit}]",
             ylabel="Annual rate of exceedance [1/year]",
         )
-        for which in "xy":
-            plain_log(axes, which)
+        style.plain_log(axes, "xy")
         axes.legend(loc="lower left")
     return figure
 
@@ -67,14 +57,19 @@ def weights_figure(found: Constrained) -> Figure:
     ]
     table = table.sort_values("weight_after", kind="stable")
     place = np.arange(len(table))
-    with one_panel(WIDEST, 0.7 + 0.2 * len(table)) as (figure, axes):
+    with style.one_panel(style.WIDEST, 0.7 + 0.2 * len(table)) as (figure, axes):
         axes.hlines(
             place, table["weight_before"], table["weight_after"], color="#999999", linewidth=0.8
         )
         axes.plot(
-            table["weight_before"], place, "o", color=ORANGE, markerfacecolor="none", label="before"
+            table["weight_before"],
+            place,
+            "o",
+            color=style.ORANGE,
+            markerfacecolor="none",
+            label="before",
         )
-        axes.plot(table["weight_after"], place, "s", color=BLUE, label="after survival")
+        axes.plot(table["weight_after"], place, "s", color=style.BLUE, label="after survival")
         names = [_short(name, number) for number, name in table["branch"].items()]
         axes.set_yticks(place, names)
         axes.set(xlabel="Weight of the branch [-]", xlim=(0, None))
@@ -84,8 +79,5 @@ def weights_figure(found: Constrained) -> Figure:
 
 def _short(name: str, number: Hashable) -> str:
     """Name of a branch that fits beside an axis: a long one by its place in the table and its end."""
-    return (
-        name
-        if len(name) <= LONGEST_LABEL
-        else f"row {int(str(number)) + 1}: …{name[8 - LONGEST_LABEL :]}"
-    )
+    short = f"row {int(str(number)) + 1}: …{name[8 - LONGEST_LABEL :]}"
+    return name if len(name) <= LONGEST_LABEL else short

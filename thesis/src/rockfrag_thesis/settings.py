@@ -119,7 +119,9 @@ def tested_blocks(study: Study) -> dict[str, Block]:
     tested = study.configurations
     pedestals = [configuration.names[-2] for configuration in tested if configuration.count > 1]
     blocks = {name: study.specimens[name] for name in (system.names[-1] for system in tested)}
-    return blocks | {"P": study.specimens[name] for name in pedestals[:1]}
+    if pedestals:
+        blocks["P"] = study.specimens[pedestals[0]]
+    return blocks
 
 
 def stacks_of(study: Study) -> dict[str, Stack]:

@@ -17,25 +17,14 @@ from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from rockfrag.figure_style import (
-    BLACK,
-    BLUE,
-    COLUMN_WIDTH,
-    OKABE_ITO,
-    ORANGE,
-    PAGE_WIDTH,
-    figure_style,
-    letter_panels,
-    new_figure,
-    one_panel,
-)
+from rockfrag import figure_style as style
 from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import shortened
 
 GREY = "#777777"
 BAND = "#e9e9e9"
 SIDES = ("NP", "P")
-SIDE_COLOUR = {"NP": ORANGE, "P": BLUE}
+SIDE_COLOUR = {"NP": style.ORANGE, "P": style.BLUE}
 SIDE_MARKER = {"NP": "o", "P": "s"}
 SIDE_NAME = {"NP": "without pedestal", "P": "with pedestal"}
 SIDE_SHIFT = {"NP": -0.13, "P": 0.13}
@@ -70,13 +59,15 @@ def plot_tests(axes: Axes, x: Floats, rows: pd.DataFrame, marker: str, colour: s
     y = rows["a"].to_numpy(dtype=float)
     axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, ms=4, mew=0.9)
     for bound, arrow in (("up", _UP), ("down", _DOWN)):
-        open_ended = rows[bound].to_numpy(dtype=bool)
-        if open_ended.any():
-            _plot_arrows(axes, x[open_ended], y[open_ended], arrow, colour)
+        if rows[bound].any():
+            _plot_arrows(axes, x, y, rows[bound], arrow, colour)
 
 
-def _plot_arrows(axes: Axes, x: Floats, y: Floats, arrow: Path, colour: str) -> None:
-    axes.plot(x, y, ls="", marker=arrow, mfc="none", mec=colour, ms=11, mew=0.9)
+def _plot_arrows(
+    axes: Axes, x: Floats, y: Floats, bound: pd.Series, arrow: Path, colour: str
+) -> None:
+    chosen = bound.to_numpy(dtype=bool)
+    axes.plot(x[chosen], y[chosen], ls="", marker=arrow, mfc="none", mec=colour, ms=11, mew=0.9)
 
 
 def bound_handle(tests: pd.DataFrame) -> list[Line2D]:
@@ -103,8 +94,8 @@ def amplitudes_by_floor(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
 
 def _amplitudes_by(by: str, tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     levels, rows = list(dict.fromkeys(tests[by])), drawn_tests(tests)
-    width = PAGE_WIDTH if by == "object" and len(levels) > 5 else COLUMN_WIDTH
-    with one_panel(width, 2.8) as (figure, axes):
+    width = style.PAGE_WIDTH if by == "object" and len(levels) > 5 else style.COLUMN_WIDTH
+    with style.one_panel(width, 2.8) as (figure, axes):
         _sides_panel(axes, rows, by, levels, means)
         axes.set_ylim(0, _highest_box(rows, by) if len(rows) > MOST_MARKS else top(rows))
         _finish_sides(figure, axes, tests, bool(means["mean_g"].notna().any()))
@@ -131,15 +122,8 @@ def _sides_panel(
             where = x[own].to_numpy(dtype=float)
             plot_tests(axes, where, rows[own], SIDE_MARKER[side], SIDE_COLOUR[side])
         known = means[(means["pedestal"] == side) & means["mean_g"].notna()]
-        axes.plot(
-            known[by].map(place).to_numpy(dtype=float) + shift[side],
-            known["mean_g"].to_numpy(dtype=float),
-            ls="",
-            marker="_",
-            ms=15,
-            mew=2.4,
-            mec=SIDE_COLOUR[side],
-        )
+        where = known[by].map(place).to_numpy(dtype=float) + shift[side]
+        axes.plot(where, known["mean_g"], "_", ms=15, mew=2.4, mec=SIDE_COLOUR[side])
     axes.set_xticks(range(len(levels)), [shortened(level, 14) for level in levels])
     if len(levels) > 4:
         axes.tick_params(axis="x", rotation=40)
@@ -157,23 +141,13 @@ def _join_pairs(axes: Axes, rows: pd.DataFrame) -> None:
 def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) -> None:
     axes.set_ylabel(AMPLITUDE)
     sides = [side for side in SIDES if (tests["pedestal"] == side).any()]
-    handles = [
-        Line2D(
-            [],
-            [],
-            ls="",
-            color=SIDE_COLOUR[side],
-            mfc="none",
-            marker=SIDE_MARKER[side],
-            label=SIDE_NAME[side],
-        )
-        for side in sides
-        if len(sides) > 1
-    ]
+    handles = []
+    for side in sides if len(sides) > 1 else []:
+        marker, colour, name = SIDE_MARKER[side], SIDE_COLOUR[side], SIDE_NAME[side]
+        handles.append(Line2D([], [], ls="", color=colour, mfc="none", marker=marker, label=name))
     if means:
-        handles.append(
-            Line2D([], [], ls="", marker="_", ms=12, mew=2.4, color=GREY, label="geometric mean")
-        )
+        words = "geometric mean"
+        handles.append(Line2D([], [], ls="", marker="_", ms=12, mew=2.4, color=GREY, label=words))
     if len(tests) > MOST_MARKS:
         handles.append(Line2D([], [], color=GREY, label=BOX))
     else:
@@ -190,26 +164,31 @@ def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDEST
     pairs = rows[rows["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
     objects = list(dict.fromkeys(pairs["object"]))
     upper = 1.08 * float(pairs[["a_p", "a_np"]].to_numpy(dtype=float).max())
-    with one_panel(COLUMN_WIDTH, 0.6 + COLUMN_WIDTH) as (figure, axes):
+    with style.one_panel(style.COLUMN_WIDTH, 0.6 + style.COLUMN_WIDTH) as (figure, axes):
         _scatter_panel(axes, pairs, objects, upper)
         # above the panel, where it hides no test
         axes.set_title(title, loc="left", pad=4)
         axes.set_xlabel(f"Overturning amplitude {sides.second} [g]")
         axes.set_ylabel(f"Overturning amplitude {sides.first} [g]")
-        if 1 < len(objects) <= len(MARKERS):
-            handles = [
-                Line2D([], [], ls="", marker=m, mfc="none", mec=c, label=shortened(name))
-                for name, (m, c) in _styles(objects).items()
-            ]
+        if len(objects) > 1 and (handles := _handles(objects)):
             axes.legend(handles=handles, loc="lower right", handletextpad=0.2)
     return figure
+
+
+def _handles(names: Sequence[str]) -> list[Line2D]:
+    """Entries of a legend for names that differ in marker and colour."""
+    return [
+        Line2D([], [], ls="", marker=marker, mfc="none", mec=colour, label=shortened(name))
+        for name, (marker, colour) in _styles(names).items()
+        if len(names) <= len(MARKERS)
+    ]
 
 
 def _styles(names: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Marker and colour of each name; of many all are alike."""
     if len(names) > len(MARKERS):
-        return dict.fromkeys(names, ("o", BLUE))
-    return dict(zip(names, zip(MARKERS, OKABE_ITO, strict=False), strict=False))
+        return dict.fromkeys(names, ("o", style.BLUE))
+    return dict(zip(names, zip(MARKERS, style.OKABE_ITO, strict=False), strict=False))
 
 
 def _scatter_panel(axes: Axes, part: pd.DataFrame, objects: Sequence[str], upper: float) -> None:
@@ -222,8 +201,7 @@ def _scatter_panel(axes: Axes, part: pd.DataFrame, objects: Sequence[str], upper
         x, y = own["a_np"].to_numpy(dtype=float), own["a_p"].to_numpy(dtype=float)
         axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, mew=1.0, ms=4.5)
         for bound, arrow in (("up_p", _UP), ("up_np", _RIGHT)):
-            open_ended = own[bound].to_numpy(dtype=bool)
-            _plot_arrows(axes, x[open_ended], y[open_ended], arrow, colour)
+            _plot_arrows(axes, x, y, own[bound], arrow, colour)
     axes.set(xlim=(0, upper), ylim=(0, upper), aspect="equal")
     axes.locator_params(nbins=5)
 
@@ -237,28 +215,32 @@ def slenderness_figure(
     known = means[(means["by"] == "configuration") & means["mean_g"].notna()]
     earthquakes = list(dict.fromkeys(tests["earthquake"]))
     crowded = len(tests) > MOST_MARKS
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 3.0)
+    with style.figure_style():
+        figure = style.new_figure(style.COLUMN_WIDTH, 3.0)
         grid = figure.subplots(1, 2, sharex=True, sharey=True)
         for axes, side in zip(grid, SIDES, strict=True):
             part = rows[rows["pedestal"] == side]
             if crowded:
-                _box_at(axes, part, "x", sorted(part["x"].unique()), 0.3, BLUE)
-            else:
-                _against_slenderness(axes, part, earthquakes)
+                _box_at(axes, part, "x", sorted(part["x"].unique()), 0.3, style.BLUE)
+            # by earthquake with a little sideways shift
+            shifts = np.linspace(-0.14, 0.14, max(len(earthquakes), 2))
+            styles = {} if crowded else _styles(earthquakes)
+            for shift, (name, marks) in zip(shifts, styles.items(), strict=False):
+                marked = part[part["earthquake"] == name]
+                plot_tests(axes, marked["x"].to_numpy(dtype=float) + shift, marked, *marks)
             own = known[known["pedestal"] == side]
             x = own["object"].map(slenderness).to_numpy(dtype=float)
-            axes.plot(x, own["mean_g"], color=BLACK, lw=1.0, marker="_", ms=10, mew=1.8)
+            axes.plot(x, own["mean_g"], color=style.BLACK, lw=1.0, marker="_", ms=10, mew=1.8)
             axes.set_title(SIDE_NAME[side], loc="left")
             axes.set_ylim(0, _highest_box(rows, "x") if crowded else top(rows))
             axes.set_xticks(sorted(rows["x"].unique()))
         figure.supxlabel("Slenderness H/B", fontsize=8)
-        letter_panels(grid)
+        style.letter_panels(grid)
         figure.supylabel(AMPLITUDE, fontsize=8)
-        handles = [Line2D([], [], color=BLUE, label=BOX)]
+        handles = [Line2D([], [], color=style.BLUE, label=BOX)]
         if not crowded:
-            handles = _earthquake_handles(earthquakes) + bound_handle(tests)
-        handles.append(Line2D([], [], color=BLACK, marker="_", ms=10, label="geometric mean"))
+            handles = _handles(earthquakes) + bound_handle(tests)
+        handles.append(Line2D([], [], color=style.BLACK, marker="_", ms=10, label="geometric mean"))
         figure.legend(handles=handles, loc="outside upper center", ncols=3, handletextpad=0.3)
     return figure
 
@@ -283,21 +265,3 @@ def _box_at(
         capprops={"color": colour},
         medianprops={"color": colour, "linewidth": 1.6},
     )
-
-
-def _earthquake_handles(earthquakes: Sequence[str]) -> list[Line2D]:
-    return [
-        Line2D([], [], ls="", marker=marker, mfc="none", mec=colour, label=shortened(earthquake))
-        for earthquake, (marker, colour) in _styles(earthquakes).items()
-        if len(earthquakes) <= len(MARKERS)
-    ]
-
-
-def _against_slenderness(axes: Axes, part: pd.DataFrame, earthquakes: Sequence[str]) -> None:
-    """Tests by earthquake with a little sideways shift."""
-    shifts = np.linspace(-0.14, 0.14, max(len(earthquakes), 2))
-    for shift, (earthquake, (marker, colour)) in zip(
-        shifts, _styles(earthquakes).items(), strict=False
-    ):
-        own = part[part["earthquake"] == earthquake]
-        plot_tests(axes, own["x"].to_numpy(dtype=float) + shift, own, marker, colour)

@@ -7,14 +7,13 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import BLACK, BLUE, COLUMN_WIDTH, ORANGE, one_panel, plain_log
-from rockfrag.report.figures.amplitudes import GREY, SIDE_NAME, drawn_tests
+from rockfrag.figure_style import BLACK, COLUMN_WIDTH, one_panel, plain_log
+from rockfrag.report.figures.amplitudes import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
 from rockfrag.report.wording import shortened
 
 MOST_ROWS = 24
 """More configurations than this are not legible; the first are drawn."""
 
-_COLOUR = {"NP": ORANGE, "P": BLUE}
 _BOUNDS = {"up": 5, "down": 4}  # carets to the right and to the left
 
 
@@ -27,46 +26,28 @@ def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[s
             side = str(rows["pedestal"].iloc[0])
             x = rows["a"].to_numpy(dtype=float)
             known = ~(rows["up"] | rows["down"]).to_numpy(dtype=bool)
-            axes.plot(
-                x[known], np.full(known.sum(), y + 0.12), "|", color=_COLOUR[side], ms=7, mew=1.0
-            )
+            place, colour = np.full(len(x), y + 0.12), SIDE_COLOUR[side]
+            axes.plot(x[known], place[known], "|", color=colour, ms=7, mew=1.0)
             for bound, marker in _BOUNDS.items():
                 own = rows[bound].to_numpy(dtype=bool)
-                axes.plot(
-                    x[own],
-                    np.full(own.sum(), y + 0.12),
-                    marker=marker,
-                    ls="",
-                    color=_COLOUR[side],
-                    ms=5,
-                )
+                axes.plot(x[own], place[own], marker=marker, ls="", color=colour, ms=5)
             _median(figure, curves[curves["configuration"] == name], y - 0.2)
         axes.set_ylim(len(shown) - 0.4, -0.6)
         axes.set_yticks(range(len(shown)), [shortened(name, 20) for name in shown])
         axes.tick_params(axis="y", length=0)
-        axes.set_xscale("log")
+        axes.set(xscale="log", xlabel="Overturning amplitude [g]")
         low, high = axes.get_xlim()
         axes.set_xlim(min(low, 0.8 * high), high)
         plain_log(axes, "x")
-        axes.set_xlabel("Overturning amplitude [g]")
         sides = list(dict.fromkeys(tests["pedestal"]))
-        handles = [
-            Line2D(
-                [],
-                [],
-                ls="",
-                marker="|",
-                color=_COLOUR[side],
-                ms=8,
-                label=f"tests {SIDE_NAME[side]}",
-            )
-            for side in sides
-            if len(sides) > 1
-        ]
+        handles = []
+        for side in sides if len(sides) > 1 else []:
+            words, colour = f"tests {SIDE_NAME[side]}", SIDE_COLOUR[side]
+            handles.append(Line2D([], [], ls="", marker="|", color=colour, ms=8, label=words))
         if len(curves):
-            handles.append(
-                Line2D([], [], color=BLACK, marker="D", mfc="white", ms=4, label="median, interval")
-            )
+            median = Line2D([], [], color=BLACK, marker="D", mfc="white", ms=4)
+            median.set_label("median, interval")
+            handles.append(median)
         if tests["amplitude_g"].isna().any():
             handles.append(Line2D([], [], ls="", marker=5, color=GREY, label="bound only"))
         if handles:

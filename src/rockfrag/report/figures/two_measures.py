@@ -41,32 +41,18 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
         for probability, line in LINES.items():
             part = contours[np.isclose(contours["probability"], probability)]
             at, value = part["at"], part["value"].where(part["value"].between(*within))
-            axes.plot(
-                *((value, at) if across else (at, value)),
-                color=BLUE,
-                linestyle=line,
-                label=f"{100 * probability:.0f} %",
-            )
+            drawn = (value, at) if across else (at, value)
+            axes.plot(*drawn, color=BLUE, linestyle=line, label=f"{100 * probability:.0f} %")
             if probability == MEDIAN:
                 lower, upper = (part[side].clip(*within) for side in ("lower", "upper"))
                 fill(at, lower, upper, color=BLUE, alpha=0.2, linewidth=0)
-        axes.set(
-            xscale="log",
-            yscale="log",
-            xlim=reach,
-            ylim=rise,
-            xlabel=_axis(first),
-            ylabel=_axis(second),
-        )
-        plain_log(axes, "x")
-        plain_log(axes, "y")
-        bar = figure.colorbar(
-            shown, ax=axes, format=PercentFormatter(1.0, decimals=0, symbol=" %"), pad=0.02
-        )
+        axes.set(xlim=reach, ylim=rise, xlabel=_axis(first), ylabel=_axis(second))
+        plain_log(axes, "xy")
+        percent = PercentFormatter(1.0, decimals=0, symbol=" %")
+        bar = figure.colorbar(shown, ax=axes, format=percent, pad=0.02)
         bar.set_label("Observed, rising in both measures")
-        figure.legend(
-            loc="outside upper center", ncols=3, title="Fitted probability of overturning"
-        )
+        title = "Fitted probability of overturning"
+        figure.legend(loc="outside upper center", ncols=3, title=title)
     return figure
 
 

@@ -7,16 +7,9 @@ import pandas as pd
 
 from rockfrag.files import file_name
 from rockfrag.pedestal.paired_tests import with_counterparts
+from rockfrag.report import findings
 from rockfrag.report.figures import amplitudes as figures
 from rockfrag.report.figures import as_recorded, ida
-from rockfrag.report.findings import (
-    amplitudes_found,
-    mean_sentence,
-    objects_compared,
-    ratio_of,
-    recorded_found,
-    resurrections_found,
-)
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.words import says
@@ -45,7 +38,7 @@ def _as_recorded(results: Results) -> Section:
     recorded = results.table("as_recorded")
     names = recorded["configuration"].unique()
     columns = [*_MOTION, Column("pga_g", "Peak [g]", 3), *(Column(name, name) for name in names)]
-    found = recorded_found(recorded)
+    found = findings.recorded_found(recorded)
     motions = recorded["motion"].nunique()
     text = says.as_recorded_figure(found, motions, as_recorded.MOST_ROWS)
     figure = figure_of(text, "as_recorded", lambda: as_recorded.recorded_map(recorded))
@@ -67,7 +60,9 @@ def _outcome(row: dict[Any, Any]) -> str:
 
 
 def _amplitudes(results: Results) -> Section:
-    resurrections = resurrections_found(results.table("resurrections"), results.table("tests"))
+    resurrections = findings.resurrections_found(
+        results.table("resurrections"), results.table("tests")
+    )
     tests = results.tests
     tests = tests[tests["repetition"] == tests["repetition"].min()]
     names = tests["configuration"].unique()
@@ -76,7 +71,7 @@ def _amplitudes(results: Results) -> Section:
     shown = _wide(tests, texts, ("earthquake", "floor", "motion"))
     caption = "Overturning amplitude of every test (step protocol)."
     table = table_html(shown, columns, caption, "tests.csv")
-    text = says.amplitudes(amplitudes_found(results.tests), resurrections)
+    text = says.amplitudes(findings.amplitudes_found(results.tests), resurrections)
     return section_of(text, "amplitudes", [table, *_maps(results)])
 
 
@@ -98,7 +93,10 @@ def _comparisons(results: Results) -> Section | None:
     study, tests, means = results.study, results.tests, results.table("mean_amplitudes")
     if len(tests) < 2:
         return None
-    found, words = objects_compared(means, results.slenderness), mean_sentence(means)
+    found, words = (
+        findings.objects_compared(means, results.slenderness),
+        findings.mean_sentence(means),
+    )
     known = means[means["mean_g"].notna()]
     whole = known[known["by"] == "configuration"].assign(what=lambda t: t["configuration"])
     floors = known[known["by"] == "floor"].assign(
@@ -123,7 +121,7 @@ def _comparisons(results: Results) -> Section | None:
 
 def _scatter(results: Results) -> FigureSpec:
     about = sides_of(results.study)
-    ratio = ratio_of(results.table("pedestal/effects"), about)("whole", "all")
+    ratio = findings.ratio_of(results.table("pedestal/effects"), about)("whole", "all")
     tests, _ = with_counterparts(results.tests, results.study.counterparts)
     draw = partial(figures.pedestal_scatter, tests, ratio, about)
     return figure_of(says.pedestal_scatter_figure(about, ratio), "with_and_without_pedestal", draw)

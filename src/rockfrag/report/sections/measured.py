@@ -6,14 +6,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from rockfrag.figure_style import COLUMN_WIDTH, one_panel
-from rockfrag.report.figures.amplitudes import (
-    GREY,
-    SIDE_COLOUR,
-    SIDE_MARKER,
-    SIDE_NAME,
-    drawn_tests,
-    plot_tests,
-)
+from rockfrag.report.figures import amplitudes
 from rockfrag.report.page import Column, by_row, estimated, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.pedestal import effect_columns, shown_effects
@@ -59,20 +52,19 @@ def _section(results: Results) -> Section:
 
 def measured_beside(beside: pd.DataFrame) -> Figure:
     """Draw measured against simulated amplitudes."""
-    known = drawn_tests(beside.dropna(subset=["simulated_g"]))
+    known = amplitudes.drawn_tests(beside.dropna(subset=["simulated_g"]))
     with one_panel(COLUMN_WIDTH, 3.2) as (figure, axes):
         largest = 1.15 * float(known[["a", "simulated_g"]].to_numpy(dtype=float).max())
-        axes.plot([0, largest], [0, largest], color=GREY, lw=0.8)
-        for side, name in SIDE_NAME.items():
+        axes.plot([0, largest], [0, largest], color=amplitudes.GREY, lw=0.8)
+        for side, name in amplitudes.SIDE_NAME.items():
             rows = known[known["pedestal"] == side]
             if rows.empty:
                 continue
-            x = rows["simulated_g"].to_numpy(dtype=float)
-            plot_tests(axes, x, rows, SIDE_MARKER[side], SIDE_COLOUR[side])
-            axes.plot([], [], SIDE_MARKER[side], mfc="none", color=SIDE_COLOUR[side], label=name)
+            marker, colour = amplitudes.SIDE_MARKER[side], amplitudes.SIDE_COLOUR[side]
+            amplitudes.plot_tests(axes, rows["simulated_g"].to_numpy(float), rows, marker, colour)
+            axes.plot([], [], marker, mfc="none", color=colour, label=name)
         axes.set(xlim=(0, largest), ylim=(0, largest), aspect="equal")
-        axes.set_xlabel("Simulated amplitude [g]")
-        axes.set_ylabel("Measured amplitude [g]")
+        axes.set(xlabel="Simulated amplitude [g]", ylabel="Measured amplitude [g]")
         axes.legend()
         return figure
 
