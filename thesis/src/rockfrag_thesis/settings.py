@@ -127,7 +127,7 @@ def tested_blocks(study: Study) -> dict[str, Block]:
 def stacks_of(study: Study) -> dict[str, Stack]:
     """Stacks tested, by the name of their configuration."""
     return {
-        pair.name: Stack(*(study.specimens[name] for name in pair.names))
+        pair.name: Stack(study.specimens[pair.names[0]], study.specimens[pair.names[1]])
         for pair in study.configurations
         if pair.count == 2
     }
