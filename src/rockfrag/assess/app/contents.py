@@ -39,16 +39,18 @@ from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.fragility.vector import INTERACTION_LEVEL
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.motions.spectra import oscillator_matrix
-from rockfrag.plausibility import (
+from rockfrag.rocking.browser import driver_text
+from rockfrag.units import (
     DENSITIES,
     DEPTHS,
+    DIMENSIONS,
+    EXAMPLES,
     FIRST_PERIODS,
+    GRAVITY,
     LARGEST_PEAK,
     STONE,
     STOREY_HEIGHTS,
 )
-from rockfrag.rocking.browser import driver_text
-from rockfrag.units import DIMENSIONS, EXAMPLES, GRAVITY
 
 SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
 """Scripts that compute, in the order in which they need each other."""
