@@ -1,6 +1,5 @@
 """The command line says what a person wants to know, and one sentence where it cannot."""
 
-import pydoc
 import subprocess
 import sys
 from pathlib import Path
@@ -23,18 +22,6 @@ def record(tmp_path: Path) -> Path:
     rows = (f"{t:.2f} {a:.8f}" for t, a in zip(time, acceleration, strict=True))
     path.write_text("\n".join(rows) + "\n")
     return path
-
-
-def test_info_tells_peak_and_does_not_stop_at_a_bad_file(
-    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
-    bad = tmp_path / "bad.AT2"
-    bad.write_text("nothing of the kind\n")
-    assert main(["info", str(bad), str(record), "--unit", "g"]) == 1
-    shown = capsys.readouterr()
-    assert "0.4" in shown.out
-    assert "bad.AT2" in shown.err
-    assert "Traceback" not in shown.err
 
 
 def test_play_writes_a_page_that_loads_nothing(
@@ -173,12 +160,6 @@ def test_the_version_is_told(capsys: pytest.CaptureFixture[str]):
         main(["--version"])
     assert ended.value.code == 0
     assert capsys.readouterr().out == f"rockfrag {rockfrag.__version__}\n"
-
-
-def test_help_shows_the_public_classes():
-    text = pydoc.render_doc(rockfrag, renderer=pydoc.plaintext)
-    for name in ("class Block", "class Stack", "class Motion", "simulate(", "overturns("):
-        assert name in text
 
 
 def test_a_reader_that_has_had_enough_is_no_error(record: Path):

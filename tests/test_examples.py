@@ -3,7 +3,6 @@
 import doctest
 import importlib
 import inspect
-import pkgutil
 import pydoc
 import re
 import warnings
@@ -12,7 +11,6 @@ import numpy as np
 import pytest
 
 import rockfrag
-import rockfrag_thesis
 from rockfrag import Block, Motion, Stack, find_thresholds, overturns, read_motion, simulate
 from rockfrag.errors import InputError
 from rockfrag.rocking.inputs import UnitWarning
@@ -87,15 +85,6 @@ def test_public_name_is_documented(name):
     ):
         wrong += ["neither attributes nor parameters are described"]
     assert not wrong
-
-
-def test_every_module_says_what_it_is_for():
-    modules = [
-        module.name
-        for package in (rockfrag, rockfrag_thesis)
-        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
-    ]
-    assert not [name for name in modules if not importlib.import_module(name).__doc__]
 
 
 @pytest.mark.parametrize("name", sorted(WITH_EXAMPLES))

@@ -133,15 +133,6 @@ def test_commands_of_make_exist():
     assert {"run", "test", "smoke"} <= targets
 
 
-def test_files_that_are_named_exist():
-    links = re.findall(r"\]\(([^)#:]+)\)", README) + re.findall(
-        r"`((?:config|docs)/[^`<]+)`", README
-    )
-    assert len(links) > 10
-    missing = [link for link in links if not (ROOT / link).exists()]
-    assert not missing
-
-
 def keys_of(schema: dict) -> set[str]:
     """Names of the keys of a mapping and of the mappings in it, those of laws of materials aside."""
     found = set()

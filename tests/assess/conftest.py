@@ -7,9 +7,6 @@ import pytest
 
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Request, make_request
-from rockfrag.engines.spatial import run_in_space
-from rockfrag.records.motion import GroundMotion
-from rockfrag.system import Block
 
 
 @pytest.fixture(scope="session")
@@ -29,13 +26,6 @@ def few(motions) -> MotionSet:
 def asked(**settings) -> Request:
     """A request of these keys of ``statue.yaml``."""
     return make_request(settings, "test")
-
-
-def fallen_in_space(motions: MotionSet, body: Block, pga_g: float) -> np.ndarray:
-    """Which pairs of components, scaled to the geometric mean of their peaks, topple a body."""
-    shaking = [GroundMotion(motions.base[i], motions.base[j]) for i, j in motions.pairs]
-    scales = [[pga_g / np.sqrt(pair.x.pga * pair.y.pga) * 9.80665] for pair in shaking]
-    return run_in_space([body], shaking, np.array(scales)).overturned
 
 
 @pytest.fixture

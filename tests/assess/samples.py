@@ -102,7 +102,14 @@ def table_csv(title: str = "pga_g", rates: str = "annual_rate") -> str:
     return "\n".join(["# a site", f"{title},{rates}", *rows]) + "\n"
 
 
+def italian_csv() -> str:
+    """A table of return periods with decimal commas, as Italian authorities print them."""
+    rows = (f"{level};{1 / rate(level):.10g}".replace(".", ",") for level in LEVELS)
+    return "\n".join(["PGA (g);Tr (anni)", *rows]) + "\n"
+
+
 SAMPLES = {
+    "italian.csv": italian_csv(),
     "hazard_curve-mean-PGA_12.csv": openquake_csv(),
     "hazard_curve-quantile.csv": openquake_csv(kind="quantile-0.5"),
     "usgs.json": usgs_json(),

@@ -24,6 +24,7 @@ from rockfrag.errors import InputError
 from rockfrag.rocking.browser import driver_text, module_bytes
 
 from ..app_forms import settings_of, some_form
+from .samples import openquake_csv
 
 NODE = shutil.which("node")
 needs_node = pytest.mark.skipif(NODE is None, reason="Node is not installed")
@@ -261,17 +262,10 @@ def test_a_building_that_is_given_has_the_bits_of_the_package(
 @needs_node
 @pytest.mark.parametrize("measure", ["PGA", "SA(0.3)"])
 def test_a_hazard_that_is_given_brings_its_quantiles_and_its_measure(tmp_path, motions, measure):
-    rows = [(0.05, 3e-2), (0.2, 4e-3), (0.6, 3e-4), (1.5, 2e-5)]
     files = []
-    for kind, factor in (("mean", 1.0), ("quantile-0.16", 0.6), ("quantile-0.84", 1.5)):
+    for kind, rate in (("mean", 0.01), ("quantile-0.16", 0.006), ("quantile-0.84", 0.015)):
         path = tmp_path / f"hazard_curve-{kind}-{measure}_1.csv"
-        poes = [-np.expm1(-50 * factor * rate) for _, rate in rows]
-        path.write_text(
-            f"#,,,,,\"generated_by='OpenQuake engine 3.16', start_date='2023-01-01', checksum=1, "
-            f"kind='{kind}', investigation_time=50.0, imt='{measure}'\"\n"
-            + "lon,lat,depth," + ",".join(f"poe-{level}" for level, _ in rows) + "\n"
-            + "16.0,48.0,0.0," + ",".join(repr(float(poe)) for poe in poes) + "\n"
-        )  # fmt: skip
+        path.write_text(openquake_csv(measure, kind, rate))
         files.append(str(path))
     settings = {"width": "15 cm", "height": "80 cm", "hazard": files}
     request = make_request(settings, "test")

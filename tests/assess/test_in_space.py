@@ -1,6 +1,7 @@
-"""A base whose width and depth are given is answered in space, beside the answer in one plane."""
+"""A base with width and depth, or a scan, is answered in space, beside the answer in one plane."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,11 +9,15 @@ import pytest
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.as_json import as_json
 from rockfrag.assess.objects import Objects
+from rockfrag.assess.request import make_request
 from rockfrag.assess.words import five_lines
+from rockfrag.engines.spatial import run_in_space
 from rockfrag.errors import InputError
+from rockfrag.records.motion import GroundMotion
 from rockfrag.system import Block
+from rockfrag.system.mesh import read_shape
 
-from .conftest import asked, fallen_in_space
+from .conftest import asked
 
 BOX = {"width": "35 cm", "depth": "50 cm", "height": "120 cm", "mass": "180 kg"}
 
@@ -23,7 +28,10 @@ def found(few):
 
 
 def test_the_fraction_is_that_of_both_components_at_once(found, few):
-    fallen = fallen_in_space(few, Block(0.35, 1.2, 180.0, depth=0.5), 0.4)
+    shaking = [GroundMotion(few.base[i], few.base[j]) for i, j in few.pairs]
+    scales = [[0.4 / np.sqrt(pair.x.pga * pair.y.pga) * 9.80665] for pair in shaking]
+    body = Block(0.35, 1.2, 180.0, depth=0.5)
+    fallen = run_in_space([body], shaking, np.array(scales)).overturned
     assert 0 < found.fraction.value == fallen.mean() < 1
 
 
@@ -76,3 +84,62 @@ def test_corners_may_lie_elsewhere_by_a_stated_part_of_the_base(found, few):
     assert abs(ideal.mean() - real.mean()) < 0.1
     with pytest.raises(InputError, match="base_spread"):
         asked(**BOX, base_spread=0.5)
+
+
+MEASURED = {"contact_tolerance": "1 mm", "edge_retreat": "0 mm"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    trimesh = pytest.importorskip("trimesh")
+    made = tmp_path_factory.mktemp("scans")
+    trimesh.creation.box((0.35, 0.5, 1.2)).export(made / "box.stl")
+    trimesh.creation.cylinder(0.2, 1.0, sections=180).export(made / "column.stl")
+    return made
+
+
+def scanned(folder, name="box.stl", *, mesh=MEASURED, **settings):
+    given = {"mesh": {"file": str(folder / name), **mesh}, "mass": "180 kg", "pga": "0.4 g"}
+    return make_request(given | settings, "test")
+
+
+def test_the_scan_of_a_box_is_answered_as_the_box_in_space(folder, found, few):
+    of_scan = assess_with(scanned(folder, facing_deg=0), few)
+    np.testing.assert_array_equal(of_scan.counted.overturned, found.counted.overturned)
+    assert json.loads(as_json(of_scan))["in_space"] is True
+    assert "which counts; in one plane" in " ".join(five_lines(of_scan))
+
+
+def test_how_it_faces_is_given_or_a_source(folder, few):
+    anywhere = assess_with(scanned(folder), few, brief=True)
+    given = assess_with(scanned(folder, facing_deg=30), few, brief=True)
+    assert "facing" in anywhere.amplitudes[0.5].sources
+    assert "facing" not in given.amplitudes[0.5].sources
+    body = given.request.objects.scanned
+    corners = np.array(body.base.vertices)
+    # the mesh's x axis points 30° from the first component
+    first = np.degrees(np.arctan2(*(corners[np.argmax(corners[:, 0])])[::-1]))
+    assert first == pytest.approx(30 - np.degrees(np.arctan2(0.25, 0.175)), abs=1e-6)
+    with pytest.raises(InputError, match="leave out one of them"):
+        scanned(folder, facing_deg=30, mesh={"direction_deg": 20})
+
+
+def test_changes_of_the_object_change_it_in_space(folder):
+    objects = scanned(folder, facing_deg=0).objects
+    as_it_is = objects.solid(objects.body).bodies[0]
+    for change in objects.variants():
+        if change.name == "width":
+            lower, upper = (side.solid(side.body).bodies[0] for side in change.sides)
+            assert lower.width < as_it_is.width < upper.width
+    heavier = replace(objects.block, mass=360.0, inertia=objects.block.centroidal_inertia + 5.0)
+    changed = objects.solid(heavier).bodies[0]
+    assert changed.mass == pytest.approx(360.0)
+    np.testing.assert_allclose(np.diag(changed.tensor - as_it_is.tensor), [5, 5, 0], atol=1e-9)
+
+
+def test_a_fine_round_base_keeps_as_many_corners_as_count(folder):
+    shape = read_shape(folder / "column.stl", mass=200.0)
+    assert len(shape.contact_polygon(0.001)) > 100
+    base = np.array(shape.body(0.0, 0.001).base.vertices)
+    assert 12 <= len(base) <= 48
+    assert np.hypot(*base.T) == pytest.approx(0.2, rel=1e-3)

@@ -1,13 +1,168 @@
-"""A gallery is ranked, and a wrong row is named."""
+"""Many objects under the same motions: what topples together is counted, and each is as it is alone."""
 
+import math
+from dataclasses import replace
+
+import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.assess.inventory import assess_inventory
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.inventory import assess_inventory, inventory_table, joint_lines
+from rockfrag.assess.mitigations import mitigations_of, on_plate, with_ballast
+from rockfrag.assess.motions import motion_set
+from rockfrag.assess.outcomes import make_intensity_levels, on_pad, outcomes_of
+from rockfrag.assess.request import make_request
 from rockfrag.cli import main
 from rockfrag.errors import InputError
+from rockfrag.system.blocks import Block
 
-GALLERY = """name,width,height,mass,pedestal_width,pedestal_height,floor
+GALLERY = """name,width,height,mass,pedestal_width,pedestal_height,floor,value
+twin,20 cm,80 cm,90 kg,,,1/2,10
+other twin,20 cm,80 cm,90 kg,,,1/2,10
+giant,150 cm,500 cm,20 t,,,,10
+figurine,6 cm,30 cm,2 kg,,,2/2,1000
+Venus,35 cm,120 cm,180 kg,50 cm,90 cm,1/2,50
+"""
+SHARED = {"pga": "0.4 g", "return_period": "475 years"}
+
+
+@pytest.fixture(scope="module")
+def gallery(own_records, tmp_path_factory):
+    path = tmp_path_factory.mktemp("gallery") / "gallery.csv"
+    path.write_text(GALLERY)
+    shared = {**SHARED, "records": {"paths": [str(own_records / "catalogue.csv")]}}
+    return assess_inventory(path, shared), shared
+
+
+def test_objects_among_others_are_as_they_are_alone(gallery):
+    found, _ = gallery
+    for item in found.found:
+        motions = motion_set(item.request.records, item.request.place, ".")
+        alone = assess_with(item.request, motions, brief=True)
+        assert np.array_equal(alone.counted.overturned, item.counted.overturned)
+        assert alone.probability == item.probability
+        assert alone.fraction == item.fraction
+        assert alone.mitigations == item.mitigations
+
+
+def test_twins_on_one_floor_topple_together_and_others_less(gallery):
+    table = gallery[0].joint.correlation
+    assert table.loc["twin", "other twin"] == 1.0
+    assert np.allclose(np.diag(table), 1.0)
+    assert table.loc["giant", "figurine"] < 0.6
+    assert (table.to_numpy() <= 1 + 1e-12).all()
+
+
+def test_numbers_and_losses_follow_from_the_objects(gallery):
+    joint = gallery[0].joint
+    numbers = joint.numbers.set_index("at_least")["annual_rate"]
+    assert numbers.is_monotonic_decreasing
+    # one of them topples at most as often as all rates together, and at least as often as the worst one
+    rates = joint.objects["annual_rate"]
+    assert rates.max() * (1 - 1e-9) <= numbers[1] <= rates.sum()
+    # the mean of a loss is the area under its exceedance
+    assert joint.objects["annual_loss"].sum() == pytest.approx(
+        (rates * joint.objects["value"]).sum()
+    )
+    assert joint.losses["annual_rate"].is_monotonic_decreasing
+    assert joint.losses["annual_rate"].iloc[0] == pytest.approx(numbers[1], rel=1e-9)
+    assert joint.objects["contribution"].sum() == pytest.approx(1)
+
+
+def test_what_adds_most_comes_first(gallery):
+    found, _ = gallery
+    table = inventory_table(found)
+    assert table["annual_loss"].is_monotonic_decreasing
+    assert table["name"].iloc[0] == "figurine"
+    assert any("For figurine" in line for line in joint_lines(found))
+    assert table["factor"].dropna().lt(1).all()
+
+
+def test_the_mean_number_is_the_sum_of_the_fractions(own_records, tmp_path):
+    """On one floor, where all motions count for all objects, the mean number that topples is exact."""
+    path = tmp_path / "gallery.csv"
+    path.write_text(
+        "name,width,height\n" + "".join(f"o{i},{10 + 3 * i} cm,90 cm\n" for i in range(6))
+    )
+    found = assess_inventory(
+        path, {**SHARED, "records": {"paths": [str(own_records / "catalogue.csv")]}}
+    )
+    numbers = found.joint.numbers.set_index("at_least")
+    assert {1, 2, 3, 5} <= set(numbers.index)
+    sums = sum(item.fraction.value for item in found.found)
+    assert numbers.loc[1, "at_the_site"] <= sums <= 6 * numbers.loc[1, "at_the_site"]
+
+
+def test_values_are_given_for_all_or_none(tmp_path):
+    path = tmp_path / "gallery.csv"
+    path.write_text("name,width,height,value\na,35 cm,120 cm,5\nb,30 cm,120 cm,\n")
+    with pytest.raises(InputError, match="b has no value"):
+        assess_inventory(path, SHARED)
+
+
+def test_mitigations_are_bodies():
+    block = Block(width=0.3, height=1.2, mass=100.0, cg_offset=0.02)
+    heavier = with_ballast(block)
+    assert heavier.mass == pytest.approx(125)
+    # moments about the base stay those of the parts
+    assert heavier.mass * heavier.h == pytest.approx(100 * 0.6 + 25 * 0.06)
+    assert heavier.mass * heavier.cg_offset == pytest.approx(100 * 0.02)
+    about_base = heavier.centroidal_inertia + heavier.mass * (heavier.h**2 + heavier.cg_offset**2)
+    own = block.centroidal_inertia + 100 * (0.6**2 + 0.02**2)
+    assert about_base == pytest.approx(own + 25 * 0.06**2)
+    plate = on_plate(block)
+    assert plate.width == pytest.approx(0.375)
+    assert plate.height == pytest.approx(1.22)
+    assert plate.mass == pytest.approx(100 + 7850 * 0.02 * 0.375**2)
+    on_plinth = make_request(
+        {"width": "30 cm", "height": "1.2 m", "pedestal": {"width": "50 cm", "height": "80 cm"}},
+        "test",
+    )
+    names = " ".join(mitigations_of(on_plinth.objects))
+    for what in ("plate", "ballast", "centre of gravity", "another pedestal", "fixing"):
+        assert what in names
+
+
+def test_a_pad_lets_it_slide_instead(motions):
+    """Friction below b/h never lets it rock; a rough pad is as none."""
+    request = make_request({"width": "35 cm", "height": "1.2 m"}, "test")
+    few = replace(motions, ground=motions.ground[:8], base=motions.base[:8], pairs=())
+    intensity_levels = make_intensity_levels(few, PGA, count=8)
+    smooth, slip = on_pad(request.objects, 0.15, few, intensity_levels)
+    assert not smooth.overturned[intensity_levels.allowed].any()
+    assert slip[intensity_levels.allowed].max() > 0.01
+    rough, _ = on_pad(request.objects, 2.0, few, intensity_levels)
+    bare = outcomes_of(request.objects, {"": request.objects.body}, few, intensity_levels)[""]
+    differs = rough.overturned != bare.overturned
+    assert differs[intensity_levels.allowed].mean() < 0.05
+
+
+def test_pad_and_gallery_from_the_command_line(own_records, tmp_path, capsys):
+    records = str(own_records / "catalogue.csv")
+    options = ["--pga", "0.5g", "--record", records, "--output", str(tmp_path / "out")]
+    assert (
+        main(["assess", "--width", "30cm", "--height", "1.2m", "--pad-friction", "0.2", *options])
+        == 0
+    )
+    assert "ad of friction 0.2" in (tmp_path / "out" / "the-object.html").read_text()
+    capsys.readouterr()
+    path = tmp_path / "gallery.csv"
+    path.write_text(GALLERY)
+    assert main(["assess", str(path), "--return-period", "475", *options]) == 0
+    said = capsys.readouterr().out
+    assert "At least so many topple in one earthquake" in said
+    assert "The mean loss a year" in said
+    for name in ("together.csv", "losses.csv", "correlation.csv"):
+        assert (tmp_path / "out" / name).exists()
+    page = (tmp_path / "out" / "inventory.html").read_text(encoding="utf-8")
+    assert "What 5 objects risk together" in page and "of the mean loss" in page
+    assert page.count("<svg") == 3
+    assert not math.isnan(float(said.split("mean loss a year is ")[1].split()[0]))
+
+
+RANKED = """name,width,height,mass,pedestal_width,pedestal_height,floor
 stout,60 cm,90 cm,500 kg,,,
 slender,20 cm,120 cm,60 kg,,,
 Hermes,50 cm,120 cm,400 kg,60 cm|80 cm,50 cm|20 cm,
@@ -17,7 +172,7 @@ Venus,35 cm,120 cm,180 kg,50 cm,90 cm,1/2
 
 def test_objects_are_ranked_by_risk(own_records, tmp_path, capsys):
     path = tmp_path / "gallery.csv"
-    path.write_text(GALLERY)
+    path.write_text(RANKED)
     arguments = [
         *("assess", str(path), "--pga", "0.4g", "--return-period", "475"),
         *("--record", str(own_records / "catalogue.csv"), "--output", str(tmp_path / "out")),

@@ -11,7 +11,6 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.as_json import as_json
 from rockfrag.assess.as_nrml import as_nrml
 from rockfrag.assess.hazard.measure import PGA
-from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.mitigations import compare
 from rockfrag.assess.narrowing import is_wide, narrowed
@@ -152,15 +151,6 @@ def test_what_a_list_of_pedestals_gets_wrong_is_named(capsys):
 
 def test_an_option_that_is_given_twice_is_refused(capsys):
     assert "--pga is given twice" in refused(capsys, "--pga", "0.2g", "--pga", "0.3g")
-
-
-def test_below_uplift_it_says_from_which_level_it_rocks(motions):
-    found = assess_with(asked(**STATUE, pga="0.13 g"), motions)
-    line = five_lines(found)[0]
-    # b/h = 0.21 / 0.75
-    assert "does not move at PGA 0.13 g; it starts to rock at PGA 0.28 g" in line
-    assert "No change is needed" in five_lines(found)[3]
-    assert found.fraction.upper == 0
 
 
 def test_limits_at_both_ends_are_narrowed_by_nothing():
@@ -372,13 +362,6 @@ def test_glb_is_read_with_y_up(column):
     ]
     assert same[0].width == pytest.approx(same[1].width, rel=1e-6)
     assert same[0].height == pytest.approx(same[1].height, rel=1e-6) == pytest.approx(1.0)
-
-
-def test_an_italian_table_is_read(tmp_path):
-    path = tmp_path / "tr.csv"
-    path.write_text("PGA (g);Tr (anni)\n0,05;30\n0,13;475\n0,2;2475\n")
-    (curve,) = read_hazard([path])
-    assert curve.level(1 / 475) == pytest.approx(0.13)
 
 
 def test_a_centre_of_gravity_off_the_middle_is_answered(motions):

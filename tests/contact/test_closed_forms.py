@@ -8,8 +8,7 @@ import pytest
 from rockfrag.rocking import Block, Stack
 
 from ..rocking.reference_bodies import T1, P
-from .cases import STILL
-from .with_friction import simulate_with_friction
+from .cases import STILL, simulate_with_friction
 
 G = 9.81
 DT = 0.001

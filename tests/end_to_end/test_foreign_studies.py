@@ -1,13 +1,19 @@
 """Studies of other people's things run from configuration to report, and the report fits them."""
 
+import random
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.records.motion import read_motion_set
+from rockfrag.records.read import read_motion
 from rockfrag.report.part import Results
 from rockfrag.study.loading import load_any
 
+from .asking_studies import draw, fate, wrong_limits
 from .checked_report import check_first_page, check_report
 from .studies import STUDIES, Foreign, run
 
@@ -17,8 +23,6 @@ LONG = (
     "pairs of which some never overturn",
     "arrangements compared with each other",
     "two pedestals under one figure",
-    "a base between figure and plinth, and nothing else",
-    "three cabinets on floors of their own",
 )
 """Studies of five seconds and more, of which others have every part."""
 
@@ -48,3 +52,35 @@ def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
 def _pairs(study: Foreign) -> bool:
     sides = {(name, pedestal is None) for name, pedestal, *_ in study.configurations.values()}
     return any((name, True) in sides and (name, False) in sides for name, _ in sides)
+
+
+@pytest.mark.parametrize("number", (9, 15, 21))
+def test_random_studies_end_with_a_report_or_are_refused_in_a_sentence(number, tmp_path):
+    assert fate(draw(random.Random(f"0 {number}")), tmp_path)[1] == []
+
+
+def test_the_checker_sees_limits_that_do_not_hold_their_estimate():
+    table = pd.DataFrame({"theta": [0.3], "theta_lower": [0.1], "theta_upper": [0.2]})
+    assert len(wrong_limits(table)) == 1
+    assert wrong_limits(table.assign(theta_upper=0.4)) == []
+
+
+WRITTEN = Foreign(
+    blocks={"cabinet": (50.0, 160.0, 90.0)},
+    configurations={"cabinet": ("cabinet", None)},
+    records={"quake": "quake"},
+    floors={"roof": 3, "cellar": 0},
+)
+
+
+@pytest.mark.parametrize("format", ["AT2", "CSV"])
+def test_the_motions_of_all_floors_are_written(tmp_path: Path, format: str):
+    results = run(replace(WRITTEN, content={"write_motions": format}), tmp_path)
+    motions = read_motion_set(results / "motions" / "floors.parquet")
+    assert {motion.metadata["floor"] for motion in motions} == {"roof", "cellar"}
+    for motion in motions:
+        (path,) = (results / "motions" / "written").glob(f"{motion.name}.*")
+        again = read_motion(path)
+        assert again.dt == pytest.approx(motion.dt)
+        limit = 1e-6 * np.abs(motion.acceleration).max()
+        np.testing.assert_allclose(again.acceleration, motion.acceleration, atol=limit)

@@ -96,3 +96,19 @@ def test_paper_has_every_chapter(browser: Browser, report: Path):
     document = browser.printed()  # type: ignore[attr-defined]
     assert document.startswith(b"%PDF")
     assert len(re.findall(rb"/Type\s*/Page\b", document)) > 4
+
+
+def pages_of(site: Path) -> list[Path]:
+    pages = sorted(page for page in site.rglob("*.html") if "_static" not in page.parts)
+    assert len(pages) > 60
+    return pages
+
+
+@pytest.mark.parametrize(
+    ("width", "dark"), [(1400, False), (1400, True), (390, False), (390, True)]
+)
+def test_readers_of_every_kind_can_use_the_site(browser, site, width, dark):
+    for page in pages_of(site):
+        browser.open(page, width, 900, dark=dark)
+        assert barriers(browser) == [], page.name
+        assert browser.run("document.documentElement.scrollWidth <= innerWidth"), page.name

@@ -31,8 +31,9 @@ from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.processes import in_processes
 
 from .assess import hazard_files, objects
+from .damage import Attempt
 from .draws import requests, studies
-from .inputs import Attempt, configurations, numbers, tables
+from .inputs import configurations, numbers, tables
 from .records import records
 
 LONGEST_WAIT_S = 120.0

@@ -12,8 +12,8 @@ from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.request import read_request
 
 from ..assess.samples import SAMPLES
-from .damage import changed, damage
-from .inputs import DUMPER, Attempt
+from .damage import Attempt, changed, damage, damaged
+from .inputs import DUMPER
 
 ROOT = Path(__file__).resolve().parents[2]
 STATUES: tuple[dict[str, Any], ...] = (
@@ -40,15 +40,10 @@ Größe,12.5,90,0.12 m,,40,,,1/4,0.85
 
 def hazard_files(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a hazard file with damaged bytes."""
-    samples = {name: text.encode() for name, text in SAMPLES.items()}
-
-    def one(rng: random.Random) -> Attempt:
-        name = rng.choice(list(samples))
-        path = folder / name
-        path.write_bytes(damage(samples[name], rng.choice(list(samples.values())), rng))
-        return path, lambda: read_hazard([path])
-
-    return one
+    return damaged(
+        folder,
+        [(name, text.encode(), lambda path: read_hazard([path])) for name, text in SAMPLES.items()],
+    )
 
 
 def objects(folder: Path) -> Callable[[random.Random], Attempt]:

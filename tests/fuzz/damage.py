@@ -2,6 +2,8 @@
 
 import copy
 import random
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 VALUES: tuple[Any, ...] = (
@@ -49,6 +51,25 @@ def damage(content: bytes, other: bytes, rng: random.Random) -> bytes:
             )
             data = bytearray(b"\n".join(lines))
     return bytes(data)
+
+
+Attempt = tuple[Path, Callable[[], object]]
+"""The file under test, and what reads it."""
+
+Seed = tuple[str, bytes, Callable[[Path], object]]
+"""Name and content of a file in order, and how it is read."""
+
+
+def damaged(folder: Path, seeds: Sequence[Seed]) -> Callable[[random.Random], Attempt]:
+    """Return what makes a file with damaged bytes."""
+
+    def draw(rng: random.Random) -> Attempt:
+        name, content, read = rng.choice(seeds)
+        path = folder / name
+        path.write_bytes(damage(content, rng.choice(seeds)[1], rng))
+        return path, lambda: read(path)
+
+    return draw
 
 
 def _exchange_number(data: bytearray, at: int, rng: random.Random) -> None:

@@ -15,7 +15,7 @@ from rockfrag.units import GRAVITY
 
 from ..assess import asking, samples
 from ..end_to_end import asking_studies
-from .inputs import Attempt
+from .damage import Attempt
 
 EARTHQUAKES = 6
 

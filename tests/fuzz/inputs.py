@@ -16,7 +16,7 @@ from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.study.configurations import read_configurations, read_specimens
 from rockfrag.study.loading import load_any
 
-from .damage import changed, damage
+from .damage import Attempt, changed, damage, damaged
 
 ROOT = Path(__file__).resolve().parents[2]
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -25,8 +25,6 @@ NUMBERS: tuple[Any, ...] = (
     0, 1, -1, 0.5, 1e-12, 1e12, 1e300, -1e300, float("nan"), float("inf"), None, "1", "x", True, 2j,
     [], [1.0], (0.9, 0.8), np.float32(0.3), np.array(0.2), np.array([0.2, np.nan]), {}, object(),
 )  # fmt: skip
-
-Attempt = tuple[Path, Callable[[], object]]
 
 
 def configurations(folder: Path) -> Callable[[random.Random], Attempt]:
@@ -56,14 +54,7 @@ def configurations(folder: Path) -> Callable[[random.Random], Attempt]:
 def tables(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a table with damaged bytes."""
     sources = _sources(folder, ".csv")
-    path = folder / "damaged.csv"
-
-    def one(rng: random.Random) -> Attempt:
-        name = rng.choice(list(TABLES))
-        path.write_bytes(damage(sources[name], sources["thesis.csv"], rng))
-        return path, lambda: TABLES[name](path)
-
-    return one
+    return damaged(folder, [(name, sources[name], read) for name, read in TABLES.items()])
 
 
 def numbers(folder: Path) -> Callable[[random.Random], Attempt]:

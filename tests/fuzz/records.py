@@ -3,9 +3,9 @@
 import gzip
 import io
 import random
-import tarfile
 import zipfile
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,24 +17,18 @@ from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.read import motion_of, read_record
 
 from ..records import built_records
-from .damage import damage
-from .inputs import Attempt
+from .damage import Attempt, Seed, damaged
 
 
 def records(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a damaged record and how it is read."""
-    seeds = list(_seeds(folder))
-
-    def one(rng: random.Random) -> Attempt:
-        name, content, read = rng.choice(seeds)
-        path = folder / name
-        path.write_bytes(damage(content, rng.choice(seeds)[1], rng))
-        return path, lambda: _naming(path, read)
-
-    return one
+    seeds = _seeds(folder)
+    return damaged(
+        folder, [(name, content, partial(_naming, read)) for name, content, read in seeds]
+    )
 
 
-def _naming(path: Path, read: Callable[[Path], None]) -> None:
+def _naming(read: Callable[[Path], object], path: Path) -> None:
     """Read a file, and see that a refusal names it."""
     try:
         read(path)
@@ -61,7 +55,7 @@ def _catalogue_of(path: Path) -> None:
     make_catalogue([path])
 
 
-def _seeds(folder: Path) -> Iterable[tuple[str, bytes, Callable[[Path], None]]]:
+def _seeds(folder: Path) -> Iterable[Seed]:
     """Yield name, content and reader of every kind of input."""
     inside = folder / "built"
     inside.mkdir()
@@ -73,7 +67,7 @@ def _seeds(folder: Path) -> Iterable[tuple[str, bytes, Callable[[Path], None]]]:
         yield f"{kind}-{built.path.name}", built.path.read_bytes(), reader
     for name, content in _binary(inside):
         yield name, content, _read_all
-    for name, content in _archives(texts):
+    for name, content in _archives(inside, texts):
         yield name, content, _read_all
         yield f"c-{name}", content, _catalogue_of
     (folder / "a.txt").write_bytes(texts["plain_csv-plain.csv"])
@@ -105,24 +99,11 @@ def _binary(folder: Path) -> Iterable[tuple[str, bytes]]:
     yield "AOM001.EW", built_records.knet_text().encode()
 
 
-def _archives(texts: dict[str, bytes]) -> Iterable[tuple[str, bytes]]:
+def _archives(folder: Path, texts: dict[str, bytes]) -> Iterable[tuple[str, bytes]]:
     some = {name: texts[name] for name in ("csmip_v2-csmip.V2", "at2_peer-peer.AT2")}
-    for name, packing in (("stored.zip", zipfile.ZIP_STORED), ("packed.zip", zipfile.ZIP_DEFLATED)):
-        buffer = io.BytesIO()
-        with zipfile.ZipFile(buffer, "w", packing) as archive:
-            for member, content in some.items():
-                archive.writestr(member, content)
-        yield name, buffer.getvalue()
-    nested = io.BytesIO()
-    with zipfile.ZipFile(nested, "w") as archive:
-        archive.writestr("inner.zip", buffer.getvalue())
-    yield "nested.zip", nested.getvalue()
-    for name, mode in (("some.tar", "w"), ("some.tar.gz", "w:gz")):
-        buffer = io.BytesIO()
-        with tarfile.open(fileobj=buffer, mode=mode) as archive:
-            for member, content in some.items():
-                info = tarfile.TarInfo(member)
-                info.size = len(content)
-                archive.addfile(info, io.BytesIO(content))
-        yield name, buffer.getvalue()
+    stored = built_records.pack(folder / "stored.zip", some)
+    packed = built_records.pack(folder / "packed.zip", some, zipfile.ZIP_DEFLATED)
+    nested = built_records.pack(folder / "nested.zip", {"inner.zip": packed.read_bytes()})
+    tars = [built_records.pack_tar(folder / name, some) for name in ("some.tar", "some.tar.gz")]
+    yield from ((path.name, path.read_bytes()) for path in (stored, packed, nested, *tars))
     yield "peer.AT2.gz", gzip.compress(some["at2_peer-peer.AT2"])

@@ -5,7 +5,6 @@ import warnings
 
 import numpy as np
 import pytest
-from obspy import Trace
 
 from rockfrag import motions as m
 from rockfrag.motions import conditioning, filtering, intensity, spectra
@@ -21,12 +20,6 @@ def peer(name: str):
 @pytest.fixture(scope="module")
 def motion(noise) -> Motion:
     return Motion(np.pad(noise(11, 2000, tapered=True).acceleration, (1, 1)), 0.01, "noise")
-
-
-def test_velocity_is_obspys(motion):
-    trace = Trace(motion.acceleration.copy(), {"delta": motion.dt}).integrate()
-    velocity, _ = integrate(motion.acceleration, motion.dt)
-    np.testing.assert_allclose(velocity, trace.data, atol=1e-12)
 
 
 @pytest.mark.peers

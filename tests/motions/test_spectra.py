@@ -8,10 +8,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import StateSpace, lsim
 
+from rockfrag import motions as m
 from rockfrag.errors import InputError
-from rockfrag.motions import half_sine, pga, response_spectrum, sine
+from rockfrag.motions import conditioning, half_sine, intensity, pga, response_spectrum, sine
 from rockfrag.motions.filtering import interpolate
-from rockfrag.motions.intensity import pgd
+from rockfrag.motions.intensity import (
+    HOUSNER_PERIODS,
+    PREDOMINANT_PERIODS,
+    housner_and_average,
+    pgd,
+)
+from rockfrag.motions.side_by_side import peak_displacements
 from rockfrag.motions.spectra import fourier_amplitude, oscillator_response
 from rockfrag.records.motion import Motion
 
@@ -125,3 +132,42 @@ def test_impossible_periods_are_refused(ended, periods):
 def test_impossible_damping_is_refused(ended, damping):
     with pytest.raises(InputError, match="damping"):
         response_spectrum(ended(5), [1.0], damping)
+
+
+@pytest.fixture(
+    params=["tapered noise", "noise to the end", "0.5 s sine", "jump", "quiet end", "0.005 s"]
+)
+def motion(request, noise) -> Motion:
+    """Motions whose peaks come early, late, after the end, between samples and at them."""
+    made = {
+        "tapered noise": lambda: noise(1, tapered=True),
+        "noise to the end": lambda: noise(2, 700),
+        "0.5 s sine": lambda: m.sine(2.0, 0.5, 10, dt=0.01),
+        "jump": lambda: m.rectangular(1.0, 0.3, dt=0.01),
+        "quiet end": lambda: conditioning.pad(noise(3, 300), 5.0, 30.0),
+        "0.005 s": lambda: noise(4, 900, 0.005, tapered=True),
+    }
+    return made[request.param]()
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.02, 0.05, 0.7, 1.0, 1.5])
+def test_peaks_are_those_of_each_oscillator_alone(motion, damping):
+    periods = np.concatenate([np.geomspace(0.02, 10.0, 37), HOUSNER_PERIODS[::20]])
+    alone = m.response_spectrum(motion, periods, damping).displacement
+    np.testing.assert_array_equal(peak_displacements(motion, periods, damping), alone)
+
+
+def test_predominant_period_is_that_of_the_whole_spectrum(motion):
+    spectrum = m.response_spectrum(motion, PREDOMINANT_PERIODS).pseudo_acceleration
+    assert intensity.predominant_period(motion) == PREDOMINANT_PERIODS[np.argmax(spectrum)]
+
+
+def test_housner_intensity_is_the_area_below_the_spectrum(motion):
+    spectrum = m.response_spectrum(motion, HOUSNER_PERIODS, 0.05).pseudo_velocity
+    assert housner_and_average(motion)[0] == np.trapezoid(spectrum, HOUSNER_PERIODS)
+
+
+def test_negative_damping_is_refused(motion):
+    with pytest.raises(InputError, match="damping"):
+        peak_displacements(motion, HOUSNER_PERIODS, -0.1)
+    assert math.isfinite(housner_and_average(motion, 0.0)[0])

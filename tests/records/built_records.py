@@ -1,6 +1,9 @@
 """Small records of every format, built here from the formats' definitions."""
 
-from collections.abc import Callable
+import io
+import tarfile
+import zipfile
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -820,6 +823,24 @@ BUILDERS: dict[str, Callable[[Path], Built]] = {
     if getattr(made, "__annotations__", None) == {"folder": Path, "return": Built}
 }
 """Every function above that makes a record in a folder."""
+
+
+def pack(path: Path, members: Mapping[str, bytes], packing: int = zipfile.ZIP_STORED) -> Path:
+    """Pack files into a zip archive."""
+    with zipfile.ZipFile(path, "w", packing) as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return path
+
+
+def pack_tar(path: Path, members: Mapping[str, bytes]) -> Path:
+    """Pack files into a tar archive, compressed if its name says so."""
+    with tarfile.open(path, "w:gz" if path.suffix == ".gz" else "w") as archive:
+        for name, content in members.items():
+            info = tarfile.TarInfo(name)
+            info.size = len(content)
+            archive.addfile(info, io.BytesIO(content))
+    return path
 
 
 def knet_text() -> str:

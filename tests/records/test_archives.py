@@ -1,8 +1,6 @@
 """Archives of data centres: members are read with their units, named, and unpacked within bounds."""
 
 import gzip
-import io
-import tarfile
 import tracemalloc
 import zipfile
 
@@ -16,21 +14,7 @@ from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import read_motion, read_record
 from rockfrag.records.sources import archive as archives
 
-
-def pack(path, members):
-    with zipfile.ZipFile(path, "w") as archive:
-        for name, content in members.items():
-            archive.writestr(name, content)
-    return path
-
-
-def pack_tar(path, members):
-    with tarfile.open(path, "w:gz" if path.suffix == ".gz" else "w") as archive:
-        for name, content in members.items():
-            info = tarfile.TarInfo(name)
-            info.size = len(content)
-            archive.addfile(info, io.BytesIO(content))
-    return path
+from .built_records import pack, pack_tar
 
 
 @pytest.mark.parametrize("packer", [(pack, "a.zip"), (pack_tar, "a.tar"), (pack_tar, "a.tar.gz")])

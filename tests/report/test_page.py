@@ -2,12 +2,16 @@
 
 import math
 import re
+import shutil
 from pathlib import Path
 
 import pandas as pd
+import pytest
 from matplotlib.figure import Figure
 
+from rockfrag.errors import InputError
 from rockfrag.figure_style import figure_style, new_figure
+from rockfrag.report import pdf
 from rockfrag.report.page import MOST_TABLE_ROWS, Column, cell, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import draw_all
@@ -86,3 +90,22 @@ def test_cells_show_digits_truth_and_what_is_missing():
     assert cell(None, None) == "–"
     assert cell(True, None) == "yes"
     assert cell("", None) == "–"
+
+
+def test_a_page_is_printed_beside_itself(tmp_path: Path):
+    if not any(map(shutil.which, pdf.BROWSERS)):
+        pytest.skip("no browser that prints is installed")
+    page = tmp_path / "report.html"
+    page.write_text("<details><summary>closed</summary>behind it</details>")
+    assert pdf.print_page(page) == tmp_path / "report.pdf"
+    assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_without_a_page_or_a_browser_one_sentence_says_what_to_do(tmp_path, monkeypatch):
+    page = tmp_path / "report.html"
+    with pytest.raises(InputError, match="run the study first"):
+        pdf.print_page(page)
+    page.write_text("words")
+    monkeypatch.setattr(pdf, "BROWSERS", ())
+    with pytest.raises(InputError, match="in any browser and print it"):
+        pdf.print_page(page)

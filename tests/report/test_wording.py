@@ -1,11 +1,20 @@
-"""Numbers in words: no NaN, no infinity, no interval without width."""
+"""Reports speak as an engineer writes, in words of the field, and numbers are neither NaN nor without width."""
 
+import ast
 import math
+import re
+from functools import cache
+from pathlib import Path
 
 import pandas as pd
 import pytest
 
+from rockfrag.report.glossary import TERMS, terms_used
+from rockfrag.report.page import render
+from rockfrag.report.part import Answer, Finding, Section, section_of
 from rockfrag.report.wording import (
+    Macros,
+    agree,
     amplitude,
     counted,
     decimals_of,
@@ -16,7 +25,9 @@ from rockfrag.report.wording import (
     of_all,
     probability,
     shortened,
+    spelled,
 )
+from rockfrag.stages.measure_selection import best_of
 
 NAN, INF = math.nan, math.inf
 
@@ -83,3 +94,131 @@ def test_long_names_keep_their_head_and_tail():
 def test_decimals_show_three_digits():
     assert [decimals_of(x) for x in (0.0123, 1.23, 123.0, 0.0)] == [4, 2, 0, 3]
     assert number(-0.5, 1) == "−0.5"
+
+
+SPEAKING = ("report", "assess", "survival", "pedestal", "fragility", "campaign", "stages")
+"""Subpackages whose sentences stand in reports and on the screen of a run."""
+
+ROOT = Path(__file__).resolve().parents[2]
+
+RIDDLES = {
+    r"could overturn it\b": "What could change this result",
+    r"[Ii]n a repeat|there fall": "Recorded at full strength, 9 of 12 motions overturn T1",
+    r"survived above one that overturns": "a stronger motion was survived",
+    r"[Hh]ow strong must shaking be that": "How strong must shaking be to overturn",
+    r"tell it from|told apart from": "not distinguishable from",
+    r"hang together": "dependent tests",
+    r"foretell": "predict",
+    r"without a form": "nonparametric",
+    r"\bLuck\b|luck decides": "Non-monotone response",
+    r"not counted \(": "neglecting a 20 kg table mass",
+    r"None can that": "No mechanism acting on only one of them can",
+    r"that the model leaves out": "implies an effect that the model omits",
+    r"\bholds for the specimens": "confirmed for the specimens",
+    r"printed values .* come out": "All printed values are reproduced",
+    r"What is needed to get the same results": "Software, data and settings used",
+    r"The numbers behind it": "Tables",
+    r"The least median of overturning": "is the most fragile",
+    r"are another|is another if": "flips",
+}
+"""Sentences that readers stumbled over, and how an engineer says them."""
+
+
+@cache
+def sentences() -> list[tuple[Path, str]]:
+    """Texts of all speaking modules and templates that are not docstrings."""
+    folders = [ROOT / "src" / "rockfrag" / name for name in SPEAKING]
+    found = []
+    for folder in (*folders, ROOT / "thesis" / "src"):
+        assert folder.is_dir()
+        for path in sorted(folder.rglob("*.py")):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            silent = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+            found += [
+                (path, node.value)
+                for node in ast.walk(tree)
+                if isinstance(node, ast.Constant)
+                and isinstance(node.value, str)
+                and id(node) not in silent
+            ]
+        found += [(path, path.read_text(encoding="utf-8")) for path in sorted(folder.rglob("*.j2"))]
+    return found
+
+
+@pytest.mark.parametrize("riddle", RIDDLES)
+def test_no_report_speaks_in_riddles(riddle):
+    said = [(path.name, text) for path, text in sentences() if re.search(riddle, text)]
+    assert not said, f"say instead: {RIDDLES[riddle]}"
+
+
+def page(said: str = "AvgSA predicts best.", **answer) -> str:
+    given = {"asked": "How strong?", "sentences": [Finding("It holds", "So far", "P/NP 1.01")]}
+    return render(
+        title="T",
+        lead="lead",
+        answer=Answer(**{**given, **answer}),
+        sections=[Section("a", "A", "Short.", [said])],
+        pictures={},
+        provenance={"Seed": "1"},
+    )
+
+
+def test_numbers_wait_behind_a_click():
+    text = page()
+    before, _, after = text.partition("<details")
+    assert "It holds" in before and "P/NP 1.01" not in before
+    assert "P/NP 1.01" in after
+
+
+def test_what_to_do_stands_open_and_what_could_change_the_result_has_its_own_name():
+    text = page(advice=["Secure the urn first."], could_change=["Sliding."])
+    assert "Secure the urn first." in text
+    assert "What could change this result" in text
+
+
+def test_a_page_explains_the_terms_that_it_uses_and_no_others():
+    text = page()
+    assert "<dt>P/NP</dt>" in text and "<dt>AvgSA</dt>" in text
+    assert "<dt>AUC</dt>" not in text
+    assert "Glossary" not in page("", sentences=[Finding("So")])
+
+
+def test_terms_are_found_as_words_of_their_own():
+    assert set(terms_used("The PGAs of P&NP")) == set()
+    assert set(terms_used("PGA and beta")) == {"PGA, PGV, PGD"}
+    assert all(meaning.endswith(".") for meaning in TERMS.values())
+
+
+def test_a_ratio_is_spelled_out_for_a_reader():
+    assert spelled("P/NP on GF 1.0, NP/P on F3") == (
+        "with/without pedestal on GF 1.0, without/with pedestal on F3"
+    )
+
+
+def test_verbs_agree_with_what_is_counted():
+    assert [agree(n, 3, "needs", "need") for n in range(4)] == ["needs", "needs", "need", "need"]
+    assert agree(1, 1, "needs", "need") == "needs"
+
+
+def test_an_estimate_on_its_own_limit_is_called_a_bound():
+    assert estimate(0.0445, 0.0, 0.0445, 3) == "≤ 0.044"
+    assert estimate(0.03, 0.0, 0.0445, 3) == "0.030 [open, 0.044]"
+
+
+def test_an_open_chapter_says_what_its_headline_rests_on():
+    opening = Macros("rockfrag.report", "opening.j2").opening
+    section = section_of(opening("Title", Finding("A", "b", "c")), "anchor", [])
+    assert section == Section("anchor", "Title", "A.", ["b", "c"], [])
+    assert section_of(opening("Title", Finding("A")), "anchor", []).paragraphs == []
+
+
+def test_best_measures_are_among_those_asked_for():
+    choice = pd.DataFrame(
+        {
+            "configuration": ["a", "a", "a", "b", "b", "b"],
+            "measure": ["avgsa_g", "pga_g", "pgv_cm_s"] * 2,
+            "im": ["AvgSA", "PGA", "PGV"] * 2,
+            "score": [-1.0, -2.0, -3.0, -1.0, float("nan"), -3.0],
+        }
+    )
+    assert best_of(choice, ["pga_g", "pgv_cm_s"]) == ["PGA", "PGV"]

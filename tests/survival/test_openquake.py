@@ -16,6 +16,8 @@ from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.survival.branches import read_branches
 
+from ..assess.samples import openquake_csv
+
 YEARS = 50.0
 THETA, BETA, AGE = 0.25, 0.3, 4000.0
 SITE = f"""
@@ -150,27 +152,21 @@ def test_weights_of_openquake_return_its_mean_curve(calculated, measure):
 
 
 def exported(folder):
-    """Files as OpenQuake 3.26 writes them, comments and digits included: three branches at one site."""
-    said = "generated_by='OpenQuake engine 3.26.2', start_date='2026-01-01T00:00:00', checksum=1211112711"
-    levels = np.geomspace(0.005, 2, 20)
-    columns = ",".join(f"poe-{x:.7f}" for x in levels)
-    rates = {0: 2e-4, 1: 5e-4, 2: 12e-4}
+    """Exports of three branches at one site, whose rates at 0.1 g come back by their numbers."""
+    rates = {0: 0.002, 1: 0.005, 2: 0.012}
     for number, rate in rates.items():
-        poes = ",".join(f"{-math.expm1(-YEARS * rate * x**-1.8 * 0.05):.6E}" for x in levels)
-        blanks = "," * (levels.size + 2)
-        facts = f"{said}, kind='rlz-{number:03d}', investigation_time={YEARS}, imt='PGA'"
-        (folder / f"hazard_curve-rlz-{number:03d}-PGA_7.csv").write_text(
-            f'#{blanks},"{facts}"\nlon,lat,depth,{columns}\n0.10000,0.10000,0.00000,{poes}\n'
-        )
+        path = folder / f"hazard_curve-rlz-{number:03d}-PGA_7.csv"
+        path.write_text(openquake_csv("PGA", f"rlz-{number:03d}", rate))
     (folder / "realizations_7.csv").write_text(
-        f'#,,"{said}"\nrlz_id,branch_path,weight\n'
+        "#,,\"generated_by='OpenQuake engine 3.26.2', start_date='2026-01-01T00:00:00', checksum=1\"\n"
+        "rlz_id,branch_path,weight\n"
         "0,AA~A,2.0000000e-01\n1,AB~A,5.0000000e-01\n2,AC~A,3.0000000e-01\n"
     )
-    return levels, rates
+    return rates
 
 
 def test_exports_are_read_reweighted_and_read_back(tmp_path, monkeypatch):
-    levels, rates = exported(tmp_path)
+    rates = exported(tmp_path)
     monkeypatch.chdir(tmp_path)
     names = sorted(path.name for path in tmp_path.glob("hazard_curve-*.csv"))
     (tmp_path / "site.yaml").write_text(SITE % ", ".join(names))
@@ -179,15 +175,14 @@ def test_exports_are_read_reweighted_and_read_back(tmp_path, monkeypatch):
     assert table["rlz_id"].tolist() == [0, 1, 2]
     assert table["branch_path"].tolist() == ["AA~A", "AB~A", "AC~A"]
     # λ = k0 θ^-k exp(k² β² / 2)
-    toppling = {n: 0.05 * r * THETA**-1.8 * math.exp((1.8 * BETA) ** 2 / 2) for n, r in rates.items()}  # fmt: skip
-    stands = np.array([0.2, 0.5, 0.3]) * np.exp(-AGE * np.array(list(toppling.values())))
+    of_each = np.array(list(rates.values()))
+    toppling = of_each * (THETA / 0.1) ** -2.5 * math.exp((2.5 * BETA) ** 2 / 2)
+    stands = np.array([0.2, 0.5, 0.3]) * np.exp(-AGE * toppling)
     assert table["weight"].to_numpy() == pytest.approx(stands / stands.sum(), rel=2e-3)
     again = read_branches(names, "constrained/site-weights.csv")
     assert [branch.weight for branch in again] == pytest.approx(table["weight"].tolist())
     for n, branch in enumerate(again):
-        assert branch.curves[PGA].rate(levels[5]) == pytest.approx(
-            0.05 * rates[n] * levels[5] ** -1.8, rel=1e-5
-        )
+        assert branch.curves[PGA].rate(0.1) == pytest.approx(rates[n], rel=1e-5)
 
 
 def test_samples_of_a_logic_tree_keep_their_numbers(tmp_path):

@@ -99,22 +99,6 @@ def test_an_object_that_came_later_is_exposed_to_fewer_earthquakes():
         assert value == pytest.approx(-(1500 * (p_old @ fall) + 500 * (both @ fall)), rel=2e-3)
 
 
-def test_two_measures_reduce_to_one_where_velocity_does_not_matter_or_does_not_scatter():
-    branches = made_branches(1.0, 3.0)
-    plain = rock(1000)
-    c0, c1 = plain.coefficients
-    velocity = VelocityRelation(0.1, 0.6)
-    idle = StandingObject("idle", PGA, (c0, c1, 0.0), 0.0, Age(1000, 1000))
-    expected = reweight(branches, [plain]).log_survival
-    assert reweight(branches, [idle], velocity=velocity).log_survival == pytest.approx(
-        expected, rel=1e-3
-    )
-    # with a certain PGV/PGA of 0.1 s the third coefficient moves the first
-    fixed = StandingObject("fixed", PGA, (c0 - 2.0 * math.log(0.1), c1, 2.0), 0.0, Age(1000, 1000))
-    found = reweight(branches, [fixed], velocity=VelocityRelation(0.1, 1e-9))
-    assert found.log_survival == pytest.approx(expected, rel=1e-3)
-
-
 def test_velocity_that_scatters_widens_a_fragility_in_two_measures_as_normal_theory_says():
     """Φ(c0 + c1 ln a + c2 (m + s Z)) averaged over Z is Φ((c0 + c1 ln a + c2 m) / √(1 + c2² s²))."""
     body = StandingObject("rock", PGA, (10.0, 4.0, 3.0), 0.0, Age(1000, 1000))

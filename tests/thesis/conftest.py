@@ -6,6 +6,22 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.records.motion import Motion
+
+
+def bursts(seed: int, earthquakes: str, floor: str, count: int, middle: float) -> list[Motion]:
+    """One burst of waves an earthquake, of so many samples of 10 ms [m/s²]."""
+    time = np.arange(count) * 0.01
+    rng = np.random.default_rng(seed)
+    found = []
+    for name in earthquakes:
+        waves = np.sin(2 * np.pi * np.outer(time, rng.uniform(0.6, 4, 12)) + rng.uniform(0, 6, 12))
+        values = waves.sum(axis=1) * np.exp(-(((time - middle) / (middle / 2)) ** 2))
+        about = {"earthquake": name, "floor": floor}
+        found.append(Motion(values, 0.01, f"{name}_{floor}", about))
+    return found
+
+
 EARTHQUAKES = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
 FLOORS = ("GF", "F3", "F5")
 TOWERS = {"T1": 0.50, "T2": 0.40, "T3": 0.30}

@@ -1,6 +1,7 @@
 """P/NP over friction: what is shared between coefficients is what each would give by itself."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,12 +9,16 @@ import pytest
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Stack, overturns
+from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag_thesis.sensitivity_analysis.friction_grid import (
     friction_effects,
     friction_ratios,
     survived_amplitudes,
 )
 from rockfrag_thesis.sensitivity_analysis.simulated import level_amplitudes
+from rockfrag_thesis.standing import SIZES, standing_definitions
+
+from .conftest import bursts
 
 TOWER = Block(0.124, 0.372, 2.172)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
@@ -23,16 +28,7 @@ PAIRS = [(first, two) for first in (0.3, 0.4, math.inf) for two in (0.25, 0.36, 
 
 @pytest.fixture(scope="module")
 def motions() -> list[Motion]:
-    time = np.arange(250) * 0.01
-    rng = np.random.default_rng(3)
-    found = []
-    for earthquake in ("A", "B"):
-        waves = np.sin(2 * np.pi * np.outer(time, rng.uniform(0.6, 4, 12)) + rng.uniform(0, 6, 12))
-        values = waves.sum(axis=1) * np.exp(-(((time - 1.2) / 0.6) ** 2))
-        found.append(
-            Motion(values, 0.01, earthquake, {"earthquake": earthquake, "floor": "ground"})
-        )
-    return found
+    return bursts(3, "AB", "ground", 250, 1.2)
 
 
 def test_amplitudes_are_those_of_each_pair_climbed_by_itself(motions: list[Motion]) -> None:
@@ -68,3 +64,26 @@ def test_below_its_slenderness_an_object_has_no_amplitude(motions: list[Motion])
     assert (row["pairs"], row["left_out"], row["np_survives"]) == (0, 2, 2)
     rough = effects.query("ground == inf and interface == inf and object == 'all'").iloc[0]
     assert rough["pairs"] == 2 and 0.5 < rough["ratio"] < 2
+
+
+FINE_LEVELS = 0.2 * 1.01 ** np.arange(180)
+PROTOCOL = Protocol(GeometricSteps(0.2, 0.05), 1.1)
+
+
+def shaking(seed):
+    coarse = np.random.default_rng(seed).normal(size=201)
+    values = np.interp(np.arange(1600) / 8, np.arange(201), coarse)
+    return Motion(values, 0.01, f"M{seed}")
+
+
+def test_readings_of_a_ida_stand_or_fall_with_small_differences():
+    chosen = [replace(TOWER.system(), name="T1"), replace(STACK.system(), name="P&T1")]
+    motions = [shaking(seed) for seed in range(4)]
+    table = standing_definitions(chosen, motions, FINE_LEVELS, PROTOCOL, seed=1)
+    assert len(table) == 2 * 4 * 3
+    columns = [f"stands_{size:.0e}" for size in SIZES]
+    stands = table[columns].mean()
+    # the smaller the difference the more stand
+    assert stands.is_monotonic_decreasing and stands.iloc[0] >= 0.9
+    again = standing_definitions(chosen, motions, FINE_LEVELS, PROTOCOL, seed=1, threads=2)
+    assert again.equals(table)

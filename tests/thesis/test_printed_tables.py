@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from rockfrag_thesis.specimens import THESIS_BODIES
 
 from rockfrag.errors import InputError
 from rockfrag.study.configurations import read_specimens
 from rockfrag.study.loading import load_any
 from rockfrag.system.blocks import Block, Stack
+from rockfrag_thesis.hypotheses.evidence import THESIS_BODIES
 from rockfrag_thesis.printed_tables import (
     FOLDER,
     TABLE_3_1,

@@ -111,12 +111,9 @@ def test_without_a_table_of_configurations_each_block_stands_alone(study_folder:
     assert not study.has_pairs
 
 
-def test_an_absent_record_is_named(study_folder: Path, capsys: pytest.CaptureFixture[str]):
-    (study_folder / "record3.txt").unlink()
-    assert "record3.txt" in said(capsys, study_folder / "study.yaml")
-
-
 def test_a_record_that_cannot_be_read_is_named_by_command_and_workflow(study_folder, capsys):
+    (study_folder / "record3.txt").rename(study_folder / "away.txt")
+    assert "record3.txt" in said(capsys, study_folder / "study.yaml")
     (study_folder / "record3.txt").write_text("no record at all\n")
     sentence = said(capsys, study_folder / "study.yaml")
     assert "motion 3" in sentence
@@ -132,16 +129,6 @@ def test_a_record_that_is_not_the_one_of_its_digest_is_named(study_folder, capsy
     table = study_folder / "motions.csv"
     table.write_text(table.read_text().replace("record3.txt,,", f"record3.txt,{wrong},"))
     assert "SHA-256" in said(capsys, study_folder / "study.yaml")
-
-
-def test_a_record_in_cm_s2_that_is_taken_for_m_s2_is_refused(study_folder, capsys):
-    record = study_folder / "record3.txt"
-    rows = [line.split() for line in record.read_text().splitlines()]
-    record.write_text("\n".join(f"{t} {981 * float(a):.4f}" for t, a in rows) + "\n")
-    assert main(["check-config", "--quiet", str(study_folder / "study.yaml")]) == 2
-    refusal = capsys.readouterr().err
-    assert "above 3 g; give the unit" in refusal and "motion 3" in refusal
-    assert refusal.count("\n") == 1
 
 
 @pytest.mark.parametrize(
@@ -181,24 +168,6 @@ def test_blocks_are_the_same_in_whatever_unit_and_separator(tmp_path: Path, tabl
     path.write_text(table)
     block = read_specimens(path)["A"]
     assert (block.width, block.height, block.mass) == (0.35, 1.2, 180.0)
-
-
-@pytest.mark.parametrize(
-    ("table", "words"),
-    [
-        ("name,width_cm,height_cm,mass_g\nA,35,120,180\n", "12.2 kg/m³"),
-        ("name,width_m,height_m,mass_kg\nA,35,120,180\n", "0.0122 kg/m³"),
-        ("name,width_m,width_cm,height_m,mass_kg\nA,0.35,35,1.2,180\n", "twice"),
-        ("name,width,height_m,mass_kg\nA,35,1.2,180\n", "without a unit"),
-        ("name,width_m,height_m,mass_kg\nA,35 kg,1.2,180\n", "expected a length"),
-    ],
-)
-def test_a_block_with_a_wrong_unit_is_refused_with_the_number(tmp_path, table, words):
-    path = tmp_path / "bodies.csv"
-    path.write_text(table)
-    with pytest.raises(InputError) as caught:
-        read_specimens(path)
-    assert words in str(caught.value)
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", "---", "a\nb", "x" * 300, "\x00"])

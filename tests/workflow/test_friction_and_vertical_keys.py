@@ -1,4 +1,4 @@
-"""The keys ``friction`` and ``vertical`` of a study: what they mean, and what cannot stand beside them."""
+"""The keys ``friction``, ``vertical`` and ``bodies.restitution`` of a study, and what cannot stand beside them."""
 
 import re
 from pathlib import Path
@@ -14,7 +14,8 @@ from rockfrag.motions.directions import motion_and_vertical
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.study.loading import load_any, study_from
+from rockfrag.study.loading import any_study, load_any
+from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
 from rockfrag.yaml_file import read_yaml
 
 from .conftest import CATALOGUE, study_content, write_record, write_study
@@ -24,7 +25,7 @@ SMOKE = CONFIG / "smoke.yaml"
 
 
 def smoke(**keys: object):
-    return study_from({**read_yaml(SMOKE), **keys}, SMOKE)
+    return any_study({**read_yaml(SMOKE), **keys}, SMOKE)
 
 
 @pytest.mark.parametrize(
@@ -52,6 +53,10 @@ def test_without_the_keys_nothing_slides_and_nothing_moves_up_and_down():
     study = smoke()
     assert not any(configuration.loose for configuration in study.configurations)
     assert (study.slides, study.vertical) == (False, False)
+    under = [
+        contact for configuration in study.configurations for contact in configuration.contacts
+    ]
+    assert {contact.law.name for contact in under} == {"momentum"}
 
 
 @pytest.mark.parametrize(
@@ -76,8 +81,7 @@ def test_what_cannot_be_is_refused_when_the_study_is_read(keys, message):
 
 
 def test_measured_impacts_and_friction_may_be_given_together():
-    bodies = {**read_yaml(SMOKE)["bodies"], "restitution": {"blocks": {"T1": 0.9}}}
-    tower = smoke(friction=0.3, bodies=bodies).configurations[0]
+    tower = study_with({"blocks": {"T1": 0.9}}, friction=0.3).configurations[0]
     assert tower.name == "T1"
     assert tower.contacts[0].friction == (0.3, 0.3) and tower.contacts[0].law.right == 0.9
     assert not overturns(tower, [np.zeros(10)], 0.01).overturned.any()
@@ -90,10 +94,10 @@ def test_what_rocks_without_sliding_is_refused_beside_them(key):
     with pytest.raises(
         InputError, match=f"key {key}: the perturbed parameters of the key sensitivity_analysis"
     ):
-        study_from(content, source)
+        any_study(content, source)
     del content["sensitivity_analysis"]
     with pytest.raises(InputError, match=f"key {key}: what the key compare_with"):
-        study_from(content, source)
+        any_study(content, source)
 
 
 @pytest.fixture
@@ -155,3 +159,35 @@ def test_a_building_says_which_floors_move_up_and_down_more_than_the_ground():
     np.testing.assert_allclose(soft[1].acceleration, 1.5 * up.acceleration)
     with pytest.raises(InputError, match="floor 'attic' is not defined"):
         make_building({**settings, "vertical_factors": {"attic": 2}})
+
+
+def study_with(restitution, **keys):
+    return smoke(**keys, bodies={**read_yaml(SMOKE)["bodies"], "restitution": restitution})
+
+
+def test_each_block_brings_what_was_measured_of_it():
+    study = study_with({"law": "ratio", "blocks": {"T1": 0.9, "P": [0.3, 0.35]}})
+    found = {
+        configuration.name: [under.law for under in configuration.contacts]
+        for configuration in study.configurations
+    }
+    pedestal, tower = ImpactLaw("ratio", 0.3, 0.35), ImpactLaw("ratio", 0.9, 0.9)
+    assert found["T1"] == [tower]
+    assert found["P&T1"] == [pedestal, tower]
+    assert found["T3"] == [BY_MOMENTUM]
+    assert found["P&T3"] == [pedestal, BY_MOMENTUM]
+
+
+@pytest.mark.parametrize(
+    ("restitution", "message"),
+    [
+        ({"blocks": {"X": 0.9}}, "blocks: expected names of the specimens T1, .*, found X"),
+        ({"blocks": {"T1": 1.1}}, "1.1 would gain energy"),
+        ({"law": "newton", "blocks": {"T1": 0.9}}, "expected one of position, couple, ratio"),
+        ({"blocks": {"T1": "a"}}, "blocks.T1: expected a ratio"),
+        ({}, "restitution"),
+    ],
+)
+def test_a_restitution_that_cannot_be_is_refused(restitution, message):
+    with pytest.raises(InputError, match=message):
+        study_with(restitution)

@@ -102,14 +102,3 @@ def test_a_row_may_ask_for_a_direction_of_both_components(tmp_path, study_file, 
         1 - 1e-9
     )
     assert measures.loc["b_ground", "pga_g"] == pytest.approx(measures.loc["c_ground", "pga_g"])
-
-
-@pytest.mark.slow
-def test_both_commands_end_in_a_report(tmp_path, study_file):
-    from .running import snakemake
-
-    folder = peer_download(tmp_path / "download", 20)
-    main(["catalogue", str(folder), "--output", str(tmp_path / "motions.csv")])
-    done = snakemake(tmp_path, "--cores", "2")
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert (tmp_path / "results/tiny/report.html").is_file()

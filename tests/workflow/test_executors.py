@@ -1,4 +1,4 @@
-"""A study on a real SLURM, brought up on this machine from its packages, ends in the same bytes."""
+"""Profiles hold what Snakemake knows; on a real SLURM and in a queue a study ends in the same bytes."""
 
 import importlib.util
 import os
@@ -131,3 +131,59 @@ def test_a_study_on_slurm_ends_in_the_same_bytes(study_folder: Path, slurm: Path
         *("--seconds-between-status-checks", "2", "--latency-wait", "5", "--max-threads", "2"),
     )
     assert "SLURM jobid" in screen
+
+
+PROFILES = Path(__file__).resolve().parents[2] / "profiles"
+PLUGINS = {
+    "slurm": "snakemake-executor-plugin-slurm",
+    "queue": "snakemake-executor-plugin-cluster-generic",
+}
+
+
+def parsed(folder: Path):
+    """Options of Snakemake with a profile; ends the process where it does not know a key."""
+    from snakemake.cli import parse_args
+
+    return parse_args(["--profile", str(folder), "--workflow-profile", "none"])[1]
+
+
+@pytest.mark.parametrize("profile", sorted(PROFILES.iterdir()), ids=lambda path: path.name)
+def test_snakemake_knows_every_key_of_a_profile(profile: Path):
+    plugin = PLUGINS.get(profile.name)
+    if plugin and importlib.util.find_spec(plugin.replace("-", "_")) is None:
+        pytest.skip(f"not installed: {plugin} (pip install '.[{profile.name}]')")
+    assert parsed(profile).rerun_incomplete
+
+
+def test_a_key_that_snakemake_does_not_know_ends_it(tmp_path, capsys):
+    (tmp_path / "config.yaml").write_text("jobs: 2\nlatency-wat: 60\n")
+    with pytest.raises(SystemExit):
+        parsed(tmp_path)
+    assert "latency-wat" in capsys.readouterr().err
+
+
+SUBMIT = """#!/bin/sh
+# a queue of one node: starts the job's script beside this, and prints the job's number
+echo "$@" >> {log}
+for script in "$@"; do :; done
+setsid "$script" > /dev/null 2>&1 < /dev/null &
+echo $!
+"""
+
+
+@pytest.mark.slow
+def test_a_study_in_a_queue_ends_in_the_same_bytes(study_folder: Path, tmp_path: Path):
+    if importlib.util.find_spec("snakemake_executor_plugin_cluster_generic") is None:
+        pytest.skip(
+            "not installed: snakemake-executor-plugin-cluster-generic (pip install '.[queue]')"
+        )
+    submit, log = tmp_path / "submit", tmp_path / "submitted"
+    submit.write_text(SUBMIT.format(log=log))
+    submit.chmod(0o755)
+    run_locally_and_with(
+        study_folder,
+        *("--profile", str(ROOT / "profiles" / "queue")),
+        *("--cluster-generic-submit-cmd", f"{submit} {{threads}} {{resources.mem_mb}}"),
+        *("--seconds-between-status-checks", "2", "--latency-wait", "5", "--max-threads", "2"),
+    )
+    assert len(log.read_text().splitlines()) >= 3
