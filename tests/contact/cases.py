@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rockfrag.engines.contract import Case, Request
 from rockfrag.engines.planar.cases import contact_run, response_of
 from rockfrag.engines.planar.integrate import (
     Book,
@@ -73,7 +74,8 @@ def simulate_with_friction(
 ):
     """Simulate what :func:`rockfrag.rocking.simulate` does, never by pure rocking."""
     system = system_of(body, friction, omega0=omega0)
-    return response_of(contact_run(system, ground_motion(acceleration, dt, vertical), g))
+    motion = ground_motion(acceleration, dt, vertical)
+    return response_of(contact_run(Case(system, motion, request=Request(g=g))))
 
 
 G = 9.81

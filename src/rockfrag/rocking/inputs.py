@@ -25,22 +25,19 @@ MotionLike = Motion | GroundMotion | ArrayLike
 """A motion, or the accelerations of its horizontal component [m/s²], shape (n,)."""
 
 
-def checked_motion(
-    motion: MotionLike, dt: float | None, name: str = "motion"
-) -> tuple[NDArray[np.float64], float]:
-    """Return the accelerations of a motion [m/s²] and its sampling interval [s]."""
+def _checked_motion(motion: Any, dt: float | None, name: str) -> Motion:
+    """Return a motion, or the one that accelerations [m/s²] at a sampling interval [s] are."""
     _refuse_file_name(name, motion)
     if isinstance(motion, Motion):
         if dt is not None:
             raise InputError(
                 f"dt: {name} is a Motion, which has its own sampling interval; leave dt out."
             )
-        data, interval = motion.acceleration, motion.dt
+        values = motion.acceleration
     else:
         if dt is None:
             raise InputError(f"dt: {name} is an array; give its sampling interval in seconds.")
-        data, interval = motion, positive_number("dt", dt, "seconds")  # type: ignore[assignment]
-    values = real_array(name, data, "m/s²")
+        interval, values = positive_number("dt", dt, "seconds"), real_array(name, motion, "m/s²")
     if values.ndim != 1:
         raise InputError(f"{name}: expected shape (n,), got {values.shape}.")
     if values.size < 2:
@@ -55,30 +52,27 @@ def checked_motion(
         raise InputError(
             f"{name}: a peak of {peak:.3g} m/s² is beyond any earthquake; check the unit."
         )
-    return values, interval
+    return motion if isinstance(motion, Motion) else Motion(values, interval)
 
 
-def checked_vertical(
-    vertical: MotionLike | None,
-    horizontal: NDArray[np.float64],
-    interval: float,
-    name: str = "vertical",
-) -> NDArray[np.float64]:
-    """Return the vertical accelerations that belong to horizontal ones [m/s²]; none for None."""
-    if vertical is None:
-        return np.zeros(0)
+def _checked_vertical(vertical: MotionLike, horizontal: Motion, name: str) -> Motion:
+    """Return the vertical component that belongs to a horizontal one."""
+    interval = horizontal.dt
     if isinstance(vertical, Motion) and not math.isclose(vertical.dt, interval, rel_tol=1e-9):
         raise InputError(
             f"{name}: sampled every {vertical.dt:g} s, the horizontal motion every {interval:g} s; "
             "resample one of them."
         )
     own = None if isinstance(vertical, Motion) else interval
-    values, _ = checked_motion(vertical, own, name)
-    if values.size != horizontal.size:
+    values, samples = (
+        _checked_motion(vertical, own, name).acceleration,
+        horizontal.acceleration.size,
+    )
+    if values.size != samples:
         raise InputError(
-            f"{name}: {values.size} samples for {horizontal.size} horizontal ones; cut or pad one of them."
+            f"{name}: {values.size} samples for {samples} horizontal ones; cut or pad one of them."
         )
-    return values
+    return Motion(values, interval)
 
 
 def checked_start(body: SystemLike, value: object, name: str) -> tuple[float, ...]:
@@ -151,15 +145,12 @@ def ground_motion(
                 f"{name}: a GroundMotion has its own vertical component and sampling interval; leave vertical "
                 "and dt out."
             )
-        for component in (motion.x, motion.y, motion.z):
-            if component is not None:
-                checked_motion(component, None, name)
+        for component in motion.components:
+            _checked_motion(getattr(motion, component), None, name)
         return motion
-    values, interval = checked_motion(motion, dt, name)
-    up = checked_vertical(vertical, values, interval, vertical_name)
+    x = _checked_motion(motion, dt, name)
     return GroundMotion(
-        motion if isinstance(motion, Motion) else Motion(values, interval),
-        z=Motion(up, interval) if vertical is not None else None,
+        x, z=None if vertical is None else _checked_vertical(vertical, x, vertical_name)
     )
 
 
