@@ -10,24 +10,22 @@ from statsmodels.stats.multitest import multipletests
 from rockfrag.pedestal import permutation
 from rockfrag.pedestal.cluster_means import (
     Estimate,
-    contrast,
     equivalence,
     mean_effect,
-    slope_effect,
     t_estimate,
     unit_means,
 )
 from rockfrag.pedestal.paired_tests import pair_tests
 from rockfrag.pedestal.permutation import leave_one_earthquake_out, sign_flip_test
-from rockfrag.pedestal.power import (
-    benjamini_hochberg,
-    detectable_ratio,
-    holm,
+from rockfrag.pedestal.power import benjamini_hochberg, detectable_ratio, holm
+from rockfrag.pedestal.study import rank_probabilities
+from rockfrag_thesis.hypotheses.contrasts import (
+    contrast,
     power_note,
     power_of_t,
+    slope_effect,
     units_needed,
 )
-from rockfrag.pedestal.study import rank_probabilities
 
 
 def test_t_on_units_is_the_one_sample_t_test():

@@ -13,8 +13,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.pedestal.cluster_means import contrast, mean_effect, slope_effect
+from rockfrag.pedestal.cluster_means import mean_effect
 from rockfrag.pedestal.paired_tests import pair_tests
+from rockfrag_thesis.hypotheses.contrasts import contrast, slope_effect
 
 from .made import document
 
