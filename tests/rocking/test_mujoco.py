@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.rocking import Block, Stack, simulate
+from rockfrag import Block, Stack, simulate
 
 from ..oracle.competitors import mujoco_outcome
 
