@@ -1,4 +1,4 @@
-"""The chain against positions, Newton and Euler; the fast kernel and the thesis (2.1 to 2.86) against the chain."""
+"""The chain against positions, Newton and Euler; the fast kernel and the thesis (2.1 to 2.86) against it."""
 
 import itertools
 
