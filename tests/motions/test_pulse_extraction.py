@@ -120,8 +120,3 @@ def test_nothing_holds_no_pulse(samples):
     assert math.isnan(pulse.period)
     assert math.isnan(pulse.velocity)
     assert math.isnan(pulse.explained)
-
-
-def test_pulse_can_be_as_long_as_the_record_but_not_longer():
-    drift = Motion(np.ones(400), 0.01)
-    assert m.strongest_pulse(drift).period <= 4.0 * 1.05

@@ -9,7 +9,7 @@ from rockfrag_thesis.hypotheses import COLUMNS, HYPOTHESES, Evidence, Finding, h
 from rockfrag_thesis.hypotheses.earthquakes import rank_correlation
 from rockfrag_thesis.hypotheses.hypothesis import Kind, outcome
 from rockfrag_thesis.hypotheses.orders import ORDERS, margin
-from rockfrag_thesis.sections.hypotheses import hypotheses_html, outcomes_by_kind, outcomes_section
+from rockfrag_thesis.sections.hypotheses import hypotheses_html, outcomes_section
 
 FOR, AGAINST, OPEN = Finding.FOR, Finding.AGAINST, Finding.OPEN
 
@@ -430,14 +430,6 @@ def test_the_hypothesis_table_shows_kind_outcome_rule_and_error_rate(made):
     assert 'class="hypothesis for"' in html and 'class="hypothesis open"' in html
     assert "description of the thesis&#39;s plots; simulated" in html
     assert "nan" not in html
-
-
-def test_outcomes_are_counted_by_kind(made):
-    hypotheses = hypothesis_table(Evidence(made(noise=0.1), "measured"))
-    counts = outcomes_by_kind(hypotheses)
-    assert counts["hypotheses"].sum() == len(hypotheses)
-    said = sum(int(part.split()[0]) for words in counts["outcomes"] for part in words.split(", "))
-    assert said == len(hypotheses)
 
 
 def test_the_words_state_how_many_statements_are_inferred(made):

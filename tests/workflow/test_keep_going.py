@@ -6,7 +6,6 @@ import pandas as pd
 import pytest
 
 from rockfrag.cli import main
-from rockfrag.processes import in_processes
 from rockfrag.study.loading import load_any
 
 from ..stages_in_process import run_stages, stages_of
@@ -63,10 +62,3 @@ def test_the_study_goes_on_and_says_what_is_missing(damaged: Path, monkeypatch: 
     report = (results / "report.html").read_text()
     assert "5 of 8 records could not be used" in report
     assert "under 3 records of 3 earthquakes" in report
-
-
-def test_work_in_several_processes_comes_back_in_order():
-    for processes in (1, 3):
-        assert in_processes(lambda x: x * x, list(range(20)), processes) == [
-            x * x for x in range(20)
-        ]

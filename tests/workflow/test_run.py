@@ -11,19 +11,8 @@ import pytest
 
 from rockfrag.stages.same_numbers import same_numbers
 
-from .conftest import make_study, study_content, write_study
+from .conftest import make_study
 from .running import LAUNCHER, ROOT, called, snakemake, tables_of
-
-
-def test_a_wrong_configuration_stops_before_anything_runs(study_folder: Path):
-    content = study_content()
-    content["amplitudes"]["hihgest_g"] = 2
-    write_study(study_folder, content)
-    done = snakemake(study_folder, "--cores", "1")
-    assert done.returncode != 0
-    assert "Traceback" not in done.stderr
-    assert "study.yaml: key amplitudes.hihgest_g is not known" in done.stderr
-    assert not (study_folder / "results").exists()
 
 
 def make_smaller(folder: Path) -> Path:
