@@ -2,7 +2,6 @@
 
 import json
 import re
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -127,23 +126,6 @@ def test_two_tables_give_two_measures_of_the_same_branches(tmp_path):
     table.to_csv(tmp_path / "pgv.csv", index=False)
     with pytest.raises(InputError, match="elsewhere"):
         read_branches([tmp_path / "pga.csv", tmp_path / "pgv.csv"])
-
-
-def test_the_example_of_the_documentation_runs_as_it_stands_there(tmp_path, monkeypatch, capsys):
-    document = Path(__file__).resolve().parents[2] / "docs" / "how-to" / "constrain.md"
-    *made, asked = re.findall(r"```python\n(.*?)```", document.read_text(encoding="utf-8"), re.S)
-    monkeypatch.chdir(tmp_path)
-    for block in made:
-        exec(block, {})
-    assert main(["constrain", "site.yaml"]) == 0
-    said = capsys.readouterr().out
-    assert "lower" in said and "tells most" in said
-    exec(asked, {})
-    table = capsys.readouterr().out
-    assert "weight_after" in table and "level_ratio" in table
-    assert {"Hill.html", "Hill.json", "Hill-weights.csv", "Hill-curves.csv"} == {
-        path.name for path in Path("constrained").iterdir()
-    }
 
 
 def simulated_site(folder, catalogue, more="", velocity=""):
