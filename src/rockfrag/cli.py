@@ -299,8 +299,8 @@ def _play(options: argparse.Namespace) -> int:
 def _block(option: str, given: Sequence[str]) -> "Block":
     """Make a block of width, height and mass as people write them."""
     from rockfrag.input_checks import positive_number
-    from rockfrag.plausibility import STONE, check_density, size_warning
     from rockfrag.rocking import Block
+    from rockfrag.units import STONE, check_density, size_warning
 
     with errors_of(option):
         if len(given) not in (2, 3):
@@ -320,8 +320,8 @@ def _block(option: str, given: Sequence[str]) -> "Block":
 
 def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
     """Say that a motion looks as if it were in another unit, if it does."""
-    from rockfrag.plausibility import peak_warning
     from rockfrag.system.system import uplift_ratios
+    from rockfrag.units import peak_warning
 
     if quality_flag := peak_warning(peak, GRAVITY * min(uplift_ratios(body.system()))):
         print(f"warning: {record}: {quality_flag}", file=sys.stderr)

@@ -1,15 +1,31 @@
-"""The fast kernel beside a plain contact event-driven integrator and beside time stepping with complementarity."""
+"""The fast kernel beside a plain event-driven integrator and time stepping, under made and measured motions."""
 
 import math
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
+from rockfrag import read_motion
+from rockfrag.records.motion import Motion
+from rockfrag.rocking import overturns
+from rockfrag.system import Block, Column
+
 from ..oracle.contact_reference import simulate_reference
 from ..oracle.time_stepping import time_stepping
 from ..rocking.reference_bodies import random_motion
-from .cases import DT, as_friction, random_block, random_frictions, random_stack
-from .with_friction import simulate_with_friction
+from .cases import (
+    DT,
+    G,
+    as_friction,
+    is_critical,
+    random_block,
+    random_frictions,
+    random_stack,
+    simulate_with_friction,
+    with_contacts,
+)
 
 
 def case(rng: np.random.Generator, stacks: bool) -> tuple:
@@ -107,3 +123,106 @@ def test_histories_of_time_stepping_converge_to_those_of_contact_events(stacks):
     moving = coarse > 1e-6
     assert moving.sum() > 5
     assert np.median(fine[moving] / coarse[moving]) < 0.25
+
+
+RECORDS = ("Kobe", "Northridge", "Friuli", "Loma_Prieta")
+
+
+class Case(NamedTuple):
+    """A column, its coefficients of friction from below, and what shakes it [m/s²]."""
+
+    column: Column
+    friction: tuple[float, ...]
+    horizontal: np.ndarray
+    vertical: np.ndarray
+    dt: float
+
+    def falls(self) -> bool:
+        """Whether it falls by the public door."""
+        friction = {"ground": self.friction[0], "interface": list(self.friction[1:])}
+        found = overturns(
+            self.column, [self.horizontal], self.dt, friction=[friction], vertical=[self.vertical]
+        )
+        return bool(found.overturned.item())
+
+    def falls_by_stepping(self, step: float) -> bool:
+        """Whether it falls by time stepping."""
+        return time_stepping(
+            self.column, self.horizontal, self.dt, self.friction, step=step, vertical=self.vertical
+        )[0]
+
+    def is_critical(self) -> bool:
+        """Whether a hundredth more or less of the motions changes the outcome."""
+        system = with_contacts(self.column, list(self.friction))
+        return is_critical(system, self.horizontal, self.dt, self.vertical)
+
+
+def drawn_column(rng: np.random.Generator) -> Column:
+    """Narrowing blocks, drums, a statue on steps or blocks that overhang, uneven and off the middle."""
+    bodies, kind = int(rng.integers(3, 9)), int(rng.integers(4))
+    blocks: list[Block] = []
+    offsets: list[float] = []
+    width = rng.uniform(0.3, 1.2)
+    for k in range(bodies):
+        top = (1.5, 4.0) if k == bodies - 1 else (0.15, 1.0)
+        heights, narrows = (
+            ((0.2, 2.5), (0.65, 1.05)),
+            ((0.5, 0.9), (0.94, 1.0)),
+            (top, (0.6, 0.9)),
+            ((0.2, 1.5), (0.7, 1.3)),
+        )[kind]
+        height = width * rng.uniform(*heights)
+        mass = rng.uniform(500, 3000) * width**2 * height
+        aside, lean = rng.uniform(-0.05, 0.05) * width, rng.uniform(-0.01, 0.01)
+        middle = height * rng.uniform(0.4, 0.6)
+        blocks.append(Block(width, height, mass, cg_height=middle, cg_offset=aside, lean=lean))
+        if k:
+            offsets.append(rng.uniform(-0.04, 0.04) * min(width, blocks[-2].width))
+        width *= rng.uniform(*narrows)
+    return Column(tuple(blocks), tuple(offsets))
+
+
+def eight_seconds(record: Motion) -> tuple[np.ndarray, float]:
+    """Strong part of a record, faded in and out, and its sampling interval [s]."""
+    values, dt = record.acceleration, record.dt
+    begin = int(np.argmax(np.cumsum(values**2) > 0.02 * np.sum(values**2)))
+    part, fade = values[begin : begin + int(8 / dt)].copy(), int(0.2 / dt)
+    part[:fade] *= np.linspace(0, 1, fade)
+    part[-fade:] *= np.linspace(1, 0, fade)
+    return part, dt
+
+
+def pulse(rng: np.random.Generator) -> tuple[np.ndarray, float]:
+    """A few whole sines, and the sampling interval [s]."""
+    period, dt = rng.uniform(0.3, 1.5), 0.01
+    time = np.arange(0, rng.integers(1, 4) * period, dt)
+    return np.sin(2 * np.pi * time / period), dt
+
+
+def drawn_case(rng: np.random.Generator, records: list[Motion]) -> Case:
+    """Draw a column with friction under a motion that may throw it, some with a vertical one."""
+    column = drawn_column(rng)
+    known = rng.uniform() < 0.7
+    values, dt = eight_seconds(records[int(rng.integers(4))]) if known else pulse(rng)
+    slim = min(b.width / b.height for b in column.blocks)
+    whole = column.blocks[0].width / sum(b.height for b in column.blocks)
+    values = values * G * min(slim, whole) * rng.uniform(1.0, 4.5) / np.abs(values).max()
+    up = 0.4 * np.roll(values, 7) if rng.uniform() < 0.3 else np.zeros(values.size)
+    return Case(column, tuple(rng.uniform(0.3, 0.8, len(column.blocks))), values, up, dt)
+
+
+@pytest.mark.slow
+def test_columns_of_strangers_fall_as_in_time_stepping(shared: Path) -> None:
+    records = [read_motion(shared / "records" / f"{name}.dat") for name in RECORDS]
+    rng = np.random.default_rng(1)
+    cases = [drawn_case(rng, records) for _ in range(120)]
+    fell = [case.falls() for case in cases]
+    other = [i for i, case in enumerate(cases) if case.falls_by_stepping(1e-4) != fell[i]]
+    finer = [i for i in other if cases[i].falls_by_stepping(1e-5) != fell[i]]
+    critical = [i for i in other if cases[i].is_critical()]
+    print(
+        f"{sum(fell)} of 120 fall; differ at 100 µs: {other}, at 10 µs: {finer}, critical: {critical}"
+    )
+    assert 30 <= sum(fell) <= 90
+    assert len(finer) <= 0.03 * len(cases)
+    assert critical == other

@@ -17,8 +17,7 @@ from ..oracle.contact_reference import simulate_reference
 from ..oracle.rocking_integrator import simulate_reference as rock
 from ..oracle.time_stepping import time_stepping
 from ..rocking.reference_bodies import random_motion
-from .cases import DT
-from .columns import Found, random_column, run, with_contacts
+from .cases import DT, Found, random_column, run, with_contacts
 
 
 def early(found: Found, contact_events: int = 6) -> int:
@@ -133,7 +132,7 @@ def test_sliding_that_jams_between_a_light_and_heavy_bodies_keeps_the_energy_bal
     assert np.abs(found.residual).max() < 2e-8
 
 
-@pytest.mark.parametrize("bodies", [3, 5])
+@pytest.mark.parametrize("bodies", [1, 2, 3, 5])
 def test_the_mirror_image_of_a_column_moves_as_the_mirror_image(bodies: int) -> None:
     rng = np.random.default_rng(bodies)
     for _ in range(4):
@@ -143,17 +142,20 @@ def test_the_mirror_image_of_a_column_moves_as_the_mirror_image(bodies: int) -> 
             tuple(-x for x in column.offsets or ()),
         )
         mus, motion = list(rng.uniform(0.3, 0.8, bodies)), random_motion(rng)
-        found = run(with_contacts(column, mus), motion)
-        other = run(with_contacts(mirrored, mus), -motion)
+        up = 0.5 * random_motion(rng)
+        found = run(with_contacts(column, mus), motion, vertical=up)
+        other = run(with_contacts(mirrored, mus), -motion, vertical=up)
         n = early(found, 5)
         np.testing.assert_allclose(found.theta[:n], -other.theta[:n], atol=1e-9)
         np.testing.assert_allclose(found.slip[:n], -other.slip[:n], atol=1e-9)
 
 
-def test_a_larger_column_moves_alike_in_longer_time() -> None:
+@pytest.mark.parametrize("bodies", [1, 2, 3])
+def test_a_larger_column_moves_alike_in_longer_time(bodies: int) -> None:
+    """Lengths times λ, times times √λ, the same accelerations."""
     rng = np.random.default_rng(3)
     for ratio in (0.3, 4.0):
-        column = random_column(rng, 3)
+        column = random_column(rng, bodies)
         blocks = tuple(replace(b, cg_height=b.h) for b in column.blocks)
         lengths = "width", "height", "cg_height", "cg_offset"
         grown = tuple(
@@ -163,16 +165,17 @@ def test_a_larger_column_moves_alike_in_longer_time() -> None:
             for b in blocks
         )
         larger = Column(grown, tuple(ratio * x for x in column.offsets or ()))
-        mus, motion = [0.5, 0.6, 0.7], random_motion(rng)
-        found = run(with_contacts(Column(blocks, column.offsets), mus), motion)
-        other = run(with_contacts(larger, mus), motion, DT * math.sqrt(ratio))
+        mus, motion, up = [0.5, 0.6, 0.7][:bodies], random_motion(rng), 0.5 * random_motion(rng)
+        found = run(with_contacts(Column(blocks, column.offsets), mus), motion, vertical=up)
+        other = run(with_contacts(larger, mus), motion, DT * math.sqrt(ratio), vertical=up)
         n = early(found, 5)
         np.testing.assert_allclose(found.theta[:n], other.theta[:n], atol=1e-7)
+        np.testing.assert_allclose(found.slip[:n], other.slip[:n] / ratio, atol=1e-7)
 
 
 def test_without_a_motion_a_column_rests_for_ever() -> None:
     rng = np.random.default_rng(4)
-    for bodies in (3, 7, 12):
+    for bodies in (1, 3, 7, 12):
         column = with_contacts(random_column(rng, bodies), [0.3] * bodies)
         found = run(column, np.zeros(50))
         assert (found.velocity == 0).all() and found.fallen == 0

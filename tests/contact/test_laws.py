@@ -17,8 +17,7 @@ from rockfrag.rocking import MeasuredRestitution, simulate
 from rockfrag.system import ImpactLaw, System, geometry
 
 from ..rocking.reference_bodies import random_motion
-from .cases import DT, random_block, random_stack
-from .columns import G, random_column, run, with_contacts
+from .cases import DT, G, random_block, random_column, random_stack, run, with_contacts
 
 LAWS = ("position", "couple", "ratio")
 

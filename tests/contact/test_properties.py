@@ -10,8 +10,14 @@ from rockfrag import read_motion
 from rockfrag.rocking import Block, Response, Stack, overturns
 
 from ..rocking.reference_bodies import T1, P, random_motion
-from .cases import DT, as_friction, random_block, random_frictions, random_stack
-from .with_friction import simulate_with_friction
+from .cases import (
+    DT,
+    as_friction,
+    random_block,
+    random_frictions,
+    random_stack,
+    simulate_with_friction,
+)
 
 seeds = st.integers(0, 10**6)
 
@@ -65,43 +71,6 @@ def test_forces_push_and_friction_keeps_its_limit(seed: int) -> None:
     weight = 9.81 * body.mass
     assert response.normal_force.min() >= -1e-8 * weight
     assert (np.abs(response.friction_force) <= limits * response.normal_force + 1e-8 * weight).all()
-
-
-@settings(max_examples=15, deadline=None)
-@given(seeds)
-def test_the_mirror_image_moves_as_the_mirror_image(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    block = Block(0.3, rng.uniform(0.4, 1.2), 10.0, cg_offset=rng.uniform(-0.03, 0.03))
-    mirrored = Block(0.3, block.height, 10.0, cg_offset=-block.cg_offset)
-    motion, up, mu = random_motion(rng), 0.5 * random_motion(rng), rng.uniform(0.2, 0.8)
-    first = simulate_with_friction(block, motion, DT, friction=mu, vertical=up)
-    other = simulate_with_friction(mirrored, -motion, DT, friction=mu, vertical=up)
-    n = until_the_eighth_contact_event(first)
-    np.testing.assert_allclose(first.theta[:n], -other.theta[:n], atol=1e-9)
-    np.testing.assert_allclose(first.slip[:n], -other.slip[:n], atol=1e-9)
-
-
-@settings(max_examples=15, deadline=None)
-@given(seeds, st.floats(0.2, 5.0))
-def test_a_larger_model_moves_alike_in_longer_time(seed: int, ratio: float) -> None:
-    """Lengths times λ, times times √λ, the same accelerations."""
-    rng = np.random.default_rng(seed)
-    mus = (float(rng.uniform(0.2, 0.8)), float(rng.uniform(0.2, 0.8)))
-    motion, up = random_motion(rng), 0.5 * random_motion(rng)
-
-    def scaled(factor: float) -> Stack:
-        return Stack(
-            Block(0.5 * factor, 0.3 * factor, 50 * factor**3),
-            Block(0.2 * factor, 0.6 * factor, 9 * factor**3),
-        )
-
-    first = simulate_with_friction(scaled(1.0), motion, DT, friction=mus, vertical=up)
-    other = simulate_with_friction(
-        scaled(ratio), motion, DT * math.sqrt(ratio), friction=mus, vertical=up
-    )
-    n = min(until_the_eighth_contact_event(first), len(other.time))
-    np.testing.assert_allclose(first.theta[:n], other.theta[:n], atol=1e-7)
-    np.testing.assert_allclose(first.slip[:n], other.slip[:n] / ratio, atol=1e-7)
 
 
 @settings(max_examples=15, deadline=None)

@@ -7,8 +7,7 @@ from rockfrag.rocking import overturns, simulate
 from rockfrag.rocking.ensemble import LIGHT, LightBodies
 
 from ..rocking.reference_bodies import random_motion
-from .cases import DT, random_block, random_stack
-from .with_friction import simulate_with_friction
+from .cases import DT, random_block, random_stack, simulate_with_friction
 
 SCALES = np.linspace(0.3, 1.5, 10)
 

@@ -1,14 +1,24 @@
-"""The search for a mode beside the trial of all modes."""
+"""The search for a mode beside the trial of all modes, and formulas of modes beside the elimination."""
 
 from collections import Counter
 
 import numpy as np
 import pytest
 
+from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory
+from rockfrag.engines.planar.search import (
+    CONSISTENT,
+    mode_number,
+    search,
+    take_number,
+    try_mode,
+    weigh,
+)
+from rockfrag.engines.planar.solve import look_at, solve, solve_generally
+from rockfrag.rocking.options import system_of
 
-from .columns import G, random_column, with_contacts
-from .full_search import consistent, modes_of, search_quickly, try_all
+from .cases import G, random_block, random_column, random_stack, with_contacts
 
 
 def situation(rng: np.random.Generator, bodies: int, impact: bool) -> tuple[np.void, np.void]:
@@ -91,3 +101,86 @@ def test_the_search_finds_a_consistent_mode_wherever_there_is_one(number: int, s
     assert counts["same"] > 0.85 * number
     assert counts["consistent too, as many closed"] < 0.015 * number
     assert counts["consistent too, more closed"] < 0.004 * number
+
+
+def modes_of(touching: np.ndarray, moves: np.ndarray, impact: bool) -> np.ndarray:
+    """Numbers of all modes of touching ends, in the order in which they are tried."""
+    listed = [(0, 0)]
+    for k, ends in enumerate(touching):
+        choices = []
+        for code in range(4):
+            if (code & 1) > ends[0] or (code >> 1) > ends[1]:
+                continue
+            ways = [0] if code == 0 else [0, 1, -1]
+            if code and not impact and moves[k]:
+                ways = [moves[k]]
+            closed = (code & 1) + (code >> 1)
+            choices += [((code + 4 * (way + 1)) << (4 * k), closed) for way in ways]
+        listed = [(n + a, c + b) for n, c in listed for a, b in choices]
+    return np.array([number for number, _ in sorted(listed, key=lambda item: item[1])])
+
+
+@entry_kernel
+def try_all(p, w, ah, av, impact, force, motion, numbers, margins):
+    """Least margin of every mode."""
+    look_at(p, w, w.q)
+    weigh(p, w, ah, av, impact)
+    for i in range(numbers.size):
+        take_number(p, w, numbers[i])
+        margins[i] = try_mode(p, w, impact, force, motion)
+
+
+@entry_kernel
+def search_quickly(p, w, ah, av, impact, force, motion):
+    """Number of the mode that the package takes."""
+    look_at(p, w, w.q)
+    search(p, w, ah, av, impact, force, motion, -1)
+    return mode_number(p, w.closed, w.slides)
+
+
+def consistent(margins: np.ndarray) -> np.ndarray:
+    """Which modes violate nothing."""
+    return margins >= -CONSISTENT
+
+
+@entry_kernel
+def by_formulas(p, w, ah, av):
+    look_at(p, w, w.q)
+    solve(p, w, w.q, w.v, ah, av, False)
+
+
+@entry_kernel
+def by_elimination(p, w, ah, av):
+    look_at(p, w, w.q)
+    solve_generally(p, w, w.q, w.v, ah, av, False, True, 0)
+
+
+@pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
+@pytest.mark.parametrize("flat", [False, True], ids=["rocks", "flat"])
+def test_formulas_give_what_elimination_gives(stacks: bool, flat: bool) -> None:
+    rng = np.random.default_rng(3)
+    for _ in range(75):
+        body = random_stack(rng) if stacks else random_block(rng)
+        p = system_record(system_of(body, 0.5), 9.81)
+        top = int(p["count"]) - 1
+        theta, omega = np.zeros(top + 1), np.zeros(top + 1)
+        if not flat:
+            theta[top] = rng.uniform(-0.3, 0.3)
+            omega[top] = np.sign(theta[top]) * rng.uniform(0, 1)
+        w = working_memory()
+        w["drive"][:] = -1
+        w["q"], w["v"] = posed(p, theta.tolist(), omega.tolist())
+        if stacks:
+            w["closed"][0] = 1
+        w["closed"][top] = 1 if flat else ((0, 1) if theta[top] > 0 else (1, 0))
+        w["kind"][:] = 1
+        w["slides"][top] = way = rng.integers(-1, 2)
+        along = np.array([p["tilt_cos"][top], -p["tilt_sin"][top]])
+        w["v"][3 * top : 3 * top + 2] += 0.3 * way * along
+        loads = rng.normal(0, 3, 2)
+        found = []
+        for kernel in (by_formulas, by_elimination):
+            kernel(p, w, *loads)
+            forces = np.concatenate([w["normal"][: top + 1].ravel(), w["shear"][: top + 1]])
+            found.append(np.concatenate([w["out"][: 3 * top + 3], forces / p["weight"]]))
+        np.testing.assert_allclose(found[0], found[1], rtol=1e-9, atol=1e-10)

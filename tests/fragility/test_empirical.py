@@ -1,4 +1,4 @@
-"""Fractions of overturned tests without a curve."""
+"""Fractions of overturned tests without a curve, and the non-parametric fragility function."""
 
 import numpy as np
 import pandas as pd
@@ -12,7 +12,8 @@ from rockfrag.fragility.empirical import (
     local_fraction,
     wilson_interval,
 )
-from rockfrag.fragility.observations import observations_from_table
+from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
+from rockfrag.fragility.observations import Observations, observations_from_table
 
 
 def ida(fell, amplitudes=None, motion="m"):
@@ -78,3 +79,105 @@ def test_bins_hold_about_equal_numbers_and_stripes_keep_their_levels():
     table["pga_g"] = rng.choice([0.2, 0.4, 0.8], 997)
     stripes = fraction_in_bins(observations_from_table(table, "pga_g", motion=None), bins=10)
     assert stripes.im.to_numpy() == pytest.approx([0.2, 0.4, 0.8])
+
+
+RNG = 20261122
+
+
+def swept(log_capacity, earthquakes, levels):
+    """Outcomes of motions with one capacity each at common levels."""
+    motions = np.array([f"m{k}" for k in range(log_capacity.size)], dtype=object)
+    fell = np.log(levels)[None, :] > log_capacity[:, None]
+    return Observations(
+        np.tile(levels, motions.size),
+        fell.ravel().astype(float),
+        np.ones(fell.size),
+        np.repeat(motions, levels.size),
+        np.repeat(np.array([f"e{k}" for k in earthquakes], dtype=object), levels.size),
+    )
+
+
+def test_outcomes_and_capacities_give_the_same_curve():
+    rng = np.random.default_rng(RNG)
+    earthquakes = np.repeat(np.arange(6), 3)
+    log_a = 0.3 * rng.normal(size=18)
+    found = swept(log_a, earthquakes, np.geomspace(0.2, 5, 1000))
+    tested = fractions_of_outcomes(found, found.earthquake, 0.9)
+    exact = fractions_of_capacities(log_a, earthquakes.astype(object), 0.9)
+    assert tested.theta == pytest.approx(exact.theta, rel=0.02)
+    assert tested.theta_limits == pytest.approx(exact.theta_limits, rel=0.01)
+    assert tested.beta == pytest.approx(exact.beta, rel=0.01)
+    assert tested.beta_limits == pytest.approx(exact.beta_limits, rel=0.03)
+
+
+def test_estimates_lie_in_their_limits_and_the_curve_in_its_band_and_never_falls():
+    rng = np.random.default_rng(RNG)
+    for earthquakes, each in ((4, 1), (4, 3), (12, 2)):
+        for _ in range(30):
+            labels = np.repeat(np.arange(earthquakes), each)
+            item = swept(rng.standard_t(2, labels.size), labels, np.geomspace(0.05, 20, 60))
+            found = fractions_of_outcomes(item, item.earthquake, 0.9)
+            x = np.geomspace(0.01, 100, 200)
+            value, lower, upper = found.at(x)
+            assert (np.diff(value) >= 0).all() and value[0] == 0
+            assert ((lower <= value) & (value <= upper)).all() and (upper > lower).all()
+            if np.isfinite(found.theta):
+                assert found.theta_limits[0] <= found.theta <= found.theta_limits[1]
+            if np.isfinite(found.beta):
+                assert found.beta_limits[0] <= found.beta <= found.beta_limits[1]
+
+
+def test_limits_are_over_earthquakes_and_not_over_amplitudes_or_motions_of_one():
+    """Ten motions of one earthquake that agree are worth one motion."""
+    rng = np.random.default_rng(RNG)
+    of_earthquake = 0.4 * rng.normal(size=5)
+    levels = np.geomspace(0.1, 10, 200)
+    lone = swept(of_earthquake, np.arange(5), levels)
+    tenfold = swept(np.repeat(of_earthquake, 10), np.repeat(np.arange(5), 10), levels)
+    item, ten = (fractions_of_outcomes(data, data.earthquake, 0.9) for data in (lone, tenfold))
+    assert ten.theta_limits == item.theta_limits
+    assert ten.upper[0] == item.upper[0] < 1
+    # where the limits of the curve pass one half (Woodruff 1952)
+    low, high = item.theta_limits
+    assert item.upper[item.im <= low].max() < 0.5 <= item.upper[item.im > low].min()
+    assert item.lower[item.im < high].max() <= 0.5 < item.lower[item.im >= high].min()
+    careless = fractions_of_outcomes(tenfold, tenfold.motion, 0.9)
+    assert careless.upper[0] < 0.5 * item.upper[0]
+
+
+def test_curve_may_stop_below_one_and_then_has_no_more_than_it_knows():
+    """A sixth of the motions overturns nothing: the median is known, the 84 % point is not."""
+    log_a = np.append(np.linspace(-0.5, 0.4, 10), [np.inf, np.inf])
+    found = fractions_of_capacities(log_a, np.arange(12).astype(object), 0.9)
+    assert found.theta == pytest.approx(1.05, rel=0.02) and found.theta_limits[1] < np.inf
+    assert np.isnan(found.beta) and np.isnan(found.beta_limits).all()
+    few = fractions_of_capacities(np.array([0.1, np.inf, np.inf]), np.arange(3).astype(object), 0.9)
+    assert np.isnan(few.theta) and np.isnan(few.theta_limits).all()
+
+
+def test_one_group_has_a_curve_and_no_limits():
+    found = fractions_of_capacities(np.array([0.1, 0.3]), np.array(["e", "e"], dtype=object), 0.9)
+    value, lower, upper = found.at([1.2])
+    assert np.isfinite(value).all() and np.isnan(lower).all() and np.isnan(upper).all()
+
+
+def test_points_rise_strictly_even_where_values_differ_by_rounding():
+    """Programs that read the points refuse any two at one value."""
+    x = np.array([0.5, 0.5 * (1 + 1e-12), 0.7, 0.7 * (1 + 1e-9), 0.9])
+    fraction = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
+    nan = (float("nan"), float("nan"))
+    at, value = Fractions(x, fraction, fraction, fraction, 0.6, nan, 0.3, nan).knots()
+    assert (np.diff(at) > 1e-7).all() and (np.diff(value) > 1e-7).all()
+    assert value[0] == 0 and value[-1] == 1
+
+
+def test_many_groups_are_left_out_in_blocks_with_the_same_curve():
+    rng = np.random.default_rng(RNG)
+    capacity = np.round(0.3 * rng.normal(size=600), 2)
+    each = np.arange(600).astype(object)
+    many, known = (fractions_of_capacities(capacity, groups, 0.9) for groups in (each, each % 60))
+    assert np.array_equal(many.fraction, known.fraction)
+    assert many.theta == known.theta
+    width = np.diff(np.log(many.theta_limits))[0] / np.diff(np.log(known.theta_limits))[0]
+    assert 0.6 < width < 1.7
+    assert (many.lower <= many.fraction).all() and (many.fraction <= many.upper).all()

@@ -68,92 +68,73 @@ def _candidates(table, q, points, axes, gaps, below):
 
 
 @numba.njit(cache=True)
-def _response(jn, jt, inverse, below, count, w):
-    """Fill what a unit of each impulse (normal 2 c, tangent 2 c + 1) changes along each, and a little more."""
+def _jacobian(q, points, axes, below, count):
+    """What each velocity gives to the speeds along normal (row 2 c) and tangent (2 c + 1) of each contact."""
+    rows = np.zeros((2 * count, q.size))
     for c in range(count):
-        for e in range(c + 1):
-            for i in range(2):
-                above = jn[c] if i == 0 else jt[c]
-                for j in range(2):
-                    other = jn[e] if j == 0 else jt[e]
-                    total = 0.0
-                    if below[e] == below[c]:
-                        for d in range(3 if below[c] == 0 else 0, 6):
-                            total += above[d] * other[d] * inverse[3 * below[c] - 3 + d]
-                    elif below[e] == below[c] - 1:
-                        for d in range(3):
-                            total += above[d] * other[d + 3] * inverse[3 * below[c] - 3 + d]
-                    w[2 * c + i, 2 * e + j] = w[2 * e + j, 2 * c + i] = total
-        w[2 * c, 2 * c] *= 1.0 + 1e-9
-        w[2 * c + 1, 2 * c + 1] *= 1.0 + 1e-9
+        tx, ty = math.cos(axes[c]), -math.sin(axes[c])
+        for k, sign in ((below[c] - 1, -1.0), (below[c], 1.0)):
+            if k >= 0:
+                rx, ry = points[c, 0] - q[3 * k], points[c, 1] - q[3 * k + 1]
+                rows[2 * c, 3 * k : 3 * k + 3] = -sign * ty, sign * tx, -sign * (ty * ry + tx * rx)
+                rows[2 * c + 1, 3 * k : 3 * k + 3] = (
+                    sign * tx,
+                    sign * ty,
+                    sign * (tx * ry - ty * rx),
+                )
+    return rows
 
 
 @numba.njit(cache=True)
-def _newton(w, free, mu, count, press, slide, pn, pt, a, x, of):
+def _newton(w, free, mu, press, slide, p):
     """Impulses of the contacts that press, stick (``slide`` 0) and slide; False if the iteration has no end.
 
-    Alart and Curnier 1991.  The band of the equations is used, as contacts are listed from below.
+    Alart and Curnier 1991.
     """
     for _ in range(30):
-        m = 0
-        for c in range(count):
-            if press[c]:
-                of[m] = 2 * c
-                m += 1
-                if slide[c] == 0:
-                    of[m] = 2 * c + 1
-                    m += 1
-        for i in range(m):
-            x[i] = -free[of[i]]
-            for j in range(m):
-                c = of[j] // 2
-                a[i, j] = w[of[i], of[j]]
-                if of[j] % 2 == 0 and slide[c] != 0:
-                    a[i, j] += slide[c] * mu[c] * w[of[i], 2 * c + 1]
-        for i in range(m):
-            high = i + 1
-            for j in range(i + 1, m):
-                if a[i, j] != 0.0:
-                    high = j + 1
-            if abs(a[i, i]) < 1e-14:
-                return False
-            for j in range(i + 1, m):
-                factor = a[j, i] / a[i, i]
-                if factor != 0.0:
-                    for d in range(i, high):
-                        a[j, d] -= factor * a[i, d]
-                    x[j] -= factor * x[i]
-        for i in range(m - 1, -1, -1):
-            for j in range(i + 1, m):
-                x[i] -= a[i, j] * x[j]
-            x[i] /= a[i, i]
-        for c in range(count):
-            pn[c] = pt[c] = 0.0
-        for i in range(m):
-            c = of[i] // 2
-            if of[i] % 2 == 1:
-                pt[c] = x[i]
-            else:
-                pn[c] = x[i]
-                pt[c] = slide[c] * mu[c] * x[i]
+        solved = np.zeros(free.size, np.bool_)
+        solved[::2], solved[1::2] = press, press & (slide == 0)
+        of, along = np.flatnonzero(solved), w.copy()
+        along[:, ::2] += w[:, 1::2] * (slide * mu)
+        p[:] = 0.0
+        p[of] = np.linalg.solve(along[of][:, of], -free[of])
+        p[1::2] += slide * mu * p[::2]
+        u = free + w @ p
         same = True
-        for c in range(count):
-            un, ut = free[2 * c], free[2 * c + 1]
-            for e in range(count):
-                un += w[2 * c, 2 * e] * pn[e] + w[2 * c, 2 * e + 1] * pt[e]
-                ut += w[2 * c + 1, 2 * e] * pn[e] + w[2 * c + 1, 2 * e + 1] * pt[e]
+        for c in range(press.size):
             was, way = press[c], slide[c]
-            press[c] = pn[c] > 0.0 if was else un < 0.0
+            press[c] = p[2 * c] > 0.0 if was else u[2 * c] < 0.0
             if not press[c]:
                 slide[c] = 0
-            elif was and way == 0 and abs(pt[c]) > mu[c] * pn[c] * (1.0 + 1e-9):
-                slide[c] = 1 if pt[c] > 0.0 else -1
-            elif way * ut > 1e-12:
+            elif was and way == 0 and abs(p[2 * c + 1]) > mu[c] * p[2 * c] * (1.0 + 1e-9):
+                slide[c] = 1 if p[2 * c + 1] > 0.0 else -1
+            elif way * u[2 * c + 1] > 1e-12:
                 slide[c] = 0
             same = same and press[c] == was and slide[c] == way
         if same:
             return True
     return False
+
+
+@numba.njit(cache=True)
+def _relax(w, free, mu, p):
+    """Gauss-Seidel iteration over the contacts from impulses that are nearly those sought."""
+    u = free + w @ p
+    for _ in range(2000):
+        change, largest = 0.0, 1e-300
+        for i in range(p.size):
+            new = p[i] - u[i] / w[i, i]
+            if i % 2 == 0:
+                new = max(0.0, new)
+                largest = max(largest, new)
+            else:
+                limit = mu[i // 2] * p[i - 1]
+                new = min(max(new, -limit), limit)
+            u += w[i] * (new - p[i])
+            change = max(change, abs(new - p[i]))
+            p[i] = new
+        if change <= 1e-8 * largest:
+            break
 
 
 @numba.njit(cache=True)
@@ -167,20 +148,11 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
     m = 4 * n
     points, axes, gaps = np.zeros((m, 2)), np.zeros(m), np.zeros(m)
     below = np.zeros(m, np.int64)
-    # of each contact: what it takes of the body below (3) and of the one above (3)
-    jn, jt = np.zeros((m, 6)), np.zeros((m, 6))
-    wn, wt = np.zeros(m), np.zeros(m)
-    pn, pt = np.zeros(m), np.zeros(m)
-    weights, free, mu = np.zeros((2 * m, 2 * m)), np.zeros(2 * m), np.zeros(m)
-    press, slide = np.zeros(m, np.bool_), np.zeros(m, np.int64)
-    tried_n, tried_t = np.zeros(m), np.zeros(m)
-    a, x, of = np.zeros((2 * m, 2 * m)), np.zeros(2 * m), np.zeros(2 * m, np.int64)
+    p, press, slide = np.zeros(0), np.zeros(0, np.bool_), np.zeros(0, np.int64)
     inverse = np.zeros(3 * n)
-    for k in range(n):
-        inverse[3 * k] = inverse[3 * k + 1] = 1.0 / table[k, 0]
-        inverse[3 * k + 2] = 1.0 / table[k, 1]
+    inverse[::3] = inverse[1::3] = 1.0 / table[:, 0]
+    inverse[2::3] = 1.0 / table[:, 1]
     last = horizontal.size - 1
-    previous = 0
     for i in range(last + tail):
         rows[i, : 3 * n] = q
         rows[i, 3 * n :] = v
@@ -191,80 +163,27 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
                 ah = horizontal[i] + part * (horizontal[i + 1] - horizontal[i])
                 av = vertical[i] + part * (vertical[i + 1] - vertical[i])
             count = _candidates(table, q, points, axes, gaps, below)
-            if count != previous:
-                pn[:] = 0.0
-                pt[:] = 0.0
-                press[:] = True
-                slide[:] = 0
-            previous = count
-            for k in range(n):
-                v[3 * k] -= h * ah
-                v[3 * k + 1] -= h * (g + av)
-            for c in range(count):
-                tx, ty = math.cos(axes[c]), -math.sin(axes[c])
-                jn[c, :] = 0.0
-                jt[c, :] = 0.0
-                wn[c] = wt[c] = 0.0
-                first, low = 3 * below[c] - 3, 3 if below[c] == 0 else 0
-                for at in range(low, 6, 3):
-                    k, sign = below[c] - 1 + at // 3, -1.0 if at == 0 else 1.0
-                    rx, ry = points[c, 0] - q[3 * k], points[c, 1] - q[3 * k + 1]
-                    jt[c, at], jt[c, at + 1] = sign * tx, sign * ty
-                    jt[c, at + 2] = sign * (tx * ry - ty * rx)
-                    jn[c, at], jn[c, at + 1] = -sign * ty, sign * tx
-                    jn[c, at + 2] = sign * (-ty * ry - tx * rx)
-                for d in range(low, 6):
-                    wn[c] += jn[c, d] ** 2 * inverse[first + d]
-                    wt[c] += jt[c, d] ** 2 * inverse[first + d]
-                free[2 * c], free[2 * c + 1], mu[c] = gaps[c] / h, 0.0, friction[below[c]]
-                for d in range(low, 6):
-                    free[2 * c] += jn[c, d] * v[first + d]
-                    free[2 * c + 1] += jt[c, d] * v[first + d]
-            _response(jn, jt, inverse, below, count, weights)
-            if _newton(weights, free, mu, count, press, slide, tried_n, tried_t, a, x, of):
-                for c in range(count):
-                    pn[c], pt[c] = tried_n[c], tried_t[c]
-            for c in range(count):
-                first, low = 3 * below[c] - 3, 3 if below[c] == 0 else 0
-                for d in range(low, 6):
-                    v[first + d] += inverse[first + d] * (jn[c, d] * pn[c] + jt[c, d] * pt[c])
-            for _ in range(2000):
-                change = 0.0
-                largest = 1e-300
-                for c in range(count):
-                    first, low = 3 * below[c] - 3, 3 if below[c] == 0 else 0
-                    speed = 0.0
-                    for d in range(low, 6):
-                        speed += jn[c, d] * v[first + d]
-                    new = max(0.0, pn[c] - (speed + gaps[c] / h) / wn[c])
-                    delta = new - pn[c]
-                    pn[c] = new
-                    change = max(change, abs(delta))
-                    largest = max(largest, new)
-                    for d in range(low, 6):
-                        v[first + d] += inverse[first + d] * jn[c, d] * delta
-                    speed = 0.0
-                    for d in range(low, 6):
-                        speed += jt[c, d] * v[first + d]
-                    limit = friction[below[c]] * pn[c]
-                    new = min(max(pt[c] - speed / wt[c], -limit), limit)
-                    delta = new - pt[c]
-                    pt[c] = new
-                    change = max(change, abs(delta))
-                    for d in range(low, 6):
-                        v[first + d] += inverse[first + d] * jt[c, d] * delta
-                if change <= 1e-8 * largest:
-                    break
-            moving = 0.0
-            for d in range(3 * n):
-                q[d] += h * v[d]
-                moving = max(moving, abs(v[d]))
+            if count != press.size:
+                p, press = np.zeros(2 * count), np.ones(count, np.bool_)
+                slide = np.zeros(count, np.int64)
+            v[::3] -= h * ah
+            v[1::3] -= h * (g + av)
+            jacobian = _jacobian(q, points, axes, below, count)
+            w, free, mu = (jacobian * inverse) @ jacobian.T, jacobian @ v, friction[below[:count]]
+            w += 1e-9 * np.diag(np.diag(w))
+            free[::2] += gaps[:count] / h
+            tried = np.zeros(2 * count)
+            if _newton(w, free, mu, press, slide, tried):
+                p[:] = tried
+            _relax(w, free, mu, p)
+            v += inverse * (jacobian.T @ p)
+            q += h * v
             for k in range(n):
                 relative = q[3 * k + 2] - (q[3 * k - 1] if k else 0.0)
                 off = k > 0 and _apart(table, q, k)
                 if abs(q[3 * k + 2]) >= math.pi / 2 or abs(relative) >= math.pi / 2 or off:
                     return k + 1, i * dt + (j + 1) * h, i + 1
-        if i >= last and moving < 1e-4:
+        if i >= last and np.abs(v).max() < 1e-4:
             return 0, math.nan, i + 1
     return 0, math.nan, last + tail
 

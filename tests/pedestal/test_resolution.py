@@ -6,15 +6,10 @@ import numpy as np
 import pytest
 
 from rockfrag.pedestal import study_pedestal
-from rockfrag.pedestal.cluster_means import (
-    contrast,
-    equivalence,
-    mean_effect,
-    slope_effect,
-    t_estimate,
-)
+from rockfrag.pedestal.cluster_means import equivalence, mean_effect, t_estimate
 from rockfrag.pedestal.paired_tests import pair_tests
-from rockfrag.pedestal.power import detectable_ratio, power_note
+from rockfrag.pedestal.power import detectable_ratio
+from rockfrag_thesis.hypotheses.contrasts import contrast, power_note, slope_effect
 
 LOWEST = 0.05
 

@@ -6,8 +6,7 @@ import pytest
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.system.blocks import Block, Stack
 
-from ..oracle.competitors import numpy_lone, scipy_lone
-from ..oracle.scipy_stack import scipy_stack
+from ..oracle.competitors import numpy_lone, scipy_lone, scipy_stack
 
 DT = 0.01
 STATUE = Block(0.3, 1.2, 200.0)

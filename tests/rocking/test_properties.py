@@ -188,16 +188,6 @@ def test_energy_is_never_gained_at_impacts_and_the_energy_balance_closes(body, m
 
 
 @few
-@given(body=bodies(crooked=True), motion=motions(), scale=st.floats(0.5, 2.0))
-def test_the_ensemble_gives_the_outcome_of_the_single_simulation(body, motion, scale):
-    found = overturns([body], [motion], DT, [scale])
-    response = simulate(body, scale * motion, DT)
-    margin = min(float(found.unstable_distance[0, 0, 0]), response.unstable_distance)
-    assume(margin > 1e-4)
-    assert bool(found.overturned[0, 0, 0]) == response.overturned
-
-
-@few
 @given(body=bodies(crooked=True), start=st.floats(-0.9, 0.9))
 def test_free_rocking_ends_at_rest_or_on_the_side(body: Body, start: float) -> None:
     assume(abs(start) > 0.01)

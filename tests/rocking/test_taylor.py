@@ -1,4 +1,4 @@
-"""The series written out in the kernels are those of the plain method, and one history those of many."""
+"""Series written out in the kernels are those of the plain method; a contact closed at once keeps its momentum."""
 
 import math
 
@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 from rockfrag.engines.kernels import equations as eq
+from rockfrag.engines.kernels.chatter import Hop, closed
+from rockfrag.engines.kernels.impact import stuck
 from rockfrag.engines.kernels.jit import entry_kernel
+from rockfrag.engines.kernels.lanes.stack_constants import (
+    IMPACT,
+    ONE,
+    TWO,
+    fill_constants,
+    number_of,
+)
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
 from rockfrag.engines.records import body_record
 from rockfrag.rocking import Block, Stack
@@ -115,3 +124,28 @@ def test_the_series_of_a_ground_that_keeps_its_height_are_those_of_one_that_rise
         for rises in (False, True)
     ]
     assert found[0] == found[1]
+
+
+@entry_kernel
+def closed_both_ways(body, hop, state, constants, scratch):
+    """Velocities of a contact that stays closed, as it is closed at once and as an impact would close it."""
+    ones, twos, impacts = constants
+    fill_constants(body, 1.0, ones, twos, impacts, scratch)
+    at_once = closed(hop, twos[number_of(state.c1, state.c2)])
+    c1, c2 = (0, state.c2) if hop.ground else (state.c1, 0)
+    return at_once, stuck(body, state, c1, c2)
+
+
+@pytest.mark.parametrize(("ground", "theta"), [(True, (0.0, 0.2)), (False, (0.2, 0.2))])
+@pytest.mark.parametrize("side", [1, -1])
+def test_closing_at_once_is_an_impact_that_sticks(ground, theta, side):
+    state, scratch = np.zeros(2, eq.STATE)
+    state["theta1"], state["theta2"] = theta
+    state["c1"], state["c2"] = (side, 1) if ground else (1, side)
+    state["omega1"], state["omega2"] = (side * 0.03, 0.4) if ground else (0.4, 0.4 + side * 0.03)
+    w1, w2 = float(state["omega1"]), float(state["omega2"])
+    old = -0.1 * side
+    hop = Hop(ground, side, old, math.cos(theta[1]), math.sin(theta[1]), w1, w2)
+    constants = np.zeros(9, ONE), np.zeros(9, TWO), np.zeros(9, IMPACT)
+    at_once, by_impact = closed_both_ways(BODY, hop, state, constants, scratch)
+    np.testing.assert_allclose(at_once, by_impact, rtol=1e-12)

@@ -14,8 +14,7 @@ from rockfrag.fragility.fractions import fractions_of_capacities
 from rockfrag.fragility.intervals import interval_over_motions
 from rockfrag.fragility.observations import Observations
 
-from .documented import document
-from .made import drawn
+from .made import document, drawn
 
 THETA, BETA, SHARED = 0.35, 0.4, 0.3
 DESIGNS = {4: (4, 1), 12: (4, 3), 44: (22, 2)}

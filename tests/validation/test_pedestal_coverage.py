@@ -13,8 +13,7 @@ from scipy import stats
 
 from rockfrag.pedestal.cluster_means import mean_effect, t_estimate, tied_resolution
 
-from .documented import document
-from .made import drawn, pairs_of
+from .made import document, drawn, pairs_of
 
 SEED, DATA_SETS = 20261121, 4_000
 SHAPE = (4, 3, 3)

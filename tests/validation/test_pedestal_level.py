@@ -13,11 +13,11 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from rockfrag.pedestal.cluster_means import contrast, equivalence, mean_effect, t_estimate
-from rockfrag.pedestal.power import holm, power_of_t
+from rockfrag.pedestal.cluster_means import equivalence, mean_effect, t_estimate
+from rockfrag.pedestal.power import holm
+from rockfrag_thesis.hypotheses.contrasts import contrast, power_of_t
 
-from .documented import document
-from .made import drawn, pairs_of
+from .made import document, drawn, pairs_of
 
 SEED = 20261121
 DATA_SETS = 20_000

@@ -13,10 +13,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.pedestal.cluster_means import contrast, mean_effect, slope_effect
+from rockfrag.pedestal.cluster_means import mean_effect
 from rockfrag.pedestal.paired_tests import pair_tests
+from rockfrag_thesis.hypotheses.contrasts import contrast, slope_effect
 
-from .documented import document
+from .made import document
 
 SEED = 20261121
 EARTHQUAKES = ("Friuli", "Kobe", "Loma Prieta", "Northridge")

@@ -14,7 +14,7 @@ from rockfrag.motions.directions import motion_and_vertical
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.study.loading import load_any, study_from
+from rockfrag.study.loading import any_study, load_any
 from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
 from rockfrag.yaml_file import read_yaml
 
@@ -25,7 +25,7 @@ SMOKE = CONFIG / "smoke.yaml"
 
 
 def smoke(**keys: object):
-    return study_from({**read_yaml(SMOKE), **keys}, SMOKE)
+    return any_study({**read_yaml(SMOKE), **keys}, SMOKE)
 
 
 @pytest.mark.parametrize(
@@ -94,10 +94,10 @@ def test_what_rocks_without_sliding_is_refused_beside_them(key):
     with pytest.raises(
         InputError, match=f"key {key}: the perturbed parameters of the key sensitivity_analysis"
     ):
-        study_from(content, source)
+        any_study(content, source)
     del content["sensitivity_analysis"]
     with pytest.raises(InputError, match=f"key {key}: what the key compare_with"):
-        study_from(content, source)
+        any_study(content, source)
 
 
 @pytest.fixture

@@ -13,9 +13,11 @@ from rockfrag.errors import InputError
 
 _INVENTORY = ".csv"
 _KEYS = (
-    *("width", "height", "depth", "mass", "cg_height", "cg_offset"),
-    *("pga", "pgv", "return_period"),
+    *("width", "height", "depth", "mass", "cg_height", "cg_offset", "pga", "pgv", "return_period"),
+    *("name", "facing_deg", "base_spread", "restitution", "friction", "pad_friction", "floor"),
+    *("sa", "hazard", "years", "magnitude", "distance_km"),
 )
+"""Keys of ``statue.yaml`` that are options as they are."""
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 
 
@@ -85,18 +87,16 @@ def add_request_options(parser: argparse.ArgumentParser) -> None:
 def _add_object(about: Any) -> None:
     once = partial(about.add_argument, action=_Once)
     once("--name", help="what it is called")
-    for name, words in (
-        ("width", "of the base, or the diameter of a round one"),
-        ("height", "of the whole"),
-        ("depth", "of the base, as the width if not given"),
-        ("mass", "of stone if not given"),
-        ("cg-height", "of the centre of gravity, half the height if not given"),
-        ("cg-offset", "of the centre of gravity from the middle of the base"),
-    ):
-        metavar = "SIZE" if name != "mass" else "MASS"
-        once(f"--{name}", metavar=metavar, help=words)
+    once("--width", metavar="SIZE", help="of the base, or the diameter of a round one")
+    once("--height", metavar="SIZE", help="of the whole")
+    once("--depth", metavar="SIZE", help="of the base, as the width if not given")
+    once("--mass", metavar="MASS", help="of stone if not given")
+    words = "of the centre of gravity"
+    once("--cg-height", metavar="SIZE", help=f"{words}, half the height if not given")
+    once("--cg-offset", metavar="SIZE", help=f"{words} from the middle of the base")
     once(
         "--facing",
+        dest="facing_deg",
         type=float,
         metavar="DEGREES",
         help="direction of the width, or of a mesh's x axis, from the first component of each record",
@@ -162,7 +162,7 @@ def _add_place(place: Any) -> None:
     once("--hazard", nargs="+", metavar="FILE", help="hazard curves of the site")
     once("--years", type=float, help="time of the probability, 50 if not given")
     once("--magnitude", type=float, help="of the earthquakes that matter most there")
-    once("--distance", type=float, metavar="KM", help="of these earthquakes")
+    once("--distance", dest="distance_km", type=float, metavar="KM", help="of these earthquakes")
 
 
 def _add_motions(motions: Any) -> None:
@@ -242,55 +242,40 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     if options.json:
         print(as_json(found), end="")
     else:
-        print("\n".join(_fitted(line) for line in five_lines(found)))
+        lines = five_lines(found)
+        if sys.stdout.isatty():
+            # broken where a terminal ends; what goes into a file or a pipe stays whole
+            width = max(shutil.get_terminal_size().columns, 40)
+            lines = [textwrap.fill(line, width, subsequent_indent="    ") for line in lines]
+        print("\n".join(lines))
         print(f"{place}", file=sys.stderr)
     return 0
-
-
-def _fitted(line: str) -> str:
-    """Break a line where a terminal ends; what goes into a file or a pipe stays whole."""
-    if not sys.stdout.isatty():
-        return line
-    width = max(shutil.get_terminal_size().columns, 40)
-    return textwrap.fill(line, width, subsequent_indent="    ")
 
 
 def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:
     from rockfrag.assess.request import make_request
     from rockfrag.yaml_file import read_yaml
 
-    settings = read_yaml(options.file) if options.file else {}
-    folder = Path(options.file).parent if options.file else Path()
-    if options.file:
-        for key in ("mesh", "building", "hazard", "records"):
-            if key in given:
-                raise InputError(
-                    f"key {key}: give it in {options.file}, which says the rest of it and from whose folder "
-                    "paths are read."
-                )
-    return make_request(settings | given, options.file or "rockfrag assess", folder)
+    if not options.file:
+        return make_request(given, "rockfrag assess", Path())
+    settings = read_yaml(options.file)
+    for key in ("mesh", "building", "hazard", "records"):
+        if key in given:
+            raise InputError(
+                f"key {key}: give it in {options.file}, which says the rest of it and from whose folder "
+                "paths are read."
+            )
+    return make_request(settings | given, options.file, Path(options.file).parent)
 
 
 def settings_of(options: argparse.Namespace) -> dict[str, Any]:
     """What the command line says, with the keys of ``statue.yaml``."""
     plain = {key: getattr(options, key) for key in _KEYS}
     plain |= {
-        "name": options.name,
         "round": options.round or None,
-        "facing_deg": options.facing,
-        "base_spread": options.base_spread,
-        "restitution": options.restitution,
-        "friction": options.friction,
-        "pad_friction": options.pad_friction,
         "mesh": _mesh(options),
         "pedestal": _pedestals(options.pedestal),
-        "floor": options.floor,
         "building": options.building or _building(options),
-        "sa": options.sa,
-        "hazard": options.hazard,
-        "years": options.years,
-        "magnitude": options.magnitude,
-        "distance_km": options.distance,
     }
     if options.record:
         plain["records"] = {
@@ -319,19 +304,14 @@ def _building(options: argparse.Namespace) -> dict[str, Any] | None:
     from rockfrag.units import quantity
 
     known: dict[str, Any] = {}
-    if options.storey_height:
-        uniform = len(options.storey_height) == 1
-        known["storey_height" if uniform else "storey_heights"] = (
-            options.storey_height[0] if uniform else options.storey_height
-        )
+    if heights := options.storey_height:
+        known |= {"storey_heights": heights} if heights[1:] else {"storey_height": heights[0]}
     if options.period:
         try:
             known["first_period_s"] = quantity(options.period, "s", None)
         except InputError as error:
             raise InputError(f"--period: {error}") from None
-    if options.material:
-        known["material"] = options.material
-    return known or None
+    return known | ({"material": options.material} if options.material else {}) or None
 
 
 def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:

@@ -50,17 +50,16 @@ def write_inventory(
 
     With ``pages`` each object is assessed in full and has a page of its own.
     """
-    place = Path(folder) / "inventory.csv"
+    place, joint = Path(folder) / "inventory.csv", inventory.joint
     write_table(inventory_table(inventory), place)
-    if inventory.joint is not None:
-        write_table(inventory.joint.numbers, place.with_name("together.csv"))
-        write_table(inventory.joint.losses, place.with_name("losses.csv"))
-        write_table(inventory.joint.correlation.reset_index(), place.with_name("correlation.csv"))
-        write_text(gallery_page(inventory, inventory.joint), place.with_suffix(".html"))
-    if pages:
-        for found in inventory.found:
-            motions = inventory.motions.at(found.request.place)
-            write_answer(assess_with(found.request, motions), folder)
+    if joint is not None:
+        write_table(joint.numbers, place.with_name("together.csv"))
+        write_table(joint.losses, place.with_name("losses.csv"))
+        write_table(joint.correlation.reset_index(), place.with_name("correlation.csv"))
+        write_text(gallery_page(inventory, joint), place.with_suffix(".html"))
+    for found in inventory.found if pages else ():
+        motions = inventory.motions.at(found.request.place)
+        write_answer(assess_with(found.request, motions), folder)
     return place
 
 
@@ -96,51 +95,48 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
     parts = joint.objects.set_index("name")["contribution"]
     rows = []
     for found in inventory.found:
-        best = best_change(found)
-        name = found.request.name
-        rows.append(
-            {
-                "name": name,
-                "place": found.request.place.words,
-                "probability": estimate_words(found.main),
-                "contribution": 100 * float(parts[name]),
-                "change": mitigation_words(found, best) if best else "–",
-            }
-        )
+        best, request = best_change(found), found.request
+        change = mitigation_words(found, best) if best else "–"
+        part = 100 * float(parts[request.name])
+        rows.append((request.name, request.place.words, estimate_words(found.main), part, change))
+    ranked = pd.DataFrame(rows, columns=[column.name for column in RANKING])
     caption = (
         "The objects, the one that adds most first; each change is simulated as a body of its own."
     )
-    table = table_html(pd.DataFrame(rows), RANKING, caption, "inventory.csv")
+    table = table_html(ranked, RANKING, caption, "inventory.csv")
     text = gallery_says.ranking(joint.objects.iloc[0], mean)
     return section_of(text, "ranking", [table])
 
 
+_NUMBERS = (
+    Column("at_least", "At least so many", 0),
+    Column(
+        "annual_rate",
+        "Earthquakes that topple so many [1/year]",
+        lambda table: map("{:.2g}".format, table["annual_rate"]),
+    ),
+    Column("probability", "Probability [%]", 2),
+    Column("probability_lower", "Lower limit [%]", 2),
+    Column("probability_upper", "Upper limit [%]", 2),
+)
+
+
 def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
-    numbers = joint.numbers.assign(annual_rate=joint.numbers["annual_rate"].map("{:.2g}".format))
-    for name in ("probability", "probability_lower", "probability_upper"):
-        numbers[name] = 100 * numbers[name]
-    columns = (
-        Column("at_least", "At least so many", 0),
-        Column("annual_rate", "Earthquakes that topple so many [1/year]", numeric=True),
-        Column("probability", "Probability [%]", 2),
-        Column("probability_lower", "Lower limit [%]", 2),
-        Column("probability_upper", "Upper limit [%]", 2),
-    )
+    numbers = joint.numbers.copy()
+    numbers[[column.name for column in _NUMBERS[2:]]] *= 100
     most = int(joint.numbers["at_least"].max())
     rate = joint.numbers["annual_rate"].iloc[-1]
     years = float(f"{1 / rate:.2g}") if rate else 0.0
-    table = table_html(numbers, columns, "How many objects topple in one earthquake.")
-    text = gallery_says.numbers(most, years)
-    return section_of(text, "numbers", [table, *figures])
+    table = table_html(numbers, _NUMBERS, "How many objects topple in one earthquake.")
+    return section_of(gallery_says.numbers(most, years), "numbers", [table, *figures])
 
 
 def _correlation(joint: JointRisk) -> Section:
     apart = joint.correlation.to_numpy()[np.triu_indices(len(joint.correlation), 1)]
     known = apart[np.isfinite(apart)]
-    says = gallery_says
-    text = says.correlation_figure()
+    text = gallery_says.correlation_figure()
     figure = figure_of(text, "correlation", lambda: correlation_figure(joint))
-    text = says.correlation(np.median(known) if known.size else None)
+    text = gallery_says.correlation(np.median(known) if known.size else None)
     return section_of(text, "correlation", [figure])
 
 

@@ -25,7 +25,7 @@ from rockfrag.assess.words import (
 )
 from rockfrag.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
-from rockfrag.report.page import Column, table_html, text_table
+from rockfrag.report.page import Column, by_row, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Section, figure_of, finding_of, section_of
 from rockfrag.report.study_report import page_text
 from rockfrag.report.wording import one_line, said, sentence
@@ -160,20 +160,17 @@ def _effects(found: Assessment) -> Markup:
 
 
 def _rules(found: Assessment) -> Section:
-    table = pd.DataFrame(
-        {
-            "rule": [rule.rule for rule in found.rules],
-            "bias": [rule.bias for rule in found.rules],
-            "scatter": [rule.scatter for rule in found.rules],
-            "unsafe": [fraction_words(rule.unsafe) for rule in found.rules],
-        }
-    )
     columns = (
         Column("rule", "Rule"),
         Column("bias", "Its amplitude over the simulated one (median)", 2),
         Column("scatter", "Scatter (ln)", 2),
-        Column("unsafe", "Motions that topple it earlier", numeric=True),
+        Column(
+            "unsafe",
+            "Motions that topple it earlier",
+            by_row(lambda row: fraction_words(row["unsafe"])),
+        ),
     )
+    table = pd.DataFrame([vars(rule) for rule in found.rules])
     caption = "Rules held against every motion that topples the object."
     return section_of(page_says.rules(), "rules", [table_html(table, columns, caption)])
 

@@ -23,6 +23,9 @@ from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 Floats = NDArray[np.float64]
 
+Sides = Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]]
+"""Outcomes with each property moved to both sides by its standard deviation."""
+
 LEVEL = 0.90
 """Confidence of the intervals."""
 
@@ -78,11 +81,6 @@ class Estimate:
     lower: float
     upper: float
     sources: Mapping[str, float]
-
-    @property
-    def largest(self) -> str:
-        """The source that widens the interval most; empty where there is none."""
-        return max(self.sources, key=lambda name: self.sources[name]) if self.sources else ""
 
 
 @dataclass(frozen=True)
@@ -192,7 +190,7 @@ def earthquake_weights(earthquakes: NDArray[np.object_]) -> Floats:
 def estimate(
     target: Target,
     outcomes: ObjectOutcomes,
-    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]],
+    moved: Sides,
     fixed: Mapping[str, float],
     shifts: Mapping[str, float],
 ) -> Estimate:
@@ -211,7 +209,9 @@ def estimate(
 
     sources: dict[str, float] = {}
     left_out = target.without_each(outcomes)
-    sources["motions"] = _jackknife(left_out)
+    # where nothing rocks without one of them, what others would say is open
+    known = len(left_out) > 1 and np.isfinite(left_out).all()
+    sources["motions"] = float(jackknife_error(left_out)) if known else math.inf
     for name, (lower, upper) in moved.items():
         sources[name] = _half_width(near(lower), near(upper), near(outcomes))
     for name, spread in shifts.items():
@@ -219,13 +219,15 @@ def estimate(
         sources[name] = _half_width(low, high, near(outcomes))
     sources |= fixed
     total = math.sqrt(sum(value**2 for value in sources.values()))
-    quantile = _quantile(sources["motions"], total, len(left_out))
+    quantile = _Z
+    if math.isfinite(total) and sources["motions"] != 0:
+        # Student's t for the sum of one estimated and several known variances
+        freedom = (len(left_out) - 1) * (total / sources["motions"]) ** 4
+        quantile = float(stats.t.ppf(0.5 + LEVEL / 2, freedom))
     # what was added must not make an interval narrower than that of motions which all agree
     low, high = sorted((middle, near(outcomes)))
     down, up = _shifted(target, outcomes, middle, quantile * math.hypot(*shifts.values()))
-    others = quantile * math.hypot(
-        *(value for name, value in sources.items() if name not in shifts)
-    )
+    others = quantile * math.hypot(*(sources[name] for name in sources if name not in shifts))
     return Estimate(
         target.back(middle),
         target.back(low - math.hypot(others, down)),
@@ -246,14 +248,6 @@ def _shifted(
     return max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
 
 
-def _jackknife(left_out: Floats) -> float:
-    """Standard error from values without one earthquake each (Tukey); infinite where one carries it all."""
-    # where nothing rocks without one of them, what others would say is open
-    if len(left_out) < 2 or not np.isfinite(left_out).all():
-        return math.inf
-    return float(jackknife_error(left_out))
-
-
 def _half_width(low: float, high: float, middle: float) -> float:
     """Half the distance of two values; the distance to the middle where one is no number."""
     ends = [value for value in (low, high) if math.isfinite(value)]
@@ -262,19 +256,11 @@ def _half_width(low: float, high: float, middle: float) -> float:
     return abs(ends[0] - middle) if ends else 0.0
 
 
-def _quantile(of_motions: float, total: float, groups: int) -> float:
-    """Student's t for the sum of one estimated and several known variances."""
-    if not math.isfinite(total) or of_motions == 0:
-        return _Z
-    freedom = (groups - 1) * (total / of_motions) ** 4
-    return float(stats.t.ppf(0.5 + LEVEL / 2, freedom))
-
-
 def _bounded(
     target: Target,
     outcomes: ObjectOutcomes,
     middle: float,
-    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]],
+    moved: Sides,
     shifts: Mapping[str, float],
 ) -> Estimate:
     """Where every motion agrees: as many others could disagree as this number of earthquakes cannot exclude."""
@@ -295,9 +281,8 @@ def _bounded(
         reached = min(most(outcomes, shift), float(outcomes.intensity_levels.levels[-1]))
         return Estimate(math.inf, reached, math.inf, {})
     if middle > 0:
-        return Estimate(
-            1.0, target.back(_limit(target, least, outcomes, moved, shift, -1)), 1.0, {}
-        )
+        limit = target.back(_limit(target, least, outcomes, moved, shift, -1))
+        return Estimate(1.0, limit, 1.0, {})
     return Estimate(0.0, 0.0, target.back(_limit(target, most, outcomes, moved, shift, 1)), {})
 
 
@@ -305,7 +290,7 @@ def _limit(
     target: Target,
     of: Callable[..., float],
     outcomes: ObjectOutcomes,
-    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]],
+    moved: Sides,
     shift: float,
     sign: int,
 ) -> float:
@@ -322,7 +307,7 @@ def _limit(
 def estimate_rocking(
     level: float,
     outcomes: ObjectOutcomes,
-    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]],
+    moved: Sides,
     *,
     exact: bool,
 ) -> Estimate:

@@ -80,10 +80,8 @@ def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:
 
     Parameters
     ----------
-    building
-        Building; its model says whether it responds elastically or hysteretically.
-    motion
-        Ground acceleration.
+    building, motion
+        As of :func:`floor_motions`.
 
     Returns
     -------

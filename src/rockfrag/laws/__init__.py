@@ -46,12 +46,7 @@ _LAWS: dict[str, Law] = {}
 
 
 def declare(
-    name: str,
-    tell: Callable[[Shape, float, int], Told],
-    rate: Rate | None = None,
-    *,
-    moves_impulse: bool = False,
-    scales_momentum: bool = False,
+    name: str, tell: Callable[[Shape, float, int], Told], rate: Rate | None = None, **more: bool
 ) -> Law:
     """Declare a law (:class:`Law`), with a rate before anything is simulated: kernels are compiled with it."""
     if name in _LAWS:
@@ -60,7 +55,7 @@ def declare(
         )
     last = max(len(BUILT_IN) - 1, *(law.number for law in _LAWS.values()), 0)
     number = BUILT_IN.index(name) if name in BUILT_IN else last + 1
-    law = Law(name, number, tell, rate, moves_impulse, scales_momentum)
+    law = Law(name, number, tell, rate, **more)
     _LAWS[name] = law
     return law
 

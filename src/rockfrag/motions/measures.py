@@ -74,10 +74,8 @@ def measure_motions(
     ----------
     motions
         What to measure, one after the other; an iterator is used up.
-    periods
-        Periods of the spectral measures [s].
-    damping
-        Damping of the spectral measures and of the Housner intensity [-].
+    periods, damping
+        As of :func:`measure_motion`.
     processes
         How many processes may measure at once; the table does not depend on it.
 
@@ -145,10 +143,8 @@ def measure_pair(
     ----------
     first, second
         Perpendicular components, sampled at the same times.
-    periods
-        Periods of the spectral measures [s].
-    damping
-        Damping of the spectral measures [-].
+    periods, damping
+        As of :func:`measure_motion`.
 
     Returns
     -------

@@ -53,7 +53,7 @@ def rotd(
     Parameters
     ----------
     first, second
-        Perpendicular components, sampled at the same times.
+        As of :func:`rotate`.
     measure
         Any measure of one component, such as :func:`rockfrag.motions.pga` or
         ``lambda m: spectral_acceleration(m, 1.0)``.

@@ -47,18 +47,13 @@ def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
     Parameters
     ----------
     motion
-        Motion as it is, not zero throughout.
+        As of :func:`scale`; one that is zero throughout is refused too.
     pga_g
         Wanted peak acceleration [g], positive.
 
     Returns
     -------
     The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the motion is zero throughout or the wanted value is not a positive number.
     """
     target = positive_number("step scale_to_pga: pga_g", pga_g, "g")
     return _scaled("scale_to_pga", motion, target * GRAVITY, pga(motion), pga_g=target)
@@ -70,18 +65,13 @@ def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
     Parameters
     ----------
     motion
-        Motion as it is, not zero throughout.
+        As of :func:`scale`; one that is zero throughout is refused too.
     pgv_cm_s
         Wanted peak velocity [cm/s], positive.
 
     Returns
     -------
     The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the motion is zero throughout or the wanted value is not a positive number.
     """
     target = positive_number("step scale_to_pgv: pgv_cm_s", pgv_cm_s, "cm/s")
     wanted = target / CENTIMETRES_PER_METRE

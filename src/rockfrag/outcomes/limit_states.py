@@ -134,11 +134,7 @@ def _slides(outcomes: Outcomes) -> NDArray[np.bool_]:
 
 
 @limit_state(
-    OVERTURNS,
-    order=90,
-    label="overturning",
-    damage="Overturned",
-    repair="Restore or replace the object",
+    OVERTURNS, 90, "overturning", damage="Overturned", repair="Restore or replace the object"
 )
 def _overturns(outcomes: Outcomes) -> NDArray[np.bool_]:
     return outcomes.overturned

@@ -137,7 +137,7 @@ def tied_resolution(values: npt.ArrayLike, resolution: npt.ArrayLike) -> Array:
     return np.asarray(np.where(tied, np.asarray(resolution, dtype=float), 0.0))
 
 
-def _resolution_of(table: pd.DataFrame) -> Array:
+def resolution_of(table: pd.DataFrame) -> Array:
     """Half-width to which each row's value is known; 0 where the table does not tell."""
     if "resolution" not in table.columns:
         return np.zeros(len(table))
@@ -185,7 +185,7 @@ class Units(NamedTuple):
 
 def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
     """What was sampled of every group of rows with the same value of a column."""
-    d, known = table["d"].to_numpy(dtype=float), _resolution_of(table)
+    d, known = table["d"].to_numpy(dtype=float), resolution_of(table)
     hidden = np.zeros(len(table))
     groups = table.groupby(by, sort=True).indices
     for rows in groups.values():
@@ -205,52 +205,6 @@ def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
         chosen, rows = (by_earthquake, places) if len(places) > 1 else (by_motion, of_motions[name])
         found[name] = Units(chosen.d[rows], chosen.hidden[rows])
     return found
-
-
-def slope_effect(table: pd.DataFrame, x: str = "s_c", value: str = "d") -> Estimate:
-    """Slope of ``value`` on ``x``: least squares inside each earthquake, then t over the earthquakes.
-
-    Only differences between the objects of one motion (and one side, if there is a column side) enter.
-    """
-    by_motion = [table[name] for name in ("earthquake", "motion", "side") if name in table.columns]
-    across = table[x] - table[x].groupby(by_motion).transform("mean")
-    hidden = tied_resolution(table[value], _resolution_of(table))
-    sums = pd.DataFrame(
-        {"xy": across * table[value], "xx": across**2, "hidden": across.abs() * hidden}
-    )
-    by_earthquake = sums.groupby(table["earthquake"]).sum()
-    by_earthquake = by_earthquake[by_earthquake["xx"] > 0]
-    resolution = (by_earthquake["hidden"] / by_earthquake["xx"]).mean()
-    return t_estimate(by_earthquake["xy"] / by_earthquake["xx"], resolution=float(resolution))
-
-
-def contrast(
-    table: pd.DataFrame,
-    factor: str,
-    level: str,
-    reference: str,
-    block: str = "earthquake",
-    value: str = "d",
-) -> Estimate:
-    """Difference of the mean of ``value`` between two levels of a factor, ``level`` minus ``reference``.
-
-    Like is compared with like: both levels must be there for the same object, earthquake, floor (and side). They
-    are compared within each ``block``: the earthquakes for floors and objects, the floors for two earthquakes.
-    """
-    design = ("earthquake", "floor", "object", "side")
-    matched = [name for name in design if name in table.columns and name != factor]
-    work = table.assign(known=_resolution_of(table))
-    cells = work.pivot_table(
-        index=matched, columns=factor, values=[value, "known"], aggfunc="mean", observed=True
-    )
-    for wanted in (level, reference):
-        if (value, wanted) not in cells:
-            raise TooFewUnitsError(f"no row has {factor} {wanted}")
-    difference = (cells[value, level] - cells[value, reference]).dropna()
-    known = (cells["known", level] + cells["known", reference]).reindex(difference.index)
-    hidden = pd.Series(tied_resolution(difference, known), index=difference.index)
-    resolution = float(hidden.groupby(level=block).mean().mean())
-    return t_estimate(difference.groupby(level=block).mean(), resolution=resolution)
 
 
 def equivalence(effect: Estimate, margin: float = MARGIN) -> float:

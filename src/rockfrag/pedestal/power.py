@@ -12,17 +12,6 @@ from rockfrag.pedestal.cluster_means import Array, Estimate
 
 POWER = 0.80
 LEVEL = 0.05
-MOST_UNITS = 100_000
-
-
-def power_of_t(ratio: float, sd: float, n: int) -> float:
-    """Power of the two-sided one-sample t test on n ≥ 2 values of ln ratio with a standard deviation [-]."""
-    from statsmodels.stats.power import TTestPower
-
-    size = abs(math.log(ratio)) / sd
-    # the two-sided power less the chance to reject on the wrong side, which underflows to NaN
-    found = TTestPower().power(effect_size=size, nobs=n, alpha=LEVEL / 2, alternative="larger")
-    return float(found)
 
 
 def detectable_ratio(effect: Estimate) -> float:
@@ -49,45 +38,6 @@ def _detectable_size(units: int) -> float:
     return float(
         TTestPower().solve_power(nobs=units, alpha=LEVEL / 2, power=POWER, alternative="larger")
     )
-
-
-def units_needed(effect: Estimate) -> float:
-    """How many units like those at hand would show the observed mean with 80 % power.
-
-    Infinite if the observed mean lies within the resolution or needs more than `MOST_UNITS`, NaN if
-    there is no scatter to judge by.
-    """
-    if not effect.se > 0:
-        return math.nan
-    if abs(effect.mean) <= max(effect.resolution, 0.0):
-        return math.inf
-    from statsmodels.stats.power import TTestPower
-
-    if power_of_t(effect.ratio, effect.sd, MOST_UNITS) < POWER:
-        return math.inf
-    if power_of_t(effect.ratio, effect.sd, 2) >= POWER:
-        return 2.0
-    found = TTestPower().solve_power(
-        abs(effect.mean) / effect.sd, alpha=LEVEL / 2, power=POWER, alternative="larger"
-    )
-    return float(math.ceil(found))
-
-
-def power_note(effect: Estimate, unit: str = "earthquake") -> str:
-    """Say in words what the data could have shown and how much more would be needed."""
-    if effect.units < 2:
-        return f"one {unit} alone has no power"
-    if not effect.se > 0:
-        return f"all {unit}s agree and their steps are not known, so the power is not known"
-    detectable = 100 * (detectable_ratio(effect) - 1)
-    seen = f"{effect.units} {unit}s can detect a change of {detectable:.1f} % or more (80 % power)"
-    if abs(effect.mean) <= effect.resolution:
-        finest = 100 * math.expm1(effect.resolution)
-        return f"{seen}; the change found is within the {finest:.1f} % that the steps resolve"
-    needed = units_needed(effect)
-    if math.isinf(needed):
-        return f"{seen}; no feasible number of {unit}s can detect the change found"
-    return f"{seen}; the change found needs {needed:.0f} {unit}s, before any adjustment"
 
 
 def holm(p: npt.ArrayLike) -> Array:

@@ -1,10 +1,9 @@
 """The report of a campaign on a shake table: how often the simulation is right, and where it is not."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 from markupsafe import Markup
@@ -15,7 +14,16 @@ from rockfrag.campaign.validation import FEWEST_VOTERS
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector_tables import VectorTables
 from rockfrag.report.figures import campaign as figures
-from rockfrag.report.page import Column, table_html, text_table
+from rockfrag.report.page import (
+    Column,
+    Row,
+    Words,
+    by_row,
+    estimated,
+    p_values,
+    table_html,
+    text_table,
+)
 from rockfrag.report.part import (
     Answer,
     FigureSpec,
@@ -28,7 +36,7 @@ from rockfrag.report.part import (
 from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import Macros, estimate, number, one_line, probability, said
+from rockfrag.report.wording import Macros, estimate, estimates, number, one_line, probability, said
 from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
 from rockfrag.study.campaign import CampaignStudy
 
@@ -54,9 +62,6 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         provenance=provenance(study, {"Tests": study.tests.name}),
         basis="measured",
     )
-
-
-Row = Mapping[Any, Any]
 
 
 def _percent(row: Row) -> str:
@@ -161,13 +166,13 @@ def _two_measures(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> list
 
 
 def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
-    rows = fragility.dropna(subset=["theta_ratio"])
+    measure = _ordering(fragility)
+    rows = fragility[(fragility["measure"] == measure) & fragility["theta_ratio"].notna()]
     if rows.empty:
         return []
-    measure = _ordering(fragility)
-    found = {
-        row["who"]: _ratios(row) for row in rows[rows["measure"] == measure].to_dict("records")
-    }
+    # simulated over measured median and dispersion, with limits
+    texts = zip(*(estimates(rows, f"{key}_ratio", 2) for key in ("theta", "beta")), strict=True)
+    found = dict(zip(rows["who"], texts, strict=True))
     return [finding_of(says.fragility(name_and_unit(measure)[0], found[OURS], found[VOTES]))]
 
 
@@ -177,59 +182,51 @@ def _ordering(fragility: pd.DataFrame) -> str:
     return str(measured.set_index("measure")["beta"].fillna(math.inf).idxmin())
 
 
-def _ratios(row: Row) -> tuple[str, str]:
-    """Simulated over measured median and dispersion, with limits."""
-    theta, beta = (
-        estimate(row[key], row[f"{key}_lower"], row[f"{key}_upper"], 2)
-        for key in ("theta_ratio", "beta_ratio")
-    )
-    return theta, beta
+def _difference(row: Row) -> str:
+    return _better(row) if pd.notna(row["better"]) else "–"
+
+
+_RIGHT = Column("right", "Right", by_row(_percent))
+_AGREEMENT = (
+    Column("who", "Predicted by"),
+    Column("tests", "Tests", 0),
+    _RIGHT,
+    Column("false_alarms", "False alarms", 1),
+    Column("missed", "Missed", 1),
+    Column("better", "Simulation better by [percentage points]", by_row(_difference)),
+    p_values("p", "p"),
+    Column("judged", "Judged"),
+)
+_ROCKING = (
+    _RIGHT,
+    Column("false_alarms", "Rocked in the simulation only", 1),
+    Column("missed", "Rocked in the laboratory only", 1),
+)
+_CONDITIONING = (
+    Column("conditioning", "Conditioning"),
+    Column("trials", "Trials", 0),
+    _RIGHT,
+    Column("false_alarms", "False alarms", 1),
+    Column("missed", "Missed", 1),
+)
 
 
 def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
-    agreement = tables["agreement"]
-    shown = agreement.assign(
-        who=[_who(name) for name in agreement["who"]],
-        right_text=[_percent(row) for row in agreement.to_dict("records")],
-        better_text=[
-            _better(row) if pd.notna(row["better"]) else "–" for row in agreement.to_dict("records")
-        ],
-        p_text=[probability(p) for p in agreement["p"]],
-    )
-    columns = (
-        Column("who", "Predicted by"),
-        Column("tests", "Tests", 0),
-        Column("right_text", "Right", numeric=True),
-        Column("false_alarms", "False alarms", 1),
-        Column("missed", "Missed", 1),
-        Column("better_text", "Simulation better by [percentage points]", numeric=True),
-        Column("p_text", "p", numeric=True),
-        Column("judged", "Judged"),
-    )
-    best = max(agreement.to_dict("records"), key=lambda row: float(row["right"]))
-    text = says.agreement_figure(best, _who(best["who"]), _level(study))
-    drawn = agreement.assign(who=shown["who"])
-    figure = figure_of(text, "agreement", lambda: figures.agreement_figure(drawn))
-    table = table_html(shown, columns, "Outcomes predicted, and the difference on the same tests.")
-    text = says.agreement(_findings(tables)[0])
-    return section_of(text, "agreement", [figure, table, *_rocking(tables["rocking"])])
+    agreement, rocking = tables["agreement"], tables["rocking"]
+    named = agreement.assign(who=[_who(name) for name in agreement["who"]])
+    best = max(named.to_dict("records"), key=lambda row: float(row["right"]))
+    text = says.agreement_figure(best, best["who"], _level(study))
+    parts: list[Markup | FigureSpec] = [
+        figure_of(text, "agreement", lambda: figures.agreement_figure(named)),
+        table_html(named, _AGREEMENT, "Outcomes predicted, and the difference on the same tests."),
+        # empty where the laboratory noted nothing of it
+        table_html(rocking, _ROCKING, "Whether the object rocked at all, simulated and noted."),
+    ]
+    return section_of(says.agreement(_findings(tables)[0]), "agreement", parts)
 
 
 def _level(study: CampaignStudy) -> str:
     return f"{100 * study.confidence:g} %"
-
-
-def _rocking(rocking: pd.DataFrame) -> list[Markup]:
-    """Whether the object rocked at all, where the laboratory noted it."""
-    if rocking.empty:
-        return []
-    shown = rocking.assign(right_text=[_percent(row) for row in rocking.to_dict("records")])
-    columns = (
-        Column("right_text", "Right", numeric=True),
-        Column("false_alarms", "Rocked in the simulation only", 1),
-        Column("missed", "Rocked in the laboratory only", 1),
-    )
-    return [table_html(shown, columns, "Whether the object rocked at all, simulated and noted.")]
 
 
 _OUTCOMES = {
@@ -239,39 +236,29 @@ _OUTCOMES = {
 }
 
 
+_FRAGILITY = (
+    Column("measure", "Measure"),
+    Column("who", "Outcomes"),
+    estimated("theta", "Median θ", 3),
+    estimated("beta", "Dispersion β", 2),
+    estimated("theta_ratio", "θ over measured", 2),
+    estimated("beta_ratio", "β over measured", 2),
+)
+
+
 def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     fragility, tests = tables["fragility"], tables["tests"]
-    digits = {"theta": 3, "beta": 2, "theta_ratio": 2, "beta_ratio": 2}
-    rows = [
-        {
-            "measure": "{} [{}]".format(*name_and_unit(row["measure"])),
-            "who": _OUTCOMES[row["who"]],
-            **{
-                key: estimate(row[key], row[f"{key}_lower"], row[f"{key}_upper"], decimals)
-                for key, decimals in digits.items()
-            },
-        }
-        for row in fragility.to_dict("records")
-    ]
-    columns = (
-        Column("measure", "Measure"),
-        Column("who", "Outcomes"),
-        Column("theta", "Median θ", numeric=True),
-        Column("beta", "Dispersion β", numeric=True),
-        Column("theta_ratio", "θ over measured", numeric=True),
-        Column("beta_ratio", "β over measured", numeric=True),
+    shown = fragility.assign(
+        measure=["{} [{}]".format(*name_and_unit(name)) for name in fragility["measure"]],
+        who=fragility["who"].map(_OUTCOMES),
     )
     measure = _ordering(fragility)
     name, unit = name_and_unit(measure)
     found = _fragility_found(fragility)
     own = fragility[fragility["measure"] == measure]
-    figure = figure_of(
-        says.beside_figure(found, name),
-        "fragility_beside",
-        lambda: figures.beside_figure(tests, own, measure, f"{name} [{unit}]"),
-    )
-    caption = "Curves of measured and of simulated outcomes."
-    table = table_html(pd.DataFrame(rows), columns, caption)
+    draw = partial(figures.beside_figure, tests, own, measure, f"{name} [{unit}]")
+    figure = figure_of(says.beside_figure(found, name), "fragility_beside", draw)
+    table = table_html(shown, _FRAGILITY, "Curves of measured and of simulated outcomes.")
     return section_of(says.curves(found, _level(study)), "fragility", [figure, table])
 
 
@@ -280,16 +267,15 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     names = [
         region.removesuffix("_from") for region in map(str, regions) if region.endswith("_from")
     ]
-    labels = {name: "{} [{}]".format(*name_and_unit(name)) for name in names}
-    shown = regions[regions["tests"] > 0].copy()
-    for name in names:
-        shown[name] = [
-            f"{low:.3g} to {high:.3g}"
-            for low, high in regions.loc[shown.index, [f"{name}_from", f"{name}_to"]].to_numpy()
-        ]
-    shown["right"] = 100 * shown["right"]
+    listed = study.measures or names
+    labels = {name: "{} [{}]".format(*name_and_unit(name)) for name in (*names, *listed)}
+
+    def spans(name: str) -> Words:
+        return by_row(lambda row: f"{row[f'{name}_from']:.3g} to {row[f'{name}_to']:.3g}")
+
+    shown = regions[regions["tests"] > 0].assign(right=100 * regions["right"])
     columns = (
-        *(Column(name, label, numeric=True) for name, label in labels.items()),
+        *(Column(name, labels[name], spans(name)) for name in names),
         Column("tests", "Tests", 0),
         Column("overturned", "Overturned", 0),
         Column("simulated", "Simulated", 0),
@@ -299,10 +285,7 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     wrong_columns = (
         Column("test", "Test"),
         Column("group", "Input motion"),
-        *(
-            Column(name, "{} [{}]".format(*name_and_unit(name)), 3)
-            for name in study.measures or names
-        ),
+        *(Column(name, labels[name], 3) for name in listed),
         Column("overturned", "Overturned"),
         Column("votes", "Votes to overturn [%]", 0),
         Column("near_critical", "Near-critical"),
@@ -319,65 +302,52 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     return section_of(says.tests(tests), "tests", parts)
 
 
+_PROPERTIES = {
+    "direction_deg": "Direction of shaking [°]",
+    "contact_tolerance_mm": "Contact tolerance [mm]",
+    "edge_retreat_mm": "Retreat of the edges [mm]",
+    "restitution": "Restitution [-]",
+    "friction": "Coefficient of friction [-]",
+    "left_m": "Left edge to the centre of gravity [m]",
+    "right_m": "Right edge to the centre of gravity [m]",
+    "alpha_deg": "Smaller critical angle [°]",
+}
+_CONTACT = (
+    Column("contact_tolerance_mm", "Contact tolerance [mm]", 2),
+    Column("worst_direction_deg", "Worst direction [°]", 0),
+    Column("alpha_deg", "Critical angle [°]", 1),
+    Column("alpha_lower_deg", "5 % of scans", 1),
+    Column("alpha_upper_deg", "95 % of scans", 1),
+    Column("trials", "Trials near it", 0),
+    Column("width_m", "Their base [cm]", 1),
+    Column("overturned", "Overturn in [% of tests]", 0),
+    Column("right", "Right, in sample [%]", 0),
+)
+
+
 def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     trials, contact, footprint = tables["trials"], tables["contact"], tables["footprint"]
     likely = trials[trials["plausible"]]
-    titles = {
-        "direction_deg": "Direction of shaking [°]",
-        "contact_tolerance_mm": "Contact tolerance [mm]",
-        "edge_retreat_mm": "Retreat of the edges [mm]",
-        "restitution": "Restitution [-]",
-        "friction": "Coefficient of friction [-]",
-        "left_m": "Left edge to the centre of gravity [m]",
-        "right_m": "Right edge to the centre of gravity [m]",
-        "alpha_deg": "Smaller critical angle [°]",
-    }
-    tried, plausible = (
-        {name: part[name] for name in titles if name in trials} for part in (trials, likely)
-    )
+    names = [name for name in _PROPERTIES if name in trials]
     parts: list[Markup | FigureSpec] = []
     if not footprint.empty:
         text = says.footprint_figure(100 * (likely["left_m"] + likely["right_m"]))
-        parts.append(
-            figure_of(text, "footprint", lambda: figures.footprint_figure(footprint, trials))
-        )
-    parts.append(
-        text_table(
-            {
-                "Property": [titles[name] for name in tried],
-                "Range tried": [f"{x.min():.3g} to {x.max():.3g}" for x in tried.values()],
-                "Plausible range": [f"{x.min():.3g} to {x.max():.3g}" for x in plausible.values()],
-                "Median of the plausible": [f"{x.median():.3g}" for x in plausible.values()],
-            },
-            "Unmeasured properties: ranges tried, and ranges that agree with the tests.",
-            ["Range tried", "Plausible range", "Median of the plausible"],
-        )
-    )
-    contact_columns = (
-        Column("contact_tolerance_mm", "Contact tolerance [mm]", 2),
-        Column("worst_direction_deg", "Worst direction [°]", 0),
-        Column("alpha_deg", "Critical angle [°]", 1),
-        Column("alpha_lower_deg", "5 % of scans", 1),
-        Column("alpha_upper_deg", "95 % of scans", 1),
-        Column("trials", "Trials near it", 0),
-        Column("width_cm", "Their base [cm]", 1),
-        Column("overturned_percent", "Overturn in [% of tests]", 0),
-        Column("right_percent", "Right, in sample [%]", 0),
-    )
-    parts.append(
-        table_html(
-            contact.assign(
-                width_cm=100 * contact["width_m"],
-                overturned_percent=100 * contact["overturned"],
-                right_percent=100 * contact["right"],
-            ),
-            contact_columns,
-            "Smallest critical angle by contact tolerance; the object cannot stand where it is negative.",
-        )
-    )
+        draw = partial(figures.footprint_figure, footprint, trials)
+        parts.append(figure_of(text, "footprint", draw))
+    texts = {
+        "Property": [_PROPERTIES[name] for name in names],
+        "Range tried": [_range(trials[name]) for name in names],
+        "Plausible range": [_range(likely[name]) for name in names],
+        "Median of the plausible": [f"{likely[name].median():.3g}" for name in names],
+    }
+    caption = "Unmeasured properties: ranges tried, and ranges that agree with the tests."
+    parts.append(text_table(texts, caption, list(texts)[1:]))
+    in_percent = {name: 100 * contact[name] for name in ("width_m", "overturned", "right")}
+    caption = "Smallest critical angle by contact tolerance; the object cannot stand where it is negative."
+    parts.append(table_html(contact.assign(**in_percent), _CONTACT, caption))
     # ranges that end where the tests would have them go on
     edges = [
-        f"{titles[name].split(' [')[0].lower()} ({edge})"
+        f"{_PROPERTIES[name].split(' [')[0].lower()} ({edge})"
         for name, edge in preferred_edges(trials, likely.index, study.unknowns).items()
     ]
     blocks = len(study.object.get("pedestal", ()))
@@ -385,16 +355,12 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     return section_of(text, "object", parts)
 
 
+def _range(values: pd.Series) -> str:
+    return f"{values.min():.3g} to {values.max():.3g}"
+
+
 def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
-    rows = tables["conditioning"]
-    shown = rows.assign(right_text=[_percent(row) for row in rows.to_dict("records")])
-    columns = (
-        Column("conditioning", "Conditioning"),
-        Column("trials", "Trials", 0),
-        Column("right_text", "Right", numeric=True),
-        Column("false_alarms", "False alarms", 1),
-        Column("missed", "Missed", 1),
-    )
     steps = [" ".join(str(value) for value in step.values()) for step in study.conditioning]
-    table = table_html(shown, columns, "Outcomes predicted right, by conditioning.")
+    caption = "Outcomes predicted right, by conditioning."
+    table = table_html(tables["conditioning"], _CONDITIONING, caption)
     return section_of(says.conditioning(steps), "conditioning", [table])

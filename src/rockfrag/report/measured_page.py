@@ -12,12 +12,12 @@ from matplotlib.figure import Figure
 from rockfrag.figure_style import note_figure
 from rockfrag.fragility.user_table import UserFragility
 from rockfrag.report.figures.fragility import calibration_figure, measures_figure
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import Column, estimated, p_values, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, finding_of, section_of
 from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import Macros, estimates, one_line, probability, said
+from rockfrag.report.wording import Macros, estimates, one_line, said
 from rockfrag.study.measured_table import MeasuredTable
 
 _CAPTIONS = {
@@ -32,17 +32,11 @@ says = Macros("rockfrag.report", "measured_page.j2")
 
 def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
     """Return the tables by their names."""
-    goodness = [
-        {
-            "measure": measure,
-            "deviance": goodness.deviance,
-            "p_value": goodness.p_value,
-            "brier": goodness.brier,
-            "finding": goodness.words,
-        }
-        for measure, goodness in found.goodness.items()
-    ]
     columns = ["measure", "deviance", "p_value", "brier", "finding"]
+    goodness = [
+        (measure, fit.deviance, fit.p_value, fit.brier, fit.words)
+        for measure, fit in found.goodness.items()
+    ]
     return {
         "tests": found.tests,
         "fragility": found.table,
@@ -52,7 +46,7 @@ def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
     }
 
 
-def figure_specs(study: MeasuredTable, found: UserFragility) -> dict[str, FigureSpec]:
+def figure_specs(found: UserFragility) -> dict[str, FigureSpec]:
     """Figures by name; one that its data cannot carry says so in words."""
     curves = {name: fit for name, fit in found.fits.items() if np.isfinite(fit.fit.theta)}
     outcomes = {name: found.outcomes[name] for name in curves}
@@ -61,24 +55,18 @@ def figure_specs(study: MeasuredTable, found: UserFragility) -> dict[str, Figure
         drawings["measures"] = lambda: measures_figure(curves, outcomes)
     if found.goodness:
         drawings["calibration"] = lambda: calibration_figure(found.goodness)
-    nothing = partial(
-        note_figure, "No curve: overturning does not become more frequent with a measure."
-    )
+    words = "No curve: overturning does not become more frequent with a measure."
+    nothing = partial(note_figure, words)
     return {
-        name: FigureSpec(
-            name,
-            f"{_CAPTIONS[name]} {found.choice.words}",
-            _CAPTIONS[name],
-            drawings.get(name, nothing),
-        )
-        for name in _CAPTIONS
+        name: FigureSpec(name, f"{text} {found.choice.words}", text, drawings.get(name, nothing))
+        for name, text in _CAPTIONS.items()
     }
 
 
 def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Path) -> None:
     """Draw the figures and write the page, ``report.html``."""
     tables = result_tables(found)
-    specs = figure_specs(study, found)
+    specs = figure_specs(found)
     answer = _answer(study, found, specs)
     sections = [
         _choice(tables["recommendation"], answer.sentences[0]),
@@ -130,19 +118,34 @@ def _level(study: MeasuredTable) -> str:
     return f"{100 * study.confidence:g} %"
 
 
+_CHOICE = (
+    Column("im", "Measure"),
+    Column("unit", "Unit"),
+    Column("theta", "Median θ", 3),
+    Column("beta", "β", 3),
+    Column("aic", "AIC", 1),
+    Column("auc", "AUC", 3),
+    Column("chosen_fraction", "Fraction of bootstrap samples in which it is best", 2),
+)
+_CURVES = (
+    Column("im", "Measure"),
+    Column("unit", "Unit"),
+    estimated("theta", "Median θ"),
+    estimated("beta", "β"),
+    Column("aic", "AIC", 1),
+)
+_FITS = (
+    Column("measure", "Measure"),
+    Column("deviance", "Deviance", 1),
+    p_values("p_value", "p"),
+    Column("brier", "Brier score", 3),
+    Column("finding", "Finding"),
+)
+
+
 def _choice(choice: pd.DataFrame, best: Finding) -> Section:
-    columns = [
-        Column("im", "Measure"),
-        Column("unit", "Unit"),
-        Column("theta", "Median θ", 3),
-        Column("beta", "β", 3),
-        Column("aic", "AIC", 1),
-        Column("auc", "AUC", 3),
-        Column("chosen_fraction", "Fraction of bootstrap samples in which it is best", 2),
-    ]
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
-    columns += [Column(name, f"p, {name.removeprefix('p_')}", numeric=True) for name in given]
-    choice = choice.assign(**{name: [probability(p) for p in choice[name]] for name in given})
+    columns = [*_CHOICE, *(p_values(name, f"p, {name.removeprefix('p_')}") for name in given)]
     table = table_html(choice, columns, "Measures compared on the same tests, best first.")
     return section_of(says.measures(best), "measure", [table])
 
@@ -150,31 +153,12 @@ def _choice(choice: pd.DataFrame, best: Finding) -> Section:
 def _curves(
     study: MeasuredTable, tables: Mapping[str, pd.DataFrame], figures: Mapping[str, FigureSpec]
 ) -> Section:
-    curves = (
-        Column("im", "Measure"),
-        Column("unit", "Unit"),
-        Column("theta_text", "Median θ", numeric=True),
-        Column("beta_text", "β", numeric=True),
-        Column("aic", "AIC", 1),
-    )
-    fits = (
-        Column("measure", "Measure"),
-        Column("deviance", "Deviance", 1),
-        Column("p_text", "p", numeric=True),
-        Column("brier", "Brier score", 3),
-        Column("finding", "Finding"),
-    )
     fitted, goodness = tables["fragility"], tables["goodness"]
-    warnings = list(dict.fromkeys(note for note in fitted["warnings"] if note))
-    goodness = goodness.assign(p_text=[probability(p) for p in goodness["p_value"]])
-    fitted = fitted.assign(
-        theta_text=estimates(fitted, "theta"), beta_text=estimates(fitted, "beta")
-    )
+    warnings = dict.fromkeys(note for note in fitted["warnings"] if note)
     level, notes = _level(study), [*goodness["finding"], *warnings]
     parts: list[Markup | FigureSpec] = [
-        table_html(fitted, curves, f"Medians and dispersions, {level} intervals."),
-        table_html(goodness, fits, "Goodness of fit."),
+        table_html(fitted, _CURVES, f"Medians and dispersions, {level} intervals."),
+        table_html(goodness, _FITS, "Goodness of fit."),
         figures["calibration"],
     ]
-    text = says.curves(len(goodness), level, notes)
-    return section_of(text, "fragility", parts)
+    return section_of(says.curves(len(goodness), level, notes), "fragility", parts)

@@ -9,11 +9,11 @@ from markupsafe import Markup
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.figures.space import WORDS, fractions_figure, ratios_figure, words_of
 from rockfrag.report.live.space import Standing, live_in_space
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import Column, estimated, table_html
 from rockfrag.report.part import Answer, Finding, Section, figure_of, finding_of
 from rockfrag.report.provenance import provenance
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import Macros, estimates, one_line, said
+from rockfrag.report.wording import Macros, one_line, said
 from rockfrag.rocking.space_medians import LOSS, PLANAR, body_of
 from rockfrag.study.space import SpaceStudy
 
@@ -77,16 +77,13 @@ def _finding(base: str, medians: pd.DataFrame) -> Finding:
 
 
 def _table(medians: pd.DataFrame) -> Markup:
-    shown = medians.assign(
-        body=[words_of(row) for _, row in medians.iterrows()],
-        **{f"{name}_text": estimates(medians, name, 2) for name in PLANAR},
-    )
+    shown = medians.assign(body=[words_of(row) for _, row in medians.iterrows()])
     columns = [
         Column("body", "Base"),
         Column("slenderness", "Height over width", 1),
         Column("height_m", "Height [m]", 1),
         Column("space_g", "Median in space [g]", 2),
-        *(Column(f"{name}_text", f"Over {WORDS[name]}", numeric=True) for name in PLANAR),
+        *(estimated(name, f"Over {WORDS[name]}", 2) for name in PLANAR),
         Column("flip_rate", "Flip rate", 2),
     ]
     return table_html(shown, columns, "Medians in space over planar ones, with 90 % intervals.")

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag import plausibility
+from rockfrag import units
 from rockfrag.engines.contract import Cases
 from rockfrag.engines.steps import MOST_SAMPLES, STEP, step_count
 from rockfrag.errors import InputError
@@ -25,22 +25,19 @@ MotionLike = Motion | GroundMotion | ArrayLike
 """A motion, or the accelerations of its horizontal component [m/s²], shape (n,)."""
 
 
-def checked_motion(
-    motion: MotionLike, dt: float | None, name: str = "motion"
-) -> tuple[NDArray[np.float64], float]:
-    """Return the accelerations of a motion [m/s²] and its sampling interval [s]."""
+def _checked_motion(motion: Any, dt: float | None, name: str) -> Motion:
+    """Return a motion, or the one that accelerations [m/s²] at a sampling interval [s] are."""
     _refuse_file_name(name, motion)
     if isinstance(motion, Motion):
         if dt is not None:
             raise InputError(
                 f"dt: {name} is a Motion, which has its own sampling interval; leave dt out."
             )
-        data, interval = motion.acceleration, motion.dt
+        values = motion.acceleration
     else:
         if dt is None:
             raise InputError(f"dt: {name} is an array; give its sampling interval in seconds.")
-        data, interval = motion, positive_number("dt", dt, "seconds")  # type: ignore[assignment]
-    values = real_array(name, data, "m/s²")
+        interval, values = positive_number("dt", dt, "seconds"), real_array(name, motion, "m/s²")
     if values.ndim != 1:
         raise InputError(f"{name}: expected shape (n,), got {values.shape}.")
     if values.size < 2:
@@ -55,30 +52,27 @@ def checked_motion(
         raise InputError(
             f"{name}: a peak of {peak:.3g} m/s² is beyond any earthquake; check the unit."
         )
-    return values, interval
+    return motion if isinstance(motion, Motion) else Motion(values, interval)
 
 
-def checked_vertical(
-    vertical: MotionLike | None,
-    horizontal: NDArray[np.float64],
-    interval: float,
-    name: str = "vertical",
-) -> NDArray[np.float64]:
-    """Return the vertical accelerations that belong to horizontal ones [m/s²]; none for None."""
-    if vertical is None:
-        return np.zeros(0)
+def _checked_vertical(vertical: MotionLike, horizontal: Motion, name: str) -> Motion:
+    """Return the vertical component that belongs to a horizontal one."""
+    interval = horizontal.dt
     if isinstance(vertical, Motion) and not math.isclose(vertical.dt, interval, rel_tol=1e-9):
         raise InputError(
             f"{name}: sampled every {vertical.dt:g} s, the horizontal motion every {interval:g} s; "
             "resample one of them."
         )
     own = None if isinstance(vertical, Motion) else interval
-    values, _ = checked_motion(vertical, own, name)
-    if values.size != horizontal.size:
+    values, samples = (
+        _checked_motion(vertical, own, name).acceleration,
+        horizontal.acceleration.size,
+    )
+    if values.size != samples:
         raise InputError(
-            f"{name}: {values.size} samples for {horizontal.size} horizontal ones; cut or pad one of them."
+            f"{name}: {values.size} samples for {samples} horizontal ones; cut or pad one of them."
         )
-    return values
+    return Motion(values, interval)
 
 
 def checked_start(body: SystemLike, value: object, name: str) -> tuple[float, ...]:
@@ -151,15 +145,12 @@ def ground_motion(
                 f"{name}: a GroundMotion has its own vertical component and sampling interval; leave vertical "
                 "and dt out."
             )
-        for component in (motion.x, motion.y, motion.z):
-            if component is not None:
-                checked_motion(component, None, name)
+        for component in motion.components:
+            _checked_motion(getattr(motion, component), None, name)
         return motion
-    values, interval = checked_motion(motion, dt, name)
-    up = checked_vertical(vertical, values, interval, vertical_name)
+    x = _checked_motion(motion, dt, name)
     return GroundMotion(
-        motion if isinstance(motion, Motion) else Motion(values, interval),
-        z=Motion(up, interval) if vertical is not None else None,
+        x, z=None if vertical is None else _checked_vertical(vertical, x, vertical_name)
     )
 
 
@@ -268,17 +259,17 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     own = (Motion, GroundMotion)
     plain = any(not isinstance(motion, own) for motion in _listed_motions(given))
     # a stronger motion is hardly one in g, and needs no look at the bodies
-    doubtful = plain and 0 < peak <= plausibility.LARGEST_IN_G
+    doubtful = plain and 0 < peak <= units.LARGEST_IN_G
     least = g * min(min(uplift_ratios(system)) for system in cases.systems) if doubtful else None
     longest = max(motion.dt for motion in cases.motions)
-    if longest > plausibility.LONGEST_STEP:
+    if longest > units.LONGEST_STEP:
         # what is far too long is refused before it is doubted
         for system in cases.systems:
             step_count(system, longest, g, STEP)
     for quality_flag in (
-        plausibility.peak_warning(peak, least),
-        plausibility.gravity_warning(g),
-        plausibility.interval_warning(longest),
+        units.peak_warning(peak, least),
+        units.gravity_warning(g),
+        units.interval_warning(longest),
     ):
         if quality_flag:
             warnings.warn(quality_flag, UnitWarning, stacklevel=stacklevel)

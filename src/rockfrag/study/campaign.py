@@ -8,7 +8,6 @@ from typing import Any
 
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
-from rockfrag.schema import checked
 from rockfrag.study.heading import Heading, Steps, beside, checked_steps, heading_of
 
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
@@ -80,10 +79,8 @@ class CampaignStudy(Heading):
         return [str(path) for path in paths if path not in fetched]
 
 
-def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> CampaignStudy:
-    """Make the study of a campaign from a configuration that was read from ``path``."""
-    source = Path(path)
-    content = checked(content, "campaign", str(source))
+def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
+    """Make the study of a campaign from a checked configuration that was read from ``source``."""
     campaign, thing = content[CAMPAIGN_KEY], content["object"]
     fetch = tuple(
         PublicFile(wanted["url"], wanted["sha256"], _kept(source, i, wanted["file"]))

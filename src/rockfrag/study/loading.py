@@ -16,7 +16,6 @@ from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names, file_name, is_file
 from rockfrag.laws import law_names
-from rockfrag.plausibility import peak_warning
 from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import own_records, read_catalogue, repeated_motions
 from rockfrag.schema import checked
@@ -36,6 +35,7 @@ from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
 from rockfrag.system.blocks import Block
 from rockfrag.system.system import System
+from rockfrag.units import peak_warning
 from rockfrag.yaml_file import read_yaml
 
 OF_ONE_COMPONENT = (
@@ -58,19 +58,17 @@ def load_any(path: str | os.PathLike[str]) -> AnyStudy:
 
 def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnyStudy:
     """Make a study of any kind of a configuration that was read from ``path``."""
-    kinds: dict[str, Callable[..., AnyStudy]] = {
-        measured_table.TABLE_KEY: measured_table.measured_table_from,
-        CAMPAIGN_KEY: campaign_from,
-        SPACE_KEY: space_study_from,
+    kinds: dict[str, tuple[str, Callable[..., AnyStudy]]] = {
+        measured_table.TABLE_KEY: ("measured_table", measured_table.measured_table_from),
+        CAMPAIGN_KEY: ("campaign", campaign_from),
+        SPACE_KEY: ("space", space_study_from),
     }
-    of_kind = next((make for key, make in kinds.items() if key in content), study_from)
-    return of_kind(content, path)
+    schema, make = next((kind for key, kind in kinds.items() if key in content), ("study", _study))
+    return make(checked(content, schema, str(path)), Path(path))
 
 
-def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
-    """Make a study of a configuration that was read from ``path``, and check what it refers to."""
-    source = Path(path)
-    content = checked(content, "study", str(source))
+def _study(content: Mapping[str, Any], source: Path) -> Study:
+    """Make a study of a checked configuration, and check what it refers to."""
     bodies, motions = content["bodies"], content["motions"]
     measures = content["fragility"]["measures"]
     specimens_file = existing_file(source, "bodies.specimens", bodies["specimens"])

@@ -1,6 +1,5 @@
 """A study of somebody's own table of tests: overturned yes or no, with intensity measures."""
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +7,6 @@ from typing import Any
 
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
-from rockfrag.schema import checked
 from rockfrag.study.heading import Heading, beside, heading_of
 from rockfrag.tabular import read_cells
 
@@ -36,10 +34,8 @@ class MeasuredTable(Heading):
         return f"the table {self.table}"
 
 
-def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> MeasuredTable:
-    """Make a study of a measured table from a configuration that was read from ``path``."""
-    source = Path(path)
-    content = checked(content, "measured_table", str(source))
+def measured_table_from(content: Mapping[str, Any], source: Path) -> MeasuredTable:
+    """Make a study of a measured table from a checked configuration that was read from ``source``."""
     table = beside(source, content[TABLE_KEY])
     if not is_file(table):
         raise InputError(

@@ -1,6 +1,5 @@
 """A study of bodies in space beside planar ones."""
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
@@ -12,7 +11,6 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import own_records, read_catalogue
 from rockfrag.rocking.space_sweep import Sweep
-from rockfrag.schema import checked
 from rockfrag.study.heading import Heading, existing_file, heading_of
 
 SPACE_KEY = "space"  # key that only a study of bodies in space has
@@ -51,19 +49,18 @@ class SpaceStudy(Heading):
         return [str(self.catalogue_file), *map(str, own)]
 
 
-def space_study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> SpaceStudy:
-    """Make a study of bodies in space from a configuration that was read from ``path``."""
-    content = checked(content, "space", str(path))
+def space_study_from(content: Mapping[str, Any], source: Path) -> SpaceStudy:
+    """Make a study of bodies in space from a checked configuration that was read from ``source``."""
     space = content[SPACE_KEY]
     if ("every" in space) == ("catalogue" in space):
         raise InputError(
-            f"{path}: key space: give either every, for records of FEMA P-695, or catalogue, for your own."
+            f"{source}: key space: give either every, for records of FEMA P-695, or catalogue, for your own."
         )
     catalogue_file = None
     if "catalogue" in space:
-        catalogue_file = existing_file(Path(path), "space.catalogue", space["catalogue"])
+        catalogue_file = existing_file(source, "space.catalogue", space["catalogue"])
     return SpaceStudy(
-        **heading_of(content, Path(path)),
+        **heading_of(content, source),
         every=space.get("every"),
         catalogue_file=catalogue_file,
         catalogue=None if catalogue_file is None else _pairs(catalogue_file),

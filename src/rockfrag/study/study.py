@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from rockfrag.building.model import ShearBuilding
 from rockfrag.errors import InputError
 from rockfrag.files import file_name, is_file
-from rockfrag.plausibility import size_warning
 from rockfrag.records.catalogue import own_records
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.shaketable.shaker import Shaker
 from rockfrag.study.heading import Heading
-from rockfrag.system.blocks import Block, Stack
+from rockfrag.system.blocks import Block
 from rockfrag.system.system import System
+from rockfrag.units import size_warning
 
 GROUND = "ground"  # label of the only floor of a study without a building
 MOST_ROWS = 100_000
@@ -192,33 +192,6 @@ class Study(Heading):
             for job in range(self.ida_jobs)
             for configuration in self.configurations
         ]
-
-    @property
-    def tested_blocks(self) -> dict[str, Block]:
-        """Blocks of the objects tested and, as ``P``, the first pedestal: the names of tables."""
-        blocks = {
-            configuration.names[-1]: self.specimens[configuration.names[-1]]
-            for configuration in self.configurations
-        }
-        pedestals = [
-            configuration.names[-2]
-            for configuration in self.configurations
-            if configuration.count > 1
-        ]
-        if pedestals:
-            blocks["P"] = self.specimens[pedestals[0]]
-        return blocks
-
-    @property
-    def stacks(self) -> dict[str, Stack]:
-        """Stacks tested, by the name of their configuration."""
-        return {
-            configuration.name: Stack(
-                self.specimens[configuration.names[0]], self.specimens[configuration.names[1]]
-            )
-            for configuration in self.configurations
-            if configuration.count == 2
-        }
 
     @property
     def own_records(self) -> list[Path]:

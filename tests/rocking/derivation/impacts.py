@@ -3,8 +3,7 @@
 import numpy as np
 from numpy import cos, sin
 
-from .equation import Equation
-from .systems import System, impact_map, random_systems
+from .systems import Equation, System, impact_map, random_systems
 
 Array = np.ndarray
 

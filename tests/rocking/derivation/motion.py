@@ -3,9 +3,8 @@
 import numpy as np
 from numpy import cos, sign, sin
 
-from .equation import Equation
 from .single_block import standing_pivot
-from .systems import System, random_systems
+from .systems import Equation, System, random_systems
 
 Array = np.ndarray
 

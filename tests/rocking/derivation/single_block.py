@@ -5,8 +5,7 @@ import numpy as np
 from numpy import abs as mag
 from numpy import arctanh, cos, cosh, sign, sin, sqrt
 
-from .equation import Equation
-from .systems import System, impact_map, random_systems, uniform_systems
+from .systems import Equation, System, impact_map, random_systems, uniform_systems
 
 Array = np.ndarray
 

@@ -4,6 +4,9 @@ The truth is the chain of bodies in ``tests/oracle/rocking_model.py``, which fol
 centres alone and knows no formula of the thesis.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 
 from rockfrag.system import Block, Stack
@@ -153,3 +156,22 @@ def impact_map(s: System, old: tuple[int, int], new: tuple[int, int]) -> Array:
             for model, *state in zip(s.models(), theta, omega, strict=True)
         ]
     ).T
+
+
+Quantity = Callable[[System], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A printed equation, its truth and, where the print is wrong, the form that holds.
+
+    Each is a function of the random systems with values of any shape (..., n); an equation A = B is
+    given as A - B and compared with the same difference derived from the positions.
+    """
+
+    number: str
+    printed: Quantity
+    true: Quantity
+    mended: Quantity | None = None
+    systems: Callable[[], System] = random_systems
+    tolerance: float = 1e-12

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from . import impacts, motion, single_block, transitions
-from .equation import Equation
-from .systems import error
+from .systems import Equation, error
 
 EQUATIONS = [*single_block.EQUATIONS, *motion.EQUATIONS, *transitions.EQUATIONS, *impacts.EQUATIONS]
 

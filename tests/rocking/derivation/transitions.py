@@ -7,8 +7,7 @@ moment s τ(s) about the pivot s it opens on, which vanishes there.
 import numpy as np
 from numpy import cos, sin
 
-from .equation import Equation
-from .systems import System
+from .systems import Equation, System
 
 Array = np.ndarray
 

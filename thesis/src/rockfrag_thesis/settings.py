@@ -6,6 +6,7 @@ from typing import Any
 
 from rockfrag.errors import InputError
 from rockfrag.study.study import Study
+from rockfrag.system.blocks import Block, Stack
 
 NAME = "thesis"
 """Name of the plugin."""
@@ -111,3 +112,22 @@ def _check_varied_building(study: Study, varied: Mapping[str, Sequence[Any]]) ->
                 raise InputError(
                     f"{key}: expected a level up to {study.building.storeys}, found {level}."
                 )
+
+
+def tested_blocks(study: Study) -> dict[str, Block]:
+    """Blocks of the objects tested and, as ``P``, the first pedestal: the names of tables."""
+    tested = study.configurations
+    pedestals = [configuration.names[-2] for configuration in tested if configuration.count > 1]
+    blocks = {name: study.specimens[name] for name in (system.names[-1] for system in tested)}
+    if pedestals:
+        blocks["P"] = study.specimens[pedestals[0]]
+    return blocks
+
+
+def stacks_of(study: Study) -> dict[str, Stack]:
+    """Stacks tested, by the name of their configuration."""
+    return {
+        pair.name: Stack(study.specimens[pair.names[0]], study.specimens[pair.names[1]])
+        for pair in study.configurations
+        if pair.count == 2
+    }

@@ -5,50 +5,38 @@ from collections.abc import Sequence
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from scipy import special, stats
 
-from rockfrag.assess import mitigations, narrowing, objects, place, risk, sources, words
-from rockfrag.assess.app.space import in_space, ratios_of
-from rockfrag.assess.conversion import MOST_LEVELS, OF_DISPLACEMENT
-from rockfrag.assess.hazard.curve import (
-    DAMAGING,
-    EC8_SLOPE,
-    EC8_SLOPE_SD,
-    FLANKS,
-    HIGHEST,
-    HazardCurve,
+from rockfrag import units
+from rockfrag.assess import (
+    conversion,
+    mitigations,
+    narrowing,
+    objects,
+    outcomes,
+    place,
+    request,
+    risk,
+    sources,
+    words,
 )
+from rockfrag.assess.app.space import in_space, ratios_of
+from rockfrag.assess.hazard import curve
 from rockfrag.assess.hazard.measure import PGA, PGV
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.outcomes import (
-    AT_REST,
-    FEW_LEVELS,
-    LARGEST_FACTOR,
-    LEVELS,
-    make_intensity_levels,
-)
 from rockfrag.assess.place import Place
-from rockfrag.assess.request import LONGEST_PERIOD, Request
+from rockfrag.assess.request import Request
 from rockfrag.assess.scale import STEPS
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
-from rockfrag.fragility.held_out import FOLDS, WORST_SCORE
+from rockfrag.fragility import held_out, vector
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
-from rockfrag.fragility.vector import INTERACTION_LEVEL
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.motions.spectra import oscillator_matrix
-from rockfrag.plausibility import (
-    DENSITIES,
-    DEPTHS,
-    FIRST_PERIODS,
-    LARGEST_PEAK,
-    STONE,
-    STOREY_HEIGHTS,
-)
 from rockfrag.rocking.browser import driver_text
-from rockfrag.units import DIMENSIONS, EXAMPLES, GRAVITY
 
 SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
 """Scripts that compute, in the order in which they need each other."""
@@ -69,53 +57,59 @@ def computing() -> str:
     )
 
 
-def data_of(motions: MotionSet, request: Request | None = None) -> dict[str, Any]:
+def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
     """Return what the page computes with, but for the samples of the motions.
 
     Parameters
     ----------
     motions
         The motions of the ground.
-    request
+    asked
         Where they were recorded, and the building and hazard that the form does not tell; nothing if None.
     """
-    asked = (
-        [] if request is None else [known for known in (request.level, *request.hazard) if known]
-    )
-    measures = dict.fromkeys((PGA, PGV, *(known.measure for known in asked)))
+    hazard = asked.hazard if asked else ()
+    level = [asked.level.measure] if asked and asked.level else []
+    measures = dict.fromkeys((PGA, PGV, *level, *(each.measure for each in hazard)))
     intervals = sorted({motion.dt for motion in motions.ground})
     names = list(dict.fromkeys(motions.earthquakes))
+    left = {name: measurement.left for name, measurement in narrowing.MEASUREMENTS.items()}
+    # modes of buildings of which only the storeys are known, as they are and with each property moved
+    storeys = range(1, TABLED_STOREYS + 1)
+    usual = {n: place.make_place({"floor": f"1/{n}"}, Path()) for n in storeys}
     return {
         "earthquakes": [names.index(name) for name in motions.earthquakes],
         "motions": motions.words,
         "names": [motion.name for motion in motions.ground],
         "measures": {measure.imt: _measure(motions, measure) for measure in measures},
         "both": in_space(motions, measures),
-        "onFloor": request is not None and request.records.on_floor,
-        "quantiles": [] if request is None else _quantiles(request.hazard),
-        "measurements": {
-            name: measurement.left for name, measurement in narrowing.MEASUREMENTS.items()
-        },
+        "onFloor": asked is not None and asked.records.on_floor,
+        # curves of the hazard's quantiles, by the standard normal score of each
+        "quantiles": [
+            {"z": float(special.ndtri(q)), "levels": c.levels.tolist(), "rates": c.rates.tolist()}
+            for each in hazard
+            for q, c in each.quantiles.items()
+        ],
+        "measurements": left,
         "constants": _constants(),
-        "floors": _floors(intervals),
-        "own": request and _own(request.place, intervals),
+        "floors": {n: _with_variants(at, intervals) for n, at in usual.items()},
+        "own": asked and _own(asked.place, intervals),
         "steps": [
             {"name": step.name, "below": step.below if math.isfinite(step.below) else None}
             for step in STEPS
         ],
-        "limits": {"storey": STOREY_HEIGHTS, "period": FIRST_PERIODS},
+        "limits": {"storey": units.STOREY_HEIGHTS, "period": units.FIRST_PERIODS},
         "units": {
-            "dimensions": DIMENSIONS,
-            "examples": EXAMPLES,
-            "known": {name: ", ".join(units) for name, units in DIMENSIONS.items()},
+            "dimensions": units.DIMENSIONS,
+            "examples": units.EXAMPLES,
+            "known": {name: ", ".join(known) for name, known in units.DIMENSIONS.items()},
         },
     }
 
 
 def _measure(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any]:
     levels, few = (
-        make_intensity_levels(motions, measure, (), count).levels.tolist()
-        for count in (LEVELS, FEW_LEVELS)
+        outcomes.make_intensity_levels(motions, measure, (), count).levels.tolist()
+        for count in (outcomes.LEVELS, outcomes.FEW_LEVELS)
     )
     return {
         "unit": measure.unit,
@@ -123,19 +117,9 @@ def _measure(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any]:
         "few": few,
         "values": motions.values(measure).tolist(),
         "ratios": ratios_of(motions, measure),
-        "highest": HIGHEST[measure.openquake],
-        "damaging": DAMAGING[measure.openquake],
+        "highest": curve.HIGHEST[measure.openquake],
+        "damaging": curve.DAMAGING[measure.openquake],
     }
-
-
-def _floors(intervals: Sequence[float]) -> dict[int, Any]:
-    """Modes of buildings of which only the storeys are known, as they are and with each property moved."""
-    found = {}
-    for storeys in range(1, TABLED_STOREYS + 1):
-        found[storeys] = _with_variants(
-            place.make_place({"floor": f"1/{storeys}"}, Path()), intervals
-        )
-    return found
 
 
 def _with_variants(at: Place, intervals: Sequence[float]) -> dict[str, Any]:
@@ -165,23 +149,13 @@ def _own(at: Place, intervals: Sequence[float]) -> dict[str, Any] | None:
     }
 
 
-def _quantiles(hazard: Sequence[HazardCurve]) -> list[dict[str, Any]]:
-    """Curves of the hazard's quantiles, by the standard normal score of each."""
-    return [
-        {"z": float(special.ndtri(q)), "levels": each.levels.tolist(), "rates": each.rates.tolist()}
-        for curve in hazard
-        for q, each in curve.quantiles.items()
-    ]
-
-
 def _modes(model: ShearBuilding | None, intervals: Sequence[float]) -> list[dict[str, Any]]:
     """What :func:`rockfrag.building.response.respond_elastically` does with each mode, by sampling interval."""
     assert model is not None
     modes, found = find_modes(model), []
     fractions = (modes.participation * modes.shape).T
-    for period, damping, fraction in zip(
-        modes.period.tolist(), modes.damping.tolist(), fractions.tolist(), strict=True
-    ):
+    each = (values.tolist() for values in (modes.period, modes.damping, fractions))
+    for period, damping, fraction in zip(*each, strict=True):
         omega = 2 * math.pi / period
         found.append(
             {
@@ -194,51 +168,34 @@ def _modes(model: ShearBuilding | None, intervals: Sequence[float]) -> list[dict
     return found
 
 
+def _of(module: ModuleType, *names: str) -> dict[str, Any]:
+    """Constants of a module by their names."""
+    return {name: getattr(module, name) for name in names}
+
+
 def _constants() -> dict[str, Any]:
     return {
-        "GRAVITY": GRAVITY,
-        "AT_REST": AT_REST,
-        "LARGEST_FACTOR": LARGEST_FACTOR,
-        "LARGEST_PEAK": LARGEST_PEAK,
-        "LEVEL": risk.LEVEL,
-        "HALF": risk.HALF,
+        **_of(units, "GRAVITY"),
+        **_of(outcomes, "AT_REST", "LARGEST_FACTOR"),
+        **_of(units, "LARGEST_PEAK"),
+        **_of(risk, "LEVEL", "HALF"),
         "Z": float(stats.norm.ppf(0.5 + risk.LEVEL / 2)),
-        "FLANK_Z": float(special.ndtri(FLANKS[1])),
-        "EC8_SLOPE": EC8_SLOPE,
-        "EC8_SLOPE_SD": EC8_SLOPE_SD,
-        "LIKELY": narrowing.LIKELY,
-        "UNLIKELY": narrowing.UNLIKELY,
-        "LEAST_GAIN": narrowing.LEAST_GAIN,
-        "MOST_NAMED": narrowing.MOST_NAMED,
+        "FLANK_Z": float(special.ndtri(curve.FLANKS[1])),
+        **_of(curve, "EC8_SLOPE", "EC8_SLOPE_SD"),
+        **_of(narrowing, "LIKELY", "UNLIKELY", "LEAST_GAIN", "MOST_NAMED"),
         "MODEL": MODEL_ERRORS[CUT].beyond,
-        "SPACE": sources.SPACE,
-        "MOST_LEVELS": MOST_LEVELS,
-        "OF_DISPLACEMENT": OF_DISPLACEMENT,
-        "INTERACTION_LEVEL": INTERACTION_LEVEL,
-        "FOLDS": FOLDS,
-        "WORST_SCORE": WORST_SCORE,
-        "STONE": STONE,
-        "DENSITIES": DENSITIES,
-        "DEPTHS": DEPTHS,
-        **{
-            name: getattr(mitigations, name)
-            for name in (
-                *("WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
-                "PEDESTAL_HEIGHT",
-            )
-        },
-        **{
-            name: getattr(place, name)
-            for name in ("PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING")
-        },
-        "MANY": words.MANY,
-        "FEW": words.FEW,
-        "LEAST_PART": words.LEAST_PART,
-        "MOST_SOURCES": words.MOST_SOURCES,
-        "MOST_ASSUMPTIONS": words.MOST_ASSUMPTIONS,
+        **_of(sources, "SPACE"),
+        **_of(conversion, "MOST_LEVELS", "OF_DISPLACEMENT"),
+        **_of(vector, "INTERACTION_LEVEL"),
+        **_of(held_out, "FOLDS", "WORST_SCORE"),
+        **_of(units, "STONE", "DENSITIES", "DEPTHS"),
+        **_of(mitigations, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
+        **_of(mitigations, "PEDESTAL_HEIGHT"),
+        **_of(place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"),
+        **_of(words, "MANY", "FEW", "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
         "DAMPING": ModalDamping().ratio,
-        "TOLERANCES": objects.TOLERANCES,
+        **_of(objects, "TOLERANCES"),
         "PLACE_TOLERANCES": place.TOLERANCES,
         "KNOWN_PERIOD": place.TOLERANCE_OF_KNOWN_PERIOD,
-        "LONGEST_PERIOD": LONGEST_PERIOD,
+        **_of(request, "LONGEST_PERIOD"),
     }

@@ -227,18 +227,6 @@ def _of_plain_types(find: Any) -> Any:
     return get_call_type
 
 
-def _remembering_sizes(measure: Any) -> Any:
-    """Measure only once how large a type is, of which LLVM makes a module for each variable."""
-    sizes: dict[Any, int] = {}
-
-    def get_abi_sizeof(context: Any, kind: Any) -> int:
-        if kind not in sizes:
-            sizes[kind] = measure(context, kind)
-        return sizes[kind]
-
-    return get_abi_sizeof
-
-
 @cache
 def _import_without_scipy() -> None:
     """Import what numba is about to, but not scipy's linear algebra, which takes longer than all else."""
@@ -260,7 +248,6 @@ def _shortcuts() -> Iterator[None]:
     places: tuple[tuple[Any, str, Any], ...] = (
         (BaseFunction, "get_call_type", _remembering_call_types(BaseFunction.get_call_type)),
         (Dispatcher, "get_call_type", _of_plain_types(Dispatcher.get_call_type)),
-        (BaseContext, "get_abi_sizeof", _remembering_sizes(BaseContext.get_abi_sizeof)),
         (BaseContext, "refresh", _refresh),
         (TypingContext, "refresh", lambda _: None),
         (base, "_has_loc", cache(base._has_loc)),

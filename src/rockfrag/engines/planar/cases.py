@@ -9,16 +9,14 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.engines import response as responses
-from rockfrag.engines.contract import Cases
+from rockfrag.engines.contract import Case, Cases
 from rockfrag.engines.kernels.single import GRAZING_SPEED
 from rockfrag.engines.lanes import intervals_of
 from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar import records
 from rockfrag.engines.response import FLIGHT, Response
 from rockfrag.engines.steps import STEP, free_samples, step_count
-from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
-from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -95,9 +93,7 @@ def started(system: System) -> tuple[tuple[float, ...], tuple[float, ...]]:
 class ContactRun(NamedTuple):
     """What the contact kernels wrote of one system under one motion."""
 
-    # system, motion: what was shaken, and by what
-    system: System
-    motion: GroundMotion
+    case: Case  # what was shaken, and by what
     # body, work: the records ``BODY`` and ``WORK``
     body: np.void
     work: np.void
@@ -113,14 +109,13 @@ class ContactRun(NamedTuple):
         return bool(work["slid"].max() > 0 or np.any(work["flights"]) or work["paradoxes"] > 0)
 
 
-def contact_run(
-    system: System, motion: GroundMotion, g: float = GRAVITY, closing: float = CLOSING
-) -> ContactRun:
+def contact_run(case: Case, closing: float = CLOSING) -> ContactRun:
     """Integrate one planar system that may slide, rock and fly; :func:`response_of` makes a response of it.
 
     ``closing`` is the parting speed over √(g b) below which a contact that would fall shut again stays closed
     after an impact [-].
     """
+    system, motion, g = case.system, case.motion, case.request.g
     values, interval = motion.x.acceleration, motion.dt
     up = np.zeros(0) if motion.z is None else motion.z.acceleration
     p = records.system_record(system, g)
@@ -128,7 +123,7 @@ def contact_run(
     start = records.posed(p, *started(system))
     substeps = int(step_count(system, interval, g, STEP))
     free = int(free_samples(system, interval, g))
-    shaking = contact.Shaking(values, up, interval, 1.0, substeps, free)
+    shaking = contact.Shaking(values, up, interval, float(case.scale), substeps, free)
     history = np.zeros((values.size + free, contact.history_columns(blocks)))
     work = records.working_memory()
     capacity = 4096
@@ -140,14 +135,15 @@ def contact_run(
         if count <= capacity:
             break
         capacity = count
-    return ContactRun(system, motion, p, work, history[:done], contact_events[:count], float(fall))
+    return ContactRun(case, p, work, history[:done], contact_events[:count], float(fall))
 
 
 def response_of(run: ContactRun) -> Response:
     """Return the response that the contact kernels wrote."""
-    system, p, work, history = run.system, run.body, run.work, run.history
-    done, blocks, values = len(history), int(p["count"]), run.motion.x.acceleration
-    time = np.arange(done, dtype=np.float64) * run.motion.dt
+    system, p, work, history = run.case.system, run.body, run.work, run.history
+    done, blocks = len(history), int(p["count"])
+    values = run.case.scale * run.case.motion.x.acceleration
+    time = np.arange(done, dtype=np.float64) * run.case.motion.dt
     centres, speeds = history[:, : 6 * blocks].reshape(done, 2, blocks, 3).transpose(1, 0, 2, 3)
     slips, normal, shear, alpha = (
         history[:, 6 * blocks : 10 * blocks].reshape(done, 4, blocks).transpose(1, 0, 2)

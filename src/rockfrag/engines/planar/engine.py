@@ -83,39 +83,22 @@ class PlanarContact:
         into.parted_contact[place] = left["parted"]
         into.several_modes[place] = left["several"]
         into.unstable_distance[place] = np.nan
-        for k in range(count):
-            own = (*place, k)
-            into.peak_rotation[own] = np.where(fell == k + 1, np.inf, left["peak"][:, k])
-            into.peak_velocity[own] = left["peak_speed"][:, k]
-            into.slip[own] = left["slip"][:, k]
-            into.peak_slip[own] = left["peak_slip"][:, k]
+        own, first = (*place, slice(0, count)), fell[:, np.newaxis] == np.arange(1, count + 1)
+        into.peak_rotation[own] = np.where(first, np.inf, left["peak"][:, :count])
+        into.peak_velocity[own] = left["peak_speed"][:, :count]
+        into.slip[own], into.peak_slip[own] = left["slip"][:, :count], left["peak_slip"][:, :count]
 
     def history(self, case: contract.Case) -> Response:
         """Return the response of a case."""
         from rockfrag.engines.planar.cases import COARSE_CLOSING, contact_run, response_of
 
-        motion, g = scaled(case.motion, case.scale), case.request.g
-        # as outcomes have it, so that history and outcome are of one response
-        found = contact_run(case.system, motion, g, closing=COARSE_CLOSING)
+        # closing as outcomes have it, so that history and outcome are of one response
+        found = contact_run(case, COARSE_CLOSING)
         pure = replace(case, system=case.system.held())
-        engine = self._pure(pure.system, motion, pure.request)
+        engine = self._pure(pure.system, case.motion, pure.request)
         if found.loose or engine is None:
             return response_of(found)
         return without_slip(replace(engine.history(pure), system=case.system))
-
-
-def scaled(motion: GroundMotion, factor: float) -> GroundMotion:
-    """Return a ground motion with all its components multiplied."""
-    if factor == 1.0:
-        return motion
-    each = [
-        None
-        if component is None
-        else replace(component, acceleration=factor * component.acceleration)
-        for component in (motion.x, motion.y, motion.z)
-    ]
-    assert each[0] is not None
-    return GroundMotion(each[0], each[1], each[2])
 
 
 def without_slip(response: Response) -> Response:

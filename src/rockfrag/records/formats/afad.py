@@ -7,8 +7,6 @@ U-D``) stands above the samples. Files are in UTF-8 or in the Turkish ISO 8859-9
 
 import re
 
-from obspy import UTCDateTime
-
 from rockfrag.records.formats.esm import time_of
 from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import header_keys, number_of, positive_step
@@ -38,6 +36,9 @@ def _parse(text: TextFile) -> list[Channel]:
     components = re.findall(r"[NSEWUD]\s*-?\s*[NSEWUD]", header[titles])
     values = text.counted(titles + 1, None, count * len(components))
     table = values[: values.size // len(components) * len(components)].reshape(-1, len(components))
+    time = facts.get("record time", "")
+    # only times in GMT are known to be UTC
+    known = re.search(r"\((?:GMT|UTC)\)", time, re.IGNORECASE)
     place = _DISTANT.search(facts.get("station coordinates", ""))
     magnitude = re.match(r"\s*(\d+(?:\.\d+)?)", facts.get("earthquake magnitude", ""))
     return [
@@ -46,7 +47,7 @@ def _parse(text: TextFile) -> list[Channel]:
             dt=dt,
             samples=table[:, column].copy,
             unit=unit,
-            start_time=_start(facts.get("record time", "")),
+            start_time=time_of(time.split("(")[0].strip()) if known else None,
             network="TK",
             station=facts.get("station id", ""),
             component=component.replace(" ", ""),
@@ -61,13 +62,6 @@ def _parse(text: TextFile) -> list[Channel]:
         )
         for column, component in enumerate(components)
     ]
-
-
-def _start(words: str) -> UTCDateTime | None:
-    """Return the time of the first sample; only times in GMT are known to be UTC."""
-    if not re.search(r"\((?:GMT|UTC)\)", words, re.IGNORECASE):
-        return None
-    return time_of(words.split("(")[0].strip())
 
 
 FORMAT = Format("AFAD", _recognise, _parse, encoding="iso8859-9")

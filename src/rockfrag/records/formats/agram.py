@@ -37,11 +37,8 @@ def _recognise(lines: list[str], name: str) -> bool:
     return any(_RATE.match(line) and _SIZE.match(below) for line, below in pairwise(lines[:20]))
 
 
-def _parse(text: TextFile) -> list[Channel]:
-    return accelerations(text, _channels(text))
-
-
-def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
+@accelerations
+def _parse(text: TextFile) -> Iterator[tuple[str, Channel]]:
     for line, following in text.parts(_RATE_LINE):
         stop = following if following == len(text) else following - _ABOVE
         section = _section(text, line, stop)

@@ -73,13 +73,10 @@ def _recognise(lines: list[str], name: str) -> bool:
     )
 
 
-def _parse(text: TextFile) -> list[Channel]:
+@fortran_sections.accelerations
+def _parse(text: TextFile) -> Iterator[tuple[str, Channel]]:
     if re.search(r"\bspectr", text.line(0), re.IGNORECASE):
         text.refuse("this file holds response spectra, not acceleration; give the V2 file")
-    return fortran_sections.accelerations(text, _channels(text))
-
-
-def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
     line = text.find(_HEAD)
     while 0 <= line < len(text):
         at_values, dt, facts = _header(text, line)

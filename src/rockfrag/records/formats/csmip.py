@@ -55,15 +55,12 @@ def _recognise(lines: list[str], name: str) -> bool:
     )
 
 
-def _parse(text: TextFile) -> list[Channel]:
+@fortran_sections.accelerations
+def _parse(text: TextFile) -> Iterator[tuple[str, Channel]]:
     if _SPECTRA.match(text.line(0)):
         text.refuse(
             "this file holds response spectra (volume 3), not acceleration; give the V2 file"
         )
-    return fortran_sections.accelerations(text, _channels(text))
-
-
-def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
     for first, stop in text.parts(_HEAD, fortran_sections.CHANNEL_END):
         words = text.lines(first, min(stop, first + _MAX_HEADER))
         line = text.find(_VALUES, first, stop)

@@ -30,16 +30,8 @@ _HIGH_PRECISION = 8
 _PER_LINE, _SURPLUS_LINES = 8, 2
 
 # places in the headers, counted from zero
-_MISSING, _YEAR, _VERTICAL, _HORIZONTAL, _COMMENTS, _COUNT, _STATION, _PRECISION = (
-    0,
-    1,
-    12,
-    13,
-    15,
-    16,
-    29,
-    46,
-)
+_MISSING, _YEAR, _VERTICAL, _HORIZONTAL = 0, 1, 12, 13
+_COMMENTS, _COUNT, _STATION, _PRECISION = 15, 16, 29, 46
 _MISSING_REAL, _RATE, _LATITUDE, _LONGITUDE = 0, 1, 10, 11
 
 
@@ -76,6 +68,7 @@ def _parse(text: TextFile) -> list[Channel]:
         values = Channel(count, positive_step(text, dt, at_reals), samples.copy, "cm/s2")
     step = {"step": "leave out values beyond the count of the header", "values": left_out}
     steps = (*([step] if left_out else []), *values.details.get("steps", ()))
+    place = {"latitude": numbers[_LATITUDE], "longitude": numbers[_LONGITUDE]}
     # a fifth character of the code names the channel
     number = "" if whole[_STATION] == whole[_MISSING] else str(whole[_STATION])
     station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.IGNORECASE)
@@ -89,7 +82,7 @@ def _parse(text: TextFile) -> list[Channel]:
                 "station_name": station[1] if station else "",
                 "earthquake": " ".join(words[3].split()),
                 "corrected": held.startswith("CORRECTED"),
-                **_place(numbers),
+                **{k: value for k, value in place.items() if value != numbers[_MISSING_REAL]},
                 **({"steps": steps} if steps else {}),
             },
         )
@@ -147,11 +140,6 @@ def _component(whole: list[int], words: str) -> str:
     if horizontal != missing and 0 <= horizontal <= 360:
         return f"{horizontal:03d}"
     return words
-
-
-def _place(numbers: list[float]) -> dict[str, float]:
-    place = {"latitude": numbers[_LATITUDE], "longitude": numbers[_LONGITUDE]}
-    return {key: value for key, value in place.items() if value != numbers[_MISSING_REAL]}
 
 
 FORMAT = Format("SMC", _recognise, _parse)

@@ -45,14 +45,11 @@ def place_of(words: list[str], values: Channel) -> Channel:
             station, name = found[1], lines[number + 1] if lines[number + 1 :] else ""
         found = re.match(r"COMP\w*\s+(\S+)", line, re.IGNORECASE)
         component = found[1] if found and not component else component
-    details = {"station_name": name, "earthquake": _earthquake(lines), **values.details}
-    return replace(values, station=station, component=component, details=details)
-
-
-def _earthquake(lines: list[str]) -> str:
-    """Return the earthquake's name and date, the two lines below the one that names the volume."""
+    # the earthquake's name and date stand below the line that names the volume
     volume = next((i for i, line in enumerate(lines) if "OF VOLUME" in line.upper()), 0)
-    return ", ".join(lines[volume + 1 : volume + 3])
+    earthquake = ", ".join(lines[volume + 1 : volume + 3])
+    details = {"station_name": name, "earthquake": earthquake, **values.details}
+    return replace(values, station=station, component=component, details=details)
 
 
 FORMAT = Format("USC", _recognise, _parse)

@@ -56,11 +56,8 @@ def _recognise(lines: list[str], name: str) -> bool:
     )
 
 
-def _parse(text: TextFile) -> list[Channel]:
-    return accelerations(text, _channels(text))
-
-
-def _channels(text: TextFile) -> Iterator[tuple[str, Channel]]:
+@accelerations
+def _parse(text: TextFile) -> Iterator[tuple[str, Channel]]:
     for first, stop in text.parts(_HEAD):
         line = text.find(_VALUES, first, stop)
         if line < 0:

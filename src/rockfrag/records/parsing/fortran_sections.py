@@ -1,15 +1,15 @@
 """Pieces that formats share: headers of lines ``KEY : value`` or in columns, and sections of values."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 _LINE = re.compile(r"^\s*(?P<key>[^:]*?)\s*:\s*(?P<value>.*?)\s*$")
 _NOTE = re.compile(r"\s*[(\[][^)\]]*[)\]]")
@@ -117,16 +117,20 @@ def field_width(words: str) -> int | None:
     return int(match["width"]) if match and 1 <= int(match["width"]) <= 40 else None
 
 
-def accelerations(text: TextFile, channels: Iterable[tuple[str, Channel]]) -> list[Channel]:
-    """Return the channels whose quantity is acceleration; refuse a file that has others alone."""
-    kept, held = [], set()
-    for quantity, channel in channels:
-        held.add(quantity)
-        if quantity == "acceleration":
-            kept.append(channel)
-    if held and not kept:
-        text.refuse(f"this file holds {' and '.join(sorted(held))}, not acceleration")
-    return kept
+def accelerations(
+    channels: Callable[[TextFile], Iterable[tuple[str, Channel]]],
+) -> Callable[[TextFile], list[Channel]]:
+    """Keep of the quantities and channels of a file those of acceleration; refuse a file without (a decorator)."""
+
+    def parse(text: TextFile) -> list[Channel]:
+        found = list(channels(text))
+        kept = [channel for quantity, channel in found if quantity == "acceleration"]
+        if found and not kept:
+            held = sorted({quantity for quantity, _ in found})
+            text.refuse(f"this file holds {' and '.join(held)}, not acceleration")
+        return kept
+
+    return parse
 
 
 def positive_step(text: TextFile, dt: float, line: int) -> float:

@@ -249,7 +249,8 @@ class TextFile:
         # in pieces, of which each is held several times over
         while begin < len(body):
             end = body.find(b"\n", begin + _PIECE) + 1 or len(body)
-            piece = _with_blanks(body[begin:end], separator)
+            piece = body[begin:end].replace(separator, b" ").replace(b",", b".")
+            piece = _TOUCHING.sub(rb" \1", piece.replace(b"\t", b" "))
             widths.append(_tokens_by_line(piece))
             try:
                 values.append(parse_separated(piece))
@@ -265,12 +266,6 @@ class TextFile:
                 )
             begin, line = end, line + widths[-1].size
         return np.concatenate(values), np.concatenate(widths)
-
-
-def _with_blanks(body: bytes, separator: bytes) -> bytes:
-    """Return rows of numbers that blanks alone separate, with decimal points."""
-    body = body.replace(separator, b" ").replace(b",", b".").replace(b"\t", b" ")
-    return _TOUCHING.sub(rb" \1", body) if _TOUCHING.search(body) else body
 
 
 def last_row(text: TextFile, start: int) -> int:

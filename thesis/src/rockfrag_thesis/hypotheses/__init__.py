@@ -14,9 +14,9 @@ function that tests it, named after its number (``c35`` is C35), in the file of 
 `protocol`            C55 to C58                          how the figures were obtained
 ====================  ==================================  ================================================
 
-`hypothesis` has the kinds and the words for what came out, `outcomes` and `orders` the rules, `setting` and
-`evidence` what is looked at, `hypothesis_table` runs them all, and `contradictions` lists where the thesis
-contradicts itself.
+`hypothesis` has the kinds and the words for what came out, `outcomes`, `orders` and `contrasts` the rules,
+`setting` and `evidence` what is looked at, `hypothesis_table` runs them all, and `contradictions` lists where the
+thesis contradicts itself.
 
 **How to add a hypothesis.**
 

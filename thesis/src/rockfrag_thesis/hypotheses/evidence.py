@@ -8,9 +8,10 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import Estimate, contrast, mean_effect
+from rockfrag.pedestal.cluster_means import Estimate, mean_effect
 from rockfrag.pedestal.paired_tests import Pairs, check_tests, pair_tests, pedestals_apart
 from rockfrag.system.blocks import Block
+from rockfrag_thesis.hypotheses.contrasts import contrast
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 
 PEDESTAL = "P"

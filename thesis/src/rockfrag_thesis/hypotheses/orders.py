@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rockfrag.pedestal.cluster_means import Estimate
-from rockfrag.pedestal.power import power_note
+from rockfrag_thesis.hypotheses.contrasts import power_note
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, hypothesis
 from rockfrag_thesis.hypotheses.outcomes import (

@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from rockfrag.pedestal.cluster_means import Estimate, t_estimate
-from rockfrag.pedestal.power import power_note
+from rockfrag_thesis.hypotheses.contrasts import power_note
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result
 
 LEVEL = 0.025

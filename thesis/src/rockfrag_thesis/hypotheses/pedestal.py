@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rockfrag.pedestal.cluster_means import slope_effect
+from rockfrag_thesis.hypotheses.contrasts import slope_effect
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Result, hypothesis
 from rockfrag_thesis.hypotheses.orders import PAIRS, Part, Parts, order_hypothesis

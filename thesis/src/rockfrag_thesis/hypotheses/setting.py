@@ -10,9 +10,9 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.motions.scaling import scale_to_pga
-from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Body, Response, Stack, simulate
+from rockfrag.units import LARGEST_PEAK
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, THESIS_BODIES
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 from rockfrag_thesis.hypotheses.motion_spectra import MotionSpectra

@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import Estimate, contrast, slope_effect, t_estimate
-from rockfrag.pedestal.power import power_note
+from rockfrag.pedestal.cluster_means import Estimate, t_estimate
 from rockfrag.system.blocks import Stack
 from rockfrag_thesis.hypotheses import outcomes
+from rockfrag_thesis.hypotheses.contrasts import contrast, power_note, slope_effect
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import (

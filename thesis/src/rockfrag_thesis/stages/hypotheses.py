@@ -4,7 +4,7 @@ import pandas as pd
 
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
-from rockfrag_thesis.settings import settings_of
+from rockfrag_thesis.settings import settings_of, stacks_of, tested_blocks
 
 TABLES = ("table_3_1", "table_3_3", "table_4_1")
 
@@ -45,11 +45,11 @@ def _hypotheses(job: Job[Study]) -> Results:
 
     study = job.study
     theory = theory_table(
-        study.tested_blocks,
+        tested_blocks(study),
         job.motions("motions/ground"),
         seed=study.seed,
         threads=job.threads,
-        assemblies=study.stacks,
+        assemblies=stacks_of(study),
     )
     yield "hypotheses_theory", theory
     if not study.has_pairs:
@@ -57,7 +57,7 @@ def _hypotheses(job: Job[Study]) -> Results:
     tests, measures = job.table("tests"), job.table("measures")
     forces = job.table("validity")[["test", "friction_demand", "least_normal_force_n"]]
     tests = tests[tests["definition"] == DEFINITION].merge(forces, on="test", how="left")
-    bodies = study.tested_blocks
+    bodies = tested_blocks(study)
     evidence = Evidence(tests, "simulated", measures, bodies)
     hypotheses = pd.concat([theory, hypothesis_table(evidence)], ignore_index=True)
     yield "hypotheses", hypotheses
@@ -91,4 +91,4 @@ def _measured_hypotheses(job: Job[Study]) -> pd.DataFrame:
     from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
 
     tests, measures = job.table("measured/tests"), job.table("measures")
-    return hypothesis_table(Evidence(tests, "measured", measures, job.study.tested_blocks))
+    return hypothesis_table(Evidence(tests, "measured", measures, tested_blocks(job.study)))

@@ -11,7 +11,7 @@ from rockfrag.stages.job import Job, Results
 from rockfrag.stages.tests import protocol_of
 from rockfrag.study.study import Study
 from rockfrag.system.blocks import Stack
-from rockfrag_thesis.settings import settings_of
+from rockfrag_thesis.settings import settings_of, stacks_of
 
 SIMULATED_PAIRS = 3
 """Closest pairs of perturbed parameters that are simulated together, since adding them up is an approximation."""
@@ -205,7 +205,7 @@ def tested_stacks(study: Study) -> dict[str, Stack]:
     stacks: dict[str, Stack] = {}
     for configuration in study.configurations:
         if configuration.count == 2 and configuration.names[-1] in lone:
-            stacks.setdefault(configuration.names[-1], study.stacks[configuration.name])
+            stacks.setdefault(configuration.names[-1], stacks_of(study)[configuration.name])
     return stacks
 
 
