@@ -1,14 +1,25 @@
 """Hypotheses about the experiment come out right where the truth is known."""
 
+import itertools
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag_thesis.hypotheses import COLUMNS, HYPOTHESES, Evidence, Finding, hypothesis_table
+from rockfrag_thesis.hypotheses import (
+    COLUMNS,
+    HYPOTHESES,
+    Evidence,
+    Finding,
+    contradictions,
+    hypothesis_table,
+)
+from rockfrag_thesis.hypotheses.contradictions import orderings_of_floor_means
 from rockfrag_thesis.hypotheses.earthquakes import rank_correlation
 from rockfrag_thesis.hypotheses.hypothesis import Kind, outcome
 from rockfrag_thesis.hypotheses.orders import ORDERS, margin
+from rockfrag_thesis.hypotheses.slenderness import stack_slenderness
 from rockfrag_thesis.sections.hypotheses import hypotheses_html
 
 FOR, AGAINST, OPEN = Finding.FOR, Finding.AGAINST, Finding.OPEN
@@ -422,3 +433,41 @@ def test_the_hypothesis_table_shows_kind_outcome_rule_and_error_rate(made):
     assert 'class="hypothesis for"' in html and 'class="hypothesis open"' in html
     assert "description of the thesis&#39;s plots; simulated" in html
     assert "nan" not in html
+
+
+def test_no_order_of_the_four_means_satisfies_all_four_statements():
+    assert orderings_of_floor_means() == 0
+    # and it takes all four: dropping any one leaves orders that satisfy the rest
+    names = ("P GF", "P F5", "NP GF", "NP F5")
+    rules = (
+        lambda m: m["P GF"] > m["NP GF"],
+        lambda m: m["P F5"] < m["NP F5"],
+        lambda m: m["P F5"] > m["P GF"],
+        lambda m: m["NP GF"] > m["NP F5"],
+    )
+    for dropped in range(4):
+        kept = [rule for i, rule in enumerate(rules) if i != dropped]
+        orders = (dict(zip(names, o, strict=True)) for o in itertools.permutations(range(4)))
+        assert any(all(rule(means) for rule in kept) for means in orders)
+
+
+def test_stack_slenderness_by_hand(made):
+    """Common centre of gravity from Table 3.1 without the package's geometry."""
+    masses, heights = (2172, 2790, 3456), (37.2, 49.6, 62.0)
+    table = stack_slenderness(Evidence(made(), "simulated"))
+    for mass, height, stacked in zip(masses, heights, table["stacked"], strict=True):
+        centre = (2300 * 10.4 + mass * (20.8 + height / 2)) / (2300 + mass)
+        assert abs(stacked - centre / 9.2) < 1e-12
+    assert table["stacked"].round(2).tolist() == [2.66, 3.23, 3.83]
+
+
+def test_table_says_what_the_tests_show(made):
+    bare = contradictions()
+    assert len(bare) == 10
+    assert (bare["in_these_tests"] == "").all()
+    seen = contradictions(Evidence(made(), "simulated"))
+    first = seen.iloc[0]
+    assert "C42" in first["hypotheses"] and "P GF" in first["in_these_tests"]
+    tests = made()
+    ground = contradictions(Evidence(tests[tests["floor"] == "GF"], "simulated"))
+    assert "cannot be said" in ground.iloc[0]["in_these_tests"]
