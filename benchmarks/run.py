@@ -44,8 +44,7 @@ from measures import (
     wall_seconds,
 )  # fmt: skip
 from tests.oracle.cases import Cases, cases, columns, motions
-from tests.oracle.competitors import mujoco_outcome, numpy_lone, scipy_lone
-from tests.oracle.scipy_stack import scipy_stack
+from tests.oracle.competitors import mujoco_outcome, numpy_lone, scipy_lone, scipy_stack
 
 BEGIN, END = "<!-- results of make bench -->", "<!-- end of results -->"
 NAMES = {"lone": "single block", "stack": "two blocks"}

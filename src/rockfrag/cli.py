@@ -18,10 +18,11 @@ from rockfrag.survival.commands import add_survival_commands
 from rockfrag.units import GRAVITY, quantity
 
 if TYPE_CHECKING:
+    from rockfrag.engines.response import Response
     from rockfrag.engines.spatial import SpatialResponse
     from rockfrag.records.motion import Motion
-    from rockfrag.rocking import Block, Body, Response
     from rockfrag.rocking.options import FrictionInput
+    from rockfrag.system.blocks import Block, Body
 
 MOST_CONTACT_EVENTS = 30  # lines of the pattern history that are printed unless all are asked for
 
@@ -299,8 +300,8 @@ def _play(options: argparse.Namespace) -> int:
 def _block(option: str, given: Sequence[str]) -> "Block":
     """Make a block of width, height and mass as people write them."""
     from rockfrag.input_checks import positive_number
-    from rockfrag.plausibility import STONE, check_density, size_warning
-    from rockfrag.rocking import Block
+    from rockfrag.system.blocks import Block
+    from rockfrag.units import STONE, check_density, size_warning
 
     with errors_of(option):
         if len(given) not in (2, 3):
@@ -320,8 +321,8 @@ def _block(option: str, given: Sequence[str]) -> "Block":
 
 def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
     """Say that a motion looks as if it were in another unit, if it does."""
-    from rockfrag.plausibility import peak_warning
     from rockfrag.system.system import uplift_ratios
+    from rockfrag.units import peak_warning
 
     if quality_flag := peak_warning(peak, GRAVITY * min(uplift_ratios(body.system()))):
         print(f"warning: {record}: {quality_flag}", file=sys.stderr)

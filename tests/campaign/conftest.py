@@ -1,12 +1,14 @@
 """A synthetic laboratory: a block of known edges on a table that made noise of known strength."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
+import yaml
 
-from rockfrag.rocking import Block, overturns
+from rockfrag import Block, overturns
 
 BLOCK = Block(0.1, 0.6, 60.0, cg_offset=0.01)
 DT = 0.01
@@ -38,3 +40,72 @@ def laboratory(tmp_path_factory):
     table.to_csv(folder / "synthetic_tests.csv", index=False)
     np.savez(folder / "synthetic_motions.npz", **motions)
     return SimpleNamespace(folder=folder, table=table, motions=motions)
+
+
+ROOT = Path(__file__).parents[2]
+
+BY_HAND = {
+    "left_m": BLOCK.b + BLOCK.cg_offset,
+    "right_m": BLOCK.b - BLOCK.cg_offset,
+    "cg_height_m": 0.3,
+    "height_m": 0.6,
+    "mass_kg": 60.0,
+    "inertia_kg_m2": BLOCK.centroidal_inertia,
+}
+
+
+PEDESTAL = [
+    {
+        "left_m": width / 2,
+        "right_m": width / 2,
+        "cg_height_m": height / 2,
+        "height_m": height,
+        "mass_kg": mass,
+        "inertia_kg_m2": mass * (width**2 + height**2) / 12,
+    }
+    for width, height, mass in ((0.12, 0.3, 40.0), (0.2, 0.6, 100.0))
+]
+"""A base and a plinth, from above."""
+
+
+def configured(folder, laboratory, **changes):
+    """Write the study of the synthetic laboratory, with keys of the campaign changed."""
+    content = {
+        "study": "synthetic",
+        "title": "A synthetic laboratory",
+        "seed": 1,
+        "campaign": {
+            "tests": str(laboratory.folder / "synthetic_tests.csv"),
+            "columns": {name: name for name in ("test", "motion", "overturned")}
+            | {"group": "input"},
+            "motions": str(laboratory.folder / "synthetic_motions.npz"),
+            "unit": "m/s2",
+            "dt_s": DT,
+            "measures": {"pga_g": ["pga_g"]},
+        },
+        "object": BY_HAND,
+        "unknowns": {"edge_retreat_mm": [0, 10], "restitution": [0.8, 1.0]},
+        "trials": 64,
+        "repeats": 4,
+    }
+    for key, value in changes.items():
+        part, _, name = key.partition("__")
+        content[part] = {**content[part], name: value} if name else value
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump(content))
+    return path
+
+
+def granite(folder, shared, **changes):
+    """Write the configuration of the granite rock for the place where its data are."""
+    data = (shared / "measured").resolve()
+    content = yaml.safe_load((ROOT / "config" / "granite.yaml").read_text())
+    content["campaign"] |= {
+        "tests": str(data / "granite_rock_1.csv"),
+        "motions": str(data / "granite" / "table_accelerations.npz"),
+        "other_codes": str(data / "granite" / "rock_1_discrete_element.csv"),
+    }
+    content["object"]["mesh"] = str(data / "granite" / "rock_1.ply")
+    path = folder / "granite.yaml"
+    path.write_text(yaml.safe_dump({**content, **changes}))
+    return path

@@ -16,7 +16,7 @@ from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.stages.model_error import main
 from rockfrag.system.blocks import Block
 
-from .studies import configured, granite
+from .conftest import configured, granite
 
 
 def fallen(measure, theta, beta, random):

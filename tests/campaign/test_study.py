@@ -21,8 +21,7 @@ from rockfrag.study.loading import load_any
 from rockfrag.system.blocks import Block, Column
 
 from ..stages_in_process import run_stages
-from .conftest import BLOCK, DT
-from .studies import BY_HAND, PEDESTAL, configured, granite
+from .conftest import BLOCK, BY_HAND, DT, PEDESTAL, configured, granite
 
 NOTED = {name: name for name in ("test", "motion", "overturned", "rocked")} | {"group": "input"}
 """Columns of a laboratory that noted what rocked."""

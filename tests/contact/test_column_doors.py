@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import find_thresholds, overturns, simulate
+from rockfrag.rocking import overturns, simulate
 from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.rocking.parquet import stream_overturns
 from rockfrag.shaketable.swept import fallen_names, labels_of
 from rockfrag.study.configurations import read_configurations, read_counterparts, read_specimens
 from rockfrag.system import Block, Column, Stack
@@ -61,14 +60,6 @@ def test_only_bodies_that_pure_rocking_holds_are_said_to_leave_the_ground() -> N
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         overturns(COLUMN, [MOTION], DT, [1.0, 10.0], vertical=[upwards])
-
-
-def test_thresholds_and_streams_take_columns(tmp_path: Path) -> None:
-    found = find_thresholds(
-        COLUMN, [MOTION], DT, 4.0, tolerance=0.05, narrowest_resurrection=0.5, friction=0.6
-    )
-    assert "body" in str(found.resurrections.columns.tolist())
-    assert stream_overturns([COLUMN], [MOTION], DT, [0.2, 1.5], tmp_path / "o.parquet") == 2
 
 
 def arrangements(folder: Path, row: str) -> list:

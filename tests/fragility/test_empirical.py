@@ -1,4 +1,4 @@
-"""Fractions of overturned tests without a curve, and curves that are lognormal in no way."""
+"""Fractions of overturned tests without a curve, and the non-parametric fragility function."""
 
 import numpy as np
 import pandas as pd

@@ -80,15 +80,6 @@ def test_a_body_that_needs_shorter_steps_changes_no_other(whole):
     same(whole, picked(more, np.s_[1:]))
 
 
-def test_a_block_on_an_immovable_pedestal_is_a_lone_block():
-    lower = Block(width=50.0, height=1.0, mass=1e9)
-    kinds = [LONE, [Stack(lower, block) for block in LONE]]
-    lone, on_top = (overturns(kind, MOTIONS, benchmark_cases.DT, SCALES) for kind in kinds)
-    assert (lone.overturned == on_top.overturned).all()
-    assert set(np.unique(on_top.overturned_body)) == {0, 2}
-    assert set(np.unique(lone.overturned_body)) == {0, 1}
-
-
 def test_single_simulations_of_blocks_agree_in_outcomes_and_peaks(whole):
     """simulate() follows every impact with Taylor series of higher order."""
     checked = 0

@@ -9,7 +9,9 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.engines.kernels.chatter import HISTORY
-from rockfrag.rocking import Block, Body, Response, Stack, overturns, simulate
+from rockfrag.engines.response import Response
+from rockfrag.rocking import overturns, simulate
+from rockfrag.system import Block, Body, Stack
 
 # random bodies may lose contact, and pure rocking is what these tests are about
 pytestmark = [
@@ -185,16 +187,6 @@ def test_energy_is_never_gained_at_impacts_and_the_energy_balance_closes(body, m
     whole = body if isinstance(body, Block) else body.rigidly_joined()
     closing = 0.5 * max(whole.pivot_inertia(pivot) for pivot in (+1, -1)) * HISTORY.closing_speed**2
     assert residual <= 1e-6 * scale + closing, f"{residual} J of {scale} J"
-
-
-@few
-@given(body=bodies(crooked=True), motion=motions(), scale=st.floats(0.5, 2.0))
-def test_the_ensemble_gives_the_outcome_of_the_single_simulation(body, motion, scale):
-    found = overturns([body], [motion], DT, [scale])
-    response = simulate(body, scale * motion, DT)
-    margin = min(float(found.unstable_distance[0, 0, 0]), response.unstable_distance)
-    assume(margin > 1e-4)
-    assert bool(found.overturned[0, 0, 0]) == response.overturned
 
 
 @few

@@ -14,7 +14,7 @@ from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.tests_table import COLUMNS
 
-from .made import ida_table
+from .conftest import ida_table
 
 TOWERS, FLOORS = ("T1", "T2", "T3"), ("GF", "F3", "F5")
 AMPLITUDES = 0.05 * 1.02 ** np.arange(150)

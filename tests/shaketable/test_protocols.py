@@ -26,7 +26,7 @@ from rockfrag.shaketable.protocols import (
 )
 from rockfrag.shaketable.tests_table import COLUMNS
 
-from .made import ida_table
+from .conftest import ida_table
 
 GRID = np.round(np.arange(0.05, 1.0001, 0.01), 10)
 # overturns from 0.30 to 0.34, survives to 0.50, overturns above: one structural resurrection

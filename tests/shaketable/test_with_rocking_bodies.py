@@ -17,7 +17,7 @@ from rockfrag.study.configurations import configuration_of, each_alone
 from rockfrag.system.blocks import Block
 from rockfrag_thesis.building_sensitivity import building_sensitivity, building_variants
 
-from .made import ida_table
+from .conftest import ida_table
 
 BUILDING = Path(__file__).resolve().parents[2] / "config" / "building.yaml"
 TOWERS = {

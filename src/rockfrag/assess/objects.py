@@ -14,7 +14,6 @@ from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.assess.scan import Scan, make_scan
 from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, SCAN
-from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
 from rockfrag.rocking.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Body, stacked
@@ -28,6 +27,7 @@ from rockfrag.system.system import (
     turned_about_vertical,
     uplift_ratios,
 )
+from rockfrag.units import DENSITIES, STONE, check_density, size_warning
 
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""

@@ -18,13 +18,13 @@ from rockfrag.fragility.observations import Observations
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
-from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
 from rockfrag.rocking.inputs import checked_threads
 from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
 from rockfrag.system.system import System
+from rockfrag.units import LARGEST_PEAK
 
 Floats = NDArray[np.float64]
 

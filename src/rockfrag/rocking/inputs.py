@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag import plausibility
+from rockfrag import units
 from rockfrag.engines.contract import Cases
 from rockfrag.engines.steps import MOST_SAMPLES, STEP, step_count
 from rockfrag.errors import InputError
@@ -259,17 +259,17 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     own = (Motion, GroundMotion)
     plain = any(not isinstance(motion, own) for motion in _listed_motions(given))
     # a stronger motion is hardly one in g, and needs no look at the bodies
-    doubtful = plain and 0 < peak <= plausibility.LARGEST_IN_G
+    doubtful = plain and 0 < peak <= units.LARGEST_IN_G
     least = g * min(min(uplift_ratios(system)) for system in cases.systems) if doubtful else None
     longest = max(motion.dt for motion in cases.motions)
-    if longest > plausibility.LONGEST_STEP:
+    if longest > units.LONGEST_STEP:
         # what is far too long is refused before it is doubted
         for system in cases.systems:
             step_count(system, longest, g, STEP)
     for quality_flag in (
-        plausibility.peak_warning(peak, least),
-        plausibility.gravity_warning(g),
-        plausibility.interval_warning(longest),
+        units.peak_warning(peak, least),
+        units.gravity_warning(g),
+        units.interval_warning(longest),
     ):
         if quality_flag:
             warnings.warn(quality_flag, UnitWarning, stacklevel=stacklevel)

@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.motions.rotation import rotate
-from rockfrag.plausibility import STONE
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.space_sweep import Sweep
 from rockfrag.system.blocks import Block
-from rockfrag.units import GRAVITY
+from rockfrag.units import GRAVITY, STONE
 
 OBLONG, ROUND = "one to two", "round"
 

@@ -7,12 +7,12 @@ from typing import Any
 
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names
-from rockfrag.plausibility import check_density
 from rockfrag.rocking.measured_restitution import Measured, MeasuredRestitution
 from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Block, stacked
 from rockfrag.system.system import System
 from rockfrag.tabular import Row, read_rows
+from rockfrag.units import check_density
 
 
 def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:

@@ -16,7 +16,6 @@ from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names, file_name, is_file
 from rockfrag.laws import law_names
-from rockfrag.plausibility import peak_warning
 from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import own_records, read_catalogue, repeated_motions
 from rockfrag.schema import checked
@@ -36,6 +35,7 @@ from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
 from rockfrag.system.blocks import Block
 from rockfrag.system.system import System
+from rockfrag.units import peak_warning
 from rockfrag.yaml_file import read_yaml
 
 OF_ONE_COMPONENT = (

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from rockfrag.building.model import ShearBuilding
 from rockfrag.errors import InputError
 from rockfrag.files import file_name, is_file
-from rockfrag.plausibility import size_warning
 from rockfrag.records.catalogue import own_records
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.shaketable.shaker import Shaker
 from rockfrag.study.heading import Heading
 from rockfrag.system.blocks import Block
 from rockfrag.system.system import System
+from rockfrag.units import size_warning
 
 GROUND = "ground"  # label of the only floor of a study without a building
 MOST_ROWS = 100_000

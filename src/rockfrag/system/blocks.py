@@ -16,13 +16,12 @@ from typing import Any, NamedTuple, TypeGuard
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number, shown
 from rockfrag.keywords import named_fields
-from rockfrag.plausibility import inertia_warning, light_giant_warning
 from rockfrag.system import geometry
 from rockfrag.system import system as systems
 from rockfrag.system.body import Interval, RigidBody, Tensor, checked_tensor
 from rockfrag.system.contact import Contact
 from rockfrag.system.system import System
-from rockfrag.units import GRAVITY
+from rockfrag.units import GRAVITY, inertia_warning, light_giant_warning
 
 
 class Vector(NamedTuple):

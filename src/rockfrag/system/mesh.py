@@ -19,10 +19,10 @@ from scipy.spatial import ConvexHull, QhullError
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number
-from rockfrag.plausibility import LARGEST_SIZE, MEAN_DENSITIES
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Polygon, RigidBody
+from rockfrag.units import LARGEST_SIZE, MEAN_DENSITIES
 
 MESH_ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf")
 
@@ -71,11 +71,6 @@ class Shape:
     def height(self) -> float:
         """Overall height [m]."""
         return float(np.ptp(self.points[:, 2]))
-
-    @property
-    def density(self) -> float:
-        """Mass over volume [kg/m³]."""
-        return self.mass / self.volume
 
     @property
     def outline(self) -> Array:

@@ -10,7 +10,7 @@ from typing import Any
 
 from scipy import special, stats
 
-from rockfrag import plausibility, units
+from rockfrag import units
 from rockfrag.assess import (
     conversion,
     mitigations,
@@ -92,7 +92,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
             {"name": step.name, "below": step.below if math.isfinite(step.below) else None}
             for step in STEPS
         ],
-        "limits": {"storey": plausibility.STOREY_HEIGHTS, "period": plausibility.FIRST_PERIODS},
+        "limits": {"storey": units.STOREY_HEIGHTS, "period": units.FIRST_PERIODS},
         "units": {
             "dimensions": units.DIMENSIONS,
             "examples": units.EXAMPLES,
@@ -172,7 +172,7 @@ def _constants() -> dict[str, Any]:
     return {
         **_of(units, "GRAVITY"),
         **_of(outcomes, "AT_REST", "LARGEST_FACTOR"),
-        **_of(plausibility, "LARGEST_PEAK"),
+        **_of(units, "LARGEST_PEAK"),
         **_of(risk, "LEVEL", "HALF"),
         "Z": float(stats.norm.ppf(0.5 + risk.LEVEL / 2)),
         "FLANK_Z": float(special.ndtri(curve.FLANKS[1])),
@@ -183,7 +183,7 @@ def _constants() -> dict[str, Any]:
         **_of(conversion, "MOST_LEVELS", "OF_DISPLACEMENT"),
         **_of(vector, "INTERACTION_LEVEL"),
         **_of(held_out, "FOLDS", "WORST_SCORE"),
-        **_of(plausibility, "STONE", "DENSITIES", "DEPTHS"),
+        **_of(units, "STONE", "DENSITIES", "DEPTHS"),
         **_of(mitigations, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
         **_of(mitigations, "PEDESTAL_HEIGHT"),
         **_of(place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"),

@@ -20,7 +20,6 @@ from obspy.core.inventory import Response
 from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
 from rockfrag.errors import InputError
-from rockfrag.records.foreign_files import foreign_kind
 from rockfrag.records.parsing.format import Channel, cut_short_step, head_lines
 from rockfrag.records.parsing.number_fields import first_odd_row
 from rockfrag.records.parsing.quantities import canonical_unit
@@ -31,6 +30,7 @@ from rockfrag.records.parsing.text_file import (
     NotAcceleration,
     read_head,
 )
+from rockfrag.records.quality_flags import foreign_kind
 
 _READ_BY_OBSPY = ("MSEED", "SAC", "KNET", "KINEMETRICS_EVT", "SLIST", "TSPAIR", "SH_ASC")
 """Formats left to ObsPy. Of its others PICKLE would run what a file says, GSE ends the process on a

@@ -18,7 +18,6 @@ from obspy import Stream
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
-from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.formats import HEADED
 from rockfrag.records.parsing.column_titles import Column, column_titles
 from rockfrag.records.parsing.format import Channel, Format, one_trace
@@ -38,6 +37,7 @@ from rockfrag.records.parsing.number_fields import (
 from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.timestamps import check_rising, step_of_times
+from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 _OF_OBSPY = re.compile(
     r"\s*(?:Origin Time|TIMESERIES |WID[12]\b|BEGIN (?:GSE|IMS)|XW01|DELTA\s*:)", re.IGNORECASE

@@ -12,10 +12,10 @@ from obspy import Stream, Trace, UTCDateTime
 from obspy.core import AttribDict
 
 from rockfrag.errors import InputError
-from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing import text_file
 from rockfrag.records.parsing.quantities import TO_SI
 from rockfrag.tabular import printable
+from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 _FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
 

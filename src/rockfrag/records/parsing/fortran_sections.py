@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 _LINE = re.compile(r"^\s*(?P<key>[^:]*?)\s*:\s*(?P<value>.*?)\s*$")
 _NOTE = re.compile(r"\s*[(\[][^)\]]*[)\]]")

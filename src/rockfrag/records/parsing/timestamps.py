@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
-from rockfrag.plausibility import LONGEST_STEP
 from rockfrag.records.parsing.format import Channel, cut_short_step
 from rockfrag.records.parsing.fortran_sections import reals
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.units import LONGEST_STEP
 
 _FRACTION_OF_STEP = 1e-4
 """Fraction of a step by which a time may be off beyond the rounding of its print."""
