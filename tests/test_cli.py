@@ -24,9 +24,18 @@ def record(tmp_path: Path) -> Path:
     return path
 
 
-def test_play_writes_a_page_that_loads_nothing(
-    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
+@pytest.fixture
+def simulated(record, capsys):
+    """Run ``rockfrag simulate`` on the record and return what it wrote."""
+
+    def run(*options: str, path: Path = record, unit: str = "g", status: int = 0):
+        assert main(["simulate", str(path), "--unit", unit, *options]) == status
+        return capsys.readouterr()
+
+    return run
+
+
+def test_play_writes_a_page_that_loads_nothing(record, tmp_path, capsys):
     page = tmp_path / "page.html"
     case = [str(record), "--unit", "g", "--body", "30cm", "120cm", "110kg"]
     assert main(["play", *case, "--pedestal", "50cm", "60cm", "350kg", "--output", str(page)]) == 0
@@ -38,17 +47,12 @@ def test_play_writes_a_page_that_loads_nothing(
     assert "ends in .html" in capsys.readouterr().err
 
 
-def test_a_body_without_a_mass_is_of_stone_and_one_of_four_numbers_is_none(
-    record: Path, capsys: pytest.CaptureFixture[str]
-):
-    case = ["simulate", str(record), "--unit", "g", "--body"]
-    assert main([*case, "30cm", "120cm"]) == 0
-    shown = capsys.readouterr().out
+def test_a_body_without_a_mass_is_of_stone_and_one_of_four_numbers_is_none(simulated):
     # 2500 kg/m³ over 0.3 m by 0.3 m by 1.2 m
-    assert main([*case, "30cm", "120cm", "270kg"]) == 0
-    assert capsys.readouterr().out == shown
-    assert main([*case, "30cm", "120cm", "270kg", "4"]) == 2
-    assert capsys.readouterr().err.startswith("--body: expected width, height and")
+    stone, given = (simulated("--body", "30cm", "120cm", *mass) for mass in ([], ["270kg"]))
+    assert stone == given
+    wrong = simulated("--body", "30cm", "120cm", "270kg", "4", status=2)
+    assert wrong.err.startswith("--body: expected width, height and")
 
 
 def test_info_draws_a_record(record: Path, tmp_path: Path):
@@ -57,47 +61,37 @@ def test_info_draws_a_record(record: Path, tmp_path: Path):
     assert picture.stat().st_size > 5000
 
 
-def test_a_squat_block_does_not_rock_and_a_slender_one_overturns(
-    record: Path, capsys: pytest.CaptureFixture[str]
-):
-    block = ["simulate", str(record), "--unit", "g", "--body"]
-    assert main([*block, "1.0", "1.0", "1000"]) == 0
-    assert "never rocked" in capsys.readouterr().out
-    assert main([*block, "0.05", "0.5", "3", "--pga", "0.8"]) == 0
-    assert "overturned: the block" in capsys.readouterr().out
+def test_a_squat_block_does_not_rock_and_a_slender_one_overturns(simulated):
+    assert "never rocked" in simulated("--body", "1.0", "1.0", "1000").out
+    slender = simulated("--body", "0.05", "0.5", "3", "--pga", "0.8")
+    assert "overturned: the block" in slender.out
+    # in any unit
+    assert simulated("--body", "5cm", "500 mm", "3000g", "--pga", "0.8") == slender
 
 
-def test_a_statue_on_its_pedestal_is_drawn(
-    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
+STATUE = ("--body", "0.124", "0.372", "2.172")
+
+
+def test_a_statue_on_its_pedestal_is_drawn(simulated, tmp_path):
     picture = tmp_path / "response.svg"
-    body = ["--body", "0.124", "0.372", "2.172", "--pedestal", "0.184", "0.208", "2.3"]
-    arguments = ["simulate", str(record), "--unit", "g", *body, "--plot", str(picture)]
-    assert main(arguments) == 0
-    assert "rest → 4" in capsys.readouterr().out
+    shown = simulated(*STATUE, "--pedestal", "0.184", "0.208", "2.3", "--plot", str(picture))
+    assert "rest → 4" in shown.out
     assert picture.read_text().startswith("<?xml")
 
 
-def test_a_vertical_component_shakes_too(record: Path, capsys: pytest.CaptureFixture[str]):
-    case = ["simulate", str(record), "--unit", "g", "--body", "0.2", "0.8", "60", "--pga", "0.3"]
-    assert main(case) == 0
-    alone = capsys.readouterr().out
-    assert main([*case, "--vertical", str(record), "--friction", "0.6"]) == 0
-    assert capsys.readouterr().out != alone
+def test_a_vertical_component_shakes_too(simulated, record):
+    case = ("--body", "0.2", "0.8", "60", "--pga", "0.3")
+    both = simulated(*case, "--vertical", str(record), "--friction", "0.6")
+    assert both.out != simulated(*case).out
 
 
-def test_a_column_is_given_from_above(record: Path, capsys: pytest.CaptureFixture[str]):
-    below = ["--pedestal", "0.2", "0.1", "9", "--pedestal", "0.3", "0.1", "20"]
-    body = ["--body", "0.124", "0.372", "2.172", *below]
-    case = ["simulate", str(record), "--unit", "g", *body, "--pga", "0.6"]
-    assert main([*case, "--friction", "0.6", "0.5", "0.4", "--restitution", "0.9"]) == 0
-    assert (
-        len(capsys.readouterr().out.split("largest slip [mm]: ")[1].splitlines()[0].split(",")) == 3
-    )
-    assert main([*case, "--friction", "0.6", "0.5"]) == 2
-    assert "from below, got 2" in capsys.readouterr().err
-    page = ["play", str(record), "--unit", "g", *body, "--output", "x.html"]
-    assert main(page) == 2
+def test_a_column_is_given_from_above(simulated, record, capsys):
+    body = (*STATUE, "--pedestal", "0.2", "0.1", "9", "--pedestal", "0.3", "0.1", "20")
+    slides = ("--pga", "0.6", "--friction", "0.6", "0.5", "0.4", "--restitution", "0.9")
+    shown = simulated(*body, *slides).out
+    assert len(shown.split("largest slip [mm]: ")[1].splitlines()[0].split(",")) == 3
+    assert "from below, got 2" in simulated(*body, "--friction", "0.6", "0.5", status=2).err
+    assert main(["play", str(record), "--unit", "g", *body, "--output", "x.html"]) == 2
     assert "two bodies on each other at most" in capsys.readouterr().err
 
 
@@ -127,14 +121,6 @@ def test_a_right_configuration_is_summed_up(capsys: pytest.CaptureFixture[str]):
     assert capsys.readouterr().out == ""
 
 
-def test_sizes_and_masses_are_read_in_any_unit(record: Path, capsys: pytest.CaptureFixture[str]):
-    shown = []
-    for body in (["0.05", "0.5", "3"], ["5cm", "500 mm", "3000g"]):
-        assert main(["simulate", str(record), "--unit", "g", "--pga", "0.8", "--body", *body]) == 0
-        shown.append(capsys.readouterr().out)
-    assert shown[0] == shown[1]
-
-
 @pytest.mark.parametrize(
     ("body", "words"),
     [
@@ -145,14 +131,10 @@ def test_sizes_and_masses_are_read_in_any_unit(record: Path, capsys: pytest.Capt
         (["wide", "1.2", "180"], ["expected a length", "'wide'"]),
     ],
 )
-def test_a_body_of_no_solid_is_refused_with_its_density(
-    record: Path, body: list[str], words: list[str], capsys: pytest.CaptureFixture[str]
-):
-    assert main(["simulate", str(record), "--unit", "g", "--body", *body]) == 2
-    shown = capsys.readouterr().err
+def test_a_body_of_no_solid_is_refused_with_its_density(simulated, body, words):
+    shown = simulated("--body", *body, status=2).err
     assert shown.count("\n") == 1
-    for word in words:
-        assert word in shown
+    assert all(word in shown for word in words)
 
 
 def test_the_version_is_told(capsys: pytest.CaptureFixture[str]):
@@ -180,34 +162,24 @@ def test_a_reader_that_has_had_enough_is_no_error(record: Path):
         ("g", []),
     ],
 )
-def test_a_motion_that_looks_as_if_in_another_unit_is_doubted(
-    record: Path, unit: str, words: list[str], capsys: pytest.CaptureFixture[str]
-):
-    assert main(["simulate", str(record), "--unit", unit, "--body", "0.1", "1", "20"]) == 0
-    shown = capsys.readouterr().err
+def test_a_motion_that_looks_as_if_in_another_unit_is_doubted(simulated, unit, words):
+    shown = simulated("--body", "0.1", "1", "20", unit=unit).err
     assert (shown == "") == (not words)
-    for word in words:
-        assert word in shown
+    assert all(word in shown for word in words)
 
 
-def test_a_motion_in_cm_s2_is_refused_as_m_s2(
-    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_a_motion_in_cm_s2_is_refused_as_m_s2(simulated, record, tmp_path):
     rows = [line.split() for line in record.read_text().splitlines()]
     other = tmp_path / "gal.txt"
     other.write_text("".join(f"{t} {981 * float(a):.3f}\n" for t, a in rows))
-    assert main(["simulate", str(other), "--unit", "m/s2", "--body", "1", "1", "900"]) == 2
-    told = capsys.readouterr().err
+    told = simulated("--body", "1", "1", "900", path=other, unit="m/s2", status=2).err
     assert "above 3 g" in told
     assert "force" not in told
 
 
-def test_a_record_below_zero_throughout_takes_its_vertical_component_along(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
+def test_a_record_below_zero_throughout_takes_its_vertical_component_along(simulated, tmp_path):
     path = tmp_path / "below.txt"
     values = -0.3 * np.sin(np.pi * np.arange(101) / 100) ** 2
     path.write_text("\n".join(f"{0.01 * i:.2f} {a:.8f}" for i, a in enumerate(values)) + "\n")
-    case = ["simulate", str(path), "--unit", "g", "--body", "30cm", "90cm", "--pga", "0.5"]
-    assert main([*case, "--vertical", str(path)]) == 0
-    assert "peak 0.5000 g" in capsys.readouterr().out
+    body = ("--body", "30cm", "90cm", "--pga", "0.5", "--vertical", str(path))
+    assert "peak 0.5000 g" in simulated(*body, path=path).out

@@ -1,12 +1,10 @@
 """The page of ``rockfrag app`` says what ``rockfrag assess`` does: its scripts in Node, of random objects."""
 
-import base64
 import json
 import random
 import re
 import shutil
 import subprocess
-import zlib
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +19,7 @@ from rockfrag.assess.request import make_request
 from rockfrag.assess.words import five_lines
 from rockfrag.cli import main
 from rockfrag.errors import InputError
-from rockfrag.rocking.browser import driver_text, module_bytes
+from rockfrag.rocking.browser import driver_text
 
 from ..app_forms import settings_of, some_form
 from .samples import openquake_csv
@@ -300,16 +298,6 @@ def test_floors_of_other_buildings_are_the_same_but_for_rounding(tmp_path, motio
             np.testing.assert_allclose(mine, his.acceleration, rtol=0, atol=rounding)
         # of 24 motions at 60 levels none is so near to falling
         assert said["answer"]["shares"] == assess_with(request, moved).outcomes.fractions().tolist()
-
-
-def test_the_samples_are_packed_to_the_bit(motions):
-    data = page_data(motions)
-    content = zlib.decompress(base64.b64decode(data["packed"]))
-    samples = np.concatenate([motion.acceleration for motion in motions.ground])
-    if not data["samples"]["decimal"]:
-        ranks = np.frombuffer(content, np.uint8).reshape(8, -1)
-        assert ranks.T.tobytes() == samples.astype("<f8").tobytes()
-    assert zlib.decompress(base64.b64decode(data["modules"]["plain"])) == module_bytes("ensemble")
 
 
 def test_all_languages_have_the_same_texts():

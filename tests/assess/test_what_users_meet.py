@@ -149,15 +149,8 @@ def test_what_a_list_of_pedestals_gets_wrong_is_named(capsys):
     assert "--pedestal: expected width" in refused(capsys, *ON_TWO, "--pedestal", "1m")
 
 
-def test_an_option_that_is_given_twice_is_refused(capsys):
-    assert "--pga is given twice" in refused(capsys, "--pga", "0.2g", "--pga", "0.3g")
-
-
-def test_limits_at_both_ends_are_narrowed_by_nothing():
-    assert narrowed(Estimate(0.5, 0.0, 1.0, {"cg_height": 1.9, "model": 2.6})) is None
-
-
 def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(on_pedestal):
+    assert narrowed(Estimate(0.5, 0.0, 1.0, {"cg_height": 1.9, "model": 2.6})) is None
     wide = Estimate(0.05, 0.001, 0.74, {"conversion": 1.6, "period": 1.2, "model": 0.5})
     better = narrowed(wide)
     assert is_wide(wide)
@@ -212,18 +205,15 @@ def test_a_probability_stands_on_a_scale_with_what_to_do(on_pedestal):
     assert step_of(0.012, 50).name == step_of(0.006, 25).name == "high"
 
 
-def test_the_worst_direction_is_said_not_to_be_counted(on_pedestal):
-    assert "not counted" in five_lines(on_pedestal)[2]
+def test_the_worst_direction_and_what_was_assumed_are_said(on_pedestal):
+    lines = five_lines(on_pedestal)
+    assert "not counted" in lines[2]
     said = [line for line in assumptions(on_pedestal) if "worst direction" in line]
     assert said and all("counted" in line for line in said)
-
-
-def test_the_assumptions_that_matter_most_stand_in_the_line(on_pedestal):
-    line = five_lines(on_pedestal)[4]
-    assumed = line.partition("Assumed: ")[2]
+    assumed = lines[4].partition("Assumed: ")[2]
     assert "first period of 0.29 s" in assumed
     assert assumed.count(",") == 2 or ";" in assumed
-    assert "see the page" not in line
+    assert "see the page" not in lines[4]
 
 
 def test_a_building_is_described_as_conservators_know_it(tmp_path):
@@ -286,6 +276,7 @@ def test_levels_are_named_as_europe_and_america_do():
         (("--width", "1,65m", "--height", "2m"), ("--width: ", "such as 1.2 m", "with a point, as '1.65m'")),
         (("--width", "1m", "--height", "2m", "--pga", "0.13"), ("--pga: ", "such as 0.25 g",)),
         (("--height", "2m"), ("--width is missing",)),
+        (("--pga", "0.2g", "--pga", "0.3g"), ("--pga is given twice",)),
         (("--width", "1m", "--height", "2m", "--floor", "second"), ("--floor: ", "2/4", "Europe", "America")),
         (("--width", "1m", "--height", "2m", "--cg-height", "3m"), ("--cg-height: ",)),
         (("--width", "1m", "--height", "2m", "--years", "20"), ("--years: ", "--hazard", "--return-period")),

@@ -139,11 +139,6 @@ STUDIES = {
         records=dict(list(TEN.items())[:4]),
         content={"amplitudes": {"lowest_g": 0.1, "highest_g": 0.7, "step_percent": 20}},
     ),
-    "two bodies under one earthquake": Foreign(
-        blocks={"bust": (25.0, 60.0, 45.0), "column": (30.0, 180.0, 200.0)},
-        configurations=alone("bust", "column"),
-        records={"north": "the one", "east": "the one"},
-    ),
     "the thesis's bodies, but nobody asks for the thesis": Foreign(
         blocks={
             "T1": (12.4, 37.2, 2.172),
@@ -173,19 +168,9 @@ STUDIES = {
         records=TWO,
         content={"amplitudes": {"lowest_g": 0.5, "highest_g": 0.55, "step_percent": 20}},
     ),
-    "a stack only": Foreign(
-        blocks=MARBLE,
-        configurations={"figure on plinth": ("marble figure", "plinth")},
-        records=THREE,
-    ),
     "two pedestals under one figure": Foreign(
         blocks={**MARBLE, "low plinth": (60.0, 20.0, 180.0)},
         configurations=ON_PLINTH | {"figure on low plinth": ("marble figure", "low plinth")},
-        records=THREE,
-    ),
-    "a figure on a base on a plinth": Foreign(
-        blocks=WITH_BASE,
-        configurations=ON_PLINTH | {"figure on base on plinth": ("marble figure", "base|plinth")},
         records=THREE,
     ),
     "arrangements compared with each other": Foreign(

@@ -99,23 +99,6 @@ def at2_peer(folder: Path) -> Built:
     return at2(folder / "peer.AT2", _PEER + f"NPTS=  {N}, DT= .00500 SEC\n", wave(1, 0.3, 5))
 
 
-def at2_trailing_names(folder: Path) -> Built:
-    return at2(folder / "old.AT2", _PEER + f"  {N}    0.0050    NPTS, DT\n", wave(2, 0.3, 5))
-
-
-def at2_dt_first(folder: Path) -> Built:
-    header = _PEER + f"DT= 5.0D-03 SEC, npts = {N}\n"
-    return at2(folder / "dt_first.at2", header, wave(3, 0.3, 5), "\r\n")
-
-
-def at2_nga(folder: Path) -> Built:
-    header = (
-        "PEER NGA STRONG MOTION DATABASE RECORD\nLoma Prieta, 10/18/1989, GILROY ARRAY #3, 090\nACCELERATION "
-        f"TIME SERIES IN UNITS OF G\nNPTS=     {N}, DT=   .0050 SEC,                                    \n"
-    )
-    return at2(folder / "nga.AT2", header, wave(4, 0.3, 5))
-
-
 def seismosoft(folder: Path) -> Built:
     path, values = folder / "soft.dat", wave(5, 0.2, 4)
     lines = [
@@ -130,14 +113,14 @@ def seismosoft(folder: Path) -> Built:
     return Built(path, "SEISMOSOFT", values[None, :], 0.01, "g", "TOLMEZZO", None, ("000",))
 
 
-def cosmos_header(azimuth: int, step_ms: float, comments: int) -> str:
+def cosmos_header(azimuth: int, comments: int) -> str:
     whole = [-999] * 100
     whole[39:45] = [2005, 167, 6, 16, 20, 53]
     whole[53] = azimuth
     real = [-999.0] * 100
     real[0:2] = [34.046, -117.035]
     real[29] = 4.4
-    real[61] = step_ms
+    real[61] = 10.0
     lines = [
         "Corrected acceleration    (Format v01.20 with 13 text lines) Src: none",
         "Somewhere in Los Angeles, CA            June 16,2005 13:53 PDT",
@@ -168,7 +151,7 @@ def _cosmos(path: Path, text: str, samples: NDArray[np.float64], unit: str, *com
 
 def cosmos_v1(folder: Path) -> Built:
     values = wave(6, 90.0, 5)
-    text = cosmos_header(340, 10.0, 2)
+    text = cosmos_header(340, 2)
     text += f"   {N}  acceleration pts, approx   1 secs, units=cm/sec2(04),Format=(8F10.5)\n"
     text += rows(values, 8, fixed(10, 5)) + "/&  ------  End of data for channel  1  ------\n"
     return _cosmos(folder / "cosmos.v1", text, values[None, :], "cm/s2", "340")
@@ -177,7 +160,7 @@ def cosmos_v1(folder: Path) -> Built:
 def cosmos_touching(folder: Path) -> Built:
     """Fields that fill their columns, in g, and the last header line of another writer."""
     values = np.round(-1.5 - 0.1 * np.abs(wave(7, 1.0, 5)), 5)
-    text = cosmos_header(90, 10.0, 0)
+    text = cosmos_header(90, 0)
     text += f"{N} acceleration pts, approx 1 secs, units=g (02),Format=(10F8.5)\n"
     text += rows(values, 10, fixed(8, 5)) + "End-of-data for Chan  1 acceleration\n"
     return _cosmos(folder / "touching.V2c", text, values[None, :], "g", "90")
@@ -187,7 +170,7 @@ def cosmos_v2(folder: Path) -> Built:
     """Two channels, each with acceleration, velocity and displacement."""
     text, kept = "", []
     for seed, azimuth in ((8, 90), (9, 180)):
-        text += cosmos_header(azimuth, 10.0, 1)
+        text += cosmos_header(azimuth, 1)
         for quantity, unit in (
             ("acceleration", "cm/sec2 (04)"),
             ("velocity", "cm/sec (05)"),
@@ -199,10 +182,6 @@ def cosmos_v2(folder: Path) -> Built:
             text += rows(values, 1, lambda value: f"{value:15.6E}")
         text += "/&  ------  End of data  ------\n"
     return _cosmos(folder / "cosmos.V2", text, np.array(kept), "cm/s2", "90", "180")
-
-
-def csmip_numbers(values: NDArray[np.float64], per_line: int, width: int, digits: int) -> str:
-    return rows(values, per_line, fixed(width, digits))
 
 
 def csmip_header(volume: int, chan: str, when: str) -> str:
@@ -249,7 +228,7 @@ def csmip_v2(folder: Path) -> Built:
             text += (
                 f" {N} POINTS OF {quantity} DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: {unit})\n"
             )
-            text += csmip_numbers(values, 8, 10, 3)
+            text += rows(values, 8, fixed(10, 3))
         text += f"/&  ----------  END OF DATA FOR CHANNEL  {seed}  ----------\n"
     path.write_bytes(text.replace("\n", "\r\n").encode() + b"\x1a" * 40)
     return Built(
@@ -261,7 +240,7 @@ def csmip_v2_modern(folder: Path) -> Built:
     path, values = folder / "modern.v2", wave(12, 80.0, 6)
     text = csmip_header(2, "360 Deg", "Start time:  2/13/12, 21:06:45.0 UTC (GPS)")
     text += f" {N} points of accel data equally spaced at  .005 sec, in cm/sec2. (8f10.6)\n"
-    text += csmip_numbers(values, 8, 10, 6) + "/&  ------  End of data  ------\n"
+    text += rows(values, 8, fixed(10, 6)) + "/&  ------  End of data  ------\n"
     path.write_text(text)
     start = "2012-02-13T21:06:45.000000Z"
     return Built(path, "CSMIP", values[None, :], 0.005, "cm/s2", "36456", start, ("360",), 1e-9)
@@ -271,7 +250,7 @@ def csmip_v1(folder: Path) -> Built:
     path, values = folder / "csmip.V1", wave(13, 0.02, 6)
     text = csmip_header(1, "360 Deg", "").replace("UNITS OF UNCOR ACCEL ARE SEC AND G/10", "UNITS")
     text += f" {N} Accelerogram points at 200 pts/sec in units of g .      Format: (8f9.6)\n"
-    text += csmip_numbers(values, 8, 9, 6) + "/&  ------  End of Data  ------\n"
+    text += rows(values, 8, fixed(9, 6)) + "/&  ------  End of Data  ------\n"
     path.write_text(text)
     return Built(path, "CSMIP", values[None, :], 0.005, "g", "36456", None, ("360",), 1e-9)
 
@@ -404,7 +383,7 @@ def smc_uneven(folder: Path) -> Built:
     return replace(built, tolerance=1e-3)
 
 
-def esm_text(values: NDArray[np.float64], kind: str, unit: str, first: str) -> str:
+def esm_text(values: NDArray[np.float64], kind: str, first: str) -> str:
     lines = [
         "EVENT_NAME: GREECE",
         "EVENT_ID: EMSC-20190728_0000106",
@@ -420,7 +399,7 @@ def esm_text(values: NDArray[np.float64], kind: str, unit: str, first: str) -> s
         "SAMPLING_INTERVAL_S: 0.005000",
         f"NDATA: {N}",
         "STREAM: HNN",
-        f"UNITS: {unit}",
+        "UNITS: cm/s^2",
         "INSTRUMENT: sensor = CMG_5 [Unknown] | digitizer = Unknown [Unknown]",
         "HEADER_FORMAT: DYNA 1.2",
         f"DATA_TYPE: {kind}",
@@ -432,15 +411,19 @@ def esm_text(values: NDArray[np.float64], kind: str, unit: str, first: str) -> s
 
 def esm(folder: Path) -> Built:
     path, values = folder / "esm.ASC", wave(20, 3.0, 6)
-    text = esm_text(values, "ACCELERATION", "cm/s^2", "20190728_160905.700")
+    text = esm_text(values, "ACCELERATION", "20190728_160905.700")
     path.write_text(text, encoding="utf-8")
     start = "2019-07-28T16:09:05.700000Z"
     return Built(path, "ESM", values[None, :], 0.005, "cm/s2", "DLFA", start, ("HNN",))
 
 
-def esm_turkish(folder: Path) -> Built:
-    path, values = folder / "afad.asc", wave(21, 3.0, 6)
-    text = esm_text(values, "Acceleration", "cm/s^2", "14/11/2010 23:09:19.300")
+def esm_tadas(folder: Path) -> Built:
+    """As AFAD's TADAS delivers: a first line without a key, the kind and the day in another way."""
+    path, values = folder / "20230206011732_0118_ap_AAD_Acc_E.asc", wave(21, 3.0, 6)
+    head = (
+        "AAD_Filtered_TADAS_FILE\nAAD_FILTER_TYPE: BUTTERWORTH\nAAD_LOW_CUT_FREQUENCY_HZ: 0.025\n"
+    )
+    text = head + esm_text(values, "Acceleration", "14/11/2010 23:09:19.300")
     path.write_text(text.replace("LOCATION: ", "LOCATION: HATAY_HASSA"), encoding="utf-8")
     start = "2010-11-14T23:09:19.300000Z"
     return Built(path, "ESM", values[None, :], 0.005, "cm/s2", "DLFA", start, ("HNN",))
@@ -538,13 +521,6 @@ def plain_csv(folder: Path) -> Built:
         (head + "".join(f"{i / 100},{v!r}\r\n" for i, v in enumerate(values.tolist()))).encode()
     )
     return Built(path, "PLAINTEXT", values[None, :], 0.01, "m/s2")
-
-
-def plain_decimal_comma(folder: Path) -> Built:
-    path, values = folder / "comma.csv", wave(30, 0.3, 5)
-    text = "".join(f"{i * 0.01:.2f};{v:.5f}\n" for i, v in enumerate(values)).replace(".", ",")
-    path.write_text(text)
-    return Built(path, "PLAINTEXT", values[None, :], 0.01, "")
 
 
 def plain_count_then_columns(folder: Path) -> Built:
@@ -747,15 +723,6 @@ def opensees(folder: Path) -> Built:
     return Built(path, "OPENSEES", 2 * values[None, :], 0.02, "m/s2", components=("7",))
 
 
-def esm_tadas(folder: Path) -> Built:
-    """As AFAD's TADAS delivers: a first line without a key."""
-    head = (
-        b"AAD_Filtered_TADAS_FILE\nAAD_FILTER_TYPE: BUTTERWORTH\nAAD_LOW_CUT_FREQUENCY_HZ: 0.025\n"
-    )
-    name = "20230206011732_0118_ap_AAD_Acc_E.asc"
-    return variant(esm_turkish(folder), name, lambda content: head + content)
-
-
 def cwa_1999(folder: Path) -> Built:
     """As the CWB wrote the Chi-Chi earthquake: from the station's code on, in UTC."""
 
@@ -801,20 +768,6 @@ def eerl_volume_2(folder: Path) -> Built:
     text += "".join(rows(factor * values, 8, fixed(10, 3)) for factor in (1.0, 0.1, 0.01))
     path.write_text(text)
     return Built(path, "USC2", values[None, :], 0.02, "cm/s2", "117", None, ("S00E",), 1e-9)
-
-
-def plain_milliseconds(folder: Path) -> Built:
-    path, values = folder / "table.csv", wave(61, 0.3, 5)
-    body = "".join(f"{i * 0.5:g},{v!r}\n" for i, v in enumerate(values.tolist()))
-    path.write_text("Time (ms),Acceleration (g)\n" + body + ",\n" * 9)
-    return Built(path, "PLAINTEXT", values[None, :], 0.0005, "g")
-
-
-def plain_rows_with_commas(folder: Path) -> Built:
-    path, values = folder / "A10000.csv", wave(69, 0.3, 5)
-    words = [f"{v:.5E}" for v in values]
-    path.write_text("".join(",".join(words[i : i + 8]) + ",\n" for i in range(0, N, 8)))
-    return Built(path, "PLAINTEXT", values[None, :], 0.01, "", stated_dt=False)
 
 
 BUILDERS: dict[str, Callable[[Path], Built]] = {

@@ -5,6 +5,7 @@ import json
 import subprocess
 import zipfile
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -290,10 +291,6 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path):
         load_motions(path)
 
 
-def silent(*_, **__):
-    raise OSError("no route to host")
-
-
 class TestUrl:
     CONTENT = b"Time (s),Acceleration (m/s^2)\n0,1\n0.01,2\n0.02,3\n0.03,1\n"
     DIGEST = hashlib.sha256(CONTENT).hexdigest()
@@ -332,7 +329,7 @@ class TestUrl:
     def test_without_network_the_path_is_named_where_the_file_may_be_put(
         self, tmp_path, monkeypatch
     ):
-        monkeypatch.setattr("urllib.request.urlopen", silent)
+        monkeypatch.setattr("urllib.request.urlopen", Mock(side_effect=OSError("no route")))
         place = tmp_path / "records" / "a.csv"
         with pytest.raises(InputError, match=r"put the file at .*a\.csv by hand"):
             fetch_url("https://example.org/a.csv", self.DIGEST, place)
@@ -415,7 +412,7 @@ class TestFdsn:
     def test_a_silent_service_names_the_folder_for_files_put_by_hand(self, tmp_path, monkeypatch):
         import obspy.clients.fdsn
 
-        monkeypatch.setattr(obspy.clients.fdsn, "Client", silent)
+        monkeypatch.setattr(obspy.clients.fdsn, "Client", Mock(side_effect=OSError("no route")))
         request = "NCEDC BK.CMB.00.HNE 2014-08-24T10:20:14 2014-08-24T10:22:44"
         with pytest.raises(
             InputError, match=r"no data came.*records\.mseed and stations\.xml into"

@@ -153,6 +153,8 @@ def test_a_file_of_another_quantity_is_refused(builders, tmp_path, kind, words, 
         "  .0050  43 DT, NPTS",
         "NPTS, DT=  43, .0050",
         "NPTS=  43, DT= 5.0E-03 SEC",
+        "DT= 5.0D-03 SEC, npts = 43",
+        "  43    0.0050    NPTS, DT",
     ],
 )
 def test_dialects_of_the_size_line_of_peer(builders, tmp_path, line):

@@ -39,13 +39,6 @@ def test_linear_acceleration_gives_the_cubic():
     np.testing.assert_allclose(displacement, time**3 / 3, rtol=1e-12, atol=1e-15)
 
 
-def test_one_sample_does_not_move():
-    velocity, displacement = integrate(np.array([5.0]), 0.01)
-    assert velocity.tolist() == displacement.tolist() == [0.0]
-    assert peak_velocity(np.array([5.0]), 0.01) == 0.0
-    assert peak_displacement(np.array([5.0]), 0.01) == 0.0
-
-
 @settings(max_examples=100, deadline=None)
 @given(accelerations)
 def test_velocity_is_that_of_scipys_trapezoidal_rule(acceleration):

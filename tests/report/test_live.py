@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rockfrag import Block, Column, Stack, overturns
 from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import MOST_SAMPLES, carried, live_kernel, swept
@@ -16,7 +17,6 @@ from rockfrag.report.live.frames import frames_svg, outlines
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page
-from rockfrag.rocking import Block, Column, Stack, overturns
 from rockfrag.rocking.options import system_of
 from rockfrag.system.system import turned_about_vertical
 
@@ -38,18 +38,14 @@ def data_of(html: str) -> dict:
 
 
 def test_the_page_carries_motions_to_the_last_bit_and_bodies_as_given():
-    data = data_of(live_kernel(BODIES, [motion()]))
+    html = live_kernel(BODIES, [motion("</script><b>")])
+    assert html.count("</script>") == 2 and "<b>" not in html
+    data = data_of(html)
     samples = np.frombuffer(base64.b64decode(data["motions"][0]["samples"]))
     assert samples.tobytes() == motion().acceleration.tobytes()
     assert [body["name"] for body in data["bodies"]] == list(BODIES)
     assert data["bodies"][1]["pedestal"]["width"] == 0.5
     assert data["bodies"][0]["pedestal"] is None
-
-
-def test_no_name_ends_the_script():
-    html = live_kernel(BODIES, [motion("</script><b>")])
-    assert html.count("</script>") == 2
-    assert "<b>" not in html
 
 
 def test_bodies_in_space_stand_in_a_small_page_with_both_components():

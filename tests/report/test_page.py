@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from rockfrag.errors import InputError
 from rockfrag.figure_style import figure_style, new_figure
 from rockfrag.report import pdf
-from rockfrag.report.page import MOST_TABLE_ROWS, Column, cell, render, table_html
+from rockfrag.report.page import MOST_TABLE_ROWS, Column, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import draw_all
 
@@ -81,15 +81,6 @@ def test_the_page_and_its_figures_are_the_same_bytes_every_time(tmp_path: Path):
     assert page(tmp_path / "a") == page(tmp_path / "b")
     for name in ("one.svg", "one.png"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
-
-
-def test_cells_show_digits_truth_and_what_is_missing():
-    assert cell(1.23456, 2) == "1.23"
-    assert cell(-0.5, 1) == "−0.5"
-    assert cell(math.nan, 2) == "–"
-    assert cell(None, None) == "–"
-    assert cell(True, None) == "yes"
-    assert cell("", None) == "–"
 
 
 def test_a_page_is_printed_beside_itself(tmp_path: Path):

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.report.glossary import TERMS, terms_used
-from rockfrag.report.page import render
+from rockfrag.report.page import cell, render
 from rockfrag.report.part import Answer, Finding, Section, section_of
 from rockfrag.report.wording import (
     Macros,
@@ -56,44 +56,63 @@ def test_a_column_of_estimates_has_one_number_of_decimals():
     assert estimates(table, "a") == ["12.340 [10.000, 15.000]", "0.123 [0.100, 0.200]"]
 
 
-def test_p_values_are_never_zero():
-    assert probability(1e-9) == "< 0.001"
-    assert probability(0.0421) == "0.042"
-    assert probability(NAN) == "–"
+WORDS = {
+    "p values are never zero": [
+        (probability(1e-9), "< 0.001"),
+        (probability(0.0421), "0.042"),
+        (probability(NAN), "–"),
+    ],
+    "numbers of things agree with their nouns": [
+        (counted(1, "record"), "1 record"),
+        (counted(2, "record"), "2 records"),
+        (counted(0, "pair"), "no pair"),
+        (of_all(1, 1, "test"), "the only test"),
+        (of_all(3, 3, "test"), "all 3 tests"),
+        (of_all(1, 3, "test"), "1 of 3 tests"),
+        (of_all(0, 3, "test"), "none of 3 tests"),
+        *((agree(n, 3, "needs", "need"), "needs" if n < 2 else "need") for n in range(4)),
+        (agree(1, 1, "needs", "need"), "needs"),
+    ],
+    "lists read as sentences and stay short": [
+        (listed(["a"]), "a"),
+        (listed(["a", "b", "c"]), "a, b and c"),
+        (listed([str(i) for i in range(20)])[-13:], "7 and 12 more"),
+    ],
+    "an amplitude that is not known is its bound": [
+        (amplitude({"amplitude_g": 0.5234, "lower_g": 0.5, "upper_g": 0.55}), "0.523"),
+        (amplitude({"amplitude_g": NAN, "lower_g": 2.0, "upper_g": NAN}), "> 2.000"),
+        (amplitude({"amplitude_g": NAN, "lower_g": 0.0, "upper_g": 0.1}), "< 0.100"),
+        (amplitude({"amplitude_g": NAN, "lower_g": 0.0, "upper_g": NAN}), "–"),
+    ],
+    "an estimate on its own limit is a bound": [
+        (estimate(0.0445, 0.0, 0.0445, 3), "≤ 0.044"),
+        (estimate(0.03, 0.0, 0.0445, 3), "0.030 [open, 0.044]"),
+    ],
+    "decimals show three digits": [
+        *((decimals_of(x), n) for x, n in ((0.0123, 4), (1.23, 2), (123.0, 0), (0.0, 3))),
+        (number(-0.5, 1), "−0.5"),
+    ],
+    "cells show digits, truth and what is missing": [
+        *((cell(1.23456, 2), "1.23"), (cell(-0.5, 1), "−0.5"), (cell(NAN, 2), "–")),
+        *((cell(None, None), "–"), (cell(True, None), "yes"), (cell("", None), "–")),
+    ],
+    "ratios are spelled out": [
+        (spelled("P/NP on GF 1.0"), "with/without pedestal on GF 1.0"),
+        (spelled("NP/P on F3"), "without/with pedestal on F3"),
+    ],
+}
 
 
-def test_numbers_of_things_agree_with_their_nouns():
-    assert counted(1, "record") == "1 record"
-    assert counted(2, "record") == "2 records"
-    assert counted(0, "pair") == "no pair"
-    assert of_all(1, 1, "test") == "the only test"
-    assert of_all(3, 3, "test") == "all 3 tests"
-    assert of_all(1, 3, "test") == "1 of 3 tests"
-    assert of_all(0, 3, "test") == "none of 3 tests"
-
-
-def test_lists_read_as_sentences_and_stay_short():
-    assert listed(["a"]) == "a"
-    assert listed(["a", "b", "c"]) == "a, b and c"
-    assert listed([str(i) for i in range(20)]).endswith("7 and 12 more")
-
-
-def test_an_amplitude_that_is_not_known_is_shown_as_its_bound():
-    assert amplitude({"amplitude_g": 0.5234, "lower_g": 0.5, "upper_g": 0.55}) == "0.523"
-    assert amplitude({"amplitude_g": NAN, "lower_g": 2.0, "upper_g": NAN}) == "> 2.000"
-    assert amplitude({"amplitude_g": NAN, "lower_g": 0.0, "upper_g": 0.1}) == "< 0.100"
-    assert amplitude({"amplitude_g": NAN, "lower_g": 0.0, "upper_g": NAN}) == "–"
+@pytest.mark.parametrize("what", WORDS)
+def test_words_are_those_that_a_reader_expects(what):
+    for said, expected in WORDS[what]:
+        assert said == expected
 
 
 def test_long_names_keep_their_head_and_tail():
     assert shortened("short") == "short"
     cut = shortened("Figure of a saint, left niche", 12)
     assert len(cut) == 12 and cut.startswith("Figur") and cut.endswith("niche")
-
-
-def test_decimals_show_three_digits():
-    assert [decimals_of(x) for x in (0.0123, 1.23, 123.0, 0.0)] == [4, 2, 0, 3]
-    assert number(-0.5, 1) == "−0.5"
 
 
 SPEAKING = ("report", "assess", "survival", "pedestal", "fragility", "campaign", "stages")
@@ -187,22 +206,6 @@ def test_terms_are_found_as_words_of_their_own():
     assert set(terms_used("The PGAs of P&NP")) == set()
     assert set(terms_used("PGA and beta")) == {"PGA, PGV, PGD"}
     assert all(meaning.endswith(".") for meaning in TERMS.values())
-
-
-def test_a_ratio_is_spelled_out_for_a_reader():
-    assert spelled("P/NP on GF 1.0, NP/P on F3") == (
-        "with/without pedestal on GF 1.0, without/with pedestal on F3"
-    )
-
-
-def test_verbs_agree_with_what_is_counted():
-    assert [agree(n, 3, "needs", "need") for n in range(4)] == ["needs", "needs", "need", "need"]
-    assert agree(1, 1, "needs", "need") == "needs"
-
-
-def test_an_estimate_on_its_own_limit_is_called_a_bound():
-    assert estimate(0.0445, 0.0, 0.0445, 3) == "≤ 0.044"
-    assert estimate(0.03, 0.0, 0.0445, 3) == "0.030 [open, 0.044]"
 
 
 def test_an_open_chapter_says_what_its_headline_rests_on():

@@ -1,13 +1,18 @@
 """Curves by floor: each keyed to its own floor's motion, rocking before overturning."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag import Block, simulate
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import with_measures
+from rockfrag.motions.scaling import scale_to_pga
+from rockfrag.records.motion import Motion
+from rockfrag.stages import validity
 from rockfrag.stages.floor_curves import export_curves, floor_curves
-from rockfrag.system.blocks import Block
 
 STATUE = Block(0.2, 0.8, 50.0)
 FLOORS = {"hall": 0, "loft": 2}
@@ -104,3 +109,37 @@ def test_files_are_one_per_floor_and_measure(curves, tmp_path):
     assert not [name for name in written if name.endswith(".xml") and "loft" in name]
     assert all((tmp_path / name).exists() for name in written)
     assert "Peak Floor Acceleration" in (tmp_path / "fragility_pfa_loft.csv").read_text()
+
+
+BODY = Block(0.2, 0.8, 50.0)
+
+
+def motions(count: int) -> dict[str, Motion]:
+    rng = np.random.default_rng(3)
+    window = np.hanning(300)
+    return {f"m{k}": Motion(window * rng.normal(size=300), 0.02, f"m{k}") for k in range(count)}
+
+
+def readings_of(names: list[str]) -> pd.DataFrame:
+    about = {"configuration": "T", "object": "T", "pedestal": "NP", "earthquake": "e", "floor": "g"}
+    table = pd.DataFrame({"motion": names, **about, "amplitude_g": 0.4})
+    return table.assign(test=table["motion"])
+
+
+def test_forces_are_those_of_one_history():
+    known = motions(3)
+    configuration = replace(BODY.system(), name="T")
+    table = validity.validity_table(readings_of([*known]), [configuration], known)
+    for row in table.to_dict("records"):
+        response = simulate(BODY, scale_to_pga(known[row["motion"]], 0.4))
+        assert row["friction_demand"] == response.friction_demand.max()
+        assert row["least_normal_force_n"] == response.least_normal_force.min()
+        assert row["unstable_distance"] == response.unstable_distance
+
+
+def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(validity, "MOST_TESTED", 4)
+    known = motions(10)
+    configuration = replace(BODY.system(), name="T")
+    table = validity.validity_table(readings_of([*known]), [configuration], known)
+    assert list(table["motion"]) == ["m0", "m2", "m5", "m7"]

@@ -1,15 +1,26 @@
 """Hypotheses about the experiment come out right where the truth is known."""
 
+import itertools
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag_thesis.hypotheses import COLUMNS, HYPOTHESES, Evidence, Finding, hypothesis_table
+from rockfrag_thesis.hypotheses import (
+    COLUMNS,
+    HYPOTHESES,
+    Evidence,
+    Finding,
+    contradictions,
+    hypothesis_table,
+)
+from rockfrag_thesis.hypotheses.contradictions import orderings_of_floor_means
 from rockfrag_thesis.hypotheses.earthquakes import rank_correlation
 from rockfrag_thesis.hypotheses.hypothesis import Kind, outcome
 from rockfrag_thesis.hypotheses.orders import ORDERS, margin
-from rockfrag_thesis.sections.hypotheses import hypotheses_html, outcomes_by_kind, outcomes_section
+from rockfrag_thesis.hypotheses.slenderness import stack_slenderness
+from rockfrag_thesis.sections.hypotheses import hypotheses_html
 
 FOR, AGAINST, OPEN = Finding.FOR, Finding.AGAINST, Finding.OPEN
 
@@ -109,25 +120,17 @@ def test_without_an_effect_large_changes_are_excluded_and_small_ones_are_not(mad
     assert not {"not reproduced", "rejected"} & set(rows.loc[of_the_pedestal, "outcome"])
 
 
-def test_equal_figures_get_equal_words(made):
+def test_equal_figures_get_equal_words_and_rules_say_what_excludes_a_change(made):
     """Whatever a hypothesis calls its change: the row's interval decides."""
-    rows = hypothesis_table(Evidence(made(), "simulated")).set_index("number")
+    table = hypothesis_table(Evidence(made(), "simulated"))
+    assert (table.loc[table["p"].notna(), "p_of"] != "").all()
+    rows = table.set_index("number")
+    assert rows.loc[26, "p_of"] == "no change"
     single = rows.loc[[29, 33, 35, 36, 37, 46, 49, 51]]
     assert len(set(single["outcome"])) == 1
-    for _, row in single.iterrows():
-        assert row["lower"] < 1 < row["upper"] < 1.1
-
-
-def test_every_rule_on_a_change_says_what_excludes_it(made):
-    rows = hypothesis_table(Evidence(made(), "simulated")).set_index("number")
-    for number in (29, 33, 35, 36, 37, 45, 46, 50, 51):
-        assert "10 %" in rows.loc[number, "rule"] and "excluded" in rows.loc[number, "rule"], number
-
-
-def test_each_p_value_names_its_hypothesis(made):
-    rows = hypothesis_table(Evidence(made(), "simulated"))
-    assert (rows.loc[rows["p"].notna(), "p_of"] != "").all()
-    assert rows.set_index("number").loc[26, "p_of"] == "no change"
+    assert ((single["lower"] < 1) & (single["upper"] > 1) & (single["upper"] < 1.1)).all()
+    rules = rows.loc[[29, 33, 35, 36, 37, 45, 46, 50, 51], "rule"]
+    assert rules.str.contains("10 %").all() and rules.str.contains("excluded").all()
 
 
 def test_words_fit_what_the_evidence_can_show():
@@ -432,16 +435,39 @@ def test_the_hypothesis_table_shows_kind_outcome_rule_and_error_rate(made):
     assert "nan" not in html
 
 
-def test_outcomes_are_counted_by_kind(made):
-    hypotheses = hypothesis_table(Evidence(made(noise=0.1), "measured"))
-    counts = outcomes_by_kind(hypotheses)
-    assert counts["hypotheses"].sum() == len(hypotheses)
-    said = sum(int(part.split()[0]) for words in counts["outcomes"] for part in words.split(", "))
-    assert said == len(hypotheses)
+def test_no_order_of_the_four_means_satisfies_all_four_statements():
+    assert orderings_of_floor_means() == 0
+    # and it takes all four: dropping any one leaves orders that satisfy the rest
+    names = ("P GF", "P F5", "NP GF", "NP F5")
+    rules = (
+        lambda m: m["P GF"] > m["NP GF"],
+        lambda m: m["P F5"] < m["NP F5"],
+        lambda m: m["P F5"] > m["P GF"],
+        lambda m: m["NP GF"] > m["NP F5"],
+    )
+    for dropped in range(4):
+        kept = [rule for i, rule in enumerate(rules) if i != dropped]
+        orders = (dict(zip(names, o, strict=True)) for o in itertools.permutations(range(4)))
+        assert any(all(rule(means) for rule in kept) for means in orders)
 
 
-def test_the_words_state_how_many_statements_are_inferred(made):
-    hypotheses = hypothesis_table(Evidence(made(noise=0.1), "measured"))
-    inferred = hypotheses["p"].notna().sum()
-    section = outcomes_section("anchor", "Title", hypotheses, [])
-    assert f"of the {inferred} hypotheses" in section.paragraphs[0]
+def test_stack_slenderness_by_hand(made):
+    """Common centre of gravity from Table 3.1 without the package's geometry."""
+    masses, heights = (2172, 2790, 3456), (37.2, 49.6, 62.0)
+    table = stack_slenderness(Evidence(made(), "simulated"))
+    for mass, height, stacked in zip(masses, heights, table["stacked"], strict=True):
+        centre = (2300 * 10.4 + mass * (20.8 + height / 2)) / (2300 + mass)
+        assert abs(stacked - centre / 9.2) < 1e-12
+    assert table["stacked"].round(2).tolist() == [2.66, 3.23, 3.83]
+
+
+def test_table_says_what_the_tests_show(made):
+    bare = contradictions()
+    assert len(bare) == 10
+    assert (bare["in_these_tests"] == "").all()
+    seen = contradictions(Evidence(made(), "simulated"))
+    first = seen.iloc[0]
+    assert "C42" in first["hypotheses"] and "P GF" in first["in_these_tests"]
+    tests = made()
+    ground = contradictions(Evidence(tests[tests["floor"] == "GF"], "simulated"))
+    assert "cannot be said" in ground.iloc[0]["in_these_tests"]

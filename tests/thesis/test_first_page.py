@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.report.page import render
-from rockfrag.report.part import Answer
+from rockfrag.report.part import Answer, Finding
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
@@ -42,6 +42,10 @@ def hypotheses_of(tests: pd.DataFrame) -> pd.DataFrame:
     hypotheses = hypothesis_table(Evidence(tests, "simulated"))
     c12 = hypotheses.iloc[[0]].assign(number=12, estimate=1.0)
     return pd.concat([c12, hypotheses], ignore_index=True)
+
+
+def page_of(tests: pd.DataFrame) -> list[Finding]:
+    return first_page(effects_of(tests), hypotheses_of(tests))
 
 
 @pytest.fixture(scope="module")
@@ -167,12 +171,12 @@ def test_what_was_asked_the_other_way_round_is_one_sentence_of_its_table(
 )
 def test_the_headline_is_the_hypothesis_table_s_finding(ground, words):
     tests = build(lambda o, e, floor: ground if floor == "GF" else 0.0, noise=0.02)
-    assert words in first_page(effects_of(tests), hypotheses_of(tests))[0].headline
+    assert words in page_of(tests)[0].headline
 
 
 def test_what_the_simulations_leave_open_is_called_open():
     tests = build(noise=0.4, seed=2)
-    found = first_page(effects_of(tests), hypotheses_of(tests))[0]
+    found = page_of(tests)[0]
     assert "undecided" in found.headline and "GF: undecided" in found.numbers
 
 
@@ -230,7 +234,7 @@ def test_why_is_said_only_where_the_simulations_show_it(effects, hypotheses):
 
 def test_a_study_without_the_floors_says_what_it_has(plain):
     tests = plain[plain["floor"] == "GF"].assign(floor="ground")
-    found = first_page(effects_of(tests), hypotheses_of(tests))[0]
+    found = page_of(tests)[0]
     assert "depends on the floor" in found.headline
     assert "does not have the thesis’s floors" in found.numbers
     assert "36 pairs" not in found.numbers

@@ -1,6 +1,7 @@
 """Perturbed parameters from the ideal model act through the pedestal's motion, or not at all."""
 
 import math
+import re
 
 import numpy as np
 import pandas as pd
@@ -10,6 +11,13 @@ from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Block, Stack
+from rockfrag_thesis.sections.sensitivity_analysis import (
+    FACTORS,
+    MOST_DRAWN,
+    adjusted_words,
+    perturbations,
+    sensitivity_analysis_figure,
+)
 from rockfrag_thesis.sensitivity_analysis.explain import (
     CHANGES,
     OPEN,
@@ -20,6 +28,7 @@ from rockfrag_thesis.sensitivity_analysis.explain import (
 from rockfrag_thesis.sensitivity_analysis.mass_bias import ratio_bias
 from rockfrag_thesis.sensitivity_analysis.simulated import (
     LAW_OF,
+    REFERENCE,
     Case,
     case_ratios,
     factor_cases,
@@ -172,3 +181,109 @@ def test_impossible_masses_are_refused(mass):
         ratio_bias(mass, 2, 20, counted_with=22, counted_without=22)
     with pytest.raises(InputError, match="divided by"):
         ratio_bias(1, 2, 20, counted_with=0, counted_without=22)
+
+
+def sensitivity_analysis_table(effect=0.15):
+    names = ["level", "object", "earthquake", "floor", "replicate"]
+    sides = ((0.85, 0.80, 0.75), ("T1", "T2", "T3"), list("ABCD"), ("GF", "F3", "F5"), range(3))
+    table = pd.MultiIndex.from_product(sides, names=names).to_frame(index=False)
+    shift = table["level"].map({0.85: 0.0, 0.80: effect, 0.75: 2 * effect})
+    sign = table["floor"].map({"GF": 1, "F3": -0.5, "F5": -0.5})
+    d = sign * shift + np.random.default_rng(2).normal(0, 0.02, len(table))
+    return table.assign(factor="restitution", reference=table["level"] == 0.85, ratio=np.exp(d))
+
+
+def test_sensitivity_analysis_recovers_the_effect_of_a_level_by_floor():
+    result = explain(sensitivity_analysis_table(0.15)).set_index(["level", "floor"])
+    for level, factor in ((0.80, 1), (0.75, 2)):
+        for floor, sign in (("GF", 1), ("F3", -0.5)):
+            row = result.loc[(level, floor)]
+            assert row["effect_lower"] < np.exp(sign * 0.15 * factor) < row["effect_upper"]
+    assert result.loc[(0.80, "GF"), "judgement"] == "changes P/NP"
+    assert result.loc[(0.85, "all"), "effect"] == 1.0
+
+
+def test_sensitivity_analysis_pairs_with_the_reference_and_counts_what_is_left_out():
+    table = sensitivity_analysis_table()
+    gone = (table["level"] == 0.80) & (table["earthquake"] == "A") & (table["object"] == "T1")
+    table.loc[gone, "ratio"] = np.nan
+    row = explain(table).set_index(["level", "floor"]).loc[(0.80, "all")]
+    assert (row["pairs"], row["left_out"]) == (33, 3)
+
+
+def test_sensitivity_analysis_needs_one_reference_and_positive_ratios():
+    table = sensitivity_analysis_table()
+    with pytest.raises(InputError, match="0 reference levels"):
+        explain(table.assign(reference=False))
+    with pytest.raises(InputError, match=r"row 1: ratio is 0\.0"):
+        explain(table.assign(ratio=0.0))
+    with pytest.raises(InputError, match="floor missing"):
+        explain(table.drop(columns="floor"))
+
+
+def test_where_nothing_overturns_no_level_is_judged():
+    table = sensitivity_analysis_table().assign(ratio=np.nan)
+    assert explain(table).empty
+
+
+@pytest.mark.parametrize("factor", FACTORS.values(), ids=list(FACTORS))
+def test_a_perturbation_reads_as_english_in_the_middle_of_a_sentence(factor):
+    at = factor.at("-2.5")
+    for words in (factor.title, at):
+        # a noun with its article, or in the plural
+        assert re.match(r"(the|a|neglecting) [a-z]|[a-z]+s of ", words), words
+        # commas part one perturbed parameter from the next
+        assert not re.search(r"[,:;]", words), words
+    # a level has its unit, or is a factor or a coefficient
+    assert re.search(r"−2\.5 (%|mm|cm|kg)( |$)|−2\.5°$|× −2\.5$|coefficient of −2\.5 ", at), at
+
+
+def test_perturbations_are_named_by_factor_and_level_in_the_order_of_the_figure():
+    effects = pd.DataFrame(
+        {
+            "factor": ["table_not_counted", "statue_restitution", "statue_restitution"],
+            "level": ["10", "1", "ideal"],
+            "floor": "all",
+            "ratio_lower": 0.9,
+            "ratio": 1.0,
+            "ratio_upper": 1.1,
+            "p": 0.5,
+        }
+    )
+    assert perturbations(effects)["name"].tolist() == [
+        "the object's restitution everywhere × 1",
+        "neglecting the mass of a 10 kg table",
+    ]
+
+
+def perturbed(ratios: dict[str, float], p: float = 0.04) -> pd.DataFrame:
+    """Effects of perturbations of one parameter on two floors together."""
+    rows = [
+        {"factor": "statue_restitution", "level": level, "floor": floor, "ratio": ratio}
+        for level, ratio in {REFERENCE: 1.0, **ratios}.items()
+        for floor in ("all", "cellar", "attic")
+    ]
+    table = pd.DataFrame(rows)
+    return table.assign(ratio_lower=0.97 * table["ratio"], ratio_upper=1.03 * table["ratio"], p=p)
+
+
+def test_the_rule_for_many_perturbations_is_named_and_counts_all():
+    simulated = perturbations(perturbed({"0.9": 0.9, "0.95": 0.95, "1.05": 1.0}, p=0.04))
+    words = adjusted_words(simulated)
+    assert words.startswith("2 of 3 simulated perturbations have 95 % intervals that exclude 1")
+    assert "Benjamini–Hochberg adjustment for 3 tests" in words
+    alone = perturbations(perturbed({"0.9": 0.9}, p=0.04))
+    assert "1 differs from 1" in adjusted_words(alone)
+
+
+def test_the_figure_shows_the_largest_perturbations_and_says_no_row_twice():
+    levels = {f"{0.5 + 0.02 * k:.2f}": float(np.exp(0.01 * (k - 10))) for k in range(40)}
+    figure = sensitivity_analysis_figure(perturbed(levels), ["cellar", "attic"])
+    labels = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
+    assert len(labels) == len(set(labels)) == MOST_DRAWN + 1
+    assert labels[0] == "Ideal model"
+    width, height = figure.get_size_inches()
+    assert height < 1.5 * width
+    # floors stand below the mean that they belong to
+    marks = [line for line in figure.axes[0].lines if line.get_marker() == "D"]
+    assert len(marks) == MOST_DRAWN + 1

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag import Block, Stack, simulate
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import Block, Stack, simulate
 from rockfrag_thesis.hypotheses import HYPOTHESES, Undecidable, theory_table
 from rockfrag_thesis.hypotheses.blocks import perturbed
 from rockfrag_thesis.hypotheses.evidence import THESIS_BODIES
@@ -55,15 +55,9 @@ def test_what_mechanics_settles_is_settled_and_what_holds_for_the_specimens_alon
     expected = dict.fromkeys([1, 2, 3, 4, 6, 7, 8, 10, 13, 15, 16, 20, 22, 24], "confirmed")
     expected |= dict.fromkeys([9, 11, 12, 21, 23], EXCEPTIONS) | {5: "undecided"}
     assert hypothesis_table.loc[list(expected), "outcome"].to_dict() == expected
-
-
-def test_identities_are_called_so(hypothesis_table: pd.DataFrame) -> None:
-    assert {1, 2, 20, 21, 22, 23, 24} <= set(
-        hypothesis_table.index[hypothesis_table["kind"] == "identity"]
-    )
-    assert (
-        hypothesis_table.loc[hypothesis_table["kind"] == "identity", "basis"] == "computed"
-    ).all()
+    identities = hypothesis_table[hypothesis_table["kind"] == "identity"]
+    assert {1, 2, 20, 21, 22, 23, 24} <= set(identities.index)
+    assert (identities["basis"] == "computed").all()
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,19 @@
 """A study that cannot run is refused before anything runs, in one sentence with file and key."""
 
 import copy
+import shutil
 from collections.abc import Callable
 from pathlib import Path
+from xml.etree import ElementTree
 
+import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.study.loading import load_any
 
 from .conftest import SPECIMENS, study_content, write_study
+from .running import ROOT, snakemake
 
 Change = Callable[[dict], object]
 
@@ -120,3 +124,126 @@ def test_absent_files_and_folders_are_refused(study_folder):
     for path in (study_folder / "absent.yaml", study_folder):
         with pytest.raises(InputError, match="cannot be read"):
             load_any(path)
+
+
+SENSITIVITY_ANALYSIS = {
+    "statue_restitution": [0.9],
+    "interface_restitution": [0.95],
+    "ground_restitution": [1.5],
+    "pedestal_lean_deg": [2],
+    "statue_offset_mm": [5],
+    "statue_cg_offset_mm": [2],
+    "pedestal_width_cm": [14],
+    "table_mass_kg": [10],
+    "step_percent": [8],
+    "friction": {"ground": [0.4], "interface": [0.3, 0.6]},
+    "tolerance_percent": 1,
+    "tolerance_restitution": 0.02,
+    "replicates": 1,
+}
+
+SYNTHETIC_TESTS = (
+    "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark\nsynthetic "
+    "1,T1,NP,First,GF,0.5,0.55,none,statue,1,synthetic\nsynthetic "
+    "2,T1,P,First,GF,0.45,0.5,none,statue,1,synthetic\nsynthetic "
+    "3,T1,NP,Second,GF,0.6,0.65,none,statue,1,synthetic\nsynthetic 4,T1,P,Second,GF,0.65,,right,,1,synthetic\n"
+)
+
+
+def full_study(folder: Path) -> Path:
+    """Write a study with every optional part, each as small as it can be."""
+    for name in ("building.yaml", "experiment/shaker.yaml"):
+        shutil.copy(ROOT / "config" / name, folder / Path(name).name)
+    (folder / "tests.csv").write_text(SYNTHETIC_TESTS)
+    content = study_content()
+    content["motions"]["use"] = ["motion 0", "motion 2", "motion 4"]
+    content["amplitudes"]["step_percent"] = 15
+    return write_study(
+        folder,
+        {
+            **content,
+            "building": "building.yaml",
+            "compare_with": "thesis",
+            "shaker": "shaker.yaml",
+            "measured_tests": "tests.csv",
+            "building_sensitivity": {"first_period_s": [0.5], "floors": [{"F3": 3, "F5": 6}]},
+            "sensitivity_analysis": SENSITIVITY_ANALYSIS,
+        },
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"shaker": "no.yaml"}, ["key shaker", "no.yaml"]),
+        ({"measured_tests": "no.csv"}, ["key measured_tests", "no.csv"]),
+        ({"building_sensitivity": {"periods": [1]}}, ["building_sensitivity.periods"]),
+        ({"building_sensitivity": {"floors": [{"F5": 9}]}}, ["floors[0].F5", "up to 6", "9"]),
+        ({"building_sensitivity": {"floors": [{"attic": 6}]}}, ["floors[0].attic", "GF, F3, F5"]),
+        (
+            {"sensitivity_analysis": {**SENSITIVITY_ANALYSIS, "replicates": 0}},
+            ["sensitivity_analysis.replicates"],
+        ),
+        (
+            {"sensitivity_analysis": {**SENSITIVITY_ANALYSIS, "friction": {"ground": [0.4]}}},
+            ["sensitivity_analysis.friction", "interface"],
+        ),
+        ({"building": None}, ["building"]),
+        (
+            {"bodies": {**study_content()["bodies"], "use": ["T1", "T2"]}},
+            ["key sensitivity_analysis", "with and without"],
+        ),
+    ],
+)
+def test_a_wrong_optional_part_is_named(study_folder: Path, change: dict, words: list[str]):
+    import yaml
+
+    path = full_study(study_folder)
+    content = {**yaml.safe_load(path.read_text()), **change}
+    with pytest.raises(InputError) as caught:
+        load_any(write_study(study_folder, {k: v for k, v in content.items() if v is not None}))
+    assert "\n" not in str(caught.value)
+    for word in words:
+        assert word in str(caught.value)
+
+
+@pytest.mark.slow
+def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
+    full_study(study_folder)
+    done = snakemake(study_folder, "--cores", "2")
+    assert done.returncode == 0, done.stderr[-3000:]
+    results = study_folder / "results" / "tiny"
+
+    tests = pd.read_csv(results / "tests.csv")
+    shaker = pd.read_csv(results / "shaker.csv").set_index("motion")["limit_g"]
+    limited = tests[tests["definition"] == "step_protocol_shaker"]
+    assert len(limited) == 3 * 3 * 4
+    assert (limited["lower_g"] <= limited["motion"].map(shaker) * (1 + 1e-9)).all()
+
+    beside = pd.read_csv(results / "measured" / "beside.csv")
+    assert len(beside) == 4
+    assert beside["ratio"].notna().sum() == 3
+    hypotheses = pd.read_parquet(results / "measured" / "hypotheses.parquet")
+    about_data = hypotheses[hypotheses["kind"] != "identity"]
+    assert (about_data["outcome"] == "undecided").all()
+
+    margins = pd.read_csv(results / "building_sensitivity" / "margins.csv")
+    assert set(margins["label"]) == {"reference", "first period 0.5 s", "levels F3 3, F5 6"}
+    effects = pd.read_csv(results / "sensitivity_analysis" / "effects.csv")
+    single = {name for name, levels in SENSITIVITY_ANALYSIS.items() if isinstance(levels, list)}
+    single.remove("table_mass_kg")
+    # restitutions by every law that they may follow, and the table's mass in two ways
+    laws = {"statue_restitution_ratio", "interface_restitution_ratio", "ground_restitution_ratio"}
+    laws.add("ground_restitution_couple")
+    missed = {"pedestal_not_counted", "table_not_counted", "tolerances"}
+    assert set(effects["factor"]) == single | laws | missed
+
+    nrml = ElementTree.parse(results / "exports" / "fragility_pga.xml").getroot()
+    assert nrml.tag.endswith("nrml")
+    choice = pd.read_csv(results / "measure_selection.csv")
+    assert choice.groupby("configuration")["recommended"].sum().eq(1).all()
+
+    page = (results / "report.html").read_text()
+    for anchor in ("measures", "sensitivity_analysis", "shaker", "sensitivity", "measured"):
+        assert f'id="{anchor}"' in page
+    assert 'src="http' not in page

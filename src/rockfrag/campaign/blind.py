@@ -54,11 +54,7 @@ class BlindAnswer:
 def blind_answer(
     measure: Floats, measured: Bools, simulated: Bools, groups: np.ndarray, seed: int
 ) -> BlindAnswer:
-    """Hold the ways in which an object may stand against what was measured; no way is chosen by it.
-
-    ``measure``, ``measured`` and ``groups`` (input motion from 0 up) are of each test, shape (tests,), and
-    ``simulated`` has the shape (ways, tests). Outcomes that do not rise with the measure are refused.
-    """
+    """Hold ways to stand, ``simulated`` (ways, tests), against what was measured; no way is chosen by it."""
     table = fragility_beside(
         measure, measured, {"blind": simulated.mean(axis=0)}, groups,
         level=LEVEL, replicates=REPLICATES, seed=seed,

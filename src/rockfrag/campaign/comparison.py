@@ -211,11 +211,7 @@ def judged_tests(tests: pd.DataFrame, validated: Validated, measured: Bools) -> 
 
 
 def majority_of_repeats(settings: NDArray[Any], measured: Bools) -> Bools | None:
-    """Outcome that most tests at the same setting had, shape (tests,); None where no setting is repeated.
-
-    A model whose answer follows from the setting alone gives one outcome for all repeats, so it is right in no
-    more tests than the majority. Tests whose setting is not repeated count as right.
-    """
+    """Outcome that most tests at the same setting had, the best that a model can say; None without repeats."""
     code = pd.factorize(settings)[0]
     tests = np.bincount(code)
     if tests.max() < 2:

@@ -1,7 +1,7 @@
 """Every trial × every test simulated: does the object overturn?"""
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,7 @@ from rockfrag.rocking.ensemble import LightBodies, overturns
 from rockfrag.rocking.inputs import checked_threads
 from rockfrag.system.system import System
 
-BATCH = 50
-"""Motions simulated between two reports of progress."""
+BATCH = 50  # motions whose outcomes are in memory at a time
 
 
 def shaken(systems: Sequence[System], motions: Sequence[Motion], threads: int | None) -> Outcomes:
@@ -26,12 +25,9 @@ def shaken(systems: Sequence[System], motions: Sequence[Motion], threads: int | 
 
 
 def simulate_tests(
-    systems: Sequence[System],
-    motions: Sequence[Motion],
-    threads: int | None = None,
-    done: Callable[[int], None] = lambda count: None,
+    systems: Sequence[System], motions: Sequence[Motion], threads: int | None = None
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Whether a body overturns, and whether any rocks, (trials, tests); ``done`` is told the tests done."""
+    """Whether a body overturns, and whether any rocks, shape (trials, tests)."""
     overturned, rocked = np.zeros((2, len(systems), len(motions)), dtype=bool)
     for first in range(0, len(motions), BATCH):
         batch = motions[first : first + BATCH]
@@ -41,5 +37,4 @@ def simulate_tests(
             result = shaken(systems, batch, threads)
         overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
         rocked[:, first : first + len(batch)] = (result.peak_rotation[:, :, 0] > 0).any(axis=-1)
-        done(first + len(batch))
     return overturned, rocked

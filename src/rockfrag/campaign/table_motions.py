@@ -2,7 +2,7 @@
 
 import os
 import zipfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -46,24 +46,22 @@ def table_motions(
     dt: float | None = None,
     channel: str | None = None,
     conditioning: Sequence[Mapping[str, Any]] = (),
-    done: Callable[[int], None] = lambda count: None,
 ) -> list[Motion]:
     """Read and condition the measured motion of the table in each test, in the order of the tests [m/s²].
 
     ``source`` is an ``.npz`` archive with one array per motion, or a pattern of file names such as
     ``motions/Test{motion}.txt``; ``names`` are keys of the archive, or what to put for ``{motion}``. ``unit``,
     ``dt`` [s] and ``channel`` are for files that do not state them; ``conditioning`` has steps as in
-    :func:`rockfrag.motions.process`; ``done`` is called with the number of motions done after each.
+    :func:`rockfrag.motions.process`.
     """
     found = []
-    for count, motion in enumerate(_read(str(source), list(names), unit, dt, channel), start=1):
+    for motion in _read(str(source), list(names), unit, dt, channel):
         if motion.pga > LARGEST_PEAK:
             raise InputError(
                 f"{source}: motion {motion.name} peaks at {motion.pga / GRAVITY:.3g} g, which no shake "
                 "table reaches; it may be in volts or counts, or another column: check unit and channel."
             )
         found.append(process(motion, conditioning))
-        done(count)
     return found
 
 

@@ -100,11 +100,7 @@ def refined(values: Array, times: int) -> Array:
 def write_rocking(
     into: Outcomes, rows: Sequence[int], found: NDArray[np.void], peaks: str = "peak"
 ) -> None:
-    """Write what the kernels of pure rocking tell of cases into outcomes of one or two bodies.
-
-    ``found`` has the ``OUTCOME`` (or ``SUMMARY``, whose ``peaks`` are its ratios) of each case of the systems in
-    these rows, which all have as many bodies.
-    """
+    """Write what the kernels tell (OUTCOME, or SUMMARY with ratios as ``peaks``) of systems of as many bodies."""
     count, place = into.counts[rows[0]], np.asarray(rows, dtype=np.intp)
     # a lone body is the kernels' block 2
     fell = np.where(found["fallen"] > 0, found["fallen"] - (2 - count), 0)

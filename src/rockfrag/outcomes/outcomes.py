@@ -268,11 +268,7 @@ def columns(table: Table | None = None) -> tuple[Column, ...]:
 def empty_outcomes(
     names: Sequence[Sequence[str]], scales: Floats, engines: Sequence[str] = ()
 ) -> Outcomes:
-    """Return outcomes in which no engine has answered yet, for it to write into.
-
-    ``names`` are of the bodies of each system, from below; factors on the motions have the shape (motions,
-    scales).
-    """
+    """Return outcomes for an engine to write into, of systems with bodies so named and (motions, scales)."""
     shape = (len(names), *scales.shape)
     most = max((len(each) for each in names), default=0)
     arrays = {

@@ -20,7 +20,6 @@ from rockfrag.errors import InputError
 from rockfrag.input_checks import real_array
 from rockfrag.rocking.simulation import simulate
 from rockfrag.system.blocks import Block
-from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -41,9 +40,9 @@ class RestitutionFit:
     computed: float  # what conservation of momentum gives for this block, 1 - 1.5 sin²α if it is uniform [-]
 
 
-def peak_after(block: Block, speed: float, pivot: int = 1, g: float = GRAVITY) -> float:
+def peak_after(block: Block, speed: float, pivot: int = 1) -> float:
     """Peak rotation [rad] of a block that leaves its base with ``speed`` [rad/s]; NaN if it would go over."""
-    alpha, x = block.critical_angle(pivot), speed**2 / block.frequency(pivot, g) ** 2
+    alpha, x = block.critical_angle(pivot), speed**2 / block.frequency(pivot) ** 2
     sine, cosine = math.sin(alpha), math.cos(alpha)
     gain = x * cosine + x**2 / 4  # sin²α - sin²(α - θ)
     if cosine + x / 2 >= 1 or gain >= sine**2:
@@ -52,22 +51,20 @@ def peak_after(block: Block, speed: float, pivot: int = 1, g: float = GRAVITY) -
     return math.asin(x * sine / 2 + cosine * gain / (sine + math.sqrt(sine**2 - gain)))
 
 
-def speed_before(block: Block, peak: float, pivot: int = 1, g: float = GRAVITY) -> float:
+def speed_before(block: Block, peak: float, pivot: int = 1) -> float:
     """Angular velocity [rad/s] with which a block comes down from rest at a rotation [rad]."""
-    alpha, p = block.critical_angle(pivot), block.frequency(pivot, g)
+    alpha, p = block.critical_angle(pivot), block.frequency(pivot)
     # cos(α - θ) - cos α as a product, which keeps its digits for small rotations
     return p * math.sqrt(4 * math.sin(alpha - peak / 2) * math.sin(peak / 2))
 
 
-def quarter_period(
-    block: Block, peak: float, pivot: int = 1, *, linear: bool = False, g: float = GRAVITY
-) -> float:
+def quarter_period(block: Block, peak: float, pivot: int = 1, *, linear: bool = False) -> float:
     """Time from rest at a rotation ``peak`` [rad] to the impact [s] (Housner, 1963, if linear).
 
     The nonlinear one is the integral of dθ/θ' with the energy of eq. 2.4, by Gauss-Legendre after
     θ = θ0 (1 - u²), which takes the singularity away.
     """
-    alpha, p = block.critical_angle(pivot), block.frequency(pivot, g)
+    alpha, p = block.critical_angle(pivot), block.frequency(pivot)
     if linear:
         phi = peak / alpha
         return math.atanh(math.sqrt(phi * (2 - phi))) / p
@@ -82,7 +79,6 @@ def restitution_from_peaks(
     peaks: ArrayLike,
     *,
     confidence: float = 0.95,
-    g: float = GRAVITY,
 ) -> RestitutionFit:
     """Fit e to successive peak rotations, by least squares on the rotations.
 
@@ -91,8 +87,8 @@ def restitution_from_peaks(
     block, peaks
         Peak rotations of the block in their order [rad], shape (n,), n ≥ 2; alternating in sign, or magnitudes.
         They alternate between the corners; the first is on that of the first peak's sign.
-    confidence, g
-        Level of the interval, and acceleration of gravity [m/s²].
+    confidence
+        Level of the interval.
 
     Returns
     -------
@@ -109,17 +105,15 @@ def restitution_from_peaks(
 
     def model(parameters: Floats) -> Floats:
         first, e = parameters
-        speed = speed_before(block, first, pivots[0], g)
+        speed = speed_before(block, first, pivots[0])
         found = [first]
         for pivot in pivots[1:]:
             speed *= e
-            found.append(peak_after(block, speed, pivot, g))
+            found.append(peak_after(block, speed, pivot))
         return np.array(found)
 
     # the ratio of the first and the last speed is already an estimate
-    speeds = [
-        speed_before(block, peak, pivot, g) for peak, pivot in zip(values, pivots, strict=True)
-    ]
+    speeds = [speed_before(block, peak, pivot) for peak, pivot in zip(values, pivots, strict=True)]
     start = (speeds[-1] / speeds[0]) ** (1 / (len(values) - 1))
     ceiling = min(block.critical_angle(pivot) for pivot in pivots)
     fit = _least_squares(
@@ -136,7 +130,6 @@ def restitution_from_impacts(
     *,
     first_pivot: int = 1,
     confidence: float = 0.95,
-    g: float = GRAVITY,
 ) -> RestitutionFit:
     """Fit e to the times of successive impacts, by least squares on the times.
 
@@ -146,8 +139,8 @@ def restitution_from_impacts(
         Times of successive impacts of the block [s], shape (n,), n ≥ 3, rising; none may be left out.
     first_pivot
         Corner the block rocks on between the first two.
-    confidence, g
-        As for :func:`restitution_from_peaks`.
+    confidence
+        Level of the interval.
 
     Returns
     -------
@@ -163,10 +156,10 @@ def restitution_from_impacts(
     pivots = [first_pivot * (-1) ** k for k in range(len(intervals))]
 
     def flight(speed: float, pivot: int) -> float:
-        peak = peak_after(block, speed, pivot, g)
+        peak = peak_after(block, speed, pivot)
         if math.isnan(peak):
             return math.nan
-        return 2 * quarter_period(block, peak, pivot, g=g)
+        return 2 * quarter_period(block, peak, pivot)
 
     def model(parameters: Floats) -> Floats:
         begin, speed, e = parameters
@@ -176,9 +169,9 @@ def restitution_from_impacts(
             speed *= e
         return np.array(found)
 
-    largest = min(
-        speed_before(block, block.critical_angle(pivot), pivot, g) for pivot in (+1, -1)
-    ) * (1 - 1e-12)
+    largest = min(speed_before(block, block.critical_angle(pivot), pivot) for pivot in (+1, -1)) * (
+        1 - 1e-12
+    )
 
     def speed_of(interval: float, pivot: int) -> float:
         if flight(largest, pivot) <= interval:
@@ -199,7 +192,7 @@ def restitution_from_impacts(
 
 
 def restitution_from_history(
-    block: Block, time: ArrayLike, theta: ArrayLike, *, confidence: float = 0.95, g: float = GRAVITY
+    block: Block, time: ArrayLike, theta: ArrayLike, *, confidence: float = 0.95
 ) -> RestitutionFit:
     """Fit e to a sampled history of free rocking, by least squares on the rotations.
 
@@ -211,8 +204,8 @@ def restitution_from_history(
     block, time, theta
         Times of the samples [s], evenly spaced, none before the release, and clockwise rotations of the block
         [rad], shape (n,).
-    confidence, g
-        As for :func:`restitution_from_peaks`.
+    confidence
+        Level of the interval.
 
     Returns
     -------
@@ -230,14 +223,12 @@ def restitution_from_history(
             f"theta: the history rises {len(peaks)} time(s) above its noise; restitution needs at "
             "least two impacts between three peaks."
         )
-    guess = restitution_from_peaks(block, peaks, g=g).restitution
+    guess = restitution_from_peaks(block, peaks).restitution
     quiet = np.zeros(t.size)
 
     def model(parameters: Floats) -> Floats:
         theta0, omega0, e = parameters
-        response = simulate(
-            block, quiet, dt, theta0=theta0, omega0=omega0, restitution=float(e), g=g
-        )
+        response = simulate(block, quiet, dt, theta0=theta0, omega0=omega0, restitution=float(e))
         return response.theta[: t.size, 0]
 
     slope = float(np.polyfit(t[:5] - t[0], values[:5], 1)[0])
@@ -248,7 +239,7 @@ def restitution_from_history(
         lambda q: model(q) - values,
         [begin, slope, min(guess, 0.999)],
         ([-top, -np.inf, 1e-3], [top, np.inf, 1.0]),
-        scale=[top, top * block.frequency(g=g), 1.0],
+        scale=[top, top * block.frequency(), 1.0],
     )
     return _summary(block, fit, 2, len(peaks) - 1, confidence)
 

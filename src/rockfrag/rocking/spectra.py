@@ -49,11 +49,7 @@ class RockingSpectrum:
 
 
 def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
-    """Return the uniform block of critical angle α [rad] and apparent period 2π/p [s].
-
-    Its size follows from p = √(3g/4R) (Housner, 1963); its density is 1000 kg/m³ for a depth of 1 m, which
-    matters to nothing.
-    """
+    """Return the uniform block of critical angle α [rad] and period 2π/p [s], p = √(3g/4R) (Housner, 1963)."""
     if not 0 < alpha < math.pi / 2:
         raise InputError(f"alpha: a critical angle lies between 0 and π/2 rad, got {alpha}.")
     if not (math.isfinite(period) and period > 0):
@@ -73,8 +69,6 @@ def rocking_spectrum(
     restitution: Restitution = None,
     friction: FrictionInput | None = None,
     vertical: MotionLike | None = None,
-    g: float = GRAVITY,
-    threads: int | None = None,
 ) -> RockingSpectrum:
     """Rocking spectrum of a motion, for free-standing uniform blocks.
 
@@ -92,10 +86,6 @@ def rocking_spectrum(
         The same friction for all, as in :func:`rockfrag.rocking.simulate`; None: nothing slides.
     vertical
         Vertical acceleration, upwards [m/s²], sampled as the motion.
-    g
-        Acceleration of gravity [m/s²].
-    threads
-        Threads to use; all cores if None.  The spectrum does not depend on it.
 
     Returns
     -------
@@ -122,19 +112,17 @@ def rocking_spectrum(
     angle = np.atleast_1d(real_array("alpha", alpha, "rad"))
     if period.ndim != 1 or angle.ndim != 1 or period.size == 0 or angle.size == 0:
         raise InputError("rocking spectrum: give at least one period and one angle, in a row each.")
-    blocks = [uniform_block(float(a), float(T), g) for a in angle for T in period]
+    blocks = [uniform_block(float(a), float(T)) for a in angle for T in period]
     found = overturns(
         blocks,
         motion,
         restitution=[restitution] * len(blocks),
         friction=None if friction is None else [friction] * len(blocks),
         vertical=vertical,
-        g=g,
-        threads=threads,
     )
     shape = (angle.size, period.size)
     rotation = found.of_top("peak_rotation").reshape(shape)
-    p = np.array([fastest_frequency(block, g) for block in blocks]).reshape(shape)
+    p = np.array([fastest_frequency(block, GRAVITY) for block in blocks]).reshape(shape)
     velocity = np.where(
         np.isinf(rotation), np.inf, found.of_top("peak_velocity").reshape(shape) / p
     )

@@ -10,7 +10,6 @@ from rockfrag.errors import InputError
 from rockfrag.keywords import named_keywords
 from rockfrag.motions.rotation import common_time, rotate
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.thresholds import find_thresholds
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Body
@@ -18,6 +17,8 @@ from rockfrag.units import GRAVITY
 
 DIRECTIONS_DEG = tuple(range(0, 360, 10))
 """Directions that are tried [degrees]: all around, for opposite ones are not alike to a body that leans."""
+
+TOLERANCE, NARROWEST = 0.005, 0.05  # of thresholds, and narrowest resurrection found, in scale
 
 
 @dataclass(frozen=True)
@@ -44,9 +45,6 @@ def worst_direction(
     highest: float,
     *,
     directions_deg: Sequence[float] = DIRECTIONS_DEG,
-    tolerance: float = 0.005,
-    narrowest_resurrection: float = 0.05,
-    restitution: Restitution | None = None,
 ) -> WorstDirection:
     """Find the direction in which two components overturn a body that rocks in one plane.
 
@@ -64,8 +62,6 @@ def worst_direction(
         Largest scale that is tried [-].
     directions_deg
         Angles from the first component towards the second [degrees].
-    tolerance, narrowest_resurrection, restitution
-        As of :func:`rockfrag.rocking.thresholds.find_thresholds`.
 
     Returns
     -------
@@ -80,15 +76,9 @@ def worst_direction(
         raise InputError("worst_direction: directions_deg is empty; give at least one angle.")
     common, other = common_time([first, second])
     motions = [rotate(common, other, angle) for angle in directions_deg]
-    found = find_thresholds(
-        body,
-        [motion.acceleration for motion in motions],
-        common.dt,
-        highest,
-        tolerance=tolerance,
-        narrowest_resurrection=narrowest_resurrection,
-        restitution=None if restitution is None else [restitution],
-    ).table
+    accelerations = [motion.acceleration for motion in motions]
+    search = body, accelerations, common.dt, highest
+    found = find_thresholds(*search, tolerance=TOLERANCE, narrowest_resurrection=NARROWEST).table
     table = pd.DataFrame(
         {
             "angle_deg": [float(angle) for angle in directions_deg],

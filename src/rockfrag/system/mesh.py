@@ -73,11 +73,6 @@ class Shape:
         return float(np.ptp(self.points[:, 2]))
 
     @property
-    def density(self) -> float:
-        """Mass over volume [kg/m³]."""
-        return self.mass / self.volume
-
-    @property
     def outline(self) -> Array:
         """Convex outline seen from above, relative to the centre of gravity, in order [m], shape (n, 2)."""
         seen = self.points[:, :2]

@@ -121,11 +121,11 @@ class System:
             self, contacts=tuple(replace(contact, friction=None) for contact in self.contacts)
         )
 
-    def in_plane(self, direction_deg: float = 0.0) -> "System":
-        """Return the planar system that moves in the vertical plane of a direction [degrees]."""
-        if self.planar and not direction_deg % 360:
+    def in_plane(self) -> "System":
+        """Return the planar system that moves in the vertical plane of x."""
+        if self.planar:
             return self
-        return replace(self, bodies=tuple(body.seen_along(direction_deg) for body in self.bodies))
+        return replace(self, bodies=tuple(body.seen_along() for body in self.bodies))
 
     @cached_property
     def shapes(self) -> tuple[geometry.Shape, ...]:

@@ -34,10 +34,7 @@ MOST_AHEAD = 32  # samples of the ground that are looked at, at most
 
 
 class Ahead(NamedTuple):
-    """The ground from an instant, ``tau`` after sample ``k``: factor × samples [m/s²], zero after ``last``.
-
-    ``vertical`` are samples of its upward acceleration over gravity, for the same factor, or none.
-    """
+    """The ground from ``tau`` after sample ``k`` [m/s²], zero after ``last``; ``vertical`` is over gravity."""
 
     samples: NDArray[np.float64]
     vertical: NDArray[np.float64]

@@ -40,11 +40,7 @@ def at_rest(state, ground, gravity):
 
 @kernel
 def rest_interval(body, scratch):
-    """Ground accelerations [m/s²] between which the body at rest stays at rest; ``scratch`` is a STATE.
-
-    Every criterion of rest is linear in the acceleration (Psycharis, 1990), and homogeneous in it and
-    gravity: where the ground moves vertically too, both limits grow as gravity does.
-    """
+    """Ground accelerations between which a body rests (Psycharis, 1990) [m/s²]; they grow as gravity does."""
     low = -math.inf
     high = math.inf
     for contact in (GROUND, INTERFACE):

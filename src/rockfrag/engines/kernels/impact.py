@@ -271,11 +271,7 @@ def mass_matrix(two, cosine, sine):
 
 @inlined_kernel
 def ground_impact(before, after, product, turn, omega1, omega2):
-    """Velocities after the ground closes (Psycharis, 1990): both momenta about the new pivots.
-
-    ``before`` and ``after`` are constants of the contact states (``stack_constants.TWO``), ``product`` is
-    ``ground`` of ``stack_constants.IMPACT``; ``turn``: cosine and sine of θ2 - θ1.
-    """
+    """Velocities after the ground closes (Psycharis, 1990): both momenta about the new pivots."""
     _, old12, m22, _ = mass_matrix(before, turn[0], turn[1])
     m11, m12, _, _ = mass_matrix(after, turn[0], turn[1])
     l1 = product * omega1 + m12 * omega2

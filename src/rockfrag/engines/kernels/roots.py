@@ -210,10 +210,7 @@ def _lowest_point(q, start, end):
 
 @kernel
 def graze(gap, rates):
-    """Time at which a lone block that rises and falls again within a step touches; NEVER if it stays clear.
-
-    ``gap`` is ψ less the angle of impact, negative while the block is up, and ``rates`` are those of ψ.
-    """
+    """Time at which a lone block that rises and falls again touches, NEVER if not; ``gap`` is ψ less its angle."""
     most = (
         gap
         + max(0.0, rates[0])

@@ -215,11 +215,7 @@ def quick_sine_cosine(x):
 
 @inlined_kernel
 def pulled(gravity, now, before):
-    """Coefficient of gravity × a series, whose coefficients of this order and of the one before are given.
-
-    ``gravity``: at the beginning, what it grows by, and whether it changes at all; where it does not, nothing
-    is computed that would add zero.
-    """
+    """Coefficient of gravity (now, growth, whether it varies) × a series, of which two coefficients are given."""
     g, lift, varies = gravity
     return fma(lift, before, g * now) if varies else g * now
 

@@ -128,11 +128,7 @@ def _outcome(p, w, ah, av, force, motion, part, before):
 
 @kernel
 def _shut_weak(p, w, ah, av, closing):
-    """Close the ends that part so slowly after an impact that they would only chatter; whether there are any.
-
-    Where contact events accumulate all that part slowly are closed, and all that slide slowly stick: what pulls
-    depends on the sign of a slip that is as good as none.
-    """
+    """Close the ends that part too slowly after an impact, in a crowd whatever pulls; whether there are any."""
     crowd = w.met > CROWD
     weak = False
     for k in range(p.count):

@@ -84,10 +84,7 @@ def _all_touch(p, w, closed):
 
 @kernel
 def settle(p, w, ah, av, exclude):
-    """Find the mode in which the touching ends go on; False if none is consistent.
-
-    ``exclude``: the mode before the contact event is known to fail.
-    """
+    """Find the mode in which touching ends go on, not the old one on ``exclude``; False if there is none."""
     for k in range(p.count):
         w.limit[k] = p.static[k]
         for end in range(2):

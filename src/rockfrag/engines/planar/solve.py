@@ -65,10 +65,7 @@ def end_of(p, w, q, k, end, kind):
 
 @inlined_kernel
 def rate(p, q, v, k, x, y, dx, dy):
-    """Velocity of body k relative to what is below it, at (x, y) along (dx, dy) [m/s].
-
-    With accelerations for ``v`` the part of the relative acceleration that is linear in them.
-    """
+    """Velocity of body k relative to what is below at (x, y) along (dx, dy) [m/s], or of accelerations."""
     found = dx * (v[3 * k] + v[3 * k + 2] * (y - q[3 * k + 1]))
     found += dy * (v[3 * k + 1] - v[3 * k + 2] * (x - q[3 * k]))
     if k > 0:
@@ -434,11 +431,7 @@ def _solve_upper(p, w, q, v, ah, av):
 
 @kernel
 def eliminate(p, w, m, standing):
-    """Solve m equations with right-hand sides in ``w.right``, in place; False if they are singular.
-
-    An interface shares bodies with its neighbours alone: what is further than two from the diagonal is zero.
-    ``w.upto`` says where the equations of each interface end.
-    """
+    """Solve m banded equations in place, those of each interface up to ``w.upto``; False if singular."""
     a, right = w.matrix, w.right
     k = standing
     for i in range(m):

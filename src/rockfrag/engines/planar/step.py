@@ -109,11 +109,7 @@ def take_step(p, w, stretch, energy_balance):
 
 @kernel
 def step_error(p, w, h):
-    """Error of the velocities of the step just taken, by the pair's own estimate, in units of √(g b) [-].
-
-    It is large where a contact that slides comes near the configuration in which its normal force is infinite
-    (``docs/contact.md``, "Painlevé's cases").
-    """
+    """Error of a step's velocities by the pair's own estimate over √(g b) [-]; large in Painlevé's cases."""
     worst = 0.0
     for d in range(3 * p.count):
         off = 71.0 / 57600.0 * w.ka[d, 0] - 71.0 / 16695.0 * w.ka[d, 2] + 71.0 / 1920.0 * w.ka[d, 3]

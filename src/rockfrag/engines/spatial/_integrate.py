@@ -447,11 +447,7 @@ def note_turn(y, before, out):
 
 @kernel
 def fall_is_certain(body, y, peaks, scale, g):
-    """Whether the body leans so far and turns on so that no later acceleration of the ground brings it back.
-
-    It does if its centre of mass, over the base's furthest point, leans further than the steepest effective
-    gravity to come.
-    """
+    """Whether the body leans further over its furthest point than the steepest effective gravity to come."""
     rows = algebra.rotation(y)
     up = rows[2]
     sine = algebra.norm(up[0], up[1])

@@ -396,10 +396,7 @@ def insist(body, what, s):
 
 @kernel
 def jam(body, y, s):
-    """Let all that is closed stick, without a look at the cones, until one opens or another one lands.
-
-    No finite forces obey Coulomb's law here (Painlevé's paradox); what sticks does no work.
-    """
+    """Let all that is closed stick without a look at the cones (Painlevé), until one opens or one lands."""
     for i in range(s.count):
         s.slides[i] = forces.STICKS
     s.jammed = 1

@@ -150,11 +150,7 @@ def _advance(lane, upward):
 
 @entry_kernel
 def integrate_blocks(ensemble, motions, worker, outcomes):
-    """Integrate the cases of an ensemble of lone blocks until none is left; number of steps of lanes, in a tuple.
-
-    The ensemble's ``bodies`` are PIVOTs, right and left, and its ``factors`` are over g.  Each thread has a worker
-    of its own: what two threads wrote side by side would cost them time.
-    """
+    """Integrate an ensemble of lone blocks, factors over g, a worker a thread; steps of lanes, in a tuple."""
     lane, tallies = worker.lane, worker.tallies
     upward = motions.vertical.size > 0
     busy = 0

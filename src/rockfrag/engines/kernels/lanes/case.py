@@ -150,11 +150,7 @@ def _first_outside(motions, k, last, low, high):
 
 @inlined_kernel
 def next_samples(lane, factor, lanes, motions):
-    """Give the lanes that have reached the end of their sample the next one; the bits of those that must stop.
-
-    A lane stops for a contact event, and at the end of its motion and after it.  ``factor`` is the row of factors
-    on the samples.
-    """
+    """Give lanes at the end of a sample the next one; bits of those that stop, for an event or an end."""
     samples, vertical = motions.samples, motions.vertical
     stops = 0
     for i in range(lanes):

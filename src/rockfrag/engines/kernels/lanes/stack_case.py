@@ -278,11 +278,7 @@ def contact_event_of_one(i, case, worker, ensemble, motions, g):
 
 @kernel
 def find_contact_events_of_two(stops, worker):
-    """Find the contact events of lanes of two rotations, before any case goes through one.
-
-    Each takes a long chain of arithmetic, and a processor works on several at once if nothing comes between them.
-    Lanes of one rotation have too few contact events in a pass to gain by it.
-    """
+    """Find contact events of lanes of two rotations before any goes through one (``block._find_impacts``)."""
     lane = worker.two
     while stops != 0:
         i = lowest_bit(stops)
