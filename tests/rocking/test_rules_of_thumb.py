@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from rockfrag import Block, Stack
 from rockfrag.motions import half_sine, scale_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import Block, Stack
 from rockfrag.rocking.rules_of_thumb import RULES, asce_43, bias, predicted, static, three_models
 
 COLUMN = Block(0.6, 3.0, 2700.0)

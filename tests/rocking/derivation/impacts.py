@@ -3,7 +3,7 @@
 import numpy as np
 from numpy import cos, sin
 
-from .systems import Equation, System, impact_map, random_systems
+from .systems import Equation, System, impact_map, misprinted, random_systems
 
 Array = np.ndarray
 
@@ -207,24 +207,17 @@ def closing_sign(s: System) -> Array:
     return np.sign(corner_speed - under)
 
 
-def misprinted(number, case, old, new, systems) -> Equation:
-    """An equation that holds in another form than the printed one."""
-    return Equation(
-        number, lambda s: case(s, True), truth(old, new), lambda s: case(s, False), systems=systems
-    )
-
-
 EQUATIONS = [
-    misprinted("2.76", case_276, (1, 1), (-1, 1), ground_systems),
+    misprinted("2.76", case_276, truth((1, 1), (-1, 1)), systems=ground_systems),
     Equation("2.77", lambda s: np.sign(s.w2 - s.w1), closing_sign, systems=interface_systems),
-    misprinted("2.78", case_278, (1, 1), (1, -1), interface_systems),
-    misprinted("2.79", case_279, (1, 1), (1, 0), interface_systems),
-    misprinted("2.80", case_280, (1, -1), (-1, -1), ground_systems),
-    misprinted("2.81", case_281, (1, -1), (1, 1), interface_systems),
-    misprinted("2.82", case_282, (1, -1), (1, 0), interface_systems),
-    misprinted("2.83", case_283, (1, 0), (-1, -1), glued_at_rest),
-    misprinted("2.84", case_284, (1, 0), (-1, 0), glued_at_rest),
-    misprinted("2.85", case_285, (0, 1), (-1, -1), four_a),
+    misprinted("2.78", case_278, truth((1, 1), (1, -1)), systems=interface_systems),
+    misprinted("2.79", case_279, truth((1, 1), (1, 0)), systems=interface_systems),
+    misprinted("2.80", case_280, truth((1, -1), (-1, -1)), systems=ground_systems),
+    misprinted("2.81", case_281, truth((1, -1), (1, 1)), systems=interface_systems),
+    misprinted("2.82", case_282, truth((1, -1), (1, 0)), systems=interface_systems),
+    misprinted("2.83", case_283, truth((1, 0), (-1, -1)), systems=glued_at_rest),
+    misprinted("2.84", case_284, truth((1, 0), (-1, 0)), systems=glued_at_rest),
+    misprinted("2.85", case_285, truth((0, 1), (-1, -1)), systems=four_a),
     Equation(
         "2.86",
         lambda s: np.array([0 * s.w2, (s.io2 - 2 * s.m2 * s.b2**2) / s.io2 * s.w2]),

@@ -4,7 +4,7 @@ import numpy as np
 from numpy import cos, sign, sin
 
 from .single_block import standing_pivot
-from .systems import Equation, System, random_systems
+from .systems import Equation, Quantity, System, by_sign, random_systems
 
 Array = np.ndarray
 
@@ -13,13 +13,9 @@ def rest(s: System) -> System:
     return s.with_(th1=0.0, th2=0.0, w1=0.0, w2=0.0, q1=0.0, q2=0.0)
 
 
-def rocking_mode(opposite: int):
+def rocking_mode(opposite: int) -> Quantity:
     """Both equations of pattern 1 (``opposite`` = 1) or 2 (-1) with the pivot of block 1 by S_θ1."""
-
-    def truth(s: System) -> Array:
-        return np.where(s.th1 > 0, s.moments(1, opposite), s.moments(-1, -opposite))
-
-    return truth
+    return by_sign(lambda s, side: s.moments(side, side * opposite))
 
 
 def gamma_1(s: System, side: Array | int) -> Array:  # 2.36, 2.41, 2.44
@@ -107,12 +103,12 @@ def whole(s: System, side: Array | int) -> Array:  # 2.55; 2.53 and 2.54
     )
 
 
-def glued_truth(side: int):
-    return lambda s: s.rigidly_joined().moments(side, 1).sum(axis=0)
+def glued(s: System, side: int) -> Array:
+    return s.rigidly_joined().moments(side, 1).sum(axis=0)
 
 
-def standing_truth(side: int):
-    return lambda s: s.standing().moments(1, side)[1]
+def upper_alone(s: System, side: int) -> Array:
+    return s.standing().moments(1, side)[1]
 
 
 def speed_squared(s: System, cross: float) -> Array:  # 2.33
@@ -157,13 +153,8 @@ def linear_2(s: System, reach: Array, mass: Array) -> Array:  # 2.62
     return linear(s, side, (s.io1 + s.m2 * reach, m12, s.xi_), -side * mass * s.b2 * s.g)
 
 
-def linear_truth(opposite: int):
-    def truth(s: System) -> Array:
-        return np.where(
-            s.th1 > 0, s.get("linear_motion", 1, opposite), s.get("linear_motion", -1, -opposite)
-        )
-
-    return truth
+def linear_truth(opposite: int) -> Quantity:
+    return by_sign(lambda s, side: s.get("linear_motion", side, side * opposite))
 
 
 def linear_3(s: System, half_width: Array) -> Array:  # 2.64
@@ -175,16 +166,12 @@ def linear_3(s: System, half_width: Array) -> Array:  # 2.64
     )
 
 
-def linear_3_truth(s: System) -> Array:
-    s = s.rigidly_joined()
-    return np.where(
-        s.th1 > 0, s.get("linear_motion", 1, 1).sum(0), s.get("linear_motion", -1, 1).sum(0)
-    )
+def linear_glued(s: System, side: int) -> Array:
+    return s.rigidly_joined().get("linear_motion", side, 1).sum(0)
 
 
-def linear_4_truth(s: System) -> Array:
-    s = s.standing()
-    return np.where(s.th2 > 0, s.get("linear_motion", 1, 1)[1], s.get("linear_motion", 1, -1)[1])
+def linear_upper(s: System, side: int) -> Array:
+    return s.standing().get("linear_motion", 1, side)[1]
 
 
 def lagrange_by_newton(s: System) -> Array:
@@ -315,7 +302,7 @@ EQUATIONS = [
     Equation(
         "2.44",
         lambda s: cos(gamma_1(s, sign(s.th1))),
-        lambda s: np.where(s.th1 > 0, _cosine(s, 1, 1), _cosine(s, -1, -1)),
+        by_sign(lambda s, side: _cosine(s, side, side)),
     ),
     Equation("2.45", lambda s: centre_2(s, 1, -1), positions(2, 1, -1)),
     Equation(
@@ -344,22 +331,14 @@ EQUATIONS = [
     Equation(
         "2.52",
         lambda s: cos(gamma_2(s, sign(s.th1))),
-        lambda s: np.where(s.th1 > 0, _cosine(s, 1, -1), _cosine(s, -1, 1)),
+        by_sign(lambda s, side: _cosine(s, side, -side)),
     ),
-    Equation("2.53", lambda s: whole(s, 1), glued_truth(1)),
-    Equation("2.54", lambda s: whole(s, -1), glued_truth(-1)),
-    Equation(
-        "2.55",
-        lambda s: whole(s, sign(s.th1)),
-        lambda s: np.where(s.th1 > 0, glued_truth(1)(s), glued_truth(-1)(s)),
-    ),
-    Equation("2.56", lambda s: lone(s, 1), standing_truth(1)),
-    Equation("2.57", lambda s: lone(s, -1), standing_truth(-1)),
-    Equation(
-        "2.58",
-        lambda s: lone(s, sign(s.th2)),
-        lambda s: np.where(s.th2 > 0, standing_truth(1)(s), standing_truth(-1)(s)),
-    ),
+    Equation("2.53", lambda s: whole(s, 1), lambda s: glued(s, 1)),
+    Equation("2.54", lambda s: whole(s, -1), lambda s: glued(s, -1)),
+    Equation("2.55", lambda s: whole(s, sign(s.th1)), by_sign(glued)),
+    Equation("2.56", lambda s: lone(s, 1), lambda s: upper_alone(s, 1)),
+    Equation("2.57", lambda s: lone(s, -1), lambda s: upper_alone(s, -1)),
+    Equation("2.58", lambda s: lone(s, sign(s.th2)), by_sign(upper_alone, "th2")),
     Equation("2.59", lambda s: sign(s.th2), lambda s: standing_pivot(s.th2, s.b2)),
     Equation(
         "2.60",
@@ -376,7 +355,10 @@ EQUATIONS = [
     ),
     Equation("2.63", lambda s: s.xi_, lambda s: _between(s, 1, -1)),
     Equation(
-        "2.64", lambda s: linear_3(s, s.b2), linear_3_truth, mended=lambda s: linear_3(s, s.b1)
+        "2.64",
+        lambda s: linear_3(s, s.b2),
+        by_sign(linear_glued),
+        mended=lambda s: linear_3(s, s.b1),
     ),
     Equation(
         "2.65",
@@ -386,7 +368,7 @@ EQUATIONS = [
             + sign(s.th2) * s.m2 * s.b2 * s.g
             + s.m2 * s.h2 * s.a
         ),
-        linear_4_truth,
+        by_sign(linear_upper, "th2"),
     ),
 ]
 

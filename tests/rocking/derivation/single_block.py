@@ -5,7 +5,7 @@ import numpy as np
 from numpy import abs as mag
 from numpy import arctanh, cos, cosh, sign, sin, sqrt
 
-from .systems import Equation, System, impact_map, random_systems, uniform_systems
+from .systems import Equation, System, by_sign, impact_map, random_systems, uniform_systems
 
 Array = np.ndarray
 
@@ -31,13 +31,11 @@ def slender() -> System:
 
 def lone(s: System) -> Array:
     """Motion of the lone block on the pivot that its rotation asks for."""
-    s = s.standing()
-    return np.where(s.th2 > 0, s.moments(1, 1)[1], s.moments(1, -1)[1])
+    return by_sign(lambda s, side: s.moments(1, side)[1], "th2")(s.standing())
 
 
 def lone_linear(s: System) -> Array:
-    s = s.standing()
-    return np.where(s.th2 > 0, s.get("linear_motion", 1, 1)[1], s.get("linear_motion", 1, -1)[1])
+    return by_sign(lambda s, side: s.get("linear_motion", 1, side)[1], "th2")(s.standing())
 
 
 def lone_free_linear(s: System) -> Array:

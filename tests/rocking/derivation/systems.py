@@ -175,3 +175,15 @@ class Equation:
     mended: Quantity | None = None
     systems: Callable[[], System] = random_systems
     tolerance: float = 1e-12
+
+
+def misprinted(
+    number: str, case: Callable[[System, bool], Array], true: Quantity, **more: object
+) -> Equation:
+    """An equation that holds in another form than the printed one; ``case`` gives both."""
+    return Equation(number, lambda s: case(s, True), true, lambda s: case(s, False), **more)
+
+
+def by_sign(true: Callable[[System, int], Array], angle: str = "th1") -> Quantity:
+    """What is true about the pivot that a rotation asks for, from what is about either."""
+    return lambda s: np.where(getattr(s, angle) > 0, true(s, 1), true(s, -1))

@@ -1,21 +1,22 @@
-"""The chain of the oracle against positions, Newton and Euler; the fast kernel against the chain."""
+"""The chain against positions, Newton and Euler; the fast kernel and the thesis (2.1 to 2.86) against it."""
 
 import itertools
 
 import numpy as np
 import pytest
 
+from rockfrag import MeasuredRestitution, Stack
 from rockfrag.engines.kernels.equations import STATE, equations
 from rockfrag.engines.kernels.impact import impact
 from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.records import body_record
 from rockfrag.laws import law_names
-from rockfrag.rocking import MeasuredRestitution, Stack
 from rockfrag.rocking.options import system_of
 
 from ...oracle.rocking_model import Model
 from ...oracle.standing import upper_on_contact
-from .systems import System, error, impact_map, random_systems
+from . import impacts, motion, single_block, transitions
+from .systems import Equation, System, error, impact_map, random_systems
 
 PIVOTS = list(itertools.product((1, -1), (1, -1)))
 STATES = [s for s in itertools.product((1, 0, -1), (1, 0, -1)) if s != (0, 0)]
@@ -159,7 +160,7 @@ def momentum(s: System, pivots: tuple[int, int], about: np.ndarray, contact: int
     return total
 
 
-def impacts() -> list[tuple[tuple[int, int], tuple[int, int], System]]:
+def every_impact() -> list[tuple[tuple[int, int], tuple[int, int], System]]:
     """Every kind of impact: the old state, the old pivots of what closes, states that close so."""
     cases = []
     for old in STATES:
@@ -181,7 +182,7 @@ def impacts() -> list[tuple[tuple[int, int], tuple[int, int], System]]:
 
 IMPACTS = pytest.mark.parametrize(
     ("old", "closing", "s"),
-    impacts(),
+    every_impact(),
     ids=lambda v: "" if isinstance(v, System) else f"{v[0]:+d}{v[1]:+d}",
 )
 
@@ -239,3 +240,34 @@ def test_energy_never_grows_whatever_restitution_is_asked_for(old, closing, s, m
             closing[1] != 0,
         )
         assert model.kinetic_energy((n1, n2), theta, (w1, w2)) <= before * (1 + 1e-8)
+
+
+EQUATIONS = [*single_block.EQUATIONS, *motion.EQUATIONS, *transitions.EQUATIONS, *impacts.EQUATIONS]
+
+# the misprints that docs/derivation.md lists
+WRONG = [
+    f"2.{i}" for i in (15, 16, 33, 39, 46, 47, 51, 60, 62, 64, 66, *range(69, 77), *range(78, 86))
+]
+
+
+@pytest.mark.parametrize("equation", EQUATIONS, ids=lambda e: e.number)
+def test_the_equation_holds_or_its_mended_form_does(equation: Equation) -> None:
+    systems = equation.systems()
+    true = equation.true(systems)
+    printed = error(equation.printed(systems), true)
+    if equation.mended is None:
+        assert printed.max() < equation.tolerance
+        return
+    # a wrong print is wrong for every system in at least one of its components or states
+    assert printed.max() > 1e-3
+    worst = printed.reshape(-1, printed.shape[-1]).max(axis=0)
+    assert np.mean(worst > 1e-6) > 0.3
+    assert error(equation.mended(systems), true).max() < equation.tolerance
+
+
+def test_every_equation_is_judged_once() -> None:
+    assert [e.number for e in EQUATIONS] == [f"2.{i}" for i in range(1, 87)]
+
+
+def test_the_misprints_are_those_of_the_table() -> None:
+    assert [e.number for e in EQUATIONS if e.mended is not None] == WRONG

@@ -7,7 +7,7 @@ moment s τ(s) about the pivot s it opens on, which vanishes there.
 import numpy as np
 from numpy import cos, sin
 
-from .systems import Equation, System
+from .systems import Equation, System, misprinted
 
 Array = np.ndarray
 
@@ -67,30 +67,24 @@ def case_271(s: System, printed: bool) -> Array:
     return from_3(s, 1, sin(s.tc2 - s.th1), swirl, inertia)
 
 
-def from_4(s: System, s1: int, s2: int, weight: Array, turn: float) -> Array:
-    """Right - left of 2.72 to 2.75; ``turn`` is the sign before 2 h1 cos in the bracket of θ2''."""
-    angle = s.tc2 - s2 * s.th2
-    arm, sense = (s.xi, 1) if s1 == s2 else (s.xi_, -1)
-    swirl = sense * 2 * s.h1 * sin(angle) - arm * cos(angle)
-    inertia = s2 * (arm * sin(angle) + turn * 2 * s.h1 * cos(angle))
-    left = -s1 * (s.m1 + 2 * s.m2) * s.h1 * s.a
-    return weight + s.m2 * s.r2 * (swirl * s.w2**2 + inertia * s.q2) - left
+def case_from_4(s1: int, s2: int, turn: int, mended: int):
+    """Right - left of 2.72 to 2.75; of the sign before 2 h1 cos in the bracket of θ2'' as printed and mended."""
 
+    def case(s: System, printed: bool) -> Array:
+        angle = s.tc2 - s2 * s.th2
+        arm, sense = (s.xi, 1) if s1 == s2 else (s.xi_, -1)
+        weight = s.m1 * s.g * s.b1 + (0 if printed else s.m2 * s.g * arm)
+        sign = turn if printed else mended
+        swirl = sense * 2 * s.h1 * sin(angle) - arm * cos(angle)
+        inertia = s2 * (arm * sin(angle) + sign * 2 * s.h1 * cos(angle))
+        left = -s1 * (s.m1 + 2 * s.m2) * s.h1 * s.a
+        return weight + s.m2 * s.r2 * (swirl * s.w2**2 + inertia * s.q2) - left
 
-def light(s: System) -> Array:
-    return s.m1 * s.g * s.b1
-
-
-def near(s: System) -> Array:
-    return s.m1 * s.g * s.b1 + s.m2 * s.g * s.xi
-
-
-def far(s: System) -> Array:
-    return s.m1 * s.g * s.b1 + s.m2 * s.g * s.xi_
+    return case
 
 
 EQUATIONS = [
-    Equation("2.66", lambda s: case_266(s, True), upper(1, 1), lambda s: case_266(s, False)),
+    misprinted("2.66", case_266, upper(1, 1)),
     Equation(
         "2.67",
         lambda s: np.sqrt((2 * s.h1 + s.h2) ** 2 + s.b1**2),
@@ -101,33 +95,13 @@ EQUATIONS = [
         lambda s: np.arctan((2 * s.h1 + s.h2) / s.b1),
         lambda s: np.arctan2(_to_centre_2(s)[1], -_to_centre_2(s)[0]),
     ),
-    Equation("2.69", lambda s: case_269(s, True), upper(1, -1), lambda s: case_269(s, False)),
-    Equation("2.70", lambda s: case_270(s, True), upper(-1, -1), lambda s: case_270(s, False)),
-    Equation("2.71", lambda s: case_271(s, True), upper(-1, 1), lambda s: case_271(s, False)),
-    Equation(
-        "2.72",
-        lambda s: from_4(s, 1, 1, light(s), 1),
-        ground(1, 1),
-        lambda s: from_4(s, 1, 1, near(s), 1),
-    ),
-    Equation(
-        "2.73",
-        lambda s: from_4(s, -1, 1, light(s), 1),
-        ground(-1, 1),
-        lambda s: from_4(s, -1, 1, far(s), -1),
-    ),
-    Equation(
-        "2.74",
-        lambda s: from_4(s, -1, -1, light(s), 1),
-        ground(-1, -1),
-        lambda s: from_4(s, -1, -1, near(s), 1),
-    ),
-    Equation(
-        "2.75",
-        lambda s: from_4(s, 1, -1, light(s), -1),
-        ground(1, -1),
-        lambda s: from_4(s, 1, -1, far(s), -1),
-    ),
+    misprinted("2.69", case_269, upper(1, -1)),
+    misprinted("2.70", case_270, upper(-1, -1)),
+    misprinted("2.71", case_271, upper(-1, 1)),
+    misprinted("2.72", case_from_4(1, 1, 1, 1), ground(1, 1)),
+    misprinted("2.73", case_from_4(-1, 1, 1, -1), ground(-1, 1)),
+    misprinted("2.74", case_from_4(-1, -1, 1, 1), ground(-1, -1)),
+    misprinted("2.75", case_from_4(1, -1, -1, -1), ground(1, -1)),
 ]
 
 
