@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rockfrag import Block, simulate
 from rockfrag.engines.spatial.outcome import history_table, run_case
 from rockfrag.figure_style import (
     BLACK,
@@ -17,7 +18,6 @@ from rockfrag.figure_style import (
     plain_log,
     save_figure,
 )
-from rockfrag.rocking import Block, simulate
 
 # what the checks measure lies with the tests
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))

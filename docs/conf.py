@@ -254,10 +254,10 @@ def _keys(schema: dict, above: str):
 
 def _write_live(path: Path) -> None:
     """The page of the front page's frame: a figure on a plinth under a pulse, simulated by whoever reads it."""
+    from rockfrag import Block, Stack
     from rockfrag.motions import ricker_symmetric
     from rockfrag.records.motion import Motion
     from rockfrag.report.play_page import write_play_page
-    from rockfrag.rocking import Block, Stack
 
     pulse = ricker_symmetric(4.0, 0.9, 0.01)
     named = Motion(pulse.acceleration, pulse.dt, "a near-fault pulse of 0.9 s")

@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import trimesh
 
-from rockfrag.rocking import read_shape
+from rockfrag.system import read_shape
 
 column = trimesh.creation.cylinder(radius=0.18, height=1.1, sections=24)
 column.apply_translation([0, 0, 0.55])

@@ -18,10 +18,11 @@ from rockfrag.survival.commands import add_survival_commands
 from rockfrag.units import GRAVITY, quantity
 
 if TYPE_CHECKING:
+    from rockfrag.engines.response import Response
     from rockfrag.engines.spatial import SpatialResponse
     from rockfrag.records.motion import Motion
-    from rockfrag.rocking import Block, Body, Response
     from rockfrag.rocking.options import FrictionInput
+    from rockfrag.system.blocks import Block, Body
 
 MOST_CONTACT_EVENTS = 30  # lines of the pattern history that are printed unless all are asked for
 
@@ -299,7 +300,7 @@ def _play(options: argparse.Namespace) -> int:
 def _block(option: str, given: Sequence[str]) -> "Block":
     """Make a block of width, height and mass as people write them."""
     from rockfrag.input_checks import positive_number
-    from rockfrag.rocking import Block
+    from rockfrag.system.blocks import Block
     from rockfrag.units import STONE, check_density, size_warning
 
     with errors_of(option):

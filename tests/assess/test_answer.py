@@ -7,6 +7,7 @@ import random
 import numpy as np
 import pytest
 
+from rockfrag import Block
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.as_json import as_json
 from rockfrag.assess.page import write_answer
@@ -15,7 +16,6 @@ from rockfrag.assess.risk import Estimate
 from rockfrag.assess.words import estimate_words, five_lines, headline, quality_flags
 from rockfrag.cli import main
 from rockfrag.errors import InputError
-from rockfrag.rocking import Block
 
 from .asking import answered, contradictions, request
 from .conftest import asked

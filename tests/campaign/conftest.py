@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from rockfrag.rocking import Block, overturns
+from rockfrag import Block, overturns
 
 BLOCK = Block(0.1, 0.6, 60.0, cg_offset=0.01)
 DT = 0.01

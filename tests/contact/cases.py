@@ -14,10 +14,9 @@ from rockfrag.engines.planar.integrate import (
     integrate,
 )
 from rockfrag.engines.planar.records import posed, system_record, working_memory
-from rockfrag.rocking import Block, Body, Stack
 from rockfrag.rocking.inputs import ground_motion
 from rockfrag.rocking.options import system_of
-from rockfrag.system import Column, System, as_system
+from rockfrag.system import Block, Body, Column, Stack, System, as_system
 from rockfrag.units import GRAVITY
 
 STILL = np.zeros(50)

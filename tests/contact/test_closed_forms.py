@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.rocking import Block, Stack
+from rockfrag import Block, Stack
 
 from ..rocking.reference_bodies import T1, P
 from .cases import simulate_with_friction

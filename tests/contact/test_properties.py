@@ -6,8 +6,7 @@ import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from rockfrag import read_motion
-from rockfrag.rocking import Block, Response, Stack, overturns
+from rockfrag import Block, Response, Stack, overturns, read_motion
 
 from ..rocking.reference_bodies import T1, P, random_motion
 from .cases import (

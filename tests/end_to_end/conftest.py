@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rockfrag import Block, Stack
 from rockfrag.assess.motions import MotionSet
 from rockfrag.records.motion import Motion
 from rockfrag.report.play_page import write_play_page
-from rockfrag.rocking import Block, Stack
 
 from .browsers import BROWSERS, Browser
 from .studies import STUDIES, run

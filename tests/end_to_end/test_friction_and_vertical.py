@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 import rockfrag.study.study
+from rockfrag import Block, overturns, simulate
 from rockfrag.records.motion import read_motion_set
 from rockfrag.records.read import read_motion
 from rockfrag.report.part import Results
-from rockfrag.rocking import Block, overturns, simulate
 from rockfrag.rocking.ensemble import LIGHT, LightBodies
 from rockfrag.stages import fragility
 from rockfrag.stages.job import Job

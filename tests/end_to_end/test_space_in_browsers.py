@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rockfrag import Block
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import AMPLITUDES_G, Standing, live_in_space
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer
-from rockfrag.rocking import Block
 from rockfrag.system.system import turned_about_vertical
 
 from .browsers import Browser, put

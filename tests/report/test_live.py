@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rockfrag import Block, Column, Stack, overturns
 from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import MOST_SAMPLES, carried, live_kernel, swept
@@ -16,7 +17,6 @@ from rockfrag.report.live.frames import frames_svg, outlines
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page
-from rockfrag.rocking import Block, Column, Stack, overturns
 from rockfrag.rocking.options import system_of
 from rockfrag.system.system import turned_about_vertical
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rockfrag.rocking import Block
+from rockfrag import Block
 from rockfrag.rocking.spectra import uniform_block
 
 # the thesis's specimens (Table 3.1)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rockfrag.rocking import Block, Stack, simulate
+from rockfrag import Block, Stack, simulate
 from rockfrag.system.geometry import upper_arm
 
 from ..oracle.standing import upper_on_contact

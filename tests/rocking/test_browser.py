@@ -9,9 +9,9 @@ import sys
 import numpy as np
 import pytest
 
+from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.engines.records import body_record
 from rockfrag.engines.steps import STEP, free_samples, step_count
-from rockfrag.rocking import Block, Stack, overturns, simulate
 from rockfrag.rocking.browser import module_bytes
 from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Body

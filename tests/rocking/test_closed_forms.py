@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from rockfrag.rocking import Block, Stack, simulate
+from rockfrag import Block, Stack, simulate
 from rockfrag.rocking import closed_forms as cf
 
 from .reference_bodies import T1, T2, T3, P, random_motion, uniform

@@ -9,7 +9,9 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.engines.kernels.chatter import HISTORY
-from rockfrag.rocking import Block, Body, Response, Stack, overturns, simulate
+from rockfrag.engines.response import Response
+from rockfrag.rocking import overturns, simulate
+from rockfrag.system import Block, Body, Stack
 
 # random bodies may lose contact, and pure rocking is what these tests are about
 pytestmark = [

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from rockfrag import Block, Stack, simulate
 from rockfrag.errors import InputError
 from rockfrag.motions import half_sine, scale_to_pga
 from rockfrag.motions.pulses import one_sine
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.rocking import Block, Stack, simulate
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.rules_of_thumb import RULES, asce_43, bias, predicted, static, three_models
 from rockfrag.rocking.spectra import rocking_spectrum, uniform_block

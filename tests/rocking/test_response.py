@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.rocking import Block, Response, Stack, simulate
+from rockfrag import Block, Response, Stack, simulate
 from rockfrag.rocking.restitution import quarter_period
 
 from .reference_bodies import T1, T2, T3, P

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from rockfrag import Block, Response, simulate
 from rockfrag.errors import InputError
-from rockfrag.rocking import Block, Response, simulate
 from rockfrag.rocking.restitution import (
     peak_after,
     restitution_from_history,

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from rockfrag import Block
 from rockfrag.engines.spatial.body import kernel_body
 from rockfrag.engines.spatial.outcome import AFTER, run_case
-from rockfrag.rocking import Block
 from rockfrag.system.body import Polygon, RigidBody
 from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.system import System, turned_about_vertical

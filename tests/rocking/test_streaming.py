@@ -8,8 +8,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import Block, Stack, overturns, parquet, simulate
+from rockfrag.rocking import overturns, parquet, simulate
 from rockfrag.rocking.parquet import stream_histories, stream_overturns
+from rockfrag.system import Block, Stack
 
 DT = 0.01
 TIME = np.arange(600) * DT

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from rockfrag import Block, Stack
 from rockfrag.engines.kernels import equations as eq
 from rockfrag.engines.kernels.chatter import Hop, closed
 from rockfrag.engines.kernels.impact import stuck
@@ -18,7 +19,6 @@ from rockfrag.engines.kernels.lanes.stack_constants import (
 )
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
 from rockfrag.engines.records import body_record
-from rockfrag.rocking import Block, Stack
 
 BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)).system())
 H, GROUND, RISE = 0.01, 2.0, -1.5

@@ -9,8 +9,6 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import (
-    Block,
-    Stack,
     find_step_size_sensitive,
     overturns,
     restitution_from_peaks,
@@ -18,6 +16,7 @@ from rockfrag.rocking import (
     simulate,
 )
 from rockfrag.rocking.inputs import UnitWarning
+from rockfrag.system import Block, Stack
 
 from .reference_bodies import T2, P
 

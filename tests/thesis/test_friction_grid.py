@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rockfrag import Block, Stack, overturns
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import Block, Stack, overturns
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag_thesis.sensitivity_analysis.friction_grid import (
     friction_effects,

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag import Block, Stack, simulate
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import Block, Stack, simulate
 from rockfrag_thesis.hypotheses import HYPOTHESES, Undecidable, theory_table
 from rockfrag_thesis.hypotheses.blocks import perturbed
 from rockfrag_thesis.hypotheses.evidence import THESIS_BODIES

@@ -14,6 +14,13 @@ def as_json(found: Assessment) -> str:
     """Return the answer as JSON; infinite and unknown numbers are null."""
     outcomes = found.outcomes
     request = found.request
+    curve: dict[str, Any] = {}
+    if found.curve is not None:
+        fit, interval = found.curve.fit, found.curve.interval
+        curve = {"theta": fit.theta, "theta_limits": interval.theta, "beta": fit.beta}
+        curve |= {"beta_limits": interval.beta, "warnings": found.curve.warnings}
+    values = found.motions.values(found.measure).tolist()
+    motions = zip(found.motions.ground, found.motions.earthquakes, values, strict=True)
     answer = {
         "rockfrag": __version__,
         "name": request.name,
@@ -48,7 +55,7 @@ def as_json(found: Assessment) -> str:
             "other_states": {
                 name: outcomes.fractions(state=name).tolist() for name in outcomes.others
             },
-            **_curve(found),
+            **curve,
         },
         "two_measures": _two_measures(found),
         "hazard": found.hazard
@@ -59,12 +66,7 @@ def as_json(found: Assessment) -> str:
         },
         "motions": [
             {"name": motion.name, "earthquake": earthquake, "value": value}
-            for motion, earthquake, value in zip(
-                found.motions.ground,
-                found.motions.earthquakes,
-                found.motions.values(found.measure).tolist(),
-                strict=True,
-            )
+            for motion, earthquake, value in motions
         ],
         "assumed": assumptions(found),
         "quality_flags": quality_flags(found),
@@ -75,12 +77,8 @@ def as_json(found: Assessment) -> str:
 def _estimate(estimate: Estimate | None) -> dict[str, Any] | None:
     if estimate is None:
         return None
-    return {
-        "value": estimate.value,
-        "lower": estimate.lower,
-        "upper": estimate.upper,
-        "standard_deviations": dict(estimate.sources),
-    }
+    limits = {"value": estimate.value, "lower": estimate.lower, "upper": estimate.upper}
+    return limits | {"standard_deviations": dict(estimate.sources)}
 
 
 def _two_measures(found: Assessment) -> dict[str, Any] | None:
@@ -100,19 +98,6 @@ def _two_measures(found: Assessment) -> dict[str, Any] | None:
         "at_the_site": known,
         "sd_of_mean": about.spread,
         "warnings": about.fragility.warnings,
-    }
-
-
-def _curve(found: Assessment) -> dict[str, Any]:
-    if found.curve is None:
-        return {}
-    fit, interval = found.curve.fit, found.curve.interval
-    return {
-        "theta": fit.theta,
-        "theta_limits": interval.theta,
-        "beta": fit.beta,
-        "beta_limits": interval.beta,
-        "warnings": found.curve.warnings,
     }
 
 

@@ -109,13 +109,8 @@ def read_inventory(
         raise InputError("key friction: sliding takes long; assess the object alone.")
     needed = ["name", *SIZES[:2]]
     faults: list[str] = []
-    rows = read_rows(
-        path,
-        needed,
-        [*SIZES[2:], *PEDESTAL, *OTHERS],
-        quantities=(*SIZES, *PEDESTAL),
-        faults=faults,
-    )
+    others, quantities = [*SIZES[2:], *PEDESTAL, *OTHERS], (*SIZES, *PEDESTAL)
+    rows = read_rows(path, needed, others, quantities=quantities, faults=faults)
     if len(rows) > MOST_OBJECTS:
         raise InputError(f"{path}: {len(rows)} objects are more than the {MOST_OBJECTS} allowed.")
     requests: list[Request] = []
@@ -167,7 +162,10 @@ def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
     try:
         return replace(make_request({**shared, **own}, where), value=worth)
     except InputError as error:
-        raise InputError(_in_columns(str(error), own)) from None
+        # columns instead of keys, of what stands in the row
+        words = re.sub(rf"\bkey ({'|'.join(own)})\b", r"column \1", str(error))
+        words = re.sub(r"column pedestal(\[\d+\])?\.", "column pedestal_", words)
+        raise InputError(words) from None
 
 
 def _pedestals(row: Row) -> list[dict[str, float]]:
@@ -184,13 +182,6 @@ def _pedestals(row: Row) -> list[dict[str, float]]:
                 part = replace(row, cells={key: cell.strip()})
                 found[i][key.removeprefix("pedestal_")] = part.positive_quantity(key)
     return found
-
-
-def _in_columns(words: str, own: Mapping[str, Any]) -> str:
-    """Name columns instead of keys, of what stands in the row."""
-    for key in own:
-        words = re.sub(rf"\bkey {key}\b", f"column {key}", words)
-    return re.sub(r"column pedestal(\[\d+\])?\.", "column pedestal_", words)
 
 
 def _yes(row: Row, column: str) -> bool:
@@ -216,15 +207,10 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
         row: dict[str, Any] = {"name": found.request.name, "place": found.request.place.words}
         for name, estimate in (("probability", found.probability), ("fraction", found.fraction)):
             if estimate is not None:
-                row |= {
-                    name: estimate.value,
-                    f"{name}_lower": estimate.lower,
-                    f"{name}_upper": estimate.upper,
-                }
-        row |= {
-            f"{found.measure.column}_tenth": found.amplitudes[0.1].value,
-            f"{found.measure.column}_half": found.amplitudes[0.5].value,
-        }
+                row |= {name: estimate.value, f"{name}_lower": estimate.lower}
+                row[f"{name}_upper"] = estimate.upper
+        for name, p in (("tenth", 0.1), ("half", 0.5)):
+            row[f"{found.measure.column}_{name}"] = found.amplitudes[p].value
         if found.rocking is not None:
             row["fraction_rocking"] = found.rocking.value
         best = best_change(found)

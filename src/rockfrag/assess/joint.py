@@ -58,40 +58,25 @@ def joint_risk(found: Sequence[Assessment], values: Mapping[str, float]) -> Join
     allowed = np.logical_and.reduce([outcome.intensity_levels.allowed for outcome in outcomes])
     together = replace(outcomes[0], intensity_levels=replace(intensity_levels, allowed=allowed))
     worth = np.array([values[assessment.request.name] for assessment in found])
-    per_level = [
-        toppling_rate(intensity_levels.levels, unit, hazard)
-        for unit in np.eye(intensity_levels.levels.size)
-    ]
-    rates = np.array(
-        [
-            toppling_rate(intensity_levels.levels, outcome.fractions(), hazard)
-            for outcome in outcomes
-        ]
-    )
+    levels = intensity_levels.levels
+    per_level = np.array([toppling_rate(levels, unit, hazard) for unit in np.eye(levels.size)])
+    rates = np.array([toppling_rate(levels, each.fractions(), hazard) for each in outcomes])
     names = [assessment.request.name for assessment in found]
+    correlation = _correlation(fell, allowed, per_level)
     return JointRisk(
         _by_object(names, rates, worth),
         _numbers(found[0], together, fell.sum(axis=0)),
-        _losses(together, fell, worth, np.array(per_level)),
-        pd.DataFrame(
-            _correlation(fell, allowed, np.array(per_level)),
-            index=pd.Index(names, name="name"),
-            columns=names,
-        ),
+        _losses(together, fell, worth, per_level),
+        pd.DataFrame(correlation, index=pd.Index(names, name="name"), columns=names),
     )
 
 
 def _by_object(names: list[str], rates: Floats, worth: Floats) -> pd.DataFrame:
     losses = rates * worth
     table = pd.DataFrame(
-        {
-            "name": names,
-            "annual_rate": rates,
-            "value": worth,
-            "annual_loss": losses,
-            "contribution": losses / losses.sum() if losses.sum() > 0 else np.nan,
-        }
+        {"name": names, "annual_rate": rates, "value": worth, "annual_loss": losses}
     )
+    table["contribution"] = losses / losses.sum() if losses.sum() > 0 else np.nan
     return table.sort_values("annual_loss", ascending=False, kind="stable", ignore_index=True)
 
 

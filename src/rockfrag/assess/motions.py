@@ -117,20 +117,18 @@ class MotionSet:
         return {}
 
     def thinned(self) -> "MotionSet":
-        """Every second motion, one component of each record of the default set: enough to compare."""
-        if self.both:
-            return self._fewer_records()
-        floors = self.halves.setdefault((False, len(self.ground[::2])), {})
-        return replace(self, ground=self.ground[::2], base=self.base[::2], pairs=(), floors=floors)
+        """Every second motion, one component of each record of the default set: enough to compare.
 
-    def _fewer_records(self) -> "MotionSet":
-        """Every second record of those with two components, and those with one."""
-        paired = {i for pair in self.pairs for i in pair}
-        kept = [i for pair in self.pairs[::2] for i in pair]
-        kept += [i for i in range(len(self.ground)) if i not in paired]
+        Where both components act, every second record of those with two, and those with one.
+        """
+        kept, pairs = list(range(0, len(self.ground), 2)), self.pairs[:0]
+        if self.both:
+            paired = {i for pair in self.pairs for i in pair}
+            kept = [i for pair in self.pairs[::2] for i in pair]
+            kept += [i for i in range(len(self.ground)) if i not in paired]
+            pairs = tuple((2 * n, 2 * n + 1) for n in range(len(self.pairs[::2])))
         ground, base = (tuple(motions[i] for i in kept) for motions in (self.ground, self.base))
-        pairs = tuple((2 * n, 2 * n + 1) for n in range(len(self.pairs[::2])))
-        floors = self.halves.setdefault((True, len(ground)), {})
+        floors = self.halves.setdefault((self.both, len(ground)), {})
         return replace(self, ground=ground, base=base, pairs=pairs, floors=floors)
 
     def at(self, place: Place) -> "MotionSet":
@@ -217,9 +215,12 @@ def _own(records: Records, folder: Path) -> MotionSet:
         if draft.errors:
             raise InputError(draft.errors[0])
         warnings += draft.warnings
-        motions += [
-            load_motion(_numbered(row), Path(), folder) for row in draft.table.to_dict("records")
-        ]
+        for row in draft.table.to_dict("records"):
+            cells: dict[str, object] = {str(key): value for key, value in row.items()}
+            for key in ("dt", "magnitude", "distance_km", "scale_factor"):
+                text = str(cells.get(key, ""))
+                cells[key] = float(text) if text else math.nan
+            motions.append(load_motion(cells, Path(), folder))
     still = [motion.name for motion in motions if motion.pga == 0]
     if still:
         raise InputError(f"record {still[0]}: is zero throughout and shakes nothing; leave it out.")
@@ -231,16 +232,11 @@ def _own(records: Records, folder: Path) -> MotionSet:
         raise InputError(
             "records: two motions have the same name; leave one out or give a catalogue."
         )
-    words = f"{counted(len(motions), 'own motion')} of {counted(earthquakes, 'earthquake')}"
+    of = counted(earthquakes, "earthquake")
     if earthquakes < FEWEST_EARTHQUAKES:
-        found = replace(
-            found,
-            warnings=(
-                *found.warnings,
-                f"{counted(earthquakes, 'earthquake')} cannot say how different others are.",
-            ),
-        )
-    return replace(found, words=words)
+        warnings.append(f"{of} cannot say how different others are.")
+    words = f"{counted(len(motions), 'own motion')} of {of}"
+    return replace(found, words=words, warnings=tuple(warnings))
 
 
 def _is_catalogue(path: Path) -> bool:
@@ -251,16 +247,6 @@ def _is_catalogue(path: Path) -> bool:
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); check the path.") from error
     return "name" in head and "file" in head
-
-
-def _numbered(row: dict[object, object]) -> dict[str, object]:
-    """Cells of a row as :func:`load_motion` wants them: numbers where there are any."""
-    numbers = ("dt", "magnitude", "distance_km", "scale_factor")
-    cells = {str(key): value for key, value in row.items()}
-    for key in numbers:
-        text = str(cells.get(key, ""))
-        cells[key] = float(text) if text else math.nan
-    return cells
 
 
 def _pairs(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:

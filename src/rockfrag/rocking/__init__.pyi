@@ -1,8 +1,3 @@
-import rockfrag.engines.response as _response
-import rockfrag.outcomes.outcomes as _outcomes
-import rockfrag.system.blocks as _blocks
-import rockfrag.system.mesh as _mesh
-
 from . import closed_forms as closed_forms, rules_of_thumb as rules_of_thumb
 from .ensemble import (
     LightBodies as LightBodies,
@@ -27,12 +22,3 @@ from .thresholds import (
     find_thresholds as find_thresholds,
 )
 from .worst_direction import worst_direction as worst_direction
-
-Block = _blocks.Block
-Body = _blocks.Body
-Column = _blocks.Column
-Stack = _blocks.Stack
-Shape = _mesh.Shape
-read_shape = _mesh.read_shape
-Outcomes = _outcomes.Outcomes
-Response = _response.Response

@@ -166,11 +166,10 @@ def _block(given: Mapping[str, Any]) -> Block:
 
 def _judged_trials(trials: Trials, outcomes: Any, measured: Any, groups: Any) -> pd.DataFrame:
     """Trials with their agreement over all tests: in sample, so it only shows where the plausible ones lie."""
-    right = (outcomes == measured).mean(axis=1)
-    plausible = plausible_trials(outcomes == measured, groups)
-    return trials.table.assign(right_in_sample=right, plausible=plausible).sort_values(
-        "right_in_sample", ascending=False, kind="stable", ignore_index=True
-    )
+    right = outcomes == measured
+    shown = {"right_in_sample": right.mean(axis=1), "plausible": plausible_trials(right, groups)}
+    table = trials.table.assign(**shown)
+    return table.sort_values("right_in_sample", ascending=False, kind="stable", ignore_index=True)
 
 
 def _agreement(
@@ -224,16 +223,13 @@ def _rocking(
     study: CampaignStudy, campaign: Campaign, outcomes: Any, rocked: Any, groups: Any
 ) -> pd.DataFrame:
     """Whether the object rocked, where the laboratory noted it: trials chosen by overturning vote on it."""
-    columns = ["who", "right", "lower", "upper", "false_alarms", "missed", "tests"]
     if "rocked" not in campaign.tests:
+        columns = ["who", "right", "lower", "upper", "false_alarms", "missed", "tests"]
         return pd.DataFrame(columns=columns)
-    found = cross_validate(
-        outcomes, campaign.tests[MEASURED].to_numpy(), groups, asked=rocked, **study.division
-    )
-    noted = campaign.tests["rocked"].to_numpy()
-    return pd.DataFrame(
-        [comparison.agreement_row(OURS, found.outcomes, noted, groups, study.confidence)]
-    )
+    measured, noted = (campaign.tests[name].to_numpy() for name in (MEASURED, "rocked"))
+    found = cross_validate(outcomes, measured, groups, asked=rocked, **study.division)
+    row = comparison.agreement_row(OURS, found.outcomes, noted, groups, study.confidence)
+    return pd.DataFrame([row])
 
 
 def _fragility(
@@ -311,8 +307,7 @@ def _contact(
     low, high = study.unknowns["contact_tolerance_mm"]
     scan = study.object.get("scan_tolerance_mm", 0.0) / 1e3
     rng = np.random.default_rng(study.seed)
-    rows = []
-    tolerances = np.geomspace(low, high, 8)
+    rows, tolerances = [], np.geomspace(low, high, 8)
     tried = trials.table["contact_tolerance_mm"].to_numpy()
     nearest = np.abs(np.log(tried[:, None] / tolerances)).argmin(axis=1)
     width = (trials.table["left_m"] + trials.table["right_m"]).to_numpy()
@@ -321,11 +316,8 @@ def _contact(
             direction, angle = thing.worst_direction(tolerance / 1e3)
         except InputError:
             continue
-        angles = (
-            [_worst_angle(thing.scanned_again(scan, rng), tolerance) for _ in range(SCANS)]
-            if scan
-            else [angle]
-        )
+        scans = range(SCANS if scan else 0)
+        angles = [_worst_angle(thing.scanned_again(scan, rng), tolerance) for _ in scans] or [angle]
         limits = np.degrees(np.nanquantile(angles, [0.05, 0.95]))
         near = nearest == number
         found = [0, *[float("nan")] * 3]
@@ -344,19 +336,12 @@ def _footprint(
     if not isinstance(thing, Shape):
         return pd.DataFrame(columns=columns)
     likely = trials.table.loc[plausible_trials(right, groups), "contact_tolerance_mm"]
-    parts = [("outline", float("nan"), thing.outline)]
+    rows = [("outline", float("nan"), *corner) for corner in thing.outline]
     for name, fraction in (("contact, low", 0.05), ("contact", 0.5), ("contact, high", 0.95)):
         tolerance = float(likely.quantile(fraction))
-        parts.append((name, tolerance, thing.contact_polygon(tolerance / 1e3)))
-    return pd.concat(
-        [
-            pd.DataFrame(
-                {"what": name, "contact_tolerance_mm": tolerance, "x_m": xy[:, 0], "y_m": xy[:, 1]}
-            )
-            for name, tolerance, xy in parts
-        ],
-        ignore_index=True,
-    )
+        carries = thing.contact_polygon(tolerance / 1e3)
+        rows += [(name, tolerance, *corner) for corner in carries]
+    return pd.DataFrame(rows, columns=columns)
 
 
 def _worst_angle(shape: Shape, tolerance_mm: float) -> float:

@@ -48,28 +48,18 @@ def run(job: Job[Study]) -> Results:
     yield from _two_measures(job, measures)
     choice = measure_selection(of_all, measures, settings.confidence, job.study.seed)
     yield "measure_selection", choice
-    by_floor, floor_fractions = floor_curves(
-        data.of_floors,
-        measures,
-        job.study.floors,
-        {configuration.name: configuration for configuration in job.study.configurations},
-        record_set,
-        settings.confidence,
-        rocks_at_once=not (job.study.slides or job.study.vertical),
-    )
+    systems = {system.name: system for system in job.study.configurations}
+    at_once = not (job.study.slides or job.study.vertical)
+    about = (job.study.floors, systems, record_set, settings.confidence, at_once)
+    by_floor, floor_fractions = floor_curves(data.of_floors, measures, *about)
     yield "fragility_floors", by_floor
     yield "fragility_floors_fractions", floor_fractions
     exports = job.folder / "exports"
     exports.mkdir(parents=True, exist_ok=True)
-    job.log.info(
-        "exported %s", ", ".join(export_curves(by_floor, exports, floor_fractions)) or "no curve"
-    )
-    best = ", ".join(best_of(choice, columns))
-    job.log.info(
-        "curves: %d; best of the measures asked for: %s",
-        len(found.curves),
-        best or "none stands out",
-    )
+    exported = ", ".join(export_curves(by_floor, exports, floor_fractions))
+    job.log.info("exported %s", exported or "no curve")
+    best = ", ".join(best_of(choice, columns)) or "none stands out"
+    job.log.info("curves: %d; best of the measures asked for: %s", len(found.curves), best)
 
 
 def _two_measures(job: Job[Study], measures: pd.DataFrame) -> Results:
@@ -178,9 +168,9 @@ def _counted(job: Job[Study], measures: pd.DataFrame) -> _IdaCurves:
         of_all[configuration.name] = found[""]
         resurrections.append(found[""].windows)
         for state in states[configuration.name]:
-            of_state = (
-                found if state.name == OVERTURNS else counted(configuration, floors, state.name)
-            )
+            of_state = found
+            if state.name != OVERTURNS:
+                of_state = counted(configuration, floors, state.name)
             for floor in floors:
                 of_floors[state.name][configuration.name, floor] = of_state[floor]
     table = pd.concat(resurrections, ignore_index=True).sort_values(BY, ignore_index=True)
@@ -191,9 +181,6 @@ def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:
     """Name peaks for what they are where motions of several floors share a curve: of the base."""
     if not several_floors:
         return table
-    words = {
-        measure.label: f"peak base {measure.demand.lower()}"
-        for measure in declared()
-        if measure.demand
-    }
+    known = [measure for measure in declared() if measure.demand]
+    words = {measure.label: f"peak base {measure.demand.lower()}" for measure in known}
     return table.assign(im=table["im"].replace(words))

@@ -1,9 +1,7 @@
 """The same numbers on every processor: what libraries choose by the machine at hand is chosen for them.
 
-NumPy, OpenBLAS and the C library carry several versions of a function, for older and for newer processors, and
-take the fastest that the machine has. These versions add in another order or round once instead of twice,
-so that last digits differ. A job takes the oldest version of each: all machines of one architecture then
-write the same bytes. The kernels need none of this, as their code says every rounding itself.
+Versions of a function for older and for newer processors add in another order or round once instead of twice. A
+job takes the oldest of each, so that all machines of one architecture write the same bytes; kernels need none.
 """
 
 import platform

@@ -121,45 +121,30 @@ def _by_object(site: Site) -> pd.DataFrame:
     for body in site.objects:
         alone = _reweighted(site, [body])
         others = [other for other in site.objects if other is not body]
-        rows.append(
-            {
-                "object": body.name,
-                "information_bit": alone.information,
-                "level_ratio_alone": _level_ratio(site, alone),
-                "level_ratio_without": _level_ratio(site, _reweighted(site, others))
-                if others
-                else 1.0,
-            }
-        )
-    return pd.DataFrame(rows).sort_values("information_bit", ascending=False, ignore_index=True)
+        without = _level_ratio(site, _reweighted(site, others)) if others else 1.0
+        rows.append((body.name, alone.information, _level_ratio(site, alone), without))
+    columns = ["object", "information_bit", "level_ratio_alone", "level_ratio_without"]
+    table = pd.DataFrame(rows, columns=columns)
+    return table.sort_values("information_bit", ascending=False, ignore_index=True)
 
 
 def _sensitivity(site: Site) -> pd.DataFrame:
     """Ratio of levels where one assumption at a time is another."""
     objects = site.objects
-    cases: list[tuple[str, Sequence[StandingObject], float | None]] = [
-        ("as stated", objects, None),
-        ("ages half as long", scaled(objects, age=0.5), None),
-        ("ages twice as long", scaled(objects, age=2.0), None),
-        ("objects withstand 25 % more", scaled(objects, capacity=1.25), None),
-        ("objects withstand 25 % less", scaled(objects, capacity=0.75), None),
-        (
-            f"boxes under two components instead of one plane (withstand {100 * (1 - IN_SPACE):.0f} % less)",
-            scaled(objects, capacity=IN_SPACE),
-            None,
+    less = f"{100 * (1 - IN_SPACE):.0f} %"
+    cases = {
+        "as stated": scaled(objects),
+        "ages half as long": scaled(objects, age=0.5),
+        "ages twice as long": scaled(objects, age=2.0),
+        "objects withstand 25 % more": scaled(objects, capacity=1.25),
+        "objects withstand 25 % less": scaled(objects, capacity=0.75),
+        f"boxes under two components instead of one plane (withstand {less} less)": scaled(
+            objects, capacity=IN_SPACE
         ),
-    ]
+    }
+    found = {name: _reweighted(site, moved) for name, moved in cases.items()}
     if len(objects) > 1:
-        cases += [
-            ("errors of fragilities independent", objects, 0.0),
-            ("errors of fragilities all the same", objects, 1.0),
-        ]
-    return pd.DataFrame(
-        [
-            {
-                "assumption": name,
-                "level_ratio": _level_ratio(site, _reweighted(site, moved, shared)),
-            }
-            for name, moved, shared in cases
-        ]
-    )
+        found["errors of fragilities independent"] = _reweighted(site, objects, 0.0)
+        found["errors of fragilities all the same"] = _reweighted(site, objects, 1.0)
+    rows = [(name, _level_ratio(site, result)) for name, result in found.items()]
+    return pd.DataFrame(rows, columns=["assumption", "level_ratio"])

@@ -5,9 +5,8 @@ The probability that all objects stand if branch i is true is
     S_i = E[exp(-∫ λ_i(t) dt)],    λ_i(t) = ∫ [1 - Π (1 - P_k(x))] |dν_i(x)|,
 
 with the product over the objects k that stood at time t, and the expectation over their ages and the errors of
-their fragilities, which may be correlated.  Objects at one site feel the same earthquakes: λ is the rate of
-earthquakes that topple at least one of them, not the sum of their own rates.  Objects far apart feel different
-earthquakes; their rates add up.  Weights afterwards are w_i S_i / Σ w_j S_j (Bayes; Baker and others 2013, eq. 8).
+their fragilities. Rates of objects that feel different earthquakes add up. Weights afterwards are
+w_i S_i / Σ w_j S_j (Bayes; Baker and others 2013, eq. 8; docs/survival.md).
 """
 
 from collections.abc import Sequence

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from rockfrag import Block, simulate
 from rockfrag.engines.spatial._body import SIZE
 from rockfrag.engines.spatial.body import solid_body
 from rockfrag.engines.spatial.outcome import history_table, run_case
-from rockfrag.rocking import Block, simulate
 from rockfrag.system.body import Circle
 from rockfrag.units import GRAVITY
 

@@ -5,12 +5,12 @@ import itertools
 import numpy as np
 import pytest
 
+from rockfrag import MeasuredRestitution, Stack
 from rockfrag.engines.kernels.equations import STATE, equations
 from rockfrag.engines.kernels.impact import impact
 from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.records import body_record
 from rockfrag.laws import law_names
-from rockfrag.rocking import MeasuredRestitution, Stack
 from rockfrag.rocking.options import system_of
 
 from ...oracle.rocking_model import Model

@@ -102,57 +102,39 @@ def building_sensitivity(
     Returns a table of tests of all variants and definitions, with the variant's ``axis``, ``value`` and ``label``,
     and ``credible``, whether the building's model is to be believed under all motions.
     """
+    # IDA curves under motions of the ground, which are the same for every variant
+    known: dict[str, pd.DataFrame] = {}
+
+    def ida(motion: Motion) -> pd.DataFrame:
+        if motion.metadata["level"] == 0 and motion.name in known:
+            return known[motion.name]
+        tables = [
+            ida_table(specimen, [motion], amplitudes_g, threads).to_pandas()
+            for specimen in specimens
+        ]
+        earthquake = motion.metadata.get("earthquake") or motion.metadata["ground_motion"]
+        found: pd.DataFrame = pd.concat(tables, ignore_index=True).assign(earthquake=earthquake)
+        if motion.metadata["level"] == 0:
+            known[motion.name] = found
+        return found
+
     tables: list[pd.DataFrame] = []
-    ground = _Ground(specimens, amplitudes_g, threads)
     for done, variant in enumerate(variants, start=1):
-        ida, credible = _ida(variant, motions, ground)
-        tests = tests_from_ida(ida, protocol)
-        tables.append(
-            tests.assign(
-                axis=variant.axis, value=variant.value, label=variant.label, credible=credible
-            )
-        )
+        floors, credible = _floors(variant, motions)
+        tests = tests_from_ida(pd.concat(map(ida, floors), ignore_index=True), protocol)
+        tests = tests.assign(axis=variant.axis, value=variant.value, label=variant.label)
+        tables.append(tests.assign(credible=credible))
         progress(done)
     return pd.concat(tables, ignore_index=True)
 
 
-class _Ground:
-    """IDA curves of motions, which remembers those of the ground: they are the same for every variant."""
-
-    def __init__(self, specimens: Sequence[System], amplitudes_g: Floats, threads: int) -> None:
-        self.specimens = specimens
-        self.amplitudes_g = amplitudes_g
-        self.threads = threads
-        self.known: dict[str, pd.DataFrame] = {}
-
-    def ida(self, motion: Motion) -> pd.DataFrame:
-        """IDA curve of a motion, from memory if it is one of the ground."""
-        if motion.metadata["level"] != 0:
-            return self._shake(motion)
-        if motion.name not in self.known:
-            self.known[motion.name] = self._shake(motion)
-        return self.known[motion.name]
-
-    def _shake(self, motion: Motion) -> pd.DataFrame:
-        tables: list[pd.DataFrame] = [
-            ida_table(specimen, [motion], self.amplitudes_g, self.threads).to_pandas()
-            for specimen in self.specimens
-        ]
-        earthquake = motion.metadata.get("earthquake") or motion.metadata["ground_motion"]
-        found = pd.concat(tables, ignore_index=True)
-        return found.assign(earthquake=earthquake)
-
-
-def _ida(variant: Variant, motions: Sequence[Motion], ground: _Ground) -> tuple[pd.DataFrame, bool]:
-    """IDA curve all floors of a variant, and say whether its model is to be believed."""
-    credible = True
-    tables = []
+def _floors(variant: Variant, motions: Sequence[Motion]) -> tuple[list[Motion], bool]:
+    """Motions of all floors of a variant, and whether its model is to be believed."""
+    credible, floors = True, []
     for motion in motions:
         felt = scale(motion, variant.ground_scale)
         response = respond(variant.building, felt)
         credible &= judge_drift(variant.building, response).credible
-        for floor in response_motions(
-            variant.building, felt, response, list(variant.building.floors)
-        ):
-            tables.append(ground.ida(floor))
-    return pd.concat(tables, ignore_index=True), credible
+        labels = list(variant.building.floors)
+        floors += response_motions(variant.building, felt, response, labels)
+    return floors, credible

@@ -2,16 +2,15 @@
 
 import math
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import pandas as pd
 
 from rockfrag.motions.intensity import pga, pgd, pgv
-from rockfrag.records.motion import Motion
-from rockfrag.system.blocks import Block, SystemLike, as_system
-from rockfrag.system.system import System, uplift_ratios
+from rockfrag.system.blocks import SystemLike, as_system
+from rockfrag.system.system import uplift_ratios
 from rockfrag.tabular import read_rows
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
@@ -22,43 +21,13 @@ COLUMNS = ("name", "quantity", "unit", "computed", "printed", "agrees")
 """Columns of a comparison; ``agrees``: whether the computed value rounds to the printed digits."""
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """A column of a printed table: its name in the file, how readers call it, its unit."""
+class Quantity(NamedTuple):
+    """A column of a printed table: its name in the file, how readers call it, its unit, and how it is computed."""
 
     column: str
     symbol: str
     unit: str
-
-
-TABLE_3_1 = (
-    Quantity("critical_angle_rad", "θc", "rad"),
-    Quantity("radius_cm", "R", "cm"),
-    Quantity("frequency_1_s", "p", "1/s"),
-    Quantity("slenderness", "H/B", "-"),
-)
-TABLE_3_3 = (
-    Quantity("pga_g", "PGA", "g"),
-    Quantity("pgv_cm_s", "PGV", "cm/s"),
-    Quantity("pgd_cm", "PGD", "cm"),
-)
-TABLE_4_1 = (
-    Quantity("pattern_3_m_s2", "pattern 3", "m/s²"),
-    Quantity("pattern_4_m_s2", "pattern 4", "m/s²"),
-)
-
-
-def block_properties(blocks: Mapping[str, Block]) -> pd.DataFrame:
-    """Properties of Table 3.1 of each block: ``name`` and the columns of ``TABLE_3_1``."""
-    return pd.DataFrame(
-        {
-            "name": list(blocks),
-            "critical_angle_rad": [block.alpha for block in blocks.values()],
-            "radius_cm": [block.radius() * CENTIMETRES_PER_METRE for block in blocks.values()],
-            "frequency_1_s": [block.frequency() for block in blocks.values()],
-            "slenderness": [block.slenderness for block in blocks.values()],
-        }
-    )
+    of: Callable[[Any], float]
 
 
 def uplift_accelerations(body: SystemLike) -> tuple[float, float]:
@@ -71,19 +40,30 @@ def uplift_accelerations(body: SystemLike) -> tuple[float, float]:
     return min(together, default=math.nan), alone
 
 
-def uplift_table(configurations: Sequence[System]) -> pd.DataFrame:
-    """Accelerations of Table 4.1: ``name`` and the columns of ``TABLE_4_1``."""
-    rows = [
-        (configuration.name, *uplift_accelerations(configuration))
-        for configuration in configurations
-    ]
-    return pd.DataFrame(rows, columns=["name", *(q.column for q in TABLE_4_1)])
+TABLE_3_1 = (
+    Quantity("critical_angle_rad", "θc", "rad", lambda block: block.alpha),
+    Quantity("radius_cm", "R", "cm", lambda block: block.radius() * CENTIMETRES_PER_METRE),
+    Quantity("frequency_1_s", "p", "1/s", lambda block: block.frequency()),
+    Quantity("slenderness", "H/B", "-", lambda block: block.slenderness),
+)
+TABLE_3_3 = (
+    Quantity("pga_g", "PGA", "g", lambda motion: pga(motion) / GRAVITY),
+    Quantity("pgv_cm_s", "PGV", "cm/s", lambda motion: pgv(motion) * CENTIMETRES_PER_METRE),
+    Quantity("pgd_cm", "PGD", "cm", lambda motion: pgd(motion) * CENTIMETRES_PER_METRE),
+)
+TABLE_4_1 = (
+    Quantity("pattern_3_m_s2", "pattern 3", "m/s²", lambda body: uplift_accelerations(body)[0]),
+    Quantity("pattern_4_m_s2", "pattern 4", "m/s²", lambda body: uplift_accelerations(body)[1]),
+)
+"""Quantities of blocks, of ground motions, and of what stands on the table."""
 
 
 def compare(
-    computed: pd.DataFrame, quantities: Sequence[Quantity], printed: str | os.PathLike[str] | None
+    things: Mapping[str, Any],
+    quantities: Sequence[Quantity],
+    printed: str | os.PathLike[str] | None,
 ) -> pd.DataFrame:
-    """Put computed values, a row per ``name`` and a column per quantity, beside printed ones.
+    """Compute quantities of things by their names, and put them beside printed ones.
 
     ``printed`` is a CSV file whose first column has the names and whose numbers have the printed decimals, or
     None.
@@ -93,11 +73,12 @@ def compare(
     """
     wanted = {} if printed is None else _printed(printed, quantities)
     rows = []
-    for row in computed.to_dict("records"):
+    for name, thing in things.items():
         for quantity in quantities:
-            value, text = row[quantity.column], wanted.get((row["name"], quantity.column), "")
-            agrees = _rounds_to(value, text) if text else None
-            rows.append((row["name"], quantity.symbol, quantity.unit, value, text, agrees))
+            value, text = quantity.of(thing), wanted.get((name, quantity.column), "")
+            decimals = len(text.partition(".")[2])
+            agrees = f"{value:.{decimals}f}" == text if text else None
+            rows.append((name, quantity.symbol, quantity.unit, value, text, agrees))
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     table["agrees"] = table["agrees"].astype("boolean")
     # a quantity that exists neither on paper nor in theory, such as pattern 3 of a lone block
@@ -114,20 +95,3 @@ def _printed(
             if row.cells[column]:
                 row.number(column)
     return {(row.text("name"), column): row.cells[column] for row in rows for column in columns}
-
-
-def _rounds_to(value: float, text: str) -> bool:
-    decimals = len(text.partition(".")[2])
-    return f"{value:.{decimals}f}" == text
-
-
-def ground_measures(motions: Sequence[Motion]) -> pd.DataFrame:
-    """Peaks of Table 3.3 of each ground motion: ``name`` and the columns of ``TABLE_3_3``."""
-    return pd.DataFrame(
-        {
-            "name": [motion.name for motion in motions],
-            "pga_g": [pga(motion) / GRAVITY for motion in motions],
-            "pgv_cm_s": [pgv(motion) * CENTIMETRES_PER_METRE for motion in motions],
-            "pgd_cm": [pgd(motion) * CENTIMETRES_PER_METRE for motion in motions],
-        }
-    )

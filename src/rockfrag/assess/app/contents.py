@@ -58,14 +58,9 @@ def computing() -> str:
 
 
 def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
-    """Return what the page computes with, but for the samples of the motions.
+    """Return what the page computes with of ground motions, but for their samples.
 
-    Parameters
-    ----------
-    motions
-        The motions of the ground.
-    asked
-        Where they were recorded, and the building and hazard that the form does not tell; nothing if None.
+    ``asked`` says where they were recorded, and has the building and hazard that the form does not tell.
     """
     hazard = asked.hazard if asked else ()
     level = [asked.level.measure] if asked and asked.level else []

@@ -8,8 +8,6 @@ of samples more may follow.
 
 import re
 
-import numpy as np
-from numpy.typing import NDArray
 from obspy import UTCDateTime
 
 from rockfrag.records.parsing.format import Channel, Format
@@ -50,7 +48,11 @@ def _parse(text: TextFile) -> list[Channel]:
     except ValueError:
         text.fail("sampling interval or number of samples is not a number")
     dt = positive_step(text, dt, at_data)
-    table = _table(text, rulers[1] + 1, facts, len(steps))
+    form = next((value for key, value in facts.items() if key.startswith("formato datos")), "")
+    values = text.numbers(rulers[1] + 1, None, field_width(f"({form})"))
+    if text.cut_short:
+        values = values[: values.size // len(steps) * len(steps)]
+    table = in_rows(text, values, len(steps), rulers[1] + 1)
     extra = table.shape[0] - promised
     if not 0 <= extra < 1 / dt:
         text.check_count(promised, table.shape[0], rulers[1] + 1)
@@ -74,14 +76,6 @@ def _parse(text: TextFile) -> list[Channel]:
         )
         for column, orientation in enumerate(orientations)
     ]
-
-
-def _table(text: TextFile, start: int, facts: dict[str, str], columns: int) -> NDArray[np.float64]:
-    form = next((value for key, value in facts.items() if key.startswith("formato datos")), "")
-    values = text.numbers(start, None, field_width(f"({form})"))
-    if text.cut_short:
-        values = values[: values.size // columns * columns]
-    return in_rows(text, values, columns, start)
 
 
 def _list(facts: dict[str, str], key: str) -> list[str]:

@@ -7,9 +7,10 @@ import numpy as np
 
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import Block, overturns, simulate
+from rockfrag.rocking import overturns, simulate
 from rockfrag.rocking.restitution import RestitutionFit, quarter_period, restitution_from_history
 from rockfrag.rocking.spectra import uniform_block
+from rockfrag.system.blocks import Block
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, SEEN, decided, most

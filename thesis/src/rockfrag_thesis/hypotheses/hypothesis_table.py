@@ -36,25 +36,9 @@ THEORY = range(1, 25)
 """Numbers of the hypotheses about theory; the others are about tests."""
 
 COLUMNS = (
-    "number",
-    "hypothesis",
-    "source",
-    "kind",
-    "evidence",
-    "rule",
-    "error_rate",
-    "finding",
-    "outcome",
-    "figure",
-    "estimate",
-    "lower",
-    "upper",
-    "unit",
-    "p",
-    "p_of",
-    "p_holm",
-    "basis",
-    "remark",
+    *("number", "hypothesis", "source", "kind", "evidence", "rule", "error_rate", "finding"),
+    *("outcome", "figure", "estimate", "lower", "upper", "unit", "p", "p_of", "p_holm"),
+    *("basis", "remark"),
 )
 """Columns of the table of hypotheses, ``hypotheses.csv``."""
 

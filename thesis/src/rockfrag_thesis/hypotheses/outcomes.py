@@ -1,17 +1,8 @@
 """The rules by which intervals become findings, the same for all hypotheses about tests.
 
-Every rule reads the 95 % interval that is printed, so that a reader can apply it to the row:
-
-* **Orders** ("higher", "largest", "lower on both floors") are differences that must all be positive.
-  They are true if every interval lies above zero (an intersection-union test, Berger 1982, which needs
-  no adjustment), false if one lies below, with Bonferroni's adjustment for the number of differences.
-* **Sizes.** No table excludes a change that may be as small as one likes.  Where the sign is not shown either
-  way, a change of `SEEN` or more, which the thesis's tests could have shown, may still be excluded; the word for
-  it says just that, whatever the hypothesis, so that equal figures get equal words.
-* **Sameness** ("nearly equal", "no correlation") is true if the interval lies inside ±`SEEN`, false
-  if it lies outside.
-
-A rule errs in at most 2.5 % of tables each way, whatever the truth is that makes it an error.
+Every rule reads the 95 % interval that is printed, so that a reader can apply it to the row, and errs in at most
+2.5 % of tables each way (docs/hypotheses.md). That all differences are positive is an intersection-union test
+(Berger 1982), which needs no adjustment.
 """
 
 import math

@@ -9,9 +9,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.response import Response
 from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import Block, Body, Response, Stack, simulate
+from rockfrag.rocking import simulate
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import LARGEST_PEAK
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, THESIS_BODIES
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
@@ -91,7 +93,7 @@ class Setting:
 
     @cached_property
     def impacts(self) -> pd.DataFrame:
-        """Impacts of all histories, a row each, as in `rockfrag.rocking.Response.contact_events`."""
+        """Impacts of all histories, a row each, as in `rockfrag.engines.response.Response.contact_events`."""
         found = pd.concat([each.contact_events for each in self.histories], ignore_index=True)
         return found[found["kind"] == "impact"]
 

@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.engines.response import ROCKING_MODES
-from rockfrag.rocking import Block, Stack, simulate
+from rockfrag.rocking import simulate
+from rockfrag.system.blocks import Block, Stack
 from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, most

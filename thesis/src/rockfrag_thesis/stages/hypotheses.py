@@ -1,5 +1,8 @@
 """What a study does beyond its own when it is compared with the thesis: one stage."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import pandas as pd
 
 from rockfrag.stages.job import Job, Results
@@ -26,14 +29,14 @@ def run(job: Job[Study]) -> Results:
 def _printed_tables(job: Job[Study]) -> Results:
     from rockfrag_thesis import printed_tables as printed
 
-    study = job.study
-    computed = (
-        (printed.block_properties(study.specimens), printed.TABLE_3_1),
-        (printed.ground_measures(job.motions("motions/ground")), printed.TABLE_3_3),
-        (printed.uplift_table(study.configurations), printed.TABLE_4_1),
+    study, motions = job.study, job.motions("motions/ground")
+    things: tuple[tuple[Mapping[str, Any], Any], ...] = (
+        (study.specimens, printed.TABLE_3_1),
+        ({motion.name: motion for motion in motions}, printed.TABLE_3_3),
+        ({system.name: system for system in study.configurations}, printed.TABLE_4_1),
     )
-    for name, (table, quantities) in zip(TABLES, computed, strict=True):
-        beside = printed.compare(table, quantities, printed.FOLDER / f"{name}.csv")
+    for name, (named, quantities) in zip(TABLES, things, strict=True):
+        beside = printed.compare(named, quantities, printed.FOLDER / f"{name}.csv")
         yield name, beside
         known = beside["agrees"].dropna()
         job.log.info("%s: %d of %d printed values agree", name, known.sum(), len(known))
