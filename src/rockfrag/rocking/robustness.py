@@ -1,4 +1,4 @@
-"""How sure an outcome is: the fraction of slightly different experiments that end otherwise.
+"""How sure an outcome is: slightly different experiments that end otherwise, and steps that decide.
 
 Whether a rocking body falls depends on its motion and its dimensions without end in detail, and no number of one
 history predicts how a neighbouring one ends.  So neighbours are simulated.
@@ -7,7 +7,7 @@ history predicts how a neighbouring one ends.  So neighbours are simulated.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Unpack
 
 import numpy as np
@@ -16,8 +16,10 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number, whole_number
 from rockfrag.keywords import named_keywords
-from rockfrag.rocking.ensemble import Options, prepared, shaken
+from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.rocking.ensemble import Options, overturned_cases, prepared, shaken
 from rockfrag.rocking.inputs import MotionLike
+from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import SystemLike
 from rockfrag.system.perturbation import perturbed
 
@@ -90,3 +92,100 @@ def outcome_robustness(
         found = shaken(replace(cases, systems=near, scales=scale * cases.scales))
         same += found.overturned == given
     return same / copies
+
+
+@dataclass(frozen=True)
+class StepSizeSensitive:
+    """Step-size-sensitive outcomes: those that change when every step is halved."""
+
+    sampled: int  # number of cases looked at
+    changed: int  # number of them whose outcome changed
+    # body, motion and scale (positions) of the changed ones, shape (changed, 3)
+    cases: NDArray[np.int64]
+
+    __repr__ = short_repr
+
+    @property
+    def fraction(self) -> float:
+        """Fraction of the sampled outcomes that changed [-]."""
+        return self.changed / self.sampled
+
+
+@named_keywords
+def find_step_size_sensitive(
+    bodies: SystemLike | Sequence[SystemLike],
+    motions: MotionLike | Sequence[MotionLike],
+    dt: float | Sequence[float] | None,
+    scales: ArrayLike,
+    *,
+    sample: int = 1000,
+    seed: int = 0,
+    **options: Unpack[Options],
+) -> StepSizeSensitive:
+    """Count the outcomes of an ensemble that change when the step is halved, on a sample of its cases.
+
+    Near-critical cases always exist: their outcome hangs on the last digits of any integration.
+
+    Parameters
+    ----------
+    bodies, motions, dt, scales
+        The ensemble, as in :func:`overturns`.
+    sample
+        Number of cases, drawn without repetition; all of them if there are fewer.
+    seed
+        Seed of the draw.
+    **options
+        As in :func:`rockfrag.rocking.overturns`, but for ``forces``.
+
+    Returns
+    -------
+    The :class:`StepSizeSensitive`: how many cases were looked at, and which of them changed.
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used; the message says which and why.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockfrag import Block, Motion, find_step_size_sensitive
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> found = find_step_size_sensitive(Block(0.3, 1.2, 180.0), motion, None, np.arange(2.5, 8.0, 0.1))
+    >>> found.sampled, found.changed
+    (55, 0)
+    """
+    grid = prepared(bodies, motions, dt, scales, **options)
+    factors, shape = grid.scales, grid.shape
+    total = int(np.prod(shape))
+    if whole_number("sample", sample) < 1 or total < 1:
+        raise InputError(f"sample: expected at least one of {total} cases, got {sample}.")
+    chosen = np.random.default_rng(seed).choice(total, min(sample, total), replace=False)
+    cases = np.stack(np.unravel_index(np.sort(chosen), shape), axis=1).astype(np.int64)
+    body, motion, column = cases.T
+    drawn = (body, motion, factors[motion, column])
+    given = overturned_cases(grid, *drawn)
+    # twice the samples on the same straight lines and half the bound on p h: exactly half of each step
+    finer = replace(
+        grid,
+        motions=tuple(map(_doubled, grid.motions)),
+        request=replace(grid.request, step=grid.request.step / 2),
+    )
+    halved = overturned_cases(finer, *drawn)
+    changed = cases[given != halved]
+    return StepSizeSensitive(sampled=len(cases), changed=len(changed), cases=changed)
+
+
+def _doubled(motion: GroundMotion) -> GroundMotion:
+    """Sample a ground motion, which is zero one sample after its last, twice as densely."""
+    # the kernels are loaded only by those who shake
+    from rockfrag.engines.lanes import refined
+
+    def dense(component: Motion) -> Motion:
+        return replace(
+            component, acceleration=refined(component.acceleration, 2), dt=component.dt / 2
+        )
+
+    y, z = (None if part is None else dense(part) for part in (motion.y, motion.z))
+    return GroundMotion(dense(motion.x), y, z)
