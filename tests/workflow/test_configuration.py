@@ -34,11 +34,6 @@ def test_the_studies_of_the_project_are_right():
         assert load_any(root / "config" / f"{name}.yaml").name == name
 
 
-def test_the_thesis_has_72_tests():
-    study = load_any(Path(__file__).resolve().parents[2] / "config" / "thesis.yaml")
-    assert len(study.catalogue) * 3 * len(study.configurations) == 72
-
-
 @pytest.mark.parametrize(
     ("change", "words"),
     [

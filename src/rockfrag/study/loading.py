@@ -214,7 +214,7 @@ def _check_vertical(study: Study) -> None:
 
 
 def _check_measured_tests(study: Study, path: Path) -> None:
-    from rockfrag.shaketable.laboratory_table import read_measured
+    from rockfrag.shaketable.tests_table import read_measured
 
     known = list(study.specimens)
     for name in dict.fromkeys(read_measured(path)["object"]):
