@@ -345,9 +345,9 @@ class TestFdsn:
             def __init__(self, name):
                 assert name == "NCEDC"
 
-            def get_waveforms(self, *codes):
-                requests.append(codes)
-                start = codes[4]
+            def get_waveforms(self, **asked):
+                requests.append(tuple(asked.values()))
+                start = asked["starttime"]
                 return Stream(
                     [
                         Trace(
