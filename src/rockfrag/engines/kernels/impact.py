@@ -1,14 +1,7 @@
-"""Impacts: what the velocities are after contacts have closed.
+"""Impacts: what the velocities are after contacts have closed (``docs/derivation.md``, ``docs/restitution.md``).
 
-Momentum decides first: point impact, no bounce, no impulse at a pivot that leaves.  The momentum before is
-projected on the velocity fields after, M(new) ω⁺ = B(new, old) ω⁻ (``docs/derivation.md``; Housner, 1963;
-Spanos, Roussis and Politis, 2001).
-
-A measured restitution then says at which *rate* the closing contact comes off: ω1⁺ of the ground, ω2⁺ - ω1⁺ of the
-interface.  The laws for that rate have a file each in ``rockfrag.laws`` (``docs/restitution.md``); the rest is
-common to all: the momentum that no couple in the closing contact can change is conserved, the other
-contact opens or stays as that asks for, and a rate with which energy would grow gives way to the largest that
-does not.
+Momentum decides first, M(new) ω⁺ = B(new, old) ω⁻ (Housner, 1963; Spanos, Roussis and Politis, 2001); a measured
+restitution then says at which rate the closing contact comes off, as far as energy does not grow.
 """
 
 from rockfrag.engines.kernels.equations import kinetic_energy, metric, pivot, turn_between
