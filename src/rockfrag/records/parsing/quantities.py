@@ -5,17 +5,8 @@ import re
 from rockfrag.errors import InputError
 from rockfrag.units import GRAVITY
 
-TO_SI = {
-    "g": GRAVITY,
-    "g/10": GRAVITY / 10,
-    "%g": GRAVITY / 100,
-    "mg": GRAVITY / 1e3,
-    "ug": GRAVITY / 1e6,
-    "m/s2": 1.0,
-    "cm/s2": 0.01,
-    "mm/s2": 0.001,
-    "in/s2": 0.0254,
-}
+TO_SI = {"g": GRAVITY, "g/10": GRAVITY / 10, "%g": GRAVITY / 100, "mg": GRAVITY / 1e3}
+TO_SI |= {"ug": GRAVITY / 1e6, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "in/s2": 0.0254}
 """Factor from each unit of acceleration to m/s²."""
 
 ASKED_UNITS = ("g", "m/s2", "cm/s2", "gal", "mm/s2")
