@@ -52,10 +52,8 @@ def outcome_robustness(
         The ensemble, as in :func:`rockfrag.rocking.overturns`.
     perturbation
         Largest relative change [-], such as 1e-6.
-    copies
-        Number of copies.
-    seed
-        Seed of the draws.
+    copies, seed
+        Number of copies, and seed of the draws.
     **options
         As in :func:`rockfrag.rocking.overturns`, but for ``forces``; measured restitution, friction and start stay
         as they are.
@@ -175,10 +173,8 @@ def find_step_size_sensitive(
     ----------
     bodies, motions, dt, scales
         The ensemble, as in :func:`overturns`.
-    sample
-        Number of cases, drawn without repetition; all of them if there are fewer.
-    seed
-        Seed of the draw.
+    sample, seed
+        Number of cases, drawn without repetition (all of them if there are fewer), and seed of the draw.
     **options
         As in :func:`rockfrag.rocking.overturns`, but for ``forces``.
 
