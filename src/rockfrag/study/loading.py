@@ -37,12 +37,8 @@ from rockfrag.units import peak_warning
 from rockfrag.yaml_file import read_yaml
 
 OF_ONE_COMPONENT = (
-    "strong_part",
-    "bracketed_part",
-    "scale_to_pga",
-    "scale_to_pgv",
-    "scale_to_sa",
-    "scale_to_arias",
+    *("strong_part", "bracketed_part"),
+    *("scale_to_pga", "scale_to_pgv", "scale_to_sa", "scale_to_arias"),
 )
 """Steps that choose a part or a factor by the component itself."""
 
