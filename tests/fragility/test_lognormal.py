@@ -7,6 +7,7 @@ import statsmodels.api as sm
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
+from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.observations import name_and_unit, observations_from_table
 
@@ -99,6 +100,16 @@ def test_a_probability_that_falls_with_the_measure_gives_no_curve():
         fit = fit_lognormal(outcomes_of([0.1, 0.2, 0.3, 0.5, 0.6, 0.7], outcomes))
         assert np.isnan(fit.beta)
         assert "does not rise" in fit.method
+
+
+@pytest.mark.parametrize("rounding", (0.0, 1e-15))
+def test_tests_at_one_level_of_which_some_overturn_give_their_count_and_no_curve(rounding):
+    levels = 0.5 * (1 + rounding * np.arange(6))
+    found = fragility_of(outcomes_of(levels, [1, 0, 1, 0, 0, 0]))
+    assert np.isnan(found.fit.theta) and np.isnan(found.interval.theta).all()
+    assert found.fit.warnings == (
+        "2 of 6 tests overturned, all at the same PGA of 0.5 g: a fragility curve needs at least two levels.",
+    )
 
 
 def test_one_motion_and_repeated_rows_are_stated():

@@ -90,7 +90,7 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
 
     Where one amplitude lies inside every bracket the likelihood grows without end as β tends to zero; then θ is
     the middle of the common bracket and β its logarithmic width / √12, and the fit says so. Where no test
-    overturned there is no curve, only a bound.
+    overturned there is no curve, only a bound; nor is there one where all brackets are open and end at one amplitude.
     """
     low, high = _logs(brackets)
     curve, log_likelihood, case = lognormal.NO_CURVE, 0.0, ""
@@ -105,15 +105,16 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
         covariance = information * np.nan
         if np.isfinite(information).all():
             covariance = np.linalg.pinv(information, hermitian=True)
-        theta, beta, spread = lognormal.curve_parameters(coefficients, covariance)
-        if _fraction_a_point(low, high, weights)[0]:
-            method, case = "interval estimate (brackets overlap)", "overlap"
-            curve, log_likelihood = (theta, beta, lognormal.NO_COVARIANCE), float("nan")
+        if not np.isfinite(coefficients).all():
+            method, case = "none: one level of the measure", "one level"
         elif coefficients[1] < lognormal.LEAST_SLOPE:
             method, case = "none: no curve in the brackets", "flat"
         else:
+            curve = lognormal.curve_parameters(coefficients, covariance)
             method = "lognormal, interval- and right-censored maximum likelihood"
-            curve = theta, beta, spread
+            if _fraction_a_point(low, high, weights)[0]:
+                method, case = "interval estimate (brackets overlap)", "overlap"
+                curve, log_likelihood = (*curve[:2], lognormal.NO_COVARIANCE), float("nan")
     return lognormal.FragilityFit(
         *curve,
         log_likelihood,
@@ -211,7 +212,10 @@ def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, F
 
 
 def _common_bracket(low: Floats, high: Floats, weights: Floats) -> Floats:
-    """Return middle and width / √12 of the amplitudes that all brackets share."""
+    """Return middle and width / √12 of the amplitudes that all brackets share.
+
+    There is no curve where all are open and end at one amplitude: some are below it, some above, and any β will do.
+    """
     used = weights > 0
     left = np.where(used, low, -np.inf).max(axis=1)
     right = np.where(used, high, np.inf).min(axis=1)
@@ -220,7 +224,8 @@ def _common_bracket(low: Floats, high: Floats, weights: Floats) -> Floats:
     with np.errstate(invalid="ignore"):
         beta = np.maximum((right - left) / np.sqrt(12.0), 1e-6)
         result = np.column_stack([-0.5 * (left + right) / beta, 1.0 / beta])
-    result[~closed] = np.nan
+    one_level = (right - left < lognormal.ROUNDING) & ~(used & np.isfinite(high - low)).any(axis=1)
+    result[~closed | one_level] = np.nan
     result[np.isinf(right), 0] = -np.inf
     result[np.isinf(left), 0] = np.inf
     return np.asarray(result)

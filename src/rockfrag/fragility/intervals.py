@@ -15,7 +15,7 @@ from scipy import special, stats
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch, separated
-from rockfrag.fragility.lognormal import LEAST_SLOPE
+from rockfrag.fragility.lognormal import LEAST_SLOPE, ROUNDING
 from rockfrag.fragility.observations import Floats, Grouped, Observations, Over, cells, counts
 from rockfrag.short_repr import short_repr
 
@@ -118,6 +118,8 @@ def outcome_fitter(outcomes: Observations, over: Over) -> tuple[WeightedFit, int
             if chosen.any():
                 batch = fit_batch(design, y[chosen], m[chosen], penalised=penalised, start=start)
                 result[chosen] = batch.coefficients
+        if np.ptp(values) < ROUNDING:
+            result[:] = np.nan  # at one value no curve
         result[y.sum(axis=1) == 0, 0] = -np.inf
         result[y.sum(axis=1) == m.sum(axis=1), 0] = np.inf
         return result

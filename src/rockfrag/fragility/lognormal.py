@@ -14,13 +14,13 @@ from statsmodels.tools.sm_exceptions import (
     PerfectSeparationWarning,
 )
 
-from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import Link, fit_batch, log_terms, separated
 from rockfrag.fragility.observations import Floats, Observations, cells
 from rockfrag.keywords import named_keywords
 from rockfrag.sentences import sayer
 from rockfrag.short_repr import short_repr
 
+ROUNDING = 1e-9  # levels whose logarithms differ by less are the same
 LEAST_SLOPE = 1e-3
 """A curve with a smaller slope in ln IM (β above 1000) is flat: the measure predicts nothing."""
 
@@ -126,8 +126,8 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
     Where one value of the measure separates survival from overturning the likelihood has no maximum
     (θ is only known to an interval, β tends to zero); the fit is then penalised (Firth, 1993) and
     its ``method`` and ``warnings`` say so. Where all tests agree, θ and β are NaN and a warning
-    says what the data do tell. Where the probability does not rise with the measure there is no
-    curve either.
+    says what the data do tell. Where the probability does not rise with the measure, or all tests are
+    at one value of it, there is no curve either.
 
     Parameters
     ----------
@@ -157,6 +157,9 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
     if outcomes.n_overturned in (0, outcomes.n):
         method = "none: all tests agree"
         notes += SAY("agreeing", outcomes)
+    elif np.ptp(outcomes.log_im) < ROUNDING:
+        method = "none: one level of the measure"
+        notes += SAY("one_level", outcomes)
     else:
         method, coefficients, information = _estimated(outcomes, link, notes)
         log_p, log_q, *_ = log_terms(coefficients[0] + coefficients[1] * outcomes.log_im, link)
@@ -183,11 +186,6 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
 
 def _estimated(outcomes: Observations, link: Link, notes: list[str]) -> tuple[str, Floats, Floats]:
     """How the coefficients were found, these and their information; ``notes`` grow by what is to be known."""
-    if np.ptp(outcomes.log_im) == 0:
-        raise InputError(
-            f"all tests have the same {outcomes.name} of {outcomes.im[0]:g} {outcomes.unit}: a "
-            "curve needs at least two values of the intensity measure."
-        )
     if separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None])[0]:
         found = _penalised(outcomes, link)
         notes += SAY("separated", outcomes) if found[0][1] >= LEAST_SLOPE else []
