@@ -16,9 +16,10 @@ from pathlib import Path
 import psutil
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path.insert(0, str(ROOT))
 
-from end_to_end.browsers import BROWSERS, Chromium  # noqa: E402
+from tests.end_to_end.browsers import BROWSERS, Chromium  # noqa: E402
+
 from rockfrag.cli import main  # noqa: E402
 
 STAGES = ("first", "interval", "complete")
@@ -64,7 +65,8 @@ def app_seconds() -> dict[str, float]:
         pages = [each for each in family if "--type=renderer" in each.cmdline()]
         found["memory of the page [MB]"] = max(each.memory_info().rss for each in pages) / 1e6
         program = Path(sys.executable).with_name("rockfrag")
-        command = [program, "assess", *OBJECT, "--output", folder]
+        command: list[str | Path] = [program, "assess", *OBJECT, "--output", folder]
+        more: list[str]
         for name, more in (
             ("command", []),
             ("command, on a pedestal", ["--pedestal", "50cm", "90cm"]),

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import obspy
 
-from rockfrag.records.formats import at2
 from rockfrag.records.read import read_motion
 
 SAMPLES = 200_000
@@ -66,7 +65,7 @@ def measure() -> dict[str, float]:
         path = Path(folder) / "benchmark.AT2"
         write_record(path)
         readers = {read.__name__: read for read in NUMPY}
-        ours = {"at2.read": at2.read, "obspy.read": obspy.read, "read_motion": read_motion}
+        ours = {"obspy.read": obspy.read, "read_motion": read_motion}
         return {name: best_time(read, path) for name, read in (readers | ours).items()}
 
 

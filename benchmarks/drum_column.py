@@ -26,7 +26,8 @@ def domain(column: Column, accelerations: np.ndarray, durations: np.ndarray) -> 
     """Whether the column overturns, shape (durations, accelerations)."""
     motions = [drum_pulse(float(duration), DT) for duration in durations]
     scales = np.tile(accelerations * G, (len(motions), 1))
-    return overturns(column, motions, DT, scales, friction=[FRICTION]).overturned[0]
+    found = overturns(column, motions, DT, scales, friction=[FRICTION])
+    return np.asarray(found.overturned[0])
 
 
 def main(path: Path) -> None:

@@ -10,6 +10,7 @@ import os
 import platform
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,7 @@ from measures import (
     separately,
     start_up,
     thesis_bodies,
+    timed,
     two_thread_ratio,
     vertical_ratio,
     wall_seconds,
@@ -75,7 +77,7 @@ def machine() -> dict[str, object]:
     }
 
 
-def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
+def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, Any]]:
     """Histories per second and core, and wrong outcomes, of the package and its competitors.
 
     The package runs again and again between the histories of a competitor, so that a machine that changes its
@@ -89,28 +91,17 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
     rows = [row(name_of_kind, "rockfrag", set_.count, seconds, wrong, set_.count / seconds)]
     if kind == "lone":
         few = cases("lone", 300 if quick else 2000)
-        outcomes: list[np.ndarray] = []
-        seconds = cpu_seconds(
-            lambda: outcomes.append(numpy_lone(few.bodies, few.accelerations, few.scales, few.dt)),
-            1,
-        )
-        wrong = int((outcomes[0] != converged(few)).sum())
+        seconds, found = timed(numpy_lone, few.bodies, few.accelerations, few.scales, few.dt)
+        wrong = int((found != converged(few)).sum())
         own = set_.count / cpu_seconds(lambda: all_cases(set_))
         rows.append(
-            row(
-                name_of_kind,
-                "numpy, no contact event location",
-                few.count,
-                seconds,
-                wrong,
-                own,
-            )
+            row(name_of_kind, "numpy, no contact event location", few.count, seconds, wrong, own)
         )
     scipy_outcome = scipy_lone if kind == "lone" else scipy_stack
     count = 3 if quick else 20
     competitors: list[tuple[str, Callable[..., bool], int]] = [
         (BY_CONTACT_EVENT, scipy_outcome, count),
-        (BY_SAMPLE, lambda *a: scipy_outcome(*a, by_sample=True), count),
+        (BY_SAMPLE, partial(scipy_outcome, by_sample=True), count),
     ]
     try:
         import mujoco  # noqa: F401
@@ -120,7 +111,7 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
         count = 5 if quick else 60
         competitors += [
             ("MuJoCo 1 ms, stiffest contacts", mujoco_outcome, count),
-            ("MuJoCo 1 ms, default contacts", lambda *a: mujoco_outcome(*a, stiff=False), count),
+            ("MuJoCo 1 ms, default contacts", partial(mujoco_outcome, stiff=False), count),
         ]
     for name, outcome, count in competitors:
         wrong, seconds, runs, own_seconds = 0, 0.0, 0, 0.0
@@ -128,16 +119,14 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
             if n % max(1, count // 10) == 0:
                 own_seconds += cpu_seconds(lambda: all_cases(set_), 1)
                 runs += 1
-            found: list[bool] = []
-            seconds += cpu_seconds(
-                lambda v=outcome, b=body, a=values, f=found: f.append(v(b, a, set_.dt)), 1
-            )
-            wrong += found[0] != reference[at]
+            once, found = timed(outcome, body, values, set_.dt)
+            seconds += once
+            wrong += found != reference[at]
         rows.append(row(name_of_kind, name, count, seconds, wrong, runs * set_.count / own_seconds))
     return rows
 
 
-def friction_rows(kind: str, whole: Cases, quick: bool) -> list[dict[str, object]]:
+def friction_rows(kind: str, whole: Cases, quick: bool) -> list[dict[str, Any]]:
     """Rows of bodies that may slide, with the same friction at every interface: the package and MuJoCo.
 
     Each body has its own coefficient, from 0.2 to 0.8.  Outcomes are held against those at a tenth of the step.
@@ -167,14 +156,9 @@ def friction_rows(kind: str, whole: Cases, quick: bool) -> list[dict[str, object
         if n % max(1, count // 4) == 0:
             ours += cpu_seconds(outcomes, 1)
             runs += 1
-        found: list[bool] = []
-        theirs += cpu_seconds(
-            lambda b=body, a=values, f=found, mu=mus[at[0]]: f.append(
-                mujoco_outcome(b, a, set_.dt, friction=mu)
-            ),
-            1,
-        )
-        wrong += found[0] != finest[at]
+        once, found = timed(mujoco_outcome, body, values, set_.dt, friction=mus[at[0]])
+        theirs += once
+        wrong += found != finest[at]
     own = runs * set_.count / ours
     rows.append(row(name, f"{SLIDING}, MuJoCo 1 ms", count, theirs, wrong, own))
     return rows
@@ -182,7 +166,7 @@ def friction_rows(kind: str, whole: Cases, quick: bool) -> list[dict[str, object
 
 def row(
     bodies: str, name: str, count: int, seconds: float, wrong: int, own: float
-) -> dict[str, object]:
+) -> dict[str, Any]:
     """Row of a program; ``own``: histories per second of the package meanwhile."""
     made = {
         "bodies": bodies, "program": name, "histories": count,
@@ -199,7 +183,7 @@ def more(base: Cases, times: int) -> Cases:
     return Cases(base.bodies, base.accelerations, scales * np.linspace(0.95, 1.05, scales.shape[1]))
 
 
-def scaling(kind: str, largest: int, speed: float) -> list[dict[str, object]]:
+def scaling(kind: str, largest: int, speed: float) -> list[dict[str, Any]]:
     """Cost against the number of cases, as far as three minutes go."""
     rows = []
     for count in (10**n for n in range(2, 7)):
@@ -207,7 +191,7 @@ def scaling(kind: str, largest: int, speed: float) -> list[dict[str, object]]:
             break
         base = cases(kind, min(count, 10_000))
         set_ = more(base, max(1, count // base.count))
-        seconds = cpu_seconds(lambda s=set_: all_cases(s), 3 if count < 10**5 else 1)
+        seconds = cpu_seconds(partial(all_cases, set_), 3 if count < 10**5 else 1)
         rows.append({"bodies": NAMES[kind], "histories": set_.count, "seconds": seconds})
     return rows
 
@@ -233,7 +217,7 @@ def wide_study(folder: Path) -> float:
     """Wall time of 100 components × 3 towers × P/NP × 200 amplitudes × 20 samples of the bodies."""
     rng = np.random.default_rng(9)
     bodies: list[Body] = []
-    restitution: list[object] = []
+    restitution: list[float | None] = []
     for body in thesis_bodies():
         for _ in range(20):
             grow, e = rng.normal(1.0, 0.01), float(rng.uniform(0.8, 0.95))
@@ -255,7 +239,7 @@ def wide_study(folder: Path) -> float:
     )  # fmt: skip
 
 
-def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[str, object]]:
+def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[str, Any]]:
     """Rows of the targets: what is asked, what was measured, whether it is met."""
     times = table[table.bodies == NAMES[kind]].set_index("program")["rockfrag_times_as_fast"]
     rows: list[tuple[str, str, float, bool]] = []
@@ -312,7 +296,7 @@ def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[
     return [{"bodies": NAMES[kind], **dict(zip(columns, values, strict=True))} for values in rows]
 
 
-def reach_of_columns(table: pd.DataFrame) -> list[dict[str, object]]:
+def reach_of_columns(table: pd.DataFrame) -> list[dict[str, Any]]:
     """Rows of the targets of columns: three bodies beside MuJoCo; eight are stated in the table."""
     beside = table[(table.bodies == "three blocks") & (table.program == f"{SLIDING}, MuJoCo 1 ms")]
     return [
@@ -338,9 +322,9 @@ def summary(about: dict[str, Any], programs: pd.DataFrame, goals: pd.DataFrame) 
         "|---|---|---:|---:|---:|---:|",
     ]
     lines += [
-        f"| {r.bodies} | {r.program} | {r.histories} | {r.histories_per_s_core:.4g} "
-        f"| {r.rockfrag_times_as_fast:,.0f} | {100 * r.wrong_fraction:.2f} % |"
-        for r in programs.itertuples()
+        f"| {r['bodies']} | {r['program']} | {r['histories']} | {r['histories_per_s_core']:.4g} "
+        f"| {r['rockfrag_times_as_fast']:,.0f} | {100 * r['wrong_fraction']:.2f} % |"
+        for r in programs.to_dict("records")
     ]
     lines += ["", "| bodies | what | target | measured | |", "|---|---|---|---:|---|"]
     lines += [
@@ -437,4 +421,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

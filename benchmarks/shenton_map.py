@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
@@ -41,7 +42,7 @@ def draw(path: Path, block: Block) -> None:
     figure, axes = plt.subplots(figsize=(5.2, 4.2), layout="constrained")
     axes.pcolormesh(frictions, levels, found, cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5)
     ratio = block.b / block.h
-    line = {"color": "black", "linewidth": 1.2}
+    line: dict[str, Any] = {"color": "black", "linewidth": 1.2}
     axes.plot([0, ratio], [0, ratio], **line)
     axes.plot([ratio, 1.0], [ratio, ratio], **line)
     axes.plot([ratio, ratio], [ratio, 1.6], **line)

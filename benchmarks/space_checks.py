@@ -3,8 +3,10 @@
 import math
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from rockfrag import Block, simulate
 from rockfrag.engines.spatial.outcome import history_table, run_case
@@ -21,14 +23,13 @@ from rockfrag.figure_style import (
 
 # what the checks measure lies with the tests
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from tests.engines.spatial import test_physics as checks
+from tests.engines.spatial import checks
 from tests.engines.spatial.samples import DT, box
-from tests.engines.spatial.test_against_stepping import LEVELS, compare
 
-DOT = {"ls": "", "marker": "o", "ms": 3.5, "mfc": "none"}
+DOT: dict[str, Any] = {"ls": "", "marker": "o", "ms": 3.5, "mfc": "none"}
 
 
-def plane(axes):
+def plane(axes: Axes) -> None:
     """Check 1: the tilt of a box along an axis of symmetry beside the planar block's."""
     width, depth, height, motion = checks.planar_case(np.random.default_rng(11))
     _, history = run_case(box(width, depth, height), motion, DT, samples=len(motion))
@@ -41,7 +42,7 @@ def plane(axes):
     axes.legend()
 
 
-def vertex(axes):
+def vertex(axes: Axes) -> None:
     """Check 2: drift of energy and vertical angular momentum about a fixed vertex."""
     energies, momenta, _ = checks.about_a_vertex()
     time = DT * np.arange(len(energies))
@@ -51,10 +52,10 @@ def vertex(axes):
     axes.legend()
 
 
-def lifting(axes):
+def lifting(axes: Axes) -> None:
     """Check 3: uplift by direction."""
     angles = np.linspace(0, 90, 19)
-    before, after, limit = np.array([checks.uplift(angle) for angle in angles]).T
+    before, after, limit, _ = np.array([checks.uplift(angle) for angle in angles]).T
     axes.plot(angles, limit, color=BLACK, lw=0.8, label="formula")
     axes.plot(angles, (before + after) / 2, color=BLUE, label="engine", **DOT)
     axes.set(
@@ -63,17 +64,17 @@ def lifting(axes):
     axes.legend()
 
 
-def wobbles(axes):
+def wobbles(axes: Axes) -> None:
     """Check 4: rate of a wobble with the centre at rest."""
     tilts = np.linspace(0.04, 0.32, 60)
     axes.plot(tilts, [checks.wobbling(t)[2] for t in tilts], color=BLACK, lw=0.8, label="formula")
-    tilts = [0.05, 0.1, 0.2, 0.3]
-    axes.plot(tilts, [checks.wobble(t)[2] for t in tilts], color=BLUE, label="engine", **DOT)
+    few = [0.05, 0.1, 0.2, 0.3]
+    axes.plot(few, [checks.wobble(t)[2] for t in few], color=BLUE, label="engine", **DOT)
     axes.set(xlabel="Tilt [rad]", ylabel="Rate [rad/s]", title="4  Wobble of a cylinder")
     axes.legend()
 
 
-def passes(axes):
+def passes(axes: Axes) -> None:
     """Check 5: turn of the contact in a pass near flat."""
     for disk, name, limit in ((True, "disk", math.pi * 5**0.5), (False, "cylinder", 5.1758)):
         speeds, theirs = zip(*(case[1:] for case in checks.PASSES if case[0] == disk), strict=True)
@@ -92,7 +93,7 @@ def passes(axes):
     axes.legend(loc="center left")
 
 
-def losses(axes):
+def losses(axes: Axes) -> None:
     """Check 6: loss of a polygon per vertex."""
     _, lost = checks.polygons()
     sides = np.array(checks.SIDES)
@@ -105,18 +106,20 @@ def losses(axes):
     axes.legend()
 
 
-def fractions(axes):
+def fractions(axes: Axes) -> None:
     """Check 7: fractions overturned beside the plain time stepping."""
-    found, expected = compare(8, 4, 1)
-    axes.plot(LEVELS, expected.mean(axis=(0, 1)), color=ORANGE, lw=2.2, label="plain stepping")
-    axes.plot(LEVELS, found.mean(axis=(0, 1)), color=BLUE, lw=0.8, label="engine")
+    found, expected = checks.by_stepping(8, 4, 1)
+    axes.plot(
+        checks.LEVELS, expected.mean(axis=(0, 1)), color=ORANGE, lw=2.2, label="plain stepping"
+    )
+    axes.plot(checks.LEVELS, found.mean(axis=(0, 1)), color=BLUE, lw=0.8, label="engine")
     axes.set(
         xlabel="Peak over uplift [-]", ylabel="Fraction overturned", title="7  8 boxes × 4 pairs"
     )
     axes.legend()
 
 
-def cylinders(axes):
+def cylinders(axes: Axes) -> None:
     """Check 8: solid cylinders by slenderness and size."""
     rests, falls, peak = checks.solid_cylinders(0)
     for i, (half, colour) in enumerate(
@@ -130,7 +133,7 @@ def cylinders(axes):
     axes.legend(loc="upper right")
 
 
-def main(paths):
+def main(paths: list[str]) -> None:
     """Draw all checks into files."""
     with figure_style():
         figure = new_figure(PAGE_WIDTH, 8.6)

@@ -144,7 +144,6 @@ def test_a_bad_value_is_named_with_its_row_and_column(column, row, value, words)
         (STRIPES.assign(overturned=41), "pga_g", "fraction between 0 and 1"),
         (STRIPES.iloc[:0], "pga_g", "no row"),
         (STRIPES, "pgv_cm_s", "no column 'pgv_cm_s'"),
-        (pd.DataFrame({"pga_g": [0.3], "overturned": [1], "trials": 2}), "pga_g", "two values"),
     ],
 )
 def test_counts_outside_zero_to_trials_and_poor_tables_are_refused(table, column, words):

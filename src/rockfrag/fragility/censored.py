@@ -89,8 +89,9 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
     """Fit θ and β to bracketed amplitudes by maximum likelihood.
 
     Where one amplitude lies inside every bracket the likelihood grows without end as β tends to zero; then θ is
-    the middle of the common bracket and β its logarithmic width / √12, and the fit says so. Where no test
-    overturned there is no curve, only a bound; nor is there one where all brackets are open and end at one amplitude.
+    the middle of the common bracket and β its logarithmic width / √12, and the fit says so. There is no
+    curve, only a bound, where no test overturned; nor is there one where all brackets are open and end at one
+    amplitude.
     """
     low, high = _logs(brackets)
     curve, log_likelihood, case = lognormal.NO_CURVE, 0.0, ""
@@ -214,7 +215,7 @@ def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, F
 def _common_bracket(low: Floats, high: Floats, weights: Floats) -> Floats:
     """Return middle and width / √12 of the amplitudes that all brackets share.
 
-    There is no curve where all are open and end at one amplitude: some are below it, some above, and any β will do.
+    There is no curve where all are open and end at one amplitude: some are below, some above, and any β will do.
     """
     used = weights > 0
     left = np.where(used, low, -np.inf).max(axis=1)
