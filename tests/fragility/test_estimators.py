@@ -117,6 +117,14 @@ def test_brackets_without_resolution_or_without_overturning_are_stated():
             brackets_from_table(pd.DataFrame({"lower_g": [low], "upper_g": [high]}), motion=None)
 
 
+def test_open_brackets_that_end_at_one_amplitude_give_no_curve():
+    """Some capacities are below it and some above, with any dispersion."""
+    tests = pd.DataFrame({"lower_g": [0.0, 0.4, 0.4], "upper_g": [0.4, np.inf, np.inf]})
+    found = fit_step_tests(tests, motion=None, earthquake=None)
+    assert np.isnan([found.fit.theta, found.fit.beta, *found.interval.theta]).all()
+    assert "one level, 0.4 g, where 1 overturned" in found.fit.warnings[0]
+
+
 def test_ida_curves_with_survival_windows_separate_first_from_always():
     levels = np.exp(np.arange(np.log(0.1), np.log(1.5), 0.05))
     first = capacities(300, 9)

@@ -108,7 +108,7 @@ def test_tests_at_one_level_of_which_some_overturn_give_their_count_and_no_curve
     found = fragility_of(outcomes_of(levels, [1, 0, 1, 0, 0, 0]))
     assert np.isnan(found.fit.theta) and np.isnan(found.interval.theta).all()
     assert found.fit.warnings == (
-        "2 of 6 tests overturned, all at the same PGA of 0.5 g: a fragility curve needs at least two levels.",
+        "All 6 tests are at one PGA, 0.5 g, where 2 overturned: a fragility curve needs at least two levels.",
     )
 
 
