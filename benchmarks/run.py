@@ -23,7 +23,7 @@ from rockfrag.figure_style import save_figure
 from rockfrag.files import write_table, write_text
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.parquet import stream_overturns
-from rockfrag.rocking.step_sensitivity import find_step_size_sensitive
+from rockfrag.rocking.robustness import find_step_size_sensitive
 from rockfrag.system.blocks import Block, Body, Stack
 
 # the random cases and the other programs lie with the oracles of the tests

@@ -19,7 +19,7 @@ from rockfrag.records.sources.wheel import fetch_wheel
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
 
-WHOLE_STUDIES = ("workflow", "end_to_end", "test_readme.py")
+WHOLE_STUDIES = ("workflow", "end_to_end", "test_documentation.py")
 """What runs whole studies, in the tests' folder."""
 
 

@@ -104,9 +104,7 @@ def test_a_column_is_given_from_above(simulated, record, capsys):
         (["check-config", "absent.yaml"], "absent.yaml"),
     ],
 )
-def test_what_cannot_be_used_is_one_sentence_and_status_2(
-    arguments: list[str], word: str, capsys: pytest.CaptureFixture[str]
-):
+def test_what_cannot_be_used_is_one_sentence_and_status_2(arguments, word, capsys):
     assert main(arguments) == 2
     shown = capsys.readouterr()
     assert word in shown.err

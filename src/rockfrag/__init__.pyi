@@ -29,7 +29,7 @@ from .rocking.ensemble import overturns as overturns
 from .rocking.measured_restitution import MeasuredRestitution as MeasuredRestitution
 from .rocking.simulation import simulate as simulate
 from .rocking.spectra import rocking_spectrum as rocking_spectrum
-from .rocking.step_sensitivity import find_step_size_sensitive as find_step_size_sensitive
+from .rocking.robustness import find_step_size_sensitive as find_step_size_sensitive
 from .rocking.robustness import outcome_robustness as outcome_robustness
 from .rocking.thresholds import Thresholds as Thresholds, find_thresholds as find_thresholds
 from .rocking.worst_direction import worst_direction as worst_direction

@@ -25,9 +25,10 @@ def named_keywords(function: Called) -> Called:
     def checked(*arguments: Any, **keywords: Any) -> Any:
         for name in keywords:
             if name not in names:
-                raise UnknownKeyword(
-                    _answer(function.__qualname__.removesuffix(".__init__"), name, known)
-                )
+                near = difflib.get_close_matches(name, known, n=1)
+                meant = f"did you mean {near[0]}?" if near else f"it has {', '.join(known)}."
+                called = function.__qualname__.removesuffix(".__init__")
+                raise UnknownKeyword(f"{called}: no argument is called {name}; {meant}")
         return function(*arguments, **keywords)
 
     return cast(Called, checked)
@@ -48,12 +49,6 @@ def _names_of(function: Callable[..., Any]) -> tuple[str, ...]:
         elif name != "self":
             names.append(name)
     return tuple(names)
-
-
-def _answer(function: str, name: str, known: tuple[str, ...]) -> str:
-    near = difflib.get_close_matches(name, known, n=1)
-    meant = f"did you mean {near[0]}?" if near else f"it has {', '.join(known)}."
-    return f"{function}: no argument is called {name}; {meant}"
 
 
 RENAMED = {

@@ -18,27 +18,13 @@ Standard gravity, which other programs mean by g, is 9.80665 m/s².
 
 CENTIMETRES_PER_METRE = 100.0
 
-_LENGTHS = {
-    "m": (1.0, 1.0),
-    "cm": (1.0, 100.0),
-    "mm": (1.0, 1000.0),
-    "in": (0.0254, 1.0),
-    "ft": (0.3048, 1.0),
-}
+_LENGTHS = {"m": (1.0, 1.0), "cm": (1.0, 100.0), "mm": (1.0, 1000.0)}
+_LENGTHS |= {"in": (0.0254, 1.0), "ft": (0.3048, 1.0)}
 _MASSES = {"kg": (1.0, 1.0), "g": (1.0, 1000.0), "t": (1000.0, 1.0), "lb": (0.45359237, 1.0)}
-_INERTIAS = {
-    "kg_m2": (1.0, 1.0),
-    "kg_cm2": (1.0, 1e4),
-    "g_cm2": (1.0, 1e7),
-    "t_m2": (1000.0, 1.0),
-    "lb_ft2": (0.45359237 * 0.3048**2, 1.0),
-}
-_ACCELERATIONS = {
-    "m_s2": (1.0, 1.0),
-    "cm_s2": (1.0, 100.0),
-    "gal": (1.0, 100.0),
-    "g": (GRAVITY, 1.0),
-}
+_INERTIAS = {"kg_m2": (1.0, 1.0), "kg_cm2": (1.0, 1e4), "g_cm2": (1.0, 1e7)}
+_INERTIAS |= {"t_m2": (1000.0, 1.0), "lb_ft2": (0.45359237 * 0.3048**2, 1.0)}
+_ACCELERATIONS = {"m_s2": (1.0, 1.0), "cm_s2": (1.0, 100.0), "gal": (1.0, 100.0)}
+_ACCELERATIONS |= {"g": (GRAVITY, 1.0)}
 _VELOCITIES = {"m_s": (1.0, 1.0), "cm_s": (1.0, 100.0), "mm_s": (1.0, 1000.0)}
 _TIMES = {"s": (1.0, 1.0), "ms": (1.0, 1000.0)}
 DIMENSIONS: Mapping[str, Mapping[str, tuple[float, float]]] = {

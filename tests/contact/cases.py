@@ -1,5 +1,6 @@
 """Bodies and motions of the tests with friction, integrated by the planar kernels alone."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from rockfrag.engines.planar.records import posed, system_record, working_memory
 from rockfrag.rocking.inputs import ground_motion
 from rockfrag.rocking.options import system_of
 from rockfrag.system import Block, Body, Column, Stack, System, as_system
+from rockfrag.system.contact import Contact, checked_friction
 from rockfrag.units import GRAVITY
 
 STILL = np.zeros(50)
@@ -116,11 +118,6 @@ def random_column(rng: np.random.Generator, bodies: int) -> Column:
 
 def with_contacts(thing, frictions, laws=None):
     """Give the contacts of a system their friction and laws."""
-    from dataclasses import replace
-
-    from rockfrag.system import Contact
-    from rockfrag.system.contact import checked_friction
-
     system = as_system(thing)
     contacts = []
     for k, contact in enumerate(system.contacts):

@@ -10,31 +10,9 @@ import tempfile
 import time
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 import pytest
-
-
-class Browser(Protocol):
-    """What the tests ask of a browser."""
-
-    name: str
-    console: list[str]
-
-    def open(
-        self, page: Path, width: int = 1400, height: int = 1000, *, dark: bool = False
-    ) -> None:
-        """Open a file in a window of so many pixels."""
-
-    def run(self, script: str) -> Any:
-        """Return what an expression, or a promise of it, comes to in the page."""
-
-    def press(self, *keys: str) -> None:
-        """Press keys, by the names in ``KEYS``, or type a text into what has the focus."""
-
-    def picture(self) -> bytes:
-        """Return what is seen, as PNG."""
-
 
 KEYS = {"Tab": (9, "", "\ue004"), "Enter": (13, "\r", "\ue007"), "Space": (32, " ", " ")}
 """Keys by name: their number and text in Chromium, and their letter in WebDriver."""
@@ -130,9 +108,6 @@ class Chromium:
             about = {"key": text or key, "code": key, "windowsVirtualKeyCode": number}
             self._ask("Input.dispatchKeyEvent", type="keyDown", text=text, **about)
             self._ask("Input.dispatchKeyEvent", type="keyUp", **about)
-
-    def picture(self) -> bytes:
-        return base64.b64decode(self._ask("Page.captureScreenshot")["data"])
 
     def printed(self) -> bytes:
         """Return the page as it is printed, as PDF."""
@@ -255,9 +230,6 @@ class Firefox:
             actions=[{"type": "key", "id": "keyboard", "actions": list(both)}],
         )
 
-    def picture(self) -> bytes:
-        return base64.b64decode(self._ask("WebDriver:TakeScreenshot", full=False)["value"])
-
     def _in_chrome(self, script: str, *arguments: Any) -> Any:
         self._ask("Marionette:SetContext", value="chrome")
         try:
@@ -291,6 +263,10 @@ class Firefox:
         if not part:
             raise AssertionError("Firefox ended")
         self._buffer += part
+
+
+Browser = Chromium | Firefox
+"""A browser opens a page in a window of so many pixels, runs expressions or promises in it, and presses keys."""
 
 
 def _connected(port: int) -> socket.socket:

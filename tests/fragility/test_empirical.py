@@ -13,7 +13,9 @@ from rockfrag.fragility.empirical import (
     wilson_interval,
 )
 from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
-from rockfrag.fragility.observations import Observations, observations_from_table
+from rockfrag.fragility.observations import observations_from_table
+
+from .made import ida_of
 
 
 def ida(fell, amplitudes=None, motion="m"):
@@ -86,14 +88,10 @@ RNG = 20261122
 
 def swept(log_capacity, earthquakes, levels):
     """Outcomes of motions with one capacity each at common levels."""
-    motions = np.array([f"m{k}" for k in range(log_capacity.size)], dtype=object)
-    fell = np.log(levels)[None, :] > log_capacity[:, None]
-    return Observations(
-        np.tile(levels, motions.size),
-        fell.ravel().astype(float),
-        np.ones(fell.size),
-        np.repeat(motions, levels.size),
-        np.repeat(np.array([f"e{k}" for k in earthquakes], dtype=object), levels.size),
+    table = ida_of(np.exp(log_capacity), levels)
+    labels = [f"e{k}" for k in np.repeat(earthquakes, levels.size)]
+    return observations_from_table(
+        table.assign(earthquake=labels), "amplitude_g", earthquake="earthquake"
     )
 
 

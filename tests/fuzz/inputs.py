@@ -12,7 +12,7 @@ import yaml
 from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.fragility.tests_file import read_tests
 from rockfrag.records.catalogue import read_catalogue
-from rockfrag.shaketable.laboratory_table import read_measured
+from rockfrag.shaketable.tests_table import read_measured
 from rockfrag.study.configurations import read_configurations, read_specimens
 from rockfrag.study.loading import load_any
 

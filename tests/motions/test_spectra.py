@@ -165,9 +165,3 @@ def test_predominant_period_is_that_of_the_whole_spectrum(motion):
 def test_housner_intensity_is_the_area_below_the_spectrum(motion):
     spectrum = m.response_spectrum(motion, HOUSNER_PERIODS, 0.05).pseudo_velocity
     assert housner_and_average(motion)[0] == np.trapezoid(spectrum, HOUSNER_PERIODS)
-
-
-def test_negative_damping_is_refused(motion):
-    with pytest.raises(InputError, match="damping"):
-        peak_displacements(motion, HOUSNER_PERIODS, -0.1)
-    assert math.isfinite(housner_and_average(motion, 0.0)[0])

@@ -67,17 +67,6 @@ def test_a_truncated_file_gives_an_error_or_all_whole_samples(built, tmp_path, d
 
 @QUICK
 @given(data=st.data())
-def test_flipped_bytes_give_an_error_or_finite_samples(built, tmp_path, data):
-    content = bytearray(built.path.read_bytes())
-    for _ in range(data.draw(st.integers(1, 4))):
-        content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
-    path = tmp_path / built.path.name
-    path.write_bytes(bytes(content))
-    outcome(path, built.dt_to_give)
-
-
-@QUICK
-@given(data=st.data())
 def test_a_blank_line_anywhere_is_skipped_or_an_error(built, tmp_path, data):
     lines = lines_of(built)
     lines.insert(data.draw(st.integers(0, len(lines))), b"\n")

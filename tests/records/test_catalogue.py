@@ -271,14 +271,6 @@ def test_semicolons_and_decimal_commas_are_understood(tmp_path, builders):
     assert motion.provenance[-1] == {"step": "scale", "factor": 1.5}
 
 
-def test_a_wrong_time_column_is_replaced_by_the_interval_of_the_catalogue(tmp_path):
-    (tmp_path / "a.txt").write_text("".join(f"{i * 0.003:.3f} {i % 3}\n" for i in range(40)))
-    path = write_catalogue(tmp_path, ROW | {"dt": "0.0025"})
-    (motion,) = load_motions(path)
-    assert motion.dt == 0.0025
-    assert motion.provenance[1]["step"] == "replace time column"
-
-
 def test_all_that_is_wrong_is_told_at_once(tmp_path):
     rows = [ROW | {"name": f"N{i}", "unit": "furlong"} for i in range(40)]
     with pytest.raises(
@@ -353,9 +345,9 @@ class TestFdsn:
             def __init__(self, name):
                 assert name == "NCEDC"
 
-            def get_waveforms(self, *codes):
-                requests.append(codes)
-                start = codes[4]
+            def get_waveforms(self, **asked):
+                requests.append(tuple(asked.values()))
+                start = asked["starttime"]
                 return Stream(
                     [
                         Trace(

@@ -2,7 +2,6 @@
 
 import os
 import re
-import zipfile
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 from rockfrag.records.peer_search import read_search_results
 
-from .built_records import peer_download, wave
+from .built_records import pack, peer_download, wave
 
 
 def write(path, seed, dt=0.01):
@@ -67,15 +66,10 @@ def test_components_of_one_file_have_its_vertical(tmp_path, builders):
     assert draft.table["magnitude"].tolist() == [7.82, 7.82]
 
 
-@pytest.mark.parametrize("packed", [False, True])
-def test_a_download_of_peer_is_read_unpacked_or_packed(tmp_path, packed):
+def test_a_packed_download_of_peer_is_read(tmp_path):
     folder = peer_download(tmp_path / "download", 5)
-    path = folder
-    if packed:
-        path = tmp_path / "download.zip"
-        with zipfile.ZipFile(path, "w") as archive:
-            for file in folder.iterdir():
-                archive.write(file, f"PEER/{file.name}")
+    members = {f"PEER/{file.name}": file.read_bytes() for file in folder.iterdir()}
+    path = pack(tmp_path / "download.zip", members)
     catalogue = tmp_path / "motions.csv"
     assert main(["catalogue", str(path), "--output", str(catalogue)]) == 0
     table = read_catalogue(catalogue)
@@ -154,10 +148,9 @@ def test_a_record_beside_its_archives_is_there_once(tmp_path):
     """Whoever unpacks beside the archive does not count every record twice."""
     for seed, name in enumerate(("A-CLS000", "A-CLS090")):
         write(tmp_path / f"{name}.txt", seed)
+    members = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
     for packed in ("inner.zip", "other.zip"):
-        with zipfile.ZipFile(tmp_path / packed, "w") as archive:
-            for name in ("A-CLS000", "A-CLS090"):
-                archive.write(tmp_path / f"{name}.txt", f"{name}.txt")
+        pack(tmp_path / packed, members)
     draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
     assert partners(draft) == {"A-CLS000.txt": "A-CLS090.txt", "A-CLS090.txt": "A-CLS000.txt"}
     assert "inner.zip#A-CLS000.txt: the same record as A-CLS000.txt; left out" in draft.warnings
@@ -218,8 +211,7 @@ def test_messages_name_the_options_of_the_command_line(tmp_path, capsys, builder
 def test_names_that_no_table_shows_are_replaced_or_refused(tmp_path, capsys):
     """A stranger's archive does not write to the terminal, nor line feeds into a catalogue."""
     write(tmp_path / "a.txt", 1)
-    with zipfile.ZipFile(tmp_path / "h.zip", "w") as archive:
-        archive.write(tmp_path / "a.txt", "\x1b[31mred\nline.txt")
+    pack(tmp_path / "h.zip", {"\x1b[31mred\nline.txt": (tmp_path / "a.txt").read_bytes()})
     (tmp_path / "a.txt").unlink()
     output = tmp_path / "cat.csv"
     assert main(["info", str(tmp_path / "h.zip"), "--unit", "g"]) == 0

@@ -7,7 +7,7 @@ from obspy import Stream, Trace
 from rockfrag.errors import InputError
 from rockfrag.records.parsing.quantities import TO_SI
 from rockfrag.records.parsing.text_file import NotAcceleration
-from rockfrag.records.read import FORMATS, read_motion, read_record
+from rockfrag.records.read import read_motion, read_record
 from rockfrag.units import GRAVITY
 
 N = 400
@@ -285,11 +285,6 @@ def test_seismic_handler_is_read_by_obspy(write):
         0.05,
         N,
     )
-
-
-def test_exactly_one_format_claims_each_layout(write):
-    for text in (column(), timed(), in_rows(5), f"{N} 0.01\n{in_rows(8)}"):
-        assert len([f for f in FORMATS if f.is_format(str(write(text)))]) == 1
 
 
 def test_a_peak_above_3_g_by_the_users_unit_is_refused_unless_forced(write):

@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.rocking import Block, Stack, simulate
+from rockfrag import Block, Stack, simulate
 from rockfrag.rocking.ensemble import overturns
 
 from ..oracle.competitors import mujoco_outcome, numpy_lone, scipy_lone, scipy_stack

@@ -101,7 +101,7 @@ def test_a_kernel_is_compiled_once_whatever_number_is_written_out():
 UNKNOWN = """
 import numba, numpy as np
 numba.__version__ = "9.9.9"
-from rockfrag.rocking import Block, overturns
+from rockfrag import Block, overturns
 from rockfrag.engines.kernels import jit
 from rockfrag.engines.kernels.by_reference import by_reference
 assert not jit.KNOWN

@@ -143,7 +143,7 @@ def test_kernels_compute_the_same_bits_as_python():
 HISTORIES = """
 import hashlib
 import numpy as np
-from rockfrag.rocking import Block, Stack, overturns, simulate
+from rockfrag import Block, Stack, overturns, simulate
 
 block = Block(0.3, 1.2, 200.0, cg_offset=0.01, lean=0.005)
 bodies = [block, Stack(Block(0.4, 0.3, 100.0, lean=0.01), block, offset=0.01)]

@@ -7,8 +7,7 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.ensemble import overturned_cases, overturns, prepared
-from rockfrag.rocking.robustness import outcome_robustness
-from rockfrag.rocking.step_sensitivity import find_step_size_sensitive
+from rockfrag.rocking.robustness import find_step_size_sensitive, outcome_robustness
 from rockfrag.rocking.thresholds import find_thresholds
 from rockfrag.system.blocks import Block, Stack
 

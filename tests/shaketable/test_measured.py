@@ -10,9 +10,8 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.censored import brackets_from_table, fit_brackets
 from rockfrag.pedestal.paired_tests import pair_tests
 from rockfrag.shaketable.definitions import tests_from_ida as read_ida
-from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
-from rockfrag.shaketable.tests_table import COLUMNS
+from rockfrag.shaketable.tests_table import COLUMNS, read_measured
 
 from .conftest import ida_table
 

@@ -18,7 +18,6 @@ from rockfrag_thesis.hypotheses import (
 from rockfrag_thesis.hypotheses.contradictions import orderings_of_floor_means
 from rockfrag_thesis.hypotheses.earthquakes import rank_correlation
 from rockfrag_thesis.hypotheses.hypothesis import Kind, outcome
-from rockfrag_thesis.hypotheses.orders import ORDERS, margin
 from rockfrag_thesis.hypotheses.slenderness import stack_slenderness
 from rockfrag_thesis.sections.hypotheses import hypotheses_html
 
@@ -419,11 +418,6 @@ def test_there_are_58_statements_each_with_text_source_rule_and_error_rate():
         assert item.number == number
         assert item.text and item.source and item.evidence and item.rule and item.error_rate
         assert item.kind in Kind
-
-
-def test_a_margin_is_positive_where_the_means_are_as_stated(made):
-    tests = Evidence(made(THESIS_SIGNS), "simulated")
-    assert margin(ORDERS[35](tests)) > 0 > margin(ORDERS[38](tests))
 
 
 def test_the_hypothesis_table_shows_kind_outcome_rule_and_error_rate(made):

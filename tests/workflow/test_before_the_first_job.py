@@ -19,8 +19,7 @@ from rockfrag.study.configurations import read_specimens
 from rockfrag.study.loading import load_any
 from rockfrag.yaml_file import read_yaml
 
-from .conftest import study_content, write_study
-from .measured_example import write_example, write_synthetic
+from .conftest import study_content, write_example, write_study, write_synthetic
 from .running import ROOT, SNAKEFILE, called, snakemake
 
 

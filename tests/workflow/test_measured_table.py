@@ -7,11 +7,11 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.shaketable.laboratory_table import read_measured
+from rockfrag.shaketable.tests_table import read_measured
 from rockfrag.stages.measured_tests import measured_tables
 from rockfrag.study.loading import load_any
 
-from .measured_example import write_example, write_synthetic
+from .conftest import write_example, write_synthetic
 from .running import ROOT, snakemake
 
 

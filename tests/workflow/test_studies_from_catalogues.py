@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-import yaml
 
 from rockfrag.cli import main
 from rockfrag.stages import motions
@@ -12,7 +11,7 @@ from rockfrag.study.loading import load_any
 
 from ..records.built_records import peer_download
 from ..stages_in_process import run_stages
-from .conftest import CONFIGURATIONS, SPECIMENS, study_content, write_record
+from .conftest import write_record
 
 
 def far_field_set(folder: Path) -> Path:
@@ -34,25 +33,16 @@ def far_field_set(folder: Path) -> Path:
     return folder
 
 
-@pytest.fixture
-def study_file(tmp_path: Path) -> Path:
-    (tmp_path / "specimens.csv").write_text(SPECIMENS)
-    (tmp_path / "configurations.csv").write_text(CONFIGURATIONS)
-    path = tmp_path / "study.yaml"
-    path.write_text(yaml.safe_dump(study_content(), sort_keys=False))
-    return path
-
-
-def run_motions(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> pd.DataFrame:
+def run_motions(study_folder: Path, monkeypatch: pytest.MonkeyPatch) -> pd.DataFrame:
     """Run the stage of the motions as ``make run`` does, and return its table of measures."""
-    monkeypatch.chdir(study_file.parent)
-    study = load_any(study_file.name)
+    monkeypatch.chdir(study_folder)
+    study = load_any("study.yaml")
     return pd.read_csv(run_stages(study, Path("results"), [motions.run]) / "measures.csv")
 
 
-def test_44_text_files_become_a_study(tmp_path, study_file, monkeypatch, capsys):
-    folder = far_field_set(tmp_path / "records")
-    catalogue = str(tmp_path / "motions.csv")
+def test_44_text_files_become_a_study(study_folder, monkeypatch, capsys):
+    folder = far_field_set(study_folder / "records")
+    catalogue = str(study_folder / "motions.csv")
     assert (
         main(["catalogue", str(folder), "--unit", "g", "--dt", "0.01", "--output", catalogue]) == 0
     )
@@ -62,7 +52,7 @@ def test_44_text_files_become_a_study(tmp_path, study_file, monkeypatch, capsys)
     assert table.groupby("earthquake").size().tolist() == [2] * 22
     assert sorted(table["dt"][table["dt"] != ""]) == ["0.01"] * 4
     assert "its earthquake is not stated" in capsys.readouterr().err
-    measures = run_motions(study_file, monkeypatch)
+    measures = run_motions(study_folder, monkeypatch)
     assert len(measures) == 44
     assert (measures["rotd100_pga_g"] >= measures["pga_g"] * (1 - 1e-3)).all()
     assert (measures["rotd50_pga_g"] <= measures["rotd100_pga_g"]).all()
@@ -70,9 +60,9 @@ def test_44_text_files_become_a_study(tmp_path, study_file, monkeypatch, capsys)
     assert measures.groupby("earthquake")["rotd50_pga_g"].nunique().eq(1).all()
 
 
-def test_a_download_of_20_pairs_becomes_a_study(tmp_path, study_file, monkeypatch):
-    folder = peer_download(tmp_path / "PEERNGARecords_Unscaled", 20)
-    catalogue = str(tmp_path / "motions.csv")
+def test_a_download_of_20_pairs_becomes_a_study(study_folder, monkeypatch):
+    folder = peer_download(study_folder / "PEERNGARecords_Unscaled", 20)
+    catalogue = str(study_folder / "motions.csv")
     assert main(["catalogue", str(folder), "--output", catalogue]) == 0
     table = pd.read_csv(catalogue, dtype=str, keep_default_na=False)
     assert len(table) == 40
@@ -84,20 +74,20 @@ def test_a_download_of_20_pairs_becomes_a_study(tmp_path, study_file, monkeypatc
     assert (first["magnitude"], first["distance_km"]) == ("6.93", "5.0")
     assert first["scale_factor"] == "1.1"
     assert (table["vertical"] == "").sum() == 10
-    measures = run_motions(study_file, monkeypatch)
+    measures = run_motions(study_folder, monkeypatch)
     assert len(measures) == 40
     assert measures["rotd50_sa_0_3s_g"].notna().all()
 
 
-def test_a_row_may_ask_for_a_direction_of_both_components(tmp_path, study_file, monkeypatch):
-    folder = peer_download(tmp_path / "download", 2)
-    catalogue = tmp_path / "motions.csv"
+def test_a_row_may_ask_for_a_direction_of_both_components(study_folder, monkeypatch):
+    folder = peer_download(study_folder / "download", 2)
+    catalogue = study_folder / "motions.csv"
     main(["catalogue", str(folder), "--output", str(catalogue)])
     table = pd.read_csv(catalogue, dtype=str, keep_default_na=False)
     table = table.iloc[[0, 0, 0]].assign(name=["a", "b", "c"])
     table["direction"] = ["stronger", "90", "fault-normal 0"]
     table.to_csv(catalogue, index=False)
-    measures = run_motions(study_file, monkeypatch).set_index("name")
+    measures = run_motions(study_folder, monkeypatch).set_index("name")
     assert measures.loc["a_ground", "pga_g"] >= measures.loc["a_ground", "rotd100_pga_g"] * (
         1 - 1e-9
     )

@@ -42,9 +42,15 @@ def find_modes(building: ShearBuilding) -> Modes:
     shape /= shape[-1]
     modal_mass = shape.T**2 @ mass
     excited = shape.T @ mass
-    ratios = np.full(building.storeys, building.damping.ratio)
-    if isinstance(building.damping, RayleighDamping):
-        alpha, beta = rayleigh_factors(building, frequency)
+    damping = building.damping
+    ratios = np.full(building.storeys, damping.ratio)
+    if isinstance(damping, RayleighDamping):
+        # factors of mass [1/s] and stiffness [s] in C = α M + β K (Chopra, eq. 11.4.11)
+        alpha, beta = 2 * damping.ratio * float(frequency[0]), 0.0
+        if building.storeys > 1:
+            first, second = (float(frequency[number - 1]) for number in damping.modes)
+            beta = 2 * damping.ratio / (first + second)
+            alpha = beta * first * second
         ratios = alpha / (2 * frequency) + beta * frequency / 2
     return Modes(
         period=2 * np.pi / frequency,
@@ -53,17 +59,6 @@ def find_modes(building: ShearBuilding) -> Modes:
         mass_fraction=excited**2 / modal_mass / mass.sum(),
         damping=ratios,
     )
-
-
-def rayleigh_factors(building: ShearBuilding, frequency: Floats) -> tuple[float, float]:
-    """Return factors of mass [1/s] and stiffness [s] in C = α M + β K (Chopra, eq. 11.4.11)."""
-    damping = building.damping
-    assert isinstance(damping, RayleighDamping)
-    if building.storeys == 1:
-        return 2 * damping.ratio * float(frequency[0]), 0.0
-    first, second = (float(frequency[number - 1]) for number in damping.modes)
-    factor = 2 * damping.ratio / (first + second)
-    return factor * first * second, factor
 
 
 def damping_matrix(building: ShearBuilding, modes: Modes) -> Floats:

@@ -112,7 +112,7 @@ def ways_to_stand(
             block = body_of(thing, way)
         except InputError:
             continue
-        angle = math.degrees(min(block.critical_angle(+1), block.critical_angle(-1)))
+        angle = math.degrees(block.alpha)
         if angle < LEAST_ANGLE_DEG:
             continue
         momentum = min(block.momentum_restitution(+1), block.momentum_restitution(-1))

@@ -71,15 +71,9 @@ def sample_trials(
         if "friction" in guess and "restitution" in guess:
             planar.append(_in_plane(body, guess))
         block = body.blocks[-1]
-        angle = min(block.critical_angle(+1), block.critical_angle(-1))
-        rows.append(
-            {
-                **guess,
-                "left_m": block.b + block.cg_offset,
-                "right_m": block.b - block.cg_offset,
-                "alpha_deg": math.degrees(angle),
-            }
-        )
+        left, right = block.b + block.cg_offset, block.b - block.cg_offset
+        angle = math.degrees(block.alpha)
+        rows.append({**guess, "left_m": left, "right_m": right, "alpha_deg": angle})
     if not rows:
         raise InputError(
             f"unknowns: under none of {count} guesses could the object have stood; widen contact_tolerance_mm "

@@ -1,9 +1,7 @@
-"""Trials chosen by some motions and judged by others.
+"""Trials chosen by some motions and judged by others (``docs/campaigns.md``).
 
-Nobody measured how the object stood, so the tests themselves must tell which trials are plausible; but a
-trial that was chosen by a test cannot be judged by it.  Tests are therefore split into folds by motion:
-trials that agree with the tests of four folds about as well as the best one vote on the fifth.  The best
-trial alone would follow the noise of the choice.
+A trial that was chosen by a test cannot be judged by it: trials that agree with the tests of four folds about as
+well as the best one vote on the fifth.  The best trial alone would follow the noise of the choice.
 """
 
 from collections.abc import Iterator

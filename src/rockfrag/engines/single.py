@@ -70,12 +70,13 @@ class Single(PureRocking):
 def samples_of(case: Case) -> tuple[Array, Array, Array, NDArray[Any]]:
     """Return times [s], (n,), and rotations, velocities and contact states of a case as of :class:`Response`."""
     _, _, rows, _, _ = _integrated(case, 0)
-    blocks = BLOCKS[-case.system.count :]
-    theta, omega, state = (
-        np.column_stack([rows[name + block] for block in blocks])
-        for name in ("theta", "omega", "c")
-    )
-    return np.arange(len(rows), dtype=np.float64) * case.motion.dt, theta, omega, state
+    time, count = np.arange(len(rows), dtype=np.float64) * case.motion.dt, case.system.count
+    return time, _of(rows, "theta", count), _of(rows, "omega", count), _of(rows, "c", count)
+
+
+def _of(rows: Records, name: str, count: int) -> NDArray[Any]:
+    """Return a number of each body, from below, in columns."""
+    return np.column_stack([rows[name + block] for block in BLOCKS[-count:]])
 
 
 def _integrated(case: Case, capacity: int) -> tuple[np.void, Any, Records, Records, np.void]:
@@ -155,21 +156,15 @@ def run_integration(
 
 
 def _response(
-    system: System,
-    record: np.void,
-    shaking: Any,
-    history: Records,
-    found: Records,
-    summary: np.void,
+    system: System, record: np.void, shaking: Any, history: Records, found: Records, summary: Any
 ) -> Response:
     """Put the response of a system together, of whose contact events so many were found."""
     from rockfrag.engines.forces import centres, contact_forces
 
     n, contact_events = len(history), found[: int(summary["contact_events"])]
-    blocks = list(BLOCKS[-system.count :])
+    count, demand = system.count, summary["demand"]
     theta, omega, alpha, state = (
-        np.column_stack([history[name + block] for block in blocks])
-        for name in ("theta", "omega", "alpha", "c")
+        _of(history, name, count) for name in ("theta", "omega", "alpha", "c")
     )
     samples, dt = shaking.samples * shaking.scale, shaking.dt
     ground, gravity = np.zeros(n), np.full(n, float(record["gravity"]))
@@ -191,7 +186,7 @@ def _response(
         state=state,
         slides=np.zeros_like(state),
         slip=np.zeros_like(theta),
-        contact_events=_contact_events(contact_events, blocks),
+        contact_events=_contact_events(contact_events, count),
         overturned=fallen > 0,
         overturned_body=("", *system.names)[which],
         overturning_time=float(summary["fall_time"]),
@@ -203,28 +198,26 @@ def _response(
         paradoxes=0,
         forced=0,
         given_way=int(summary["given_way"]),
-        friction_demand=np.array([summary["demand"]["friction" + block] for block in blocks]),
-        least_normal_force=np.array([summary["demand"]["normal" + block] for block in blocks]),
+        friction_demand=np.array([demand["friction" + block] for block in BLOCKS[-count:]]),
+        least_normal_force=np.array([demand["normal" + block] for block in BLOCKS[-count:]]),
         lost_contact=float(summary["lost_contact"]),
         unstable_distance=float(summary["unstable_distance"]),
     )
 
 
-def _contact_events(contact_events: Records, blocks: list[str]) -> pd.DataFrame:
+def _contact_events(contact_events: Records, count: int) -> pd.DataFrame:
     """Make the table of contact events of a response."""
     from rockfrag.engines.kernels.record import CHATTER, CLOSING, LIFTING, OPENING
 
+    before, after = contact_events["before"], contact_events["after"]
     kinds = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter", LIFTING: "lift-off"}
-
-    def each(when: str, name: str) -> NDArray[Any]:
-        return np.column_stack([contact_events[when][name + block] for block in blocks])
 
     return contact_event_table(
         contact_events["time"],
         [kinds[kind] for kind in contact_events["kind"].tolist()],
-        (each("before", "c"), each("after", "c")),
-        (each("before", "omega"), each("after", "omega")),
-        each("after", "theta"),
+        (_of(before, "c", count), _of(after, "c", count)),
+        (_of(before, "omega", count), _of(after, "omega", count)),
+        _of(after, "theta", count),
         (contact_events["energy_before"], contact_events["energy_after"]),
     )
 

@@ -7,13 +7,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from rockfrag.fragility import observations
-from rockfrag.fragility.censored import (
-    Brackets,
-    bracket_interval,
-    brackets_from_table,
-    fit_brackets,
-)
+from rockfrag.fragility import censored, observations
 from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_outcomes
 from rockfrag.fragility.empirical import IdaData, TableIda
 from rockfrag.fragility.intervals import Interval, interval_over_motions
@@ -208,7 +202,7 @@ def fit_incremental(
     )
     definitions = {}
     for definition in ("first", "always"):
-        brackets = brackets_from_table(
+        brackets = censored.brackets_from_table(
             resurrections,
             lower=f"{definition}_lower",
             upper=f"{definition}_upper",
@@ -256,15 +250,18 @@ def fit_step_tests(
     -------
     The :class:`Fragility`.
     """
-    brackets = brackets_from_table(
+    brackets = censored.brackets_from_table(
         tests, lower=lower, upper=upper, motion=motion, earthquake=earthquake
     )
     return fragility_of_brackets(brackets, level)
 
 
-def fragility_of_brackets(brackets: Brackets, level: float) -> Fragility:
+def fragility_of_brackets(brackets: censored.Brackets, level: float) -> Fragility:
     """Fit a curve to bracketed amplitudes and give it limits over motions, or earthquakes where known."""
-    fit, interval = fit_brackets(brackets), bracket_interval(brackets, level=level)
+    fit, interval = (
+        censored.fit_brackets(brackets),
+        censored.bracket_interval(brackets, level=level),
+    )
     return Fragility(fit, interval, checks_of_brackets(brackets, fit, interval))
 
 
@@ -279,5 +276,5 @@ def fit_uplift(motions: pd.DataFrame, im: str, *, level: float = 0.90) -> Fragil
     names = observations.labels(motions, "motion", "table")
     earthquakes = observations.labels(motions, "earthquake", "table")
     return fragility_of_brackets(
-        Brackets(at, at, names, earthquakes, *observations.name_and_unit(im)), level
+        censored.Brackets(at, at, names, earthquakes, *observations.name_and_unit(im)), level
     )

@@ -13,26 +13,12 @@ STEPS: Mapping[str, Callable[..., Motion]] = MappingProxyType(
     {
         step.__name__: step
         for step in (
-            conditioning.demean,
-            conditioning.remove_median,
-            conditioning.despike,
-            conditioning.baseline,
-            conditioning.displacement_baseline,
-            conditioning.taper,
-            conditioning.pad,
-            filtering.highpass,
-            filtering.lowpass,
-            filtering.bandpass,
-            filtering.resample,
-            filtering.interpolate,
-            conditioning.strong_part,
-            conditioning.bracketed_part,
-            conditioning.trim,
-            scaling.scale,
-            scaling.scale_to_pga,
-            scaling.scale_to_pgv,
-            scaling.scale_to_sa,
-            scaling.scale_to_arias,
+            *(conditioning.demean, conditioning.remove_median, conditioning.despike),
+            *(conditioning.baseline, conditioning.displacement_baseline, conditioning.taper),
+            *(conditioning.pad, filtering.highpass, filtering.lowpass, filtering.bandpass),
+            *(filtering.resample, filtering.interpolate, conditioning.strong_part),
+            *(conditioning.bracketed_part, conditioning.trim, scaling.scale, scaling.scale_to_pga),
+            *(scaling.scale_to_pgv, scaling.scale_to_sa, scaling.scale_to_arias),
             scaling.compress_time,
         )
     }

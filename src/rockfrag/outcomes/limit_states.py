@@ -28,34 +28,18 @@ VISIBLE = 0.001
 
 @dataclass(frozen=True)
 class LimitState:
-    """One limit state.
+    """One limit state."""
 
-    Attributes
-    ----------
-    name
-        Short name, such as ``"overturns"``.
-    order
-        Its place among the others, the milder first.
-    label
-        What figures and reports call it.
-    reached
-        Which cases have reached it, shape (systems, motions, scales).
-    damage, repair
-        What it means for the object, and what is done then, for models of damage.
-    exact
-        Whether it is reached at a peak acceleration that is known exactly, so that IDA curves do not count it.
-    slipping
-        Whether only systems with friction reach it.
-    """
-
-    name: str
-    order: int
-    label: str
-    reached: Predicate
+    name: str  # short, such as ``"overturns"``
+    order: int  # its place among the others, the milder first
+    label: str  # what figures and reports call it
+    reached: Predicate  # which cases have reached it, shape (systems, motions, scales)
+    # damage, repair: what it means for the object, and what is done then, for models of damage
     damage: str = ""
     repair: str = ""
+    # whether it is reached at a peak acceleration that is known exactly, so that IDA curves do not count it
     exact: bool = False
-    slipping: bool = False
+    slipping: bool = False  # whether only systems with friction reach it
 
     @property
     def column(self) -> str:

@@ -151,11 +151,6 @@ def unit_means(table: pd.DataFrame, unit: str) -> pd.Series:
     return means if unit == "motion" else means.groupby(level=unit).mean()
 
 
-def sampled_unit(table: pd.DataFrame) -> str:
-    """Say what was sampled: earthquakes, or the motions of the single earthquake in the table."""
-    return "earthquake" if len(set(table["earthquake"])) > 1 else "motion"
-
-
 def mean_effect(table: pd.DataFrame) -> Estimate:
     """Mean of d with interval and p value that hold in the crossed design.
 

@@ -132,7 +132,8 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
 
 
 def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
-    effect, unit = cluster_means.mean_effect(table), cluster_means.sampled_unit(table)
+    effect = cluster_means.mean_effect(table)
+    unit = "earthquake" if len(set(table["earthquake"])) > 1 else "motion"
     flips = sign_flip_test(cluster_means.unit_means(table, "earthquake"), seed)
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:

@@ -79,36 +79,30 @@ def repeated_motions(table: pd.DataFrame) -> list[str]:
 
 def _checked(path: str | os.PathLike[str]) -> tuple[pd.DataFrame, list[int]]:
     """Return the table of a catalogue and the line of each of its rows."""
-    rows, numbers = _cells(path)
-    problems: list[str] = []
-    seen: dict[str, int] = {}
-    for number, row in zip(numbers, rows, strict=True):
-        row |= {column: row[column].replace(",", ".") for column in _NUMBERS}
-        wrong = _wrong_cells(row)
-        if row["name"] and row["name"] in seen:
-            wrong.append(("name", f"{row['name']!r} is there twice"))
-        seen.setdefault(row["name"], number)
-        problems += [f"line {number}, column {column!r}: {what}" for column, what in wrong]
-    if problems:
-        raise InputError(f"{path}, {_listed(problems)}.")
-    table = pd.DataFrame(rows, columns=list(COLUMNS))
-    for column in _NUMBERS:
-        table[column] = pd.to_numeric(table[column].replace("", None)).astype(float)
-    return table, numbers
-
-
-def _cells(path: str | os.PathLike[str]) -> tuple[list[dict[str, str]], list[int]]:
-    """Return the rows of a catalogue and the line of each."""
     faults: list[str] = []
     optional = [column for column in COLUMNS if column not in NEEDED]
-    rows = read_rows(path, NEEDED, optional, least=0, faults=faults)
+    lines = read_rows(path, NEEDED, optional, least=0, faults=faults)
     if faults:
         raise InputError(_listed([fault.rstrip(".") for fault in faults]) + ".")
-    if not rows:
+    if not lines:
         raise InputError(f"{path}: the catalogue names no motion.")
     empty = dict.fromkeys(COLUMNS, "") | _DEFAULTS
-    filled = [empty | {title: cell for title, cell in row.cells.items() if cell} for row in rows]
-    return filled, [row.line for row in rows]
+    rows: dict[str, dict[str, str]] = {}
+    problems: list[str] = []
+    for line in lines:
+        row = empty | {title: cell for title, cell in line.cells.items() if cell}
+        row |= {column: row[column].replace(",", ".") for column in _NUMBERS}
+        wrong = _wrong_cells(row)
+        if row["name"] and row["name"] in rows:
+            wrong.append(("name", f"{row['name']!r} is there twice"))
+        rows[row["name"]] = row
+        problems += [f"line {line.line}, column {column!r}: {what}" for column, what in wrong]
+    if problems:
+        raise InputError(f"{path}, {_listed(problems)}.")
+    table = pd.DataFrame(list(rows.values()), columns=list(COLUMNS))
+    for column in _NUMBERS:
+        table[column] = pd.to_numeric(table[column].replace("", None)).astype(float)
+    return table, [line.line for line in lines]
 
 
 def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:

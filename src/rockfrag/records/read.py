@@ -14,14 +14,8 @@ from rockfrag.keywords import named_keywords
 from rockfrag.records.formats import HEADED, plain
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.motion import Motion
+from rockfrag.records.parsing import quantities
 from rockfrag.records.parsing.format import Channel
-from rockfrag.records.parsing.quantities import (
-    ASKED_UNITS,
-    TO_SI,
-    asked_unit,
-    azimuth_of,
-    plain_name,
-)
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.quality_flags import STRONGEST_G
 from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked
@@ -174,14 +168,14 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
         raise InputError(
             f"{record.name}: the file has several channels, {_listed(record)}; choose one with channel=."
         )
-    azimuth, letter = azimuth_of(wanted), len(wanted) == 1 and wanted.isalpha()
+    azimuth, letter = quantities.azimuth_of(wanted), len(wanted) == 1 and wanted.isalpha()
     for answers in (
-        lambda channel: plain_name(wanted) in _names_of(channel),
+        lambda channel: quantities.plain_name(wanted) in _names_of(channel),
         # a SEED code names its sensor, not always its direction
         lambda channel: (
             azimuth is not None
             and channel.component != channel.code
-            and azimuth_of(channel.component) == azimuth
+            and quantities.azimuth_of(channel.component) == azimuth
         ),
         lambda channel: letter and channel.code.upper().endswith(wanted.upper()),
     ):
@@ -202,7 +196,7 @@ def motion_of(
     """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
     samples = channel.samples()
     stored = _settled_unit(record, channel, samples, unit)
-    factor = TO_SI[stored]
+    factor = quantities.TO_SI[stored]
     acceleration = _in_si(record, samples, factor)
     archived: dict[str, Any] = {"member": channel.member} if channel.member else {}
     if record.left_out:
@@ -285,9 +279,9 @@ def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
 def _settled_unit(
     record: Record, channel: Channel, samples: NDArray[np.float64], unit: str | None
 ) -> str:
-    asked = None if unit is None else asked_unit(unit)
+    asked = None if unit is None else quantities.asked_unit(unit)
     if channel.unit:
-        if channel.unit not in TO_SI:
+        if channel.unit not in quantities.TO_SI:
             raise InputError(
                 f"{record.name}: samples in {channel.unit!r} are no acceleration known here."
             )
@@ -300,11 +294,12 @@ def _settled_unit(
         return asked
     peak = float(np.abs(samples - samples.mean()).max())
     candidates = ", ".join(
-        f"{peak * TO_SI[asked_unit(name)] / GRAVITY:.3g} g if {name}" for name in ASKED_UNITS
+        f"{peak * quantities.TO_SI[quantities.asked_unit(name)] / GRAVITY:.3g} g if {name}"
+        for name in quantities.ASKED_UNITS
     )
     raise InputError(
         f"{record.name}: the file does not state its unit; give unit= "
-        f"({', '.join(ASKED_UNITS)}): the peak about the mean would be {candidates}."
+        f"({', '.join(quantities.ASKED_UNITS)}): the peak about the mean would be {candidates}."
     )
 
 
@@ -327,4 +322,4 @@ def _names_of(channel: Channel) -> set[str]:
         files = {channel.member, Path(channel.member).name}
         names |= files | {f"{file} {name}" for file in files for name in names}
         names |= {f"{file}#{name}" for file in files for name in names}
-    return {plain_name(name) for name in names if name}
+    return {quantities.plain_name(name) for name in names if name}

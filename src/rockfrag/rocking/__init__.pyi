@@ -15,8 +15,10 @@ from .restitution import (
 )
 from .simulation import simulate as simulate
 from .spectra import rocking_spectrum as rocking_spectrum
-from .step_sensitivity import find_step_size_sensitive as find_step_size_sensitive
-from .robustness import outcome_robustness as outcome_robustness
+from .robustness import (
+    find_step_size_sensitive as find_step_size_sensitive,
+    outcome_robustness as outcome_robustness,
+)
 from .thresholds import (
     Thresholds as Thresholds,
     find_thresholds as find_thresholds,

@@ -131,11 +131,7 @@ def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, sli
     for i in range(0, n_systems, systems):
         for j in range(0, n_motions, motions):
             for k in range(0, n_scales, scales):
-                yield (
-                    slice(i, min(i + systems, n_systems)),
-                    slice(j, min(j + motions, n_motions)),
-                    slice(k, min(k + scales, n_scales)),
-                )
+                yield slice(i, i + systems), slice(j, j + motions), slice(k, k + scales)
 
 
 # --------------------------------------------------------------------------- histories

@@ -1,4 +1,4 @@
-"""How sure an outcome is: the fraction of slightly different experiments that end otherwise.
+"""How sure an outcome is: slightly different experiments that end otherwise, and steps that decide.
 
 Whether a rocking body falls depends on its motion and its dimensions without end in detail, and no number of one
 history predicts how a neighbouring one ends.  So neighbours are simulated.
@@ -6,8 +6,9 @@ history predicts how a neighbouring one ends.  So neighbours are simulated.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Unpack
 
 import numpy as np
@@ -16,10 +17,14 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number, whole_number
 from rockfrag.keywords import named_keywords
-from rockfrag.rocking.ensemble import Options, prepared, shaken
+from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.rocking.ensemble import Options, overturned_cases, prepared, shaken
 from rockfrag.rocking.inputs import MotionLike
+from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import SystemLike
-from rockfrag.system.perturbation import perturbed
+from rockfrag.system.body import Circle, Interval, Outline, Polygon, RigidBody, checked_tensor
+from rockfrag.system.geometry import shape_of
+from rockfrag.system.system import System
 
 LARGEST_PERTURBATION = 0.1  # beyond this a copy is another experiment
 
@@ -47,10 +52,8 @@ def outcome_robustness(
         The ensemble, as in :func:`rockfrag.rocking.overturns`.
     perturbation
         Largest relative change [-], such as 1e-6.
-    copies
-        Number of copies.
-    seed
-        Seed of the draws.
+    copies, seed
+        Number of copies, and seed of the draws.
     **options
         As in :func:`rockfrag.rocking.overturns`, but for ``forces``; measured restitution, friction and start stay
         as they are.
@@ -90,3 +93,140 @@ def outcome_robustness(
         found = shaken(replace(cases, systems=near, scales=scale * cases.scales))
         same += found.overturned == given
     return same / copies
+
+
+def perturbed(system: System, size: float, rng: np.random.Generator) -> System:
+    """Return a system whose widths and heights differ by at most ``size``, relative, drawn evenly."""
+    drawn = [(1 + size * rng.uniform(-1, 1, 2)).tolist() for _ in system.bodies]
+    bodies = (_resized(body, *sizes) for body, sizes in zip(system.bodies, drawn, strict=True))
+    return replace(system, bodies=tuple(bodies))
+
+
+def _resized(body: RigidBody, across: float, up: float) -> RigidBody:
+    x, y, z = body.centre
+    base, height = _scaled(body.base, across), body.height * up
+    made = replace(
+        body,
+        centre=(x, y, z * up),
+        base=base,
+        height=height,
+        face=None if body.face is None else _scaled(body.face, across),
+    )
+    if isinstance(body.inertia, tuple):
+        inertia, stretch = body.tensor, (across, across if isinstance(base, Circle) else 1.0, up)
+        # I = tr(S) 1 - S of the second moments S, which grow with the product of their two axes
+        second_moments = np.trace(inertia) / 2 * np.eye(3) - inertia
+        second_moments *= np.outer(stretch, stretch)
+        stretched = np.trace(second_moments) * np.eye(3) - second_moments
+        return replace(made, inertia=checked_tensor(stretched))
+    if body.inertia == _uniform(body):
+        return replace(made, inertia=_uniform(made))
+    return made
+
+
+def _uniform(body: RigidBody) -> float:
+    """Moment of inertia of a uniform rectangle of the body's size [kg m²]."""
+    return shape_of(body.width, body.height, body.mass, math.nan, math.nan, 0.0, 0.0).inertia
+
+
+def _scaled(outline: Outline, across: float) -> Outline:
+    if isinstance(outline, Interval):
+        return Interval(outline.left * across, outline.right * across)
+    if isinstance(outline, Circle):
+        return Circle(outline.radius * across, outline.centre)
+    return Polygon(tuple((x * across, y) for x, y in outline.vertices))
+
+
+@dataclass(frozen=True)
+class StepSizeSensitive:
+    """Step-size-sensitive outcomes: those that change when every step is halved."""
+
+    sampled: int  # number of cases looked at
+    changed: int  # number of them whose outcome changed
+    # body, motion and scale (positions) of the changed ones, shape (changed, 3)
+    cases: NDArray[np.int64]
+
+    __repr__ = short_repr
+
+    @property
+    def fraction(self) -> float:
+        """Fraction of the sampled outcomes that changed [-]."""
+        return self.changed / self.sampled
+
+
+@named_keywords
+def find_step_size_sensitive(
+    bodies: SystemLike | Sequence[SystemLike],
+    motions: MotionLike | Sequence[MotionLike],
+    dt: float | Sequence[float] | None,
+    scales: ArrayLike,
+    *,
+    sample: int = 1000,
+    seed: int = 0,
+    **options: Unpack[Options],
+) -> StepSizeSensitive:
+    """Count the outcomes of an ensemble that change when the step is halved, on a sample of its cases.
+
+    Near-critical cases always exist: their outcome hangs on the last digits of any integration.
+
+    Parameters
+    ----------
+    bodies, motions, dt, scales
+        The ensemble, as in :func:`overturns`.
+    sample, seed
+        Number of cases, drawn without repetition (all of them if there are fewer), and seed of the draw.
+    **options
+        As in :func:`rockfrag.rocking.overturns`, but for ``forces``.
+
+    Returns
+    -------
+    The :class:`StepSizeSensitive`: how many cases were looked at, and which of them changed.
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used; the message says which and why.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockfrag import Block, Motion, find_step_size_sensitive
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> found = find_step_size_sensitive(Block(0.3, 1.2, 180.0), motion, None, np.arange(2.5, 8.0, 0.1))
+    >>> found.sampled, found.changed
+    (55, 0)
+    """
+    grid = prepared(bodies, motions, dt, scales, **options)
+    factors, shape = grid.scales, grid.shape
+    total = int(np.prod(shape))
+    if whole_number("sample", sample) < 1 or total < 1:
+        raise InputError(f"sample: expected at least one of {total} cases, got {sample}.")
+    chosen = np.random.default_rng(seed).choice(total, min(sample, total), replace=False)
+    cases = np.stack(np.unravel_index(np.sort(chosen), shape), axis=1).astype(np.int64)
+    body, motion, column = cases.T
+    drawn = (body, motion, factors[motion, column])
+    given = overturned_cases(grid, *drawn)
+    # twice the samples on the same straight lines and half the bound on p h: exactly half of each step
+    finer = replace(
+        grid,
+        motions=tuple(map(_doubled, grid.motions)),
+        request=replace(grid.request, step=grid.request.step / 2),
+    )
+    halved = overturned_cases(finer, *drawn)
+    changed = cases[given != halved]
+    return StepSizeSensitive(sampled=len(cases), changed=len(changed), cases=changed)
+
+
+def _doubled(motion: GroundMotion) -> GroundMotion:
+    """Sample a ground motion, which is zero one sample after its last, twice as densely."""
+    # the kernels are loaded only by those who shake
+    from rockfrag.engines.lanes import refined
+
+    def dense(component: Motion) -> Motion:
+        return replace(
+            component, acceleration=refined(component.acceleration, 2), dt=component.dt / 2
+        )
+
+    y, z = (None if part is None else dense(part) for part in (motion.y, motion.z))
+    return GroundMotion(dense(motion.x), y, z)

@@ -80,10 +80,8 @@ def rocking_spectrum(
         2π/p [s], shape (k,).
     alpha
         Critical angles [rad], one or several, shape (j,).
-    restitution
-        The same measured restitution for all; None conserves momentum (Housner, 1963).
-    friction
-        The same friction for all, as in :func:`rockfrag.rocking.simulate`; None: nothing slides.
+    restitution, friction
+        The same for all, as in :func:`rockfrag.rocking.simulate`.
     vertical
         Vertical acceleration, upwards [m/s²], sampled as the motion.
 

@@ -1,4 +1,4 @@
-from .laboratory_table import read_measured as read_measured
+from .tests_table import read_measured as read_measured
 from .protocols import Protocol as Protocol
 from .definitions import tests_from_ida as tests_from_ida
 from .shaker import (

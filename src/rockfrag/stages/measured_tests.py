@@ -16,7 +16,7 @@ _CURVES = ("configuration", "im", "unit", "theta", "theta_lower", "theta_upper",
 def run(job: Job[Study]) -> Results:
     """Yield the laboratory's tests, and what their statistics say."""
     from rockfrag.shaketable.definitions import DEFINITION
-    from rockfrag.shaketable.laboratory_table import read_measured
+    from rockfrag.shaketable.tests_table import read_measured
 
     study = job.study
     if study.measured_tests is None:

@@ -10,8 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names, file_name, is_file
@@ -39,12 +37,8 @@ from rockfrag.units import peak_warning
 from rockfrag.yaml_file import read_yaml
 
 OF_ONE_COMPONENT = (
-    "strong_part",
-    "bracketed_part",
-    "scale_to_pga",
-    "scale_to_pgv",
-    "scale_to_sa",
-    "scale_to_arias",
+    *("strong_part", "bracketed_part"),
+    *("scale_to_pga", "scale_to_pgv", "scale_to_sa", "scale_to_arias"),
 )
 """Steps that choose a part or a factor by the component itself."""
 
@@ -82,19 +76,22 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         counterparts = read_counterparts(configurations_file)
     building_file = _optional_file(source, "building", content)
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
-    configurations = _measured(
-        source, _chosen(source, known, bodies.get("use")), specimens, bodies.get("restitution")
-    )
+    by_name = {configuration.name: configuration for configuration in known}
+    tested = _used(source, "bodies", bodies.get("use"), list(by_name), "configurations")
+    chosen = [by_name[name] for name in tested]
+    configurations = _measured(source, chosen, specimens, bodies.get("restitution"))
     with errors_of(f"{source}"):
         amplitudes = Amplitudes(**content["amplitudes"])
     if content.get("friction") is not None:
         with errors_of(f"{source}: key friction"):
             configurations = tuple(with_friction(c, content["friction"]) for c in configurations)
+    catalogue = read_catalogue(catalogue_file).set_index("name", drop=False)
+    shaken = _used(source, "motions", motions.get("use"), list(catalogue.index), "motions")
     shaker_file = _optional_file(source, "shaker", content)
     study = Study(
         **heading_of(content, source),
         catalogue_file=catalogue_file,
-        catalogue=_rows(source, read_catalogue(catalogue_file), motions.get("use")),
+        catalogue=catalogue.loc[shaken].reset_index(drop=True),
         processing=checked_steps(source, "motions.processing", motions.get("processing", ())),
         building_file=building_file,
         building=None if building_file is None else read_building(building_file),
@@ -140,31 +137,16 @@ def _optional_file(source: Path, key: str, content: Mapping[str, Any]) -> Path |
     return None if content.get(key) is None else existing_file(source, key, content[key])
 
 
-def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.DataFrame:
-    """Rows of the motions that a study uses, in its order; all of them if it names none."""
-    if names is None:
-        return table
-    _check_used(source, "motions", names, list(table["name"]), "motions")
-    return table.set_index("name", drop=False).loc[list(names)].reset_index(drop=True)
-
-
-def _check_used(
-    source: Path, key: str, names: Sequence[str], known: Sequence[str], what: str
-) -> None:
-    for i, name in enumerate(names):
+def _used(
+    source: Path, key: str, names: Sequence[str] | None, known: Sequence[str], what: str
+) -> list[str]:
+    """Names that a study uses, in its order; all that are known if it gives none."""
+    for i, name in enumerate(names or ()):
         if name not in known:
             raise InputError(
                 f"{source}: key {key}.use[{i}]: expected one of the {what} {', '.join(known)}, found {name}."
             )
-
-
-def _chosen(
-    source: Path, known: Sequence[System], names: Sequence[str] | None
-) -> tuple[System, ...]:
-    """Configurations that a study uses, in its order; all of them if it names none."""
-    by_name = {configuration.name: configuration for configuration in known}
-    _check_used(source, "bodies", names or (), list(by_name), "configurations")
-    return tuple(by_name[name] for name in names) if names is not None else tuple(known)
+    return list(known if names is None else names)
 
 
 def _measured(
@@ -228,7 +210,7 @@ def _check_vertical(study: Study) -> None:
 
 
 def _check_measured_tests(study: Study, path: Path) -> None:
-    from rockfrag.shaketable.laboratory_table import read_measured
+    from rockfrag.shaketable.tests_table import read_measured
 
     known = list(study.specimens)
     for name in dict.fromkeys(read_measured(path)["object"]):

@@ -23,18 +23,11 @@ class Friction(NamedTuple):
 
 
 class ImpactLaw(NamedTuple):
-    """How a contact comes off an impact.
+    """How a contact comes off an impact."""
 
-    Attributes
-    ----------
-    name
-        Name of a law in ``rockfrag.laws``.
-    right, left
-        Measured ratio of the angular velocities after and before an impact of the lone body on a rigid support
-        [-], of impacts that end on its right and on its left end; NaN where the law has no number.
-    """
-
-    name: str = "momentum"
+    name: str = "momentum"  # of a law in ``rockfrag.laws``
+    # right, left: measured ratio of the angular velocities after and before an impact of the lone body on a rigid
+    # support [-], of impacts that end on its right and on its left end; NaN where the law has no number
     right: float = math.nan
     left: float = math.nan
 

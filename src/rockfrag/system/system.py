@@ -19,19 +19,12 @@ MOST_BODIES = 12  # bodies of a column
 
 @dataclass(frozen=True)
 class Start:
-    """How the bodies begin, relative to the moving ground.
+    """How the bodies begin, relative to the moving ground."""
 
-    Attributes
-    ----------
-    rotation
-        Of each body from below, from how it stands: clockwise [rad] of planar bodies, a rotation vector (x, y, z)
-        [rad] of bodies in space.
-    velocity
-        Angular velocity of each body, likewise [rad/s].
-    """
-
+    # of each body from below, from how it stands: clockwise [rad] of planar bodies, a rotation vector (x, y, z)
+    # [rad] of bodies in space
     rotation: tuple[Any, ...]
-    velocity: tuple[Any, ...]
+    velocity: tuple[Any, ...]  # angular velocity of each body, likewise [rad/s]
 
 
 @dataclass(frozen=True)

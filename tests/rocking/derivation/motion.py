@@ -4,7 +4,7 @@ import numpy as np
 from numpy import cos, sign, sin
 
 from .single_block import standing_pivot
-from .systems import Equation, Quantity, System, by_sign, random_systems
+from .systems import Equation, Quantity, System, by_sign, misprinted, random_systems
 
 Array = np.ndarray
 
@@ -253,11 +253,10 @@ EQUATIONS = [
         lambda s: np.concatenate([s.get("velocity1", 1, 1), s.get("velocity2", 1, 1)]),
     ),
     Equation("2.32", block_1_speed_squared, lambda s: (s.get("velocity1", 1, 1) ** 2).sum(0)),
-    Equation(
+    misprinted(
         "2.33",
-        lambda s: speed_squared(s, 0.0),
+        lambda s, printed: speed_squared(s, 1.0 - printed),
         lambda s: (s.get("velocity2", 1, 1) ** 2).sum(0),
-        mended=lambda s: speed_squared(s, 1.0),
     ),
     Equation(
         "2.34",
@@ -305,11 +304,10 @@ EQUATIONS = [
         by_sign(lambda s, side: _cosine(s, side, side)),
     ),
     Equation("2.45", lambda s: centre_2(s, 1, -1), positions(2, 1, -1)),
-    Equation(
+    misprinted(
         "2.46",
-        lambda s: rocking_mode_2(s, 1, weight=1),
+        lambda s, printed: rocking_mode_2(s, 1, weight=1 if printed else -1),
         lambda s: s.moments(1, -1),
-        mended=lambda s: rocking_mode_2(s, 1),
     ),
     # printed as γ2b, which 2.50 defines and 2.49 uses; it is γ2a
     Equation(

@@ -11,9 +11,9 @@ from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.ensemble import overturned_cases, prepared
+from rockfrag.rocking.robustness import perturbed
 from rockfrag.shaketable.definitions import always_overturning, first_overturning, step_protocol
 from rockfrag.shaketable.protocols import Protocol
-from rockfrag.system.perturbation import perturbed
 from rockfrag.system.system import System
 
 SIZES = (1e-9, 1e-6, 1e-4)

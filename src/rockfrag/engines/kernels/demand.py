@@ -1,8 +1,7 @@
 """What pure rocking assumes of its contacts: friction that suffices, and forces that push.
 
-The forces follow from the absolute accelerations of the centres of gravity: F2 = m2 (x2'', g + y2'') on the
-statue, F1 = F2 + m1 (x1'', g + y1'') on the pedestal, impulses from velocities after an impact less those before.
-N and T are their components across and along the face that carries: the ground, or the pedestal's top as it leans.
+F2 = m2 (x2'', g + y2'') on the statue, F1 = F2 + m1 (x1'', g + y1'') on the pedestal; N and T are their components
+across and along the face that carries, and impulses follow from velocities likewise.
 """
 
 import math

@@ -1,16 +1,10 @@
-"""Impacts: what the velocities are after contacts have closed.
+"""Impacts: what the velocities are after contacts have closed (``docs/derivation.md``, ``docs/restitution.md``).
 
-Momentum decides first: point impact, no bounce, no impulse at a pivot that leaves.  The momentum before is
-projected on the velocity fields after, M(new) ω⁺ = B(new, old) ω⁻ (``docs/derivation.md``; Housner, 1963;
-Spanos, Roussis and Politis, 2001).
-
-A measured restitution then says at which *rate* the closing contact comes off: ω1⁺ of the ground, ω2⁺ - ω1⁺ of the
-interface.  The laws for that rate have a file each in ``rockfrag.laws`` (``docs/restitution.md``); the rest is
-common to all: the momentum that no couple in the closing contact can change is conserved, the other
-contact opens or stays as that asks for, and a rate with which energy would grow gives way to the largest that
-does not.
+Momentum decides first, M(new) ω⁺ = B(new, old) ω⁻ (Housner, 1963; Spanos, Roussis and Politis, 2001); a measured
+restitution then says at which rate the closing contact comes off, as far as energy does not grow.
 """
 
+from rockfrag.engines.kernels.contact_states import side_of
 from rockfrag.engines.kernels.equations import kinetic_energy, metric, pivot, turn_between
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.laws import moves_impulse, rate
@@ -217,8 +211,8 @@ def _with_rates(body, state, closes, others, ground, interface):
     """
     given1, rate1 = ground
     given2, rate2 = interface
-    m1 = _side(rate1) if given1 else 0
-    m2 = _side(rate2) if given2 else 0
+    m1 = side_of(rate1) if given1 else 0
+    m2 = side_of(rate2) if given2 else 0
     if given1 and given2:
         return m1, m2, rate1, rate1 + rate2
     turn = turn_between(body, state)
@@ -252,12 +246,6 @@ def _with_rates(body, state, closes, others, ground, interface):
     if given1:
         return m1, 0, rate1, rate1
     return 0, m2, 0.0, rate2
-
-
-@kernel
-def _side(rate):
-    """Pivot on which a contact rocks that comes off at a rate; 0 if it does not."""
-    return (1 if rate > 0.0 else 0) - (1 if rate < 0.0 else 0)
 
 
 # --------------------------------------------------------------------------- by the table of a stack

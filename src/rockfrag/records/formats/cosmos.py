@@ -40,20 +40,8 @@ _END = re.compile(
 )
 _HEAD = re.compile(rb"\(\s*Format[ \t]+v", re.I)
 
-_UNITS_BY_CODE = {
-    2: "g",
-    4: "cm/s2",
-    5: "cm/s",
-    6: "cm",
-    7: "in/s2",
-    8: "in/s",
-    9: "in",
-    10: "cm/s2",
-    11: "mg",
-    12: "ug",
-    50: "counts",
-    51: "volts",
-}
+_UNITS_BY_CODE = {2: "g", 4: "cm/s2", 5: "cm/s", 6: "cm", 7: "in/s2", 8: "in/s", 9: "in"}
+_UNITS_BY_CODE |= {10: "cm/s2", 11: "mg", 12: "ug", 50: "counts", 51: "volts"}
 """Table of physical units of the format (its table 2), as far as motion is concerned."""
 
 # places in the headers, counted from zero (tables 7 and 8 of the format)

@@ -114,21 +114,17 @@ def _described(values: Channel, lines: list[str]) -> Channel:
         found = re.search(r"(?:start|trigger)\s+time\s*:(.*)$", line, re.IGNORECASE)
         if found and start is None:
             start = american_time(found[1])
+    # the earthquake's name and the time of it or of the record stand in lines 2 to 4
+    words = [re.split(r"\s{3,}|\(origin", line.strip(), flags=re.I)[0] for line in lines[1:4]]
+    words = [word for word in words if word and not word.upper().startswith("UNCORRECTED")]
     return replace(
         values,
         start_time=start,
         network=network,
         station=station,
         component=component,
-        details={"station_name": name, "earthquake": _earthquake(lines), **values.details},
+        details={"station_name": name, "earthquake": ", ".join(words[:2]), **values.details},
     )
-
-
-def _earthquake(lines: list[str]) -> str:
-    """Return the earthquake's name and the time of it or of the record, from lines 2 to 4."""
-    words = [re.split(r"\s{3,}|\(origin", line.strip(), flags=re.I)[0] for line in lines[1:4]]
-    words = [word for word in words if word and not word.upper().startswith("UNCORRECTED")]
-    return ", ".join(words[:2])
 
 
 FORMAT = Format("CSMIP", _recognise, _parse)

@@ -7,8 +7,6 @@ prepended, appended, acceleration, velocity and displacement samples.
 
 import re
 
-from obspy import UTCDateTime
-
 from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.fortran_sections import first_match, integers, positive_step, reals
 from rockfrag.records.parsing.text_file import TextFile
@@ -74,13 +72,15 @@ def _component(text: TextFile, first: int) -> tuple[Channel, int]:
         line = stop
     assert acceleration is not None
     values = acceleration * float(_word_after(_MILLIMETRES, words) or 1)
+    year, month, day, hour, minute = (str(whole[place]) for place in _START)
+    began = clock_time(year, month, day, hour, minute, "0") if whole[_START[0]] > 0 else None
     return (
         Channel(
             npts=counts[0],
             dt=positive_step(text, dt, at_reals + 2),
             samples=values.copy,
             unit="mm/s2",
-            start_time=_start(whole),
+            start_time=began and began + whole[_START_MS] / 1000,
             network="NZ",
             station=_word_after(r"site\s+(\S+)", words),
             component=_word_after(r"component\s+(\S+)", words),
@@ -99,12 +99,6 @@ def _component(text: TextFile, first: int) -> tuple[Channel, int]:
 def _word_after(pattern: str, words: list[str]) -> str:
     match = first_match(re.compile(rf"\b{pattern}", re.IGNORECASE), words)
     return match[1] if match else ""
-
-
-def _start(whole: list[int]) -> UTCDateTime | None:
-    year, month, day, hour, minute = (str(whole[place]) for place in _START)
-    start = clock_time(year, month, day, hour, minute, "0") if whole[_START[0]] > 0 else None
-    return None if start is None else start + whole[_START_MS] / 1000
 
 
 FORMAT = Format("GEONET", _recognise, _parse)

@@ -193,6 +193,10 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
             raise NotAcceleration(f"{path}: its header says {quantity}, not acceleration.")
     if not np.isfinite(samples).all():
         raise InputError(f"{path}: channel {trace.id} has samples that are not finite numbers.")
+    knet, earthquake = stats.get("knet", {}), {}
+    if "evot" in knet:
+        said = f"{knet['evot']} M {knet.get('mag', '?')}"
+        earthquake = {"earthquake": said, "magnitude": knet.get("mag")}
     channel = Channel(
         npts=samples.size,
         dt=float(stats.delta),
@@ -205,7 +209,7 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
         code=stats.channel,
         # MiniSEED of floating point has been computed: its mean is meant
         raw=not (format_name == "MSEED" and trace.data.dtype.kind == "f"),
-        details={**_earthquake_facts(trace), "steps": tuple(steps)},
+        details={**earthquake, "steps": tuple(steps)},
     )
     channel.check(str(path))
     return channel
@@ -229,13 +233,6 @@ def _shortness(trace: Trace, format_name: str, path: Path, cut_short: bool) -> l
         f"{path}: the header promises {promised} samples ({float(duration):g} s) but {found} follow; "
         "the file is cut short, or its header is wrong."
     )
-
-
-def _earthquake_facts(trace: Trace) -> dict[str, Any]:
-    knet = trace.stats.get("knet", {})
-    if "evot" not in knet:
-        return {}
-    return {"earthquake": f"{knet['evot']} M {knet.get('mag', '?')}", "magnitude": knet.get("mag")}
 
 
 @lru_cache(maxsize=256)

@@ -19,21 +19,10 @@ from obspy import Stream
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.formats import HEADED
+from rockfrag.records.parsing import number_fields
 from rockfrag.records.parsing.column_titles import Column, column_titles
 from rockfrag.records.parsing.format import Channel, Format, one_trace
 from rockfrag.records.parsing.fortran_sections import positive_step
-from rockfrag.records.parsing.number_fields import (
-    LOOKED_AT,
-    NumberTable,
-    are_numbers,
-    is_blank,
-    is_comment,
-    is_damaged_row,
-    is_row,
-    number_in,
-    number_table,
-    numbers_of,
-)
 from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.timestamps import check_rising, step_of_times
@@ -61,7 +50,7 @@ class _Layout:
 
     text: TextFile
     asked: float | None
-    table: NumberTable
+    table: number_fields.NumberTable
     stop: int
     facts: StatedFacts
     titles: list[Column]
@@ -106,17 +95,17 @@ class _Layout:
 
 
 def _recognise(lines: list[str], name: str) -> bool:
-    table = number_table(lines)
+    table = number_fields.number_table(lines)
     if table is None or any(_OF_OBSPY.match(line) for line in lines[:1]):
         return False
-    rows = [line for line in lines[table.start :] if not is_blank(line)]
+    rows = [line for line in lines[table.start :] if not number_fields.is_blank(line)]
     while rows and is_remark(rows[-1]):
         rows.pop()
-    found = [numbers_of(line, table.decimal_comma) for line in rows]
+    found = [number_fields.numbers_of(line, table.decimal_comma) for line in rows]
     widths = {len(row) for row in found[:-1]}
     return (
         len(rows) >= (_MIN_ROWS if not table.numbers else 1)
-        and all(are_numbers(row) for row in found)
+        and all(number_fields.are_numbers(row) for row in found)
         and widths <= {table.columns}
         and len(found[-1]) <= table.columns
         and not any(headed.recognise(lines, name) for headed in HEADED)
@@ -142,13 +131,19 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
 
 def _layout(text: TextFile, dt: float | None) -> _Layout:
     """Return what the lines above the samples say of them."""
-    lines = text.lines(0, LOOKED_AT)
-    table = number_table(lines)
+    lines = text.lines(0, number_fields.LOOKED_AT)
+    table = number_fields.number_table(lines)
     if table is None:
         text.fail("no rows of numbers below a header of words", 0)
-    number = next((n for n in range(table.start - 1, -1, -1) if not is_blank(lines[n])), 0)
+    number = next(
+        (n for n in range(table.start - 1, -1, -1) if not number_fields.is_blank(lines[n])), 0
+    )
     above = lines[number] if table.start else ""
-    if is_damaged_row(above) and not is_comment(above) and not is_row(above):
+    if (
+        number_fields.is_damaged_row(above)
+        and not number_fields.is_comment(above)
+        and not number_fields.is_row(above)
+    ):
         text.fail(f"{above.strip()[:_SHOWN]!r} is no row of numbers", number)
     facts = stated_facts([words for _, words in table.words])
     if facts.contradiction:
@@ -175,9 +170,9 @@ def _with_numbers_above(layout: _Layout, lines: list[str]) -> _Layout:
     table = layout.table
     above = [(number, word) for number, row in table.numbers for word in row]
     if not above and table.columns > 1:
-        row = numbers_of(lines[table.start], table.decimal_comma)
-        below = next((x for x in lines[table.start + 1 :] if not is_blank(x)), "")
-        if _is_count_row(row, numbers_of(below, table.decimal_comma), table.columns):
+        row = number_fields.numbers_of(lines[table.start], table.decimal_comma)
+        below = next((x for x in lines[table.start + 1 :] if not number_fields.is_blank(x)), "")
+        if _is_count_row(row, number_fields.numbers_of(below, table.decimal_comma), table.columns):
             above = [(table.start, word) for word in row]
             table = replace(table, start=table.start + 1)
     if not above:
@@ -211,18 +206,18 @@ def _agreeing(layout: _Layout, npts: int | None, dt: float | None, line: int) ->
 def _is_count_row(row: list[str], below: list[str], columns: int) -> bool:
     """Tell a count and an interval from the first row of samples of several columns."""
     npts, dt = _count_and_step(row[:2])
-    if npts is None or dt is None or not are_numbers(below) or len(below) != columns:
+    if npts is None or dt is None or not number_fields.are_numbers(below) or len(below) != columns:
         return False
     if columns == 2:
         # as a time, the first number would not come before the next
-        return number_in(below[0]) <= number_in(row[0])
+        return number_fields.number_in(below[0]) <= number_fields.number_in(row[0])
     return not any(_is_whole(word) for word in below)
 
 
 def _count_and_step(words: list[str]) -> tuple[int | None, float | None]:
     """Return the count and the interval [s] that one or two numbers are, in either order."""
-    npts = next((int(number_in(word)) for word in words if _is_count(word)), None)
-    dt = next((number_in(word) for word in words if not _is_whole(word)), None)
+    npts = next((int(number_fields.number_in(word)) for word in words if _is_count(word)), None)
+    dt = next((number_fields.number_in(word) for word in words if not _is_whole(word)), None)
     if dt is not None and not SHORTEST_STEP <= dt <= LONGEST_STEP:
         return None, None
     if len(words) == 2 and (npts is None or dt is None):
@@ -231,7 +226,7 @@ def _count_and_step(words: list[str]) -> tuple[int | None, float | None]:
 
 
 def _is_count(word: str) -> bool:
-    value = number_in(word)
+    value = number_fields.number_in(word)
     return value >= 2 and value == int(value) and (_is_whole(word) or value < 1e9)
 
 
@@ -312,8 +307,8 @@ def _without_leading(
         return layout, values
     words = [
         word
-        for line in text.lines(layout.line, layout.line + LOOKED_AT)
-        for word in numbers_of(line, layout.table.decimal_comma)
+        for line in text.lines(layout.line, layout.line + number_fields.LOOKED_AT)
+        for word in number_fields.numbers_of(line, layout.table.decimal_comma)
     ]
     first, body = words[:2], words[2:]
     whole = [_is_whole(word) for word in first]
@@ -348,7 +343,7 @@ def _without_leading(
 
 def _is_interval(word: str, odd: bool, body: list[str]) -> bool:
     """Tell whether a number is an interval that recorders have, rounder than the samples below it."""
-    value = number_in(word)
+    value = number_fields.number_in(word)
     if _is_whole(word) or not SHORTEST_STEP <= value <= LONGEST_STEP:
         return False
     digits = [_digits(sample) for sample in body]

@@ -8,17 +8,10 @@ of samples more may follow.
 
 import re
 
-import numpy as np
-from numpy.typing import NDArray
 from obspy import UTCDateTime
 
+from rockfrag.records.parsing import fortran_sections
 from rockfrag.records.parsing.format import Channel, Format
-from rockfrag.records.parsing.fortran_sections import (
-    field_width,
-    header_keys,
-    in_rows,
-    positive_step,
-)
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
@@ -37,7 +30,7 @@ def _parse(text: TextFile) -> list[Channel]:
     at_data = text.find(_DATA, 0, _MAX_HEADER)
     if at_data < 0:
         text.fail("no line DATOS DE ACELERACION; the file is cut short")
-    facts = header_keys(text.lines(0, at_data))
+    facts = fortran_sections.header_keys(text.lines(0, at_data))
     rulers = [i for i in range(at_data, at_data + 10) if _RULER.match(text.line(i))]
     if len(rulers) < 2:
         text.fail("the two rulers above the samples are missing", at_data)
@@ -49,8 +42,12 @@ def _parse(text: TextFile) -> list[Channel]:
         dt, promised = float(steps[0]), int(counts[0])
     except ValueError:
         text.fail("sampling interval or number of samples is not a number")
-    dt = positive_step(text, dt, at_data)
-    table = _table(text, rulers[1] + 1, facts, len(steps))
+    dt = fortran_sections.positive_step(text, dt, at_data)
+    form = next((value for key, value in facts.items() if key.startswith("formato datos")), "")
+    values = text.numbers(rulers[1] + 1, None, fortran_sections.field_width(f"({form})"))
+    if text.cut_short:
+        values = values[: values.size // len(steps) * len(steps)]
+    table = fortran_sections.in_rows(text, values, len(steps), rulers[1] + 1)
     extra = table.shape[0] - promised
     if not 0 <= extra < 1 / dt:
         text.check_count(promised, table.shape[0], rulers[1] + 1)
@@ -74,14 +71,6 @@ def _parse(text: TextFile) -> list[Channel]:
         )
         for column, orientation in enumerate(orientations)
     ]
-
-
-def _table(text: TextFile, start: int, facts: dict[str, str], columns: int) -> NDArray[np.float64]:
-    form = next((value for key, value in facts.items() if key.startswith("formato datos")), "")
-    values = text.numbers(start, None, field_width(f"({form})"))
-    if text.cut_short:
-        values = values[: values.size // columns * columns]
-    return in_rows(text, values, columns, start)
 
 
 def _list(facts: dict[str, str], key: str) -> list[str]:

@@ -13,13 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.records.formats.usc import place_of
+from rockfrag.records.parsing import fortran_sections
 from rockfrag.records.parsing.format import Channel, Format
-from rockfrag.records.parsing.fortran_sections import (
-    Section,
-    accelerations,
-    first_match,
-    positive_step,
-)
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
@@ -56,7 +51,7 @@ def _recognise(lines: list[str], name: str) -> bool:
     )
 
 
-@accelerations
+@fortran_sections.accelerations
 def _parse(text: TextFile) -> Iterator[tuple[str, Channel]]:
     for first, stop in text.parts(_HEAD):
         line = text.find(_VALUES, first, stop)
@@ -77,7 +72,9 @@ def _in_words(text: TextFile, first: int, stop: int) -> Channel:
     """Return the acceleration of a file whose words alone state count and interval."""
     start = text.find(_WHOLE_NUMBERS, first, stop)
     words = text.lines(first, start if start >= 0 else first + _MAX_HEADER)
-    count, step, peak = (first_match(p, words) for p in (_COUNT_IN_WORDS, _STEP_IN_WORDS, _PEAK))
+    count, step, peak = (
+        fortran_sections.first_match(p, words) for p in (_COUNT_IN_WORDS, _STEP_IN_WORDS, _PEAK)
+    )
     if start < 0 or count is None or step is None or peak is None:
         text.fail(
             "no number of samples, interval or peak is stated below; the file is cut short", first
@@ -90,13 +87,13 @@ def _in_words(text: TextFile, first: int, stop: int) -> Channel:
     text.check_count(promised, values.size, line)
     _check_peak(text, words, values, line)
     unit = canonical_unit(peak["unit"].upper().replace("CMS", "CM"))
-    dt = positive_step(text, float(step["dt"]), first)
+    dt = fortran_sections.positive_step(text, float(step["dt"]), first)
     return place_of(words, Channel(promised, dt, values.copy, unit))
 
 
 def _check_peak(text: TextFile, words: list[str], samples: NDArray[np.float64], line: int) -> None:
     """Check the largest value against the peak that the header states, in the same unit."""
-    peak = first_match(_PEAK, words)
+    peak = fortran_sections.first_match(_PEAK, words)
     stated, found = abs(float(peak["value"])) if peak else 0.0, float(np.abs(samples).max())
     if stated and not text.cut_short and abs(found - stated) > _AS_STATED * stated:
         text.fail(
@@ -106,14 +103,14 @@ def _check_peak(text: TextFile, words: list[str], samples: NDArray[np.float64], 
         )
 
 
-def _section(text: TextFile, line: int, words: list[str]) -> Section:
+def _section(text: TextFile, line: int, words: list[str]) -> fortran_sections.Section:
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("number of samples, interval or quantity cannot be read here", line)
-    peak = first_match(_PEAK, words)
+    peak = fortran_sections.first_match(_PEAK, words)
     unit = match["unit"] or (peak["unit"] if peak else "")
-    dt = positive_step(text, float(match["dt"]), line)
-    return Section(
+    dt = fortran_sections.positive_step(text, float(match["dt"]), line)
+    return fortran_sections.Section(
         _QUANTITIES[match["quantity"].upper()],
         int(match["count"]),
         line + 1,

@@ -17,17 +17,8 @@ _INDEX = re.compile(
     r"|^#$|^number$",
     re.IGNORECASE,
 )
-_SECONDS = {
-    "": 1.0,
-    "s": 1.0,
-    "sek": 1.0,
-    "ms": 1e-3,
-    "us": 1e-6,
-    "µs": 1e-6,
-    "μs": 1e-6,
-    "min": 60.0,
-    "h": 3600.0,
-}
+_SECONDS = {"": 1.0, "s": 1.0, "sek": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
+_SECONDS |= {"min": 60.0, "h": 3600.0}
 _LONG_NAMES = (
     (re.compile(r"^milli.*|^ms.*"), "ms"),
     (re.compile(r"^micro.*"), "us"),

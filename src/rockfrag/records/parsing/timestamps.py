@@ -24,24 +24,8 @@ _EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)
 
 _COARSEST = 1.25  # largest ratio of that interval to the mean distance of the digitised points
 
-_HOURS_BEHIND = {
-    "UTC": 0,
-    "UT": 0,
-    "GMT": 0,
-    "Z": 0,
-    "EST": 5,
-    "EDT": 4,
-    "CST": 6,
-    "CDT": 5,
-    "MST": 7,
-    "MDT": 6,
-    "PST": 8,
-    "PDT": 7,
-    "AKST": 9,
-    "AKDT": 8,
-    "AST": 9,
-    "HST": 10,
-}
+_HOURS_BEHIND = {"UTC": 0, "UT": 0, "GMT": 0, "Z": 0, "EST": 5, "EDT": 4, "CST": 6, "CDT": 5}
+_HOURS_BEHIND |= {"MST": 7, "MDT": 6, "PST": 8, "PDT": 7, "AKST": 9, "AKDT": 8, "AST": 9, "HST": 10}
 """Hours that the time zones of American networks are behind UTC (AST is Alaska's, as they use it)."""
 
 _LAST_YEAR_OF_2000S = 30

@@ -23,18 +23,8 @@ MAX_TOTAL = 2 * MAX_BYTES  # bytes that an archive may unpack to
 _BLOCK = 2**20
 _TAR_NAMES = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
 _UNREADABLE = (
-    OSError,
-    EOFError,
-    ValueError,
-    RuntimeError,
-    NotImplementedError,
-    KeyError,
-    IndexError,
-    struct.error,
-    zlib.error,
-    lzma.LZMAError,
-    zipfile.BadZipFile,
-    tarfile.TarError,
+    *(OSError, EOFError, ValueError, RuntimeError, NotImplementedError, KeyError, IndexError),
+    *(struct.error, zlib.error, lzma.LZMAError, zipfile.BadZipFile, tarfile.TarError),
 )
 """What the modules of the standard library raise for a damaged, locked or unusual archive."""
 

@@ -128,20 +128,13 @@ def _ask(request: FdsnRequest) -> tuple[Any, Any, dict[str, str]]:
 
     client = Client(request.client)
     start, end, facts = _window(request, client)
-    codes = (request.network, request.station, request.location or "--", request.channel)
-    stream = client.get_waveforms(*codes, start, end)
+    place = {"network": request.network, "station": request.station}
+    place |= {"location": request.location or "--", "channel": request.channel}
+    window = {"starttime": start, "endtime": end}
+    stream = client.get_waveforms(**place, **window)
     if not stream:
         raise InputError(f"FDSN request {request.words!r}: the service has no records of it.")
-    inventory = client.get_stations(
-        network=codes[0],
-        station=codes[1],
-        location=codes[2],
-        channel=codes[3],
-        starttime=start,
-        endtime=end,
-        level="response",
-    )
-    return stream, inventory, facts
+    return stream, client.get_stations(**place, **window, level="response"), facts
 
 
 def _window(

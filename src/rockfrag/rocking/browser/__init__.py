@@ -1,8 +1,6 @@
-"""The simulator in a page: the kernels as WebAssembly, and the scripts that call them.
+"""The simulator in a page: the kernels as WebAssembly (``build``), and the scripts that call them.
 
-``integrate.wasm``, ``ensemble.wasm`` and ``space.wasm`` are made from the kernels (``build``) and kept with the
-package; ``module.js`` with the script of a module is what a page, or Node, talks to them with.  Nothing of this is
-needed to compute in Python.
+``module.js`` with the script of a module is what a page, or Node, talks to them with; Python needs none of this.
 """
 
 from pathlib import Path

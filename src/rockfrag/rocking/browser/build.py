@@ -1,10 +1,7 @@
 """Make the WebAssembly modules from the kernels: ``python -m rockfrag.rocking.browser.build``.
 
-``integrate.wasm`` has the kernel of one history, ``ensemble.wasm`` the lanes that count outcomes, ``space.wasm``
-the kernel of a body in space, for both.  What ``simulate``, ``overturns`` and ``run_in_space`` call is compiled by
-numba to LLVM's language as always, and from there on for WebAssembly instead of this processor.  The linker is
-that of the package ``ziglang`` (``pip install 'rockfrag[browser]'``), which nothing else needs.  The same versions
-make the same bytes on every machine.
+Numba compiles what Python calls to LLVM's language, which is then compiled for WebAssembly.  The linker is that of
+``ziglang`` (``pip install 'rockfrag[browser]'``); the same versions make the same bytes on every machine.
 """
 
 import json

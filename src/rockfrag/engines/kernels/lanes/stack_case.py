@@ -1,8 +1,6 @@
-"""The life of a stack's case: taken, at rest, in a lane, through its contact events, and put down.
+"""The life of a stack's case, a CASE record: taken, at rest, in a lane, through its contact events, and put down.
 
-A case in flight is a CASE record; its slot holds the constants of its body.  Lanes of one rotation
-(``stack_one``) and of two (``stack_two``) hold copies of what they integrate; ``place_one``, ``store_one`` and
-their like carry these over.
+``place_one``, ``store_one`` and their like carry it in and out of lanes of one rotation and of two.
 """
 
 import math
