@@ -1,9 +1,8 @@
 """The object and what it stands on as blocks, what was assumed of them, and what is not known to the digit."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +18,7 @@ from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.body import Polygon, RigidBody, checked_tensor
 from rockfrag.system.contact import Contact
-from rockfrag.system.mesh import Shape, read_shape
+from rockfrag.system.mesh import read_shape
 from rockfrag.system.system import (
     System,
     diagonal,
@@ -136,13 +135,12 @@ class Objects:
         return system_of(system, restitution=each if below else each[0])
 
     def _ratios(self, shape: geometry.Shape, rolls: bool) -> tuple[float, float]:
-        right, left = (self._ratio(shape, pivot, rolls) for pivot in (1, -1))
-        return right, left
-
-    def _ratio(self, shape: geometry.Shape, pivot: int, rolls: bool) -> float:
         measured = ROLLING if rolls else self.restitution
         e = math.nan if measured is None else measured
-        return geometry.scaled_restitution(shape, pivot, e, self.livelier)
+        right, left = (
+            geometry.scaled_restitution(shape, pivot, e, self.livelier) for pivot in (1, -1)
+        )
+        return right, left
 
     @property
     def in_space(self) -> bool:
@@ -199,14 +197,11 @@ class Objects:
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
-        moves: dict[str, Callable[[float], Objects]] = {
-            "width": partial(_wider, self),
-            "cg_height": partial(_higher, self),
-        }
+        moves = {"width": self._wider, "cg_height": self._higher}
         if not self.round:  # of a body in space that of the planar answer
             moves["restitution"] = lambda factor: replace(self, livelier=self.livelier * factor)
         if self.pedestals:
-            moves["mass"] = partial(_heavier, self)
+            moves["mass"] = self._heavier
         found = moved_to_both_sides(moves, self.tolerances)
         if self.scan is not None:
             found += _standing(self, self.scan)
@@ -214,6 +209,29 @@ class Objects:
             turned = (replace(self, facing_deg=self.facing_deg + by) for by in (-ASIDE, ASIDE))
             found.append(Moved("facing", 0.0, *turned))
         return found
+
+    def _stretched(self, *factors: float) -> RigidBody | None:
+        """The scan in space, if there is one, by the factors of :func:`stretched`."""
+        return None if self.scanned is None else stretched(self.scanned, *factors)
+
+    def _wider(self, factor: float) -> "Objects":
+        """Move all edges: what carries is uncertain at the foot of a pedestal as at that of a statue."""
+        return replace(
+            self,
+            depth=None if self.depth is None else self.depth * factor,
+            block=wider(self.block, factor),
+            scanned=self._stretched(factor, 1.0, 1.0),
+            pedestals=tuple(wider(block, factor) for block in self.pedestals),
+        )
+
+    def _higher(self, factor: float) -> "Objects":
+        scanned = self._stretched(1.0, factor, 1.0)
+        return replace(self, block=higher(self.block, factor), scanned=scanned)
+
+    def _heavier(self, factor: float) -> "Objects":
+        mass, inertia = self.block.mass * factor, self.block.centroidal_inertia * factor
+        heavier = replace(self.block, mass=mass, inertia=inertia)
+        return replace(self, block=heavier, scanned=self._stretched(1.0, 1.0, factor))
 
 
 def _standing(objects: Objects, scan: Scan) -> list[Moved[Objects]]:
@@ -250,30 +268,9 @@ def stretched(body: RigidBody, width: float, height: float, mass: float) -> Rigi
     )
 
 
-def _stretched(objects: Objects, *factors: float) -> RigidBody | None:
-    """The scan in space, if there is one, by the factors of :func:`stretched`."""
-    return None if objects.scanned is None else stretched(objects.scanned, *factors)
-
-
-def _wider(objects: Objects, factor: float) -> Objects:
-    """Move all edges: what carries is uncertain at the foot of a pedestal as at that of a statue."""
-    return replace(
-        objects,
-        depth=None if objects.depth is None else objects.depth * factor,
-        block=wider(objects.block, factor),
-        scanned=_stretched(objects, factor, 1.0, 1.0),
-        pedestals=tuple(wider(block, factor) for block in objects.pedestals),
-    )
-
-
 def wider(block: Block, factor: float) -> Block:
     """A block whose edges are further apart; mass, centre of gravity and inertia stay."""
     return replace(block, width=block.width * factor, inertia=block.centroidal_inertia)
-
-
-def _higher(objects: Objects, factor: float) -> Objects:
-    scanned = _stretched(objects, 1.0, factor, 1.0)
-    return replace(objects, block=higher(objects.block, factor), scanned=scanned)
 
 
 def higher(block: Block, factor: float) -> Block:
@@ -281,12 +278,6 @@ def higher(block: Block, factor: float) -> Block:
     return replace(
         block, cg_height=min(block.h * factor, block.height), inertia=block.centroidal_inertia
     )
-
-
-def _heavier(objects: Objects, factor: float) -> Objects:
-    block = objects.block
-    heavier = replace(block, mass=block.mass * factor, inertia=block.centroidal_inertia * factor)
-    return replace(objects, block=heavier, scanned=_stretched(objects, 1.0, 1.0, factor))
 
 
 def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
@@ -428,7 +419,13 @@ def _from_dimensions(
         assumed.append(assume("mass", "mass", mass=mass, solid=solid, density=STONE))
     check_density(width, height, float(mass))
     if "depth_m" in settings:
-        quality_flags += _density_flags(float(mass), width * depth * height)
+        volume = width * depth * height
+        density = float(mass) / volume
+        words = f"{mass:g} kg in a box of {volume:.3g} m³ are {density:.3g} kg/m³"
+        if not DENSITIES[0] <= density <= DENSITIES[1]:
+            raise InputError(f"key mass: {words}, a density that no solid has; check the units.")
+        if not COMMON[0] <= density <= COMMON[1]:
+            quality_flags.append(f"{words}, which is unusual; check the units.")
     if "cg_height_m" not in settings:
         assumed.append(assume("cg_height", "cg_height"))
     cg_height = settings.get("cg_height_m")
@@ -449,17 +446,6 @@ def _from_dimensions(
     return block, plane
 
 
-def _density_flags(mass: float, volume: float) -> list[str]:
-    """Say that the density of the box around the object is unusual; refuse one that no solid has."""
-    density = mass / volume
-    words = f"{mass:g} kg in a box of {volume:.3g} m³ are {density:.3g} kg/m³"
-    if not DENSITIES[0] <= density <= DENSITIES[1]:
-        raise InputError(f"key mass: {words}, a density that no solid has; check the units.")
-    if not COMMON[0] <= density <= COMMON[1]:
-        return [f"{words}, which is unusual; check the units."]
-    return []
-
-
 _FROM_MESH = ("width_m", "height_m", "depth_m", "cg_height_m", "cg_offset_m", "inertia_kg_m2")
 
 
@@ -477,9 +463,15 @@ def _from_mesh(
     if mesh.get("hull"):
         assumed.append(assume("hull", "cg_height"))
     try:
-        scan, of_scan = make_scan(
-            _shape(mesh, folder, mass), mesh, settings.get("tolerances", {}).get("contact")
+        shape = read_shape(
+            folder / mesh["file"],
+            mass=mass,
+            density=STONE if mass is None else None,
+            metres_per_unit=float(mesh.get("metres_per_unit", 1.0)),
+            up=mesh.get("up"),
+            hull=bool(mesh.get("hull", False)),
         )
+        scan, of_scan = make_scan(shape, mesh, settings.get("tolerances", {}).get("contact"))
     except InputError as error:
         raise InputError(_in_keys(str(error))) from None
     assumed += of_scan
@@ -489,17 +481,6 @@ def _from_mesh(
         f"middle one of {len(scan.ways)} ways to stand does"
     )
     return scan, scan.block(), plane
-
-
-def _shape(mesh: Mapping[str, Any], folder: Path, mass: float | None) -> Shape:
-    return read_shape(
-        folder / mesh["file"],
-        mass=mass,
-        density=STONE if mass is None else None,
-        metres_per_unit=float(mesh.get("metres_per_unit", 1.0)),
-        up=mesh.get("up"),
-        hull=bool(mesh.get("hull", False)),
-    )
 
 
 def _in_keys(words: str) -> str:

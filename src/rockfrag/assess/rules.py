@@ -32,7 +32,10 @@ class RuleCheck:
 
 def check_rules(objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes) -> list[RuleCheck]:
     """Hold every rule that applies to an object against its outcomes under the motions that shake it."""
-    simulated = first_scales(outcomes)
+    # least factor on each motion that topples the object; NaN where none does
+    first = outcomes.first()
+    scales = outcomes.intensity_levels.scales[np.arange(first.size), first]
+    simulated = np.where(first >= 0, scales, np.nan)
     found = []
     for name, rule in RULES.items():
         factors = np.array([predicted(objects.body, motion, rule) for motion in motions.base])
@@ -41,14 +44,6 @@ def check_rules(objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes) 
         unsafe = float((factors > simulated)[known].mean()) if known.any() else float("nan")
         found.append(RuleCheck(name, middle, scatter, unsafe, int(known.sum())))
     return found
-
-
-def first_scales(outcomes: ObjectOutcomes) -> np.ndarray:
-    """Least factor on each motion that topples the object; NaN where none does, shape (motions,)."""
-    first = outcomes.first()
-    return np.where(
-        first >= 0, outcomes.intensity_levels.scales[np.arange(first.size), first], np.nan
-    )
 
 
 def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFrame:

@@ -95,16 +95,18 @@ def make_scan(
     accuracy = mesh.get("scan_accuracy_m")
     unknowns = unknowns_of(SCAN, None if accuracy is None else 1e3 * accuracy)
     del unknowns["restitution_ratio"]
-    given = {
-        "edge_retreat_mm": _in_mm(mesh.get("edge_retreat_m")),
-        "direction_deg": mesh.get("direction_deg"),
-    }
-    tolerance = _in_mm(mesh.get("contact_tolerance_m"))
-    if tolerance is not None or contact_spread is not None:
-        unknowns["contact_tolerance_mm"] = _about(
-            unknowns["contact_tolerance_mm"], tolerance, contact_spread
-        )
-    exact = {name: float(value) for name, value in given.items() if value is not None}
+    exact = {}
+    if "edge_retreat_m" in mesh:
+        exact["edge_retreat_mm"] = 1e3 * mesh["edge_retreat_m"]
+    if "direction_deg" in mesh:
+        exact["direction_deg"] = float(mesh["direction_deg"])
+    given = mesh.get("contact_tolerance_m")
+    if given is not None or contact_spread is not None:
+        unknown = unknowns["contact_tolerance_mm"]
+        middle = unknown.quantile(0.5) if given is None else 1e3 * given
+        spread = KNOWN_CONTACT_SPREAD if contact_spread is None else contact_spread
+        draw = partial(lognormal, middle, spread)
+        unknowns["contact_tolerance_mm"] = Unknown(unknown.words, unknown.source, draw)
     # what is wrong with the mesh is said of its middle tolerance
     shape.contact_polygon(unknowns["contact_tolerance_mm"].quantile(0.5) / 1e3)
     open_ones = {name: unknown for name, unknown in unknowns.items() if name not in exact}
@@ -113,7 +115,7 @@ def make_scan(
     assumed = [
         assume("unmeasured", SOURCE_OF[name], quantity=quantity)
         for name, quantity in open_ones.items()
-        if name != "contact_tolerance_mm" or tolerance is None
+        if name != "contact_tolerance_mm" or given is None
     ]
     upright = ways[ways["least_deg"] >= LEAST_ANGLE_DEG]
     carries = [name for name in open_ones if name != "direction_deg"]
@@ -130,17 +132,6 @@ def _least_angle_deg(shape: Shape, way: Mapping[Any, Any]) -> float:
     """Least angle of all directions at which a way to stand balances [degrees]; negative where it cannot."""
     reach = edge_distances(shape.contact_polygon(way["contact_tolerance_mm"] / 1e3)).min()
     return math.degrees(math.atan2(reach - way["edge_retreat_mm"] / 1e3, shape.cg_height))
-
-
-def _in_mm(metres: float | None) -> float | None:
-    return None if metres is None else 1e3 * metres
-
-
-def _about(unknown: Unknown, tolerance: float | None, spread: float | None) -> Unknown:
-    """A contact tolerance that was given, or whose spread was."""
-    middle = unknown.quantile(0.5) if tolerance is None else tolerance
-    known = KNOWN_CONTACT_SPREAD if spread is None else spread
-    return Unknown(unknown.words, unknown.source, partial(lognormal, middle, known))
 
 
 def _parts(ways: pd.DataFrame, names: list[str], order: str) -> dict[str, float]:

@@ -1,5 +1,6 @@
 """What is in a record: a row for each of its channels, and a picture of one."""
 
+import itertools
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -19,6 +20,7 @@ from rockfrag.motions.intensity import pgd, pgv, predominant_period
 from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
 from rockfrag.records.catalogue import is_catalogue
 from rockfrag.records.motion import Motion, integrate
+from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import Record, motion_of, read_record
@@ -58,12 +60,28 @@ def describe_files(
     """
     rows: list[dict[str, Any]] = []
     for path in _files(paths):
-        rows.extend(_describe(path, unit, dt, force))
+        try:
+            record = _read(path, dt)
+        except InputError as error:
+            rows.append(_error_row(str(path), error))
+            continue
+        rows += [_row(record, channel, unit, force) for channel in record.channels]
+        rows += [_error_row(f"{path}#{name}", error) for name, error in record.left_out]
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     table["npts"] = table["npts"].astype("Int64")
     for column in ("quality_flags", "error"):
         table[column] = table[column].fillna("")
     return table
+
+
+def _read(path: Path, dt: float | None) -> Record:
+    """Read a record; the named interval is for files that do not state theirs."""
+    try:
+        return read_record(path)
+    except InputError:
+        if dt is None:
+            raise
+    return read_record(path, dt)
 
 
 def _files(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
@@ -74,29 +92,12 @@ def _files(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
     return found
 
 
-def _describe(path: Path, unit: str | None, dt: float | None, force: bool) -> list[dict[str, Any]]:
-    record: Record | None = None
-    problem: InputError | None = None
-    # the named interval is for files that do not state theirs
-    for given in (None, dt):
-        if record is None and (given is not None or problem is None):
-            try:
-                record = read_record(path, given)
-            except InputError as error:
-                problem = error
-    if record is None:
-        return [_error_row(str(path), problem)]
-    rows = [_row(record, number, unit, force) for number in range(len(record.channels))]
-    return rows + [_error_row(f"{path}#{name}", error) for name, error in record.left_out]
-
-
-def _error_row(file: str, error: InputError | None) -> dict[str, Any]:
+def _error_row(file: str, error: InputError) -> dict[str, Any]:
     status = NOT_ACCELERATION if isinstance(error, NotAcceleration) else UNREADABLE
     return {"file": printable(file), "error": str(error), "status": status}
 
 
-def _row(record: Record, number: int, unit: str | None, force: bool) -> dict[str, Any]:
-    channel = record.channels[number]
+def _row(record: Record, channel: Channel, unit: str | None, force: bool) -> dict[str, Any]:
     row: dict[str, Any] = {
         "file": printable(f"{record.name}#{channel.member}" if channel.member else record.name),
         "format": record.format,
@@ -135,26 +136,22 @@ def draw_files(
     """Draw every channel of every file that can be read into a folder, and return the pictures."""
     drawn: list[Path] = []
     for path in _files(paths):
-        for given in (None, dt):
-            try:
-                record = read_record(path, given)
-                motions = [
-                    motion_of(record, channel, None if channel.unit else unit, force)
-                    for channel in record.channels
-                ]
-            except InputError:
-                continue
-            for motion in motions:
-                stem = file_name(motion.name)
-                picture = Path(folder) / f"{stem}.png"
-                number = 2
-                while picture in drawn:
-                    picture = Path(folder) / f"{stem}-{number}.png"
-                    number += 1
-                picture.parent.mkdir(parents=True, exist_ok=True)
-                draw_record(motion, picture)
-                drawn.append(picture)
-            break
+        try:
+            record = _read(path, dt)
+            motions = [
+                motion_of(record, channel, None if channel.unit else unit, force)
+                for channel in record.channels
+            ]
+        except InputError:
+            continue
+        for motion in motions:
+            stem = file_name(motion.name)
+            names = itertools.chain([stem], (f"{stem}-{number}" for number in itertools.count(2)))
+            pictures = (Path(folder) / f"{name}.png" for name in names)
+            picture = next(picture for picture in pictures if picture not in drawn)
+            picture.parent.mkdir(parents=True, exist_ok=True)
+            draw_record(motion, picture)
+            drawn.append(picture)
     return drawn
 
 
@@ -191,8 +188,12 @@ def record_figure(motion: Motion) -> Figure:
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1], motion.dt))
         upper, lower = right.subplots(2, 1)
-        _response(upper, motion)
-        _fourier(lower, motion)
+        spectrum = response_spectrum(motion, _SPECTRUM_PERIODS, _DAMPING)
+        _logarithmic(upper, _SPECTRUM_PERIODS, spectrum.pseudo_acceleration / GRAVITY, style.BLUE)
+        upper.set(xlabel="Period [s]", ylabel="PSA, 5 % damping [g]")
+        frequency, amplitude = fourier_amplitude(motion)
+        _logarithmic(lower, frequency[1:], amplitude[1:], style.PURPLE)
+        lower.set(xlabel="Frequency [Hz]", ylabel="Fourier amplitude [m/s]")
         figure.suptitle(_title(motion), fontsize=9)
         return figure
 
@@ -208,21 +209,6 @@ def _history(
     panel.set_ylim(-highest, highest)
     panel.set_ylabel(label)
     panel.set_title(f"peak {peak}", loc="right", pad=2)
-
-
-def _response(panel: Axes, motion: Motion) -> None:
-    spectrum = response_spectrum(motion, _SPECTRUM_PERIODS, _DAMPING)
-    values = spectrum.pseudo_acceleration / GRAVITY
-    _logarithmic(panel, _SPECTRUM_PERIODS, values, style.BLUE)
-    panel.set_xlabel("Period [s]")
-    panel.set_ylabel("PSA, 5 % damping [g]")
-
-
-def _fourier(panel: Axes, motion: Motion) -> None:
-    frequency, amplitude = fourier_amplitude(motion)
-    _logarithmic(panel, frequency[1:], amplitude[1:], style.PURPLE)
-    panel.set_xlabel("Frequency [Hz]")
-    panel.set_ylabel("Fourier amplitude [m/s]")
 
 
 def _logarithmic(panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> None:

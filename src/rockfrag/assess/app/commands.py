@@ -22,9 +22,14 @@ _FORM = (
 _LEVELS = ("pga", "pgv", "sa")
 _KEYS = (
     *_FORM,
-    *("round", "facing_deg", "pedestal", "building"),
     *_LEVELS,
-    *("return_period", "hazard", "records"),
+    "round",
+    "facing_deg",
+    "pedestal",
+    "building",
+    "return_period",
+    "hazard",
+    "records",
 )
 """Keys of ``statue.yaml`` that the page has a field for, or is written with."""
 
