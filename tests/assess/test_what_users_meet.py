@@ -287,6 +287,7 @@ def test_levels_are_named_as_europe_and_america_do():
         (("--width", "1m", "--height", "2m", "--up", "y"), ("--up needs --mesh",)),
         (("--width", "1m", "--height", "2m", "--storey-height", "4m"), ("--floor is missing",)),
         (("--width", "1m", "--height", "2m", "--round", "--restitution", "0.9"), ("--restitution: a round base",)),
+        (("--width", "1m", "--height", "2m", "--facing", "30"), ("--facing: needs width and depth",)),
         (("--width", "1m", "--height", "2m", "--record", "absent.txt", "--magnitude", "6"), ("--magnitude: ",)),
     ],
 )  # fmt: skip

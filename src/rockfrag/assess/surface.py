@@ -21,7 +21,7 @@ _OPTIONS = {
 }
 """Options that are not called as their keys are."""
 
-_UNITS = ("_kg_m2", "_years", "_km", "_kg", "_m", "_s")
+_UNITS = ("_kg_m2", "_years", "_km", "_kg", "_deg", "_m", "_s")
 _KEY = re.compile(
     r"(?<!\w)key ([a-z_][a-z0-9_.]*[a-z0-9_])(\[\d+\](?:\.[a-z_]+)?)?(: true\b|: (?=[xyz]\b))?"
 )
