@@ -25,7 +25,6 @@ from rockfrag.report.wording import (
     of_all,
     probability,
     shortened,
-    spelled,
 )
 from rockfrag.stages.measure_selection import best_of
 
@@ -95,10 +94,6 @@ WORDS = {
     "cells show digits, truth and what is missing": [
         *((cell(1.23456, 2), "1.23"), (cell(-0.5, 1), "−0.5"), (cell(NAN, 2), "–")),
         *((cell(None, None), "–"), (cell(True, None), "yes"), (cell("", None), "–")),
-    ],
-    "ratios are spelled out": [
-        (spelled("P/NP on GF 1.0"), "with/without pedestal on GF 1.0"),
-        (spelled("NP/P on F3"), "without/with pedestal on F3"),
     ],
 }
 

@@ -19,7 +19,7 @@ from rockfrag_thesis.hypotheses.contradictions import orderings_of_floor_means
 from rockfrag_thesis.hypotheses.earthquakes import rank_correlation
 from rockfrag_thesis.hypotheses.hypothesis import Kind, outcome
 from rockfrag_thesis.hypotheses.slenderness import stack_slenderness
-from rockfrag_thesis.sections.hypotheses import hypotheses_html
+from rockfrag_thesis.sections.hypotheses import hypotheses_html, spelled
 
 FOR, AGAINST, OPEN = Finding.FOR, Finding.AGAINST, Finding.OPEN
 
@@ -465,3 +465,8 @@ def test_table_says_what_the_tests_show(made):
     tests = made()
     ground = contradictions(Evidence(tests[tests["floor"] == "GF"], "simulated"))
     assert "cannot be said" in ground.iloc[0]["in_these_tests"]
+
+
+def test_ratios_are_spelled_out_for_a_reader():
+    assert spelled("P/NP on GF 1.0") == "with/without pedestal on GF 1.0"
+    assert spelled("NP/P on F3") == "without/with pedestal on F3"

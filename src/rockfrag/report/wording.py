@@ -151,11 +151,6 @@ def amplitude(test: Mapping[Any, Any]) -> str:
     return f"> {number(test['lower_g'], 3)}" if test["lower_g"] > 0 else "–"
 
 
-def spelled(words: str) -> str:
-    """The words with P/NP and NP/P, the names of ratios in tables, written out for a reader."""
-    return words.replace("NP/P", "without/with pedestal").replace("P/NP", "with/without pedestal")
-
-
 def sentence(words: str) -> str:
     """The words with a capital letter first."""
     return words[:1].upper() + words[1:]

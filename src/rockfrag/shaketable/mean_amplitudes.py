@@ -36,15 +36,6 @@ def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
-def mean_amplitudes_of(tests: pd.DataFrame, by: list[str]) -> pd.DataFrame:
-    """Means of each part of a table of tests, such as each variant of a building, by the values of ``by``."""
-    parts = []
-    for key, rows in tests.groupby(by, sort=False, dropna=False):
-        about = pd.DataFrame(dict(zip(by, key, strict=True)), index=[0])
-        parts.append(about.merge(mean_amplitudes(rows), how="cross"))
-    return pd.concat(parts, ignore_index=True)
-
-
 def _means(
     by: str, tests: pd.DataFrame, compared: list[str], units: list[str]
 ) -> list[dict[str, object]]:

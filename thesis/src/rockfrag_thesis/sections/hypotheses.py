@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from rockfrag.report.page import Column, Row, table_html
 from rockfrag.report.part import Part, Results, Section, section_of
-from rockfrag.report.wording import probability, spelled
+from rockfrag.report.wording import probability
 from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
 from rockfrag_thesis.sections import says
 
@@ -64,6 +64,11 @@ def outcomes_section(
     counts = [f"{count} {SHORT.get(str(outcome), outcome)}" for outcome, count in outcomes.items()]
     inferred, tested = int(hypotheses["p"].notna().sum()), hypotheses["number"].nunique()
     return section_of(says.hypotheses(title, tested, counts, inferred), anchor, parts)
+
+
+def spelled(words: str) -> str:
+    """The words with P/NP and NP/P, the names of ratios in tables, written out for a reader."""
+    return words.replace("NP/P", "without/with pedestal").replace("P/NP", "with/without pedestal")
 
 
 def hypotheses_html(hypotheses: pd.DataFrame) -> Markup:

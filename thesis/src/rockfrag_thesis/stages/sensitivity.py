@@ -1,5 +1,7 @@
 """The building as an axis: one of its assumptions changed at a time."""
 
+import pandas as pd
+
 from rockfrag.stages.job import Job, Results
 from rockfrag.stages.tests import protocol_of
 from rockfrag.study.study import Study
@@ -10,7 +12,7 @@ from rockfrag_thesis.settings import settings_of
 def run(job: Job[Study]) -> Results:
     """Yield the tests on the floors of every building, and their means."""
     from rockfrag.shaketable.definitions import DEFINITION
-    from rockfrag.shaketable.mean_amplitudes import mean_amplitudes_of
+    from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
     from rockfrag_thesis.building_sensitivity import building_sensitivity, building_variants
 
     study = job.study
@@ -31,5 +33,9 @@ def run(job: Job[Study]) -> Results:
     yield "building_sensitivity/tests", tests
     by = ["axis", "value", "label", "credible"]
     laboratory = tests[tests["definition"] == DEFINITION]
-    yield "building_sensitivity/means", mean_amplitudes_of(laboratory, by)
+    parts = []
+    for key, rows in laboratory.groupby(by, sort=False, dropna=False):
+        about = pd.DataFrame(dict(zip(by, key, strict=True)), index=[0])
+        parts.append(about.merge(mean_amplitudes(rows), how="cross"))
+    yield "building_sensitivity/means", pd.concat(parts, ignore_index=True)
     job.log.info("buildings: %d", len(variants))
