@@ -73,7 +73,7 @@ torture: .venv/installed
 
 docs: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[docs]"
-	@$(RUN) sphinx -q -W --keep-going -b html docs docs/_build
+	@$(RUN) sphinx -q -E -W --keep-going -b html docs docs/_build
 	@echo "docs/_build/index.html"
 
 bench: .venv/installed
