@@ -107,7 +107,7 @@ function contacts(c1, c2) {
   if (c2 === 0) return `both rock as one on the pedestal’s ${side(c1)} edge`;
   return `the object rocks on its ${side(c2)} edge on a pedestal that rocks on its ${side(c1)} edge`;
 }
-const shown = (value, digits) => value.toFixed(digits).replace("-", "−");
+const shown = (value, digits) => value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
 
 function outcomeOfTable() {
   if (changed()) return null;

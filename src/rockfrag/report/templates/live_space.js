@@ -9,7 +9,7 @@ const unpacked = async (text) =>
   new Uint8Array(await new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
 const numbers = (text) => new Float64Array(bytesOf(text).buffer);
 const motions = data.motions.map((one) => ({ ...one, samples: one.samples.map(numbers) }));
-const shown = (value, digits) => value.toFixed(digits).replace("-", "−");
+const shown = (value, digits) => value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
 const degrees = (angle) => `${shown((angle * 180) / Math.PI, 1)}°`;
 
 // ---- what is shown: the case, and its response
