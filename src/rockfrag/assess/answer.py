@@ -84,7 +84,7 @@ class Assessment:
         Number of motions that reach the level, and of those that make it rock and topple it there; None without a
         level, and where the level is beyond what any motion may be scaled to.
     amplitudes
-        Levels at which a tenth and half of the motions topple it, by share.
+        Levels at which a tenth and half of the motions topple it, by fraction.
     by_arrangement
         What is estimated of each arrangement.
     curve

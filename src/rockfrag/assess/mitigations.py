@@ -34,7 +34,7 @@ class Mitigation:
     """What a change does."""
 
     name: str  # What is changed, in words
-    value: float  # The probability, share or amplitude with it
+    value: float  # The probability, fraction or amplitude with it
     factor: float  # That over the one without it [-]; 0 where no motion topples the object any more
     # Limits of the factor, of the same motions with and without it; NaN where there are none
     lower: float

@@ -48,7 +48,7 @@ def toppling_rate(
 
 @lru_cache(maxsize=512)
 def _rate_weights(levels: bytes, hazard: HazardCurve, shift: float) -> Floats:
-    """The rate of toppling where one level alone topples all, shape (levels,): rates are linear in shares."""
+    """The rate of toppling where one level alone topples all, shape (levels,): rates are linear in fractions."""
     x = np.log(np.frombuffer(levels)) + shift
     # pieces end at levels of the series of levels and at points of the hazard curve, where its slope changes
     knots = np.log(hazard.levels)
@@ -87,7 +87,7 @@ class Estimate:
 class Target:
     """What is estimated from fractions of motions: the probability in some years, or the fraction at a level."""
 
-    # Turns levels, shares and a shift of the levels into the number that is estimated
+    # Turns levels, fractions and a shift of the levels into the number that is estimated
     of: Callable[[Floats, Floats, float], float]
     # To the scale on which intervals are symmetric and back
     forward: Callable[[float], float]

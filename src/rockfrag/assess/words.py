@@ -34,7 +34,7 @@ MOST_ASSUMPTIONS = 3
 
 
 def fraction_words(value: float) -> str:
-    """A probability or share in per cent, to two digits."""
+    """A probability or fraction in per cent, to two digits."""
     if not math.isfinite(value):
         return "unknown"
     if value <= 0 or value >= 1:

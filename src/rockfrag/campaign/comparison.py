@@ -1,4 +1,4 @@
-"""Simulation against measurement as a referee wants it: shares with intervals, both errors, rivals, regions."""
+"""Simulation against measurement as a referee wants it: fractions with intervals, both errors, rivals, regions."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

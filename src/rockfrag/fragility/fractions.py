@@ -21,7 +21,7 @@ from rockfrag.fragility.observations import Floats, Observations, cells, counts
 ENDS = (0.1587, 0.8413)
 """Shares one standard deviation below and above the median of a lognormal curve [-]."""
 
-ROUNDING = 1e-6  # values and shares that differ by less are one point of the curve [-]
+ROUNDING = 1e-6  # values and fractions that differ by less are one point of the curve [-]
 Limits = tuple[float, float]
 
 UNKNOWN: Limits = (float("nan"), float("nan"))

@@ -60,7 +60,7 @@ def outcome_robustness(
 
     Returns
     -------
-    Shares from 0 to 1, shape (bodies, motions, scales): 1 where no copy ends otherwise.
+    Fractions from 0 to 1, shape (bodies, motions, scales): 1 where no copy ends otherwise.
 
     Raises
     ------
