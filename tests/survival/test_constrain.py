@@ -305,11 +305,11 @@ def calculated(tmp_path_factory):
 @pytest.mark.slow
 @pytest.mark.parametrize("measure", [PGA, PGV])
 def test_weights_of_openquake_return_its_mean_curve(calculated, measure):
-    paths = sorted(calculated.glob(f"hazard_curve-rlz-*-{measure.name}_*.csv"))
+    paths = sorted(calculated.glob(f"hazard_curve-rlz-*-{measure.imt}_*.csv"))
     branches = read_branches(paths, calculated / "realizations_1.csv")
     weights = [0.35 * 0.6, 0.35 * 0.4, 0.65 * 0.6, 0.65 * 0.4]
     assert [branch.weight for branch in branches] == pytest.approx(weights)
-    levels, mean = rows_of(calculated / f"hazard_curve-mean-{measure.name}_1.csv")
+    levels, mean = rows_of(calculated / f"hazard_curve-mean-{measure.imt}_1.csv")
     curves = [branch.curves[measure] for branch in branches]
     # beyond the ends that all exports know the package continues a power law
     first, last = max(c.levels[0] for c in curves), min(c.levels[-1] for c in curves)
