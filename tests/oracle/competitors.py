@@ -4,7 +4,7 @@ Every one stops as soon as a block has turned by a right angle or the motion is 
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,29 @@ Array = NDArray[np.float64]
 SLOWEST_IMPACT = 1e-4
 """Speed after an impact [rad/s] below which solve_ivp's block rests: following its chatter to 1e-6 rad/s
 takes several times as long and changes no outcome."""
+
+
+def end_of_rest(
+    t: float,
+    dt: float,
+    values: Sequence[float] | Array,
+    moves: NDArray[np.bool_],
+    ground: Callable[[float], float],
+    limits: tuple[float, float],
+) -> float:
+    """Instant after ``t`` just behind which the ground leaves ``limits``, infinite if it stays within them.
+
+    ``moves`` are the samples outside them.
+    """
+    k = int(t / dt) + 1
+    later = np.flatnonzero(moves[k:])
+    if not later.size:
+        return math.inf
+    k += int(later[0])
+    before, after = max(t, (k - 1) * dt), k * dt
+    a0, a1 = ground(before), values[k]
+    low, high = limits
+    return before + (after - before) * ((high if a1 > high else low) - a0) / (a1 - a0) + 1e-9
 
 
 def scipy_lone(body: Body, acceleration: Array, dt: float, *, by_sample: bool = False) -> bool:
@@ -59,14 +82,9 @@ def scipy_lone(body: Body, acceleration: Array, dt: float, *, by_sample: bool = 
         if side == 0:
             now = ground(t)
             if abs(now) <= limit:
-                k = int(t / dt) + 1
-                later = np.flatnonzero(moves[k:])
-                if not later.size:
+                t = end_of_rest(t, dt, values, moves, ground, (-limit, limit))
+                if t == math.inf:
                     return False
-                k += int(later[0])
-                before, after = max(t, (k - 1) * dt), k * dt
-                a0, a1 = ground(before), values[k]
-                t = before + (after - before) * (math.copysign(limit, a1) - a0) / (a1 - a0) + 1e-9
                 now = ground(t)
             side, omega = (-1 if now > 0 else 1), 0.0
         rates, lands, falls = flight(side, t)
@@ -261,15 +279,9 @@ def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool =
     t = 0.0
     while t < end:
         if run.resting() and low <= run.ground(t)[0] <= high:
-            k = int(t / dt) + 1
-            later = np.flatnonzero(moves[k:])
-            if not later.size:
+            t = end_of_rest(t, dt, values, moves, lambda s: run.ground(s)[0], (low, high))
+            if t == math.inf:
                 return False
-            k += int(later[0])
-            before, after = max(t, (k - 1) * dt), k * dt
-            a0, a1 = run.ground(before)[0], values[k]
-            limit = high if a1 > high else low
-            t = before + (after - before) * (limit - a0) / (a1 - a0) + 1e-9
         run.apply(t, set())
         if run.resting():
             continue

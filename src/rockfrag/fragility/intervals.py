@@ -105,6 +105,7 @@ def outcome_fitter(outcomes: Observations, over: Over) -> tuple[WeightedFit, int
     fell = counts(codes, column, outcomes.overturned)
     total = counts(codes, column, outcomes.trials)
     design = np.column_stack([np.ones(values.size), values])
+    one_level = np.ptp(values) < ROUNDING
 
     whole = fit_batch(design, fell.sum(axis=0)[None], total.sum(axis=0)[None], penalised=True)
     start = whole.coefficients[0] if np.isfinite(whole.coefficients).all() else None
@@ -118,8 +119,8 @@ def outcome_fitter(outcomes: Observations, over: Over) -> tuple[WeightedFit, int
             if chosen.any():
                 batch = fit_batch(design, y[chosen], m[chosen], penalised=penalised, start=start)
                 result[chosen] = batch.coefficients
-        if np.ptp(values) < ROUNDING:
-            result[:] = np.nan  # at one value no curve
+        if one_level:
+            result[:] = np.nan  # no curve
         result[y.sum(axis=1) == 0, 0] = -np.inf
         result[y.sum(axis=1) == m.sum(axis=1), 0] = np.inf
         return result

@@ -159,7 +159,7 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
         notes += SAY("agreeing", outcomes)
     elif np.ptp(outcomes.log_im) < ROUNDING:
         method = "none: one level of the measure"
-        notes += SAY("one_level", outcomes)
+        notes += SAY("one_level", outcomes, outcomes.n, outcomes.name, outcomes.im[0])
     else:
         method, coefficients, information = _estimated(outcomes, link, notes)
         log_p, log_q, *_ = log_terms(coefficients[0] + coefficients[1] * outcomes.log_im, link)

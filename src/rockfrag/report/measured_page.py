@@ -55,7 +55,7 @@ def figure_specs(found: UserFragility) -> dict[str, FigureSpec]:
         drawings["measures"] = lambda: measures_figure(curves, outcomes)
     if found.goodness:
         drawings["calibration"] = lambda: calibration_figure(found.goodness)
-    words = "No curve: overturning does not become more frequent with a measure."
+    words = "No curve: the tests show no measure with which overturning becomes more frequent."
     nothing = partial(note_figure, words)
     return {
         name: FigureSpec(name, f"{text} {found.choice.words}", text, drawings.get(name, nothing))

@@ -38,7 +38,7 @@ _FLOORS = (
     Column("floor", "Floor"),
     Column("state_text", "Limit state"),
     Column("im", "Measure"),
-    estimated("theta", "Median θ [g]"),
+    Column("theta_text", "Median θ [g]", numeric=True),
     estimated("beta", "Dispersion β"),
 )
 _MEASURES = (
