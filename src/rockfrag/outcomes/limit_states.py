@@ -55,9 +55,17 @@ _STATES: dict[str, LimitState] = {}
 
 
 def limit_state(name: str, order: int, label: str, **more: Any) -> Callable[[Predicate], Predicate]:
-    """Declare the function below as the predicate of a limit state, with what :class:`LimitState` has.
+    """Declare the function below as the predicate of a limit state.
 
-    The name must not be taken, and is one word, as exports write several in a line.
+    Parameters
+    ----------
+    name, order, label, **more
+        As of :class:`LimitState`.
+
+    Raises
+    ------
+    InputError
+        If the name is taken, or is not one word, as exports write several in a line.
     """
     if not name.isidentifier():
         raise InputError(f"limit state {name!r}: expected one word of letters, digits and _.")
