@@ -33,20 +33,10 @@ class System:
 
     Attributes
     ----------
-    bodies
-        From below.
-    contacts
-        Contact k lies under body k; the first is the ground's.
-    start
-        Rotations and velocities at the start; None: at rest.
-    name
-        Short name, for tables and messages.
-
-    Raises
-    ------
-    InputError
-        If there is not one contact for each body, planar bodies and bodies in space are mixed, a body carries
-        another one without a face, or the system cannot stand.
+    bodies : from below
+    contacts : contact k lies under body k; the first is the ground's
+    start : rotations and velocities at the start; None: at rest
+    name : for tables and messages
     """
 
     bodies: tuple[RigidBody, ...]
@@ -292,7 +282,17 @@ def stands(system: System) -> bool:
 def arms_above(system: System, k: int) -> tuple[tuple[float, float], ...]:
     """From the left and the right end of contact k to the common centre of what stands on it (x, z) [m]."""
     x, z = common_centre(system, k)
-    return tuple((x - at[0], z - at[1]) for at in contact_ends(system, k))
+    bases = _bases(system)
+    angle, origin, body = bases[k]
+    assert isinstance(body.base, Interval)
+    low, high = body.base.left, body.base.right
+    if k:
+        face = bases[k - 1][2].face
+        assert isinstance(face, Interval)
+        offset = system.contacts[k].offset[0]
+        low, high = max(low, face.left - offset), min(high, face.right - offset)
+    turns = [geometry.turned(end, 0.0, angle) for end in (low, high)]
+    return tuple((x - (origin[0] + dx), z - (origin[1] + dy)) for dx, dy in turns)
 
 
 def common_centre(system: System, lowest: int = 0) -> tuple[float, float]:
@@ -326,19 +326,3 @@ def _bases(system: System) -> list[tuple[float, tuple[float, float], RigidBody]]
         origin = (origin[0] + dx, origin[1] + dy)
         found.append((angle, origin, body))
     return found
-
-
-def contact_ends(system: System, k: int) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Left and right end of contact k as all stand (x, z) [m]."""
-    bases = _bases(system)
-    angle, origin, body = bases[k]
-    assert isinstance(body.base, Interval)
-    low, high = body.base.left, body.base.right
-    if k:
-        face = bases[k - 1][2].face
-        assert isinstance(face, Interval)
-        offset = system.contacts[k].offset[0]
-        low, high = max(low, face.left - offset), min(high, face.right - offset)
-    turns = [geometry.turned(end, 0.0, angle) for end in (low, high)]
-    left, right = ((origin[0] + dx, origin[1] + dy) for dx, dy in turns)
-    return left, right
