@@ -100,6 +100,14 @@ class RigidBody:
         return right - left
 
     @property
+    def ends(self) -> tuple[Interval, Interval]:
+        """Base and face of a planar body; without a face the base again."""
+        base, face = self.base, self.face or self.base
+        assert isinstance(base, Interval)
+        assert isinstance(face, Interval)
+        return base, face
+
+    @property
     def tensor(self) -> NDArray[np.float64]:
         """Tensor of inertia about the centre of gravity [kg m²], shape (3, 3); NaN but yy of a planar body."""
         if isinstance(self.inertia, tuple):
