@@ -7,9 +7,8 @@ from functools import partial
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.campaign.comparison import REPEATS
+from rockfrag.campaign.comparison import FEWEST_VOTERS, REPEATS
 from rockfrag.campaign.trials import preferred_edges
-from rockfrag.campaign.validation import FEWEST_VOTERS
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector_tables import VectorTables
 from rockfrag.report.figures import campaign as figures
