@@ -18,7 +18,7 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from rockfrag import figure_style as style
-from rockfrag.report.sides import WITH_PEDESTAL, Sides
+from rockfrag.report.findings import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import shortened
 
 GREY = "#777777"

@@ -20,7 +20,6 @@ from rockfrag.report.figures import amplitudes as figures
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.words import says
-from rockfrag.report.sides import sides_of
 from rockfrag.report.wording import amplitude, label, shortened
 
 _MOTION = (Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion"))
@@ -127,7 +126,7 @@ def _comparisons(results: Results) -> Section | None:
 
 
 def _scatter(results: Results) -> FigureSpec:
-    about = sides_of(results.study)
+    about = findings.sides_of(results.study)
     ratio = findings.ratio_of(results.table("pedestal/effects"), about)("whole", "all")
     tests, _ = with_counterparts(results.tests, results.study.counterparts)
     draw = partial(figures.pedestal_scatter, tests, ratio, about)

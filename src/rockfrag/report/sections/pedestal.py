@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rockfrag import figure_style as style
 from rockfrag.report.figures.amplitudes import BAND, GREY
-from rockfrag.report.findings import pedestal_effect, ratio_of
+from rockfrag.report.findings import WITH_PEDESTAL, Sides, pedestal_effect, ratio_of, sides_of
 from rockfrag.report.page import (
     MOST_TABLE_ROWS,
     Column,
@@ -25,7 +25,6 @@ from rockfrag.report.page import (
 )
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.words import says
-from rockfrag.report.sides import WITH_PEDESTAL, Sides, sides_of
 from rockfrag.report.wording import counted, has_interval, number, probability, sentence, shortened
 from rockfrag.shaketable.definitions import DEFINITION
 
