@@ -46,6 +46,8 @@ class Component:
 
     file: str
     name: str
+    stem: str  # name of the file without what names the component
+    suffix: str  # component that ends the name of its file, as in ``A-TMZ000``; empty if none does
     path: str
     facts: dict[str, Any]
     npts: int
@@ -69,23 +71,6 @@ class Component:
         """Name of the component, by its file where the header does not say."""
         named = str(self.facts.get("component") or "")
         return named or ("" if self.suffix in {"1", "2", "3"} else self.suffix)
-
-    @property
-    def suffix(self) -> str:
-        """Component that ends the name of its file, as in ``A-TMZ000``; empty if none does."""
-        return self._parts[1]
-
-    @property
-    def stem(self) -> str:
-        """Name of the file without what names the component."""
-        return self._parts[0]
-
-    @property
-    def _parts(self) -> tuple[str, str]:
-        found = next(filter(None, (pattern.match(self.name) for pattern in _SUFFIXES)), None)
-        if found is None or self.several:
-            return self.name, ""
-        return found["stem"] + found["rest"], found["name"]
 
     @property
     def is_vertical(self) -> bool:
@@ -191,9 +176,13 @@ class CatalogueDraft:
                 self.errors.append(str(error))
                 continue
             samples = motion.acceleration.tobytes() + repr(motion.dt).encode()
+            name = _stem(PurePosixPath(channel.member or file.name).name)
+            stem, suffix = _parts(name) if len(own) == 1 else (name, "")
             component = Component(
                 file="#".join(filter(None, (relative, channel.member, chosen))),
-                name=_stem(PurePosixPath(channel.member or file.name).name),
+                name=name,
+                stem=stem,
+                suffix=suffix,
                 path=channel.member or str(file),
                 facts=dict(motion.metadata),
                 npts=channel.npts,
@@ -384,6 +373,12 @@ def _stem(name: str) -> str:
     if re.search(r"\.(?:EW|NS|UD)\d?$", plain):
         return plain
     return plain.rsplit(".", 1)[0] or plain
+
+
+def _parts(name: str) -> tuple[str, str]:
+    """Return the name of a file without the component that ends it, and that component."""
+    found = next(filter(None, (pattern.match(name) for pattern in _SUFFIXES)), None)
+    return (found["stem"] + found["rest"], found["name"]) if found else (name, "")
 
 
 def _records_of(components: Sequence[Component]) -> list[list[Component]]:

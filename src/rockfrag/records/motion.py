@@ -168,7 +168,17 @@ def read_motion_set(
             end = begin + file.metadata.row_group(group).num_rows
             if begin < last and end > first:
                 rows = file.read_row_group(group).slice(max(first - begin, 0))
-                found += _motions(rows.slice(0, last - max(first, begin)).to_pandas())
+                table = rows.slice(0, last - max(first, begin)).to_pandas()
+                found += [
+                    Motion(
+                        acceleration=np.asarray(row["acceleration_m_s2"], dtype=np.float64),
+                        dt=row["dt_s"],
+                        name=row["name"],
+                        metadata=json.loads(row["metadata"]),
+                        provenance=tuple(json.loads(row["provenance"])),
+                    )
+                    for row in table.to_dict("records")
+                ]
             begin = end
     return found
 
@@ -177,19 +187,6 @@ def read_motion_metadata(path: str | os.PathLike[str]) -> list[dict[str, Any]]:
     """Read what is known of each motion of a set, without its samples."""
     found = pq.read_table(path, columns=["metadata"])["metadata"].to_pylist()
     return [json.loads(line) for line in found]
-
-
-def _motions(table: pd.DataFrame) -> list[Motion]:
-    return [
-        Motion(
-            acceleration=np.asarray(row["acceleration_m_s2"], dtype=np.float64),
-            dt=row["dt_s"],
-            name=row["name"],
-            metadata=json.loads(row["metadata"]),
-            provenance=tuple(json.loads(row["provenance"])),
-        )
-        for row in table.to_dict("records")
-    ]
 
 
 SAME_STEP = 1e-9  # relative difference of sampling intervals that is rounding of a file
