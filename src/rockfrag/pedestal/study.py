@@ -48,14 +48,11 @@ class PedestalStudy:
 
     Parameters
     ----------
-    pairs
-        Tests sorted into pairs.
-    effects
-        See `effects_table`.
-    whole
-        Tests of the whole: method, estimate, lower, upper (as ratios), p, smallest_p, units, remark.
-    without_earthquake
-        See `rockfrag.pedestal.permutation.leave_one_earthquake_out`.
+    pairs, effects
+        Tests sorted into pairs; see `effects_table`.
+    whole, without_earthquake
+        Tests of the whole: method, estimate, lower, upper (as ratios), p, smallest_p, units, remark; see
+        `leave_one_earthquake_out`.
     ranks
         factor, level, mean ratio, p_largest, p_smallest.
     notes
@@ -187,21 +184,14 @@ def study_pedestal(
 
     Parameters
     ----------
-    tests
-        See `rockfrag.pedestal.paired_tests.check_tests`.
-    seed
-        Of the bootstrap and of drawn sign flips.
+    tests, seed
+        See :func:`rockfrag.pedestal.paired_tests.check_tests`; the seed of the bootstrap and of drawn sign flips.
     slenderness
         Height over width by object [-]; needed only for slopes on it.
 
     Returns
     -------
     The :class:`PedestalStudy`.
-
-    Raises
-    ------
-    InputError
-        If the table cannot be used.
     """
     pairs = pair_tests(tests, slenderness)
     table = pairs.table
