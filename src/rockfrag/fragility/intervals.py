@@ -134,8 +134,8 @@ def interval_over_motions(
     ----------
     outcomes, over, level
         The tests, and the level of the limits [-]. Over ``motion`` they answer for other motions of the same
-        earthquakes, over ``earthquake`` for other earthquakes; None takes earthquakes where they are known and some
-        have several motions.
+        earthquakes, over ``earthquake`` for other earthquakes; None takes earthquakes where they are known and
+        some have several motions.
 
     Returns
     -------

@@ -229,12 +229,12 @@ def observations_from_table(
     Parameters
     ----------
     table, im
-        One row per test, or per group of equal tests when ``trials`` names a column of counts; and the column of the
-        intensity measure, whose unit is read from the name (``pga_g``, ``pgv_cm_s``).
+        One row per test, or per group of equal tests when ``trials`` names a column of counts; and the column of
+        the intensity measure, whose unit is read from the name (``pga_g``, ``pgv_cm_s``).
     overturned, trials
         Column of outcomes (0/1, false/true), or of counts when the column with the number of tests is given.
     motion, earthquake, source
-        Columns with labels, None where every row is a motion (earthquake) of its own; what messages call the table.
+        Columns with labels, None where every row is a motion (earthquake) of its own; what messages call it.
 
     Returns
     -------

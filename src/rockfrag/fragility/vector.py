@@ -170,8 +170,8 @@ def fit_vector(
     overturned, earthquake
         Columns of outcome (0 or 1) and earthquake; None where each test has an earthquake of its own.
     level, source, try_interaction
-        Two-sided confidence level of limits [-]; what messages call the table; whether to test an interaction, which
-        takes most of the time: without it none is kept.
+        Two-sided confidence level of limits [-]; what messages call the table; whether to test an interaction,
+        which takes most of the time: without it none is kept.
 
     Returns
     -------
