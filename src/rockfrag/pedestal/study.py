@@ -11,8 +11,6 @@ import pandas as pd
 from rockfrag.pedestal import cluster_means
 from rockfrag.pedestal.cluster_means import Array
 from rockfrag.pedestal.paired_tests import SAY, Pairs, pair_tests
-from rockfrag.pedestal.permutation import WITHOUT_COLUMNS, leave_one_earthquake_out, sign_flip_test
-from rockfrag.pedestal.power import benjamini_hochberg, detectable_ratio, holm
 from rockfrag.short_repr import short_repr
 
 SCOPES: Mapping[str, tuple[str, ...]] = {
@@ -98,7 +96,7 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
             zip(groups.size().index, about.to_dict("records"), strict=True)
         ):
             effect = cluster_means.effect_of(sampled[place])
-            flips = sign_flip_test(sampled[place].d)
+            flips = cluster_means.sign_flip_test(sampled[place].d)
             same = cluster_means.equivalence(effect)
             names = key if isinstance(key, tuple) else (key,)
             rows.append(
@@ -116,22 +114,22 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
                     "smallest_p": flips.smallest_p,
                     "p_equivalence": same,
                     "equivalent": same < EQUIVALENCE_LEVEL,
-                    "detectable_ratio": detectable_ratio(effect),
+                    "detectable_ratio": cluster_means.detectable_ratio(effect),
                     "resolution_ratio": math.exp(effect.resolution),
                     "tied": of["tied"],
                     "at_bound": of["at_bound"],
                 }
             )
     result = pd.DataFrame(rows)
-    result["p_holm"] = result.groupby("scope")["p"].transform(holm)
-    result["p_bh"] = benjamini_hochberg(result["p"])
+    result["p_holm"] = result.groupby("scope")["p"].transform(cluster_means.holm)
+    result["p_bh"] = cluster_means.benjamini_hochberg(result["p"])
     return result[EFFECT_COLUMNS]
 
 
 def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     effect = cluster_means.mean_effect(table)
     unit = "earthquake" if len(set(table["earthquake"])) > 1 else "motion"
-    flips = sign_flip_test(cluster_means.unit_means(table, "earthquake"), seed)
+    flips = cluster_means.sign_flip_test(cluster_means.unit_means(table, "earthquake"), seed)
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:
         remark += STEPS_DECIDE
@@ -196,7 +194,7 @@ def study_pedestal(
     pairs = pair_tests(tests, slenderness)
     table = pairs.table
     if table.empty:
-        columns = (EFFECT_COLUMNS, WHOLE_COLUMNS, WITHOUT_COLUMNS, RANK_COLUMNS)
+        columns = (EFFECT_COLUMNS, WHOLE_COLUMNS, cluster_means.WITHOUT_COLUMNS, RANK_COLUMNS)
         effects, whole, without, ranks = (pd.DataFrame(columns=names) for names in columns)
         notes = (*pairs.notes(), *SAY("no_ratio"))
         return PedestalStudy(pairs, effects, whole, without, ranks, notes)
@@ -206,7 +204,7 @@ def study_pedestal(
         pairs=pairs,
         effects=effects_table(table, list(tests["floor"].astype(str).unique())),
         whole=_whole_tests(table, seed),
-        without_earthquake=leave_one_earthquake_out(table),
+        without_earthquake=cluster_means.leave_one_earthquake_out(table),
         ranks=_ranks(table, seed),
         notes=(
             *SAY("population", table["earthquake"].nunique()),
