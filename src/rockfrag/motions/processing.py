@@ -43,11 +43,6 @@ def process(motion: Motion, steps: Sequence[Mapping[str, Any]] = ()) -> Motion:
     Returns
     -------
     The processed motion; each step and its parameters are appended to its provenance.
-
-    Raises
-    ------
-    InputError
-        If a step or a parameter is not known, one is missing, or a value does not fit the motion.
     """
     # a misspelt last step is reported before the first one has cost anything
     for function, parameters in _checked_steps(steps):

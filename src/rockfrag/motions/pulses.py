@@ -39,11 +39,6 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
     cycles = whole("sine", "cycles", cycles, 1, 1000)
     length = cycles * _seconds("sine: period", period)
@@ -60,7 +55,7 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
     Parameters
     ----------
     amplitude, period, dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -80,7 +75,7 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
     Parameters
     ----------
     amplitude, period, dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -115,7 +110,7 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
     Parameters
     ----------
     amplitude, duration, dt
-        As of :func:`sine`, which says what is refused too; it lasts d [s].
+        As of :func:`sine`; it lasts d [s].
 
     Returns
     -------
@@ -136,7 +131,7 @@ def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
     Parameters
     ----------
     amplitude, duration, dt
-        As of :func:`sine`, which says what is refused too; it lasts d [s].
+        As of :func:`sine`; it lasts d [s].
 
     Returns
     -------
@@ -157,7 +152,7 @@ def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
     Parameters
     ----------
     amplitude, period, dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -183,7 +178,7 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
     Parameters
     ----------
     amplitude, period, dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -222,7 +217,7 @@ def mavroeidis_papageorgiou(
     phase_deg
         Phase ν [degrees]; 0 is a symmetric velocity pulse, 90 an antisymmetric one.
     dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -263,7 +258,7 @@ def sine_sweep(
     octaves_per_minute
         Rate r [1/min], positive.
     dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------

@@ -31,11 +31,6 @@ def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:
     Returns
     -------
     Motion named after the first, its provenance followed by this step.
-
-    Raises
-    ------
-    InputError
-        If the sampling intervals or the lengths differ.
     """
     _check_pair(first, second)
     angle = math.radians(real_number("rotate: angle_deg", angle_deg, "degrees"))
@@ -63,11 +58,6 @@ def rotd(
     Returns
     -------
     The value of the measure, in its unit.
-
-    Raises
-    ------
-    InputError
-        If the components do not fit together or the percentile is not from 0 to 100.
     """
     percentile = real_number("rotd: percentile", percentile)
     if not 0 <= percentile <= 100:

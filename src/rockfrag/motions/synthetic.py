@@ -75,11 +75,6 @@ def evolutionary(
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number or the filter frequency comes near Nyquist.
     """
     who = "evolutionary"
     seed = whole(who, "seed", seed, 0, 2**63 - 1)
@@ -152,11 +147,6 @@ def spectrum_compatible(
     -------
     Motion with the metadata ``misfit_rms`` (of ln actual/target) and ``misfit_max`` over 60 periods
     a decade.
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number or the target is not a positive function of the period.
     """
     who = "spectrum_compatible"
     seed = whole(who, "seed", seed, 0, 2**63 - 1)

@@ -43,7 +43,7 @@ _FACTS = (
     *("earthquake", "date", "station", "component", "magnitude", "distance_km"),
     *("second", "vertical", "direction", "licence"),
 )
-_ARCHIVE = re.compile(r"\.(?:zip|tar|tgz|tar\.\w+)$", re.IGNORECASE)
+_ARCHIVE = re.compile(r"\.(?:zip|tar|tgz|tar\.\w+)$", re.I)
 _MOST_SHOWN = 400  # characters of the list of wrong cells in a message
 
 

@@ -23,7 +23,7 @@ from rockfrag.tabular import printable
 _PERPENDICULAR = 5.0  # degrees by which two components may be off a right angle and still be a pair
 
 _SUFFIXES = tuple(
-    re.compile(pattern, re.IGNORECASE)
+    re.compile(pattern, re.I)
     for pattern in (
         # the number of a station of an array may stand before the azimuth: H-E10050
         r"^(?P<stem>.*[A-Z_.\- ]\d{0,2}?)(?P<name>[0-3]\d\d)(?P<rest>)$",

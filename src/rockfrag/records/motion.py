@@ -43,11 +43,6 @@ class Motion:
         What is known about it: ``earthquake``, ``station``, ``component``, ``start_time``, ``floor``, …
     provenance
         One entry per step it went through: ``{"step": name, **parameters}``.
-
-    Raises
-    ------
-    InputError
-        If there is no sample, a sample is not finite, or ``dt`` is not a positive number.
     """
 
     acceleration: NDArray[np.float64]
@@ -190,11 +185,6 @@ class GroundMotion:
         Horizontal component across that plane; None where it is not given.
     z
         Vertical component, upwards; None where it is not given.
-
-    Raises
-    ------
-    InputError
-        If the components are not sampled at the same times.
     """
 
     x: Motion

@@ -13,7 +13,7 @@ from pathlib import Path
 from rockfrag.errors import InputError
 
 FILE_NAME = "_SearchResults.csv"  # name of the file in every download
-_SECTION = re.compile(r"Summary of Metadata of Selected Records", re.IGNORECASE)
+_SECTION = re.compile(r"Summary of Metadata of Selected Records", re.I)
 _TITLES = {
     "record sequence number": "number",
     "scale factor": "scale_factor",

@@ -28,11 +28,9 @@ _MAGIC: tuple[tuple[bytes, str], ...] = (
     (b"BEGIN IMS", _GSE),
     (b"Rar!", "an archive of a kind not unpacked here; unpack it first"),
 )
-_HTML = re.compile(rb"^\s*(?:<!--.*?-->\s*)*<(?:!doctype\s+html|html)\b", re.IGNORECASE | re.DOTALL)
+_HTML = re.compile(rb"^\s*(?:<!--.*?-->\s*)*<(?:!doctype\s+html|html)\b", re.I | re.S)
 _XML = re.compile(rb"^\s*<\?xml\b")
-_SPECTRA = re.compile(
-    rb"\b(?:response|fourier|pseudo\S*|elastic)\s+(?:\w+\s+){0,3}spectr", re.IGNORECASE
-)
+_SPECTRA = re.compile(rb"\b(?:response|fourier|pseudo\S*|elastic)\s+(?:\w+\s+){0,3}spectr", re.I)
 
 
 def foreign_kind(head: bytes) -> str:
