@@ -16,10 +16,10 @@ from rockfrag.report.figures.amplitudes import (
     pedestal_scatter,
     slenderness_figure,
 )
-from rockfrag.report.figures.effects import forest_figure, ratio_axis
 from rockfrag.report.figures.fragility import fragility_figure
-from rockfrag.report.figures.ida import outcome_map
-from rockfrag.report.figures.shaker import shaker_limits
+from rockfrag.report.sections.amplitudes import outcome_map
+from rockfrag.report.sections.pedestal import forest_figure, ratio_axis
+from rockfrag.report.sections.tested import shaker_limits
 from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
 
 OBJECTS = ("vase", "column & capital")
