@@ -8,8 +8,7 @@ from dataclasses import replace
 
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import mean_effect, unit_means
-from rockfrag.pedestal.permutation import sign_flip_test
+from rockfrag.pedestal.cluster_means import mean_effect, sign_flip_test, unit_means
 from rockfrag_thesis.hypotheses.contrasts import contrast
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
