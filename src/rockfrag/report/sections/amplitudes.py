@@ -109,12 +109,12 @@ def _comparisons(results: Results) -> Section | None:
         what=lambda t: t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
     )
     text = says.by_object_figure(len(results.objects), words, study.has_pairs)
-    draw = partial(figures.amplitudes_by_object, tests, means)
+    draw = partial(figures.amplitudes_by, "object", tests, means)
     parts: list[Any] = [figure_of(text, "amplitudes_by_object", draw)]
     of_floors = tests["floor"].nunique()
     if of_floors > 1:
         text = says.by_floor_figure(of_floors)
-        draw = partial(figures.amplitudes_by_floor, tests, means)
+        draw = partial(figures.amplitudes_by, "floor", tests, means)
         parts.append(figure_of(text, "amplitudes_by_floor", draw))
     if study.has_pairs:
         parts.append(_scatter(results))
