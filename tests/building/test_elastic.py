@@ -63,7 +63,7 @@ def test_reference_building_amplifies_the_four_records_as_published(four_records
 def test_modal_superposition_equals_the_matrix_exponential(damping, noise):
     building, motion = reference(0.6, damping), noise(3, 400, name="noise")
     n = building.storeys
-    mass, stiffness = building.mass_matrix(), building.stiffness_matrix()
+    mass, stiffness = np.diag(building.masses), building.stiffness_matrix()
     if isinstance(damping, RayleighDamping):
         w1, w3 = find_modes(building).frequency[[0, 2]]
         factor = 2 * damping.ratio / (w1 + w3)

@@ -10,6 +10,7 @@ import pytest
 from scipy import stats
 
 from rockfrag.campaign.blind import BlindAnswer, blind_answer, model_error
+from rockfrag.campaign.comparison import MeasuredTests
 from rockfrag.campaign.standing import LEAST_ANGLE_DEG, unknowns_of, ways_to_stand
 from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
@@ -29,14 +30,15 @@ def test_a_model_that_errs_by_a_factor_is_seen_to_err_by_it():
     groups = np.arange(1200) % 60
     measured = fallen(measure, 1.0, 0.4, random)
     ways = np.array([fallen(measure, 1.4 * f, 0.4, random) for f in np.geomspace(0.8, 1.25, 21)])
-    found = blind_answer(measure, measured, ways, groups, 1)
+    found = blind_answer(MeasuredTests(measured, groups, 1), measure, ways)
     assert found.error == pytest.approx(math.log(1.4), abs=0.1)
     assert found.ways == pytest.approx(math.log(1.25 / 0.8) / 3.29, rel=0.2)
     low, high = found.interval()
     assert low < found.lower < found.median < found.upper < high
     assert found.interval(0.3)[0] < low
     # outcomes of the laboratory move the measured median only
-    other = blind_answer(measure, fallen(measure, 1.3, 0.4, random), ways, groups, 1)
+    more = MeasuredTests(fallen(measure, 1.3, 0.4, random), groups, 1)
+    other = blind_answer(more, measure, ways)
     assert other.median == found.median and other.measured > 1.2 * found.measured
 
 

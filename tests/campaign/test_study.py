@@ -8,9 +8,8 @@ import pandas as pd
 import pytest
 import yaml
 
-from rockfrag.campaign.outcomes import simulate_tests
-from rockfrag.campaign.trials import sample_trials
-from rockfrag.campaign.validation import cross_validate
+from rockfrag.campaign.comparison import MeasuredTests
+from rockfrag.campaign.trials import sample_trials, simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.report.campaign_page import _beside_plane
 from rockfrag.rocking import overturns
@@ -264,7 +263,7 @@ def test_the_granite_rock_in_space_under_few_guesses(tmp_path, shared):
     measured, groups = tests["overturned"].to_numpy(), pd.factorize(tests["group"])[0]
     for systems in (trials.systems, trials.planar):
         fallen, _ = simulate_tests(systems, motions[::3], 1)
-        found = cross_validate(fallen, measured, groups, folds=5, repeats=4, seed=1)
+        found = MeasuredTests(measured, groups, 1, 5, 4).cross_validate(fallen)
         assert 0.75 < (found.outcomes == measured).mean() < 0.95
 
 

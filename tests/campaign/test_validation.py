@@ -5,21 +5,14 @@ import pandas as pd
 import pytest
 
 from rockfrag.campaign.comparison import (
-    agreement_row,
+    MeasuredTests,
     best_threshold,
     by_region,
-    cross_validated_threshold,
-    fragility_beside,
-    paired_row,
+    clustered_error,
+    plausible_trials,
 )
 from rockfrag.campaign.table_motions import check_peaks, measured_peaks
 from rockfrag.campaign.trials import preferred_edges
-from rockfrag.campaign.validation import (
-    clustered_error,
-    cross_validate,
-    folds_by_group,
-    plausible_trials,
-)
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 
@@ -42,10 +35,10 @@ def test_copies_of_a_test_tell_nothing_new():
 
 def test_folds_never_split_a_motion():
     groups = RNG.integers(0, 17, 200)
-    fold = folds_by_group(groups, 5, np.random.default_rng(1))
-    assert set(fold) == {0, 1, 2, 3, 4}
+    outside = np.array([part for _, part in MeasuredTests(groups > 8, groups, 1, 5, 1).divisions()])
+    assert (outside.sum(axis=0) == 4).all() and not outside.all(axis=1).any()
     for group in range(17):
-        assert len(set(fold[groups == group])) == 1
+        assert len(np.unique(outside[:, groups == group], axis=1).T) == 1
 
 
 def test_the_true_trial_is_found_and_votes_well():
@@ -53,7 +46,7 @@ def test_the_true_trial_is_found_and_votes_well():
     groups = RNG.integers(0, 30, 300)
     trials = RNG.random((200, 300)) < 0.4
     trials[17] = truth ^ (RNG.random(300) < 0.05)
-    found = cross_validate(trials, truth, groups, folds=5, repeats=3, seed=1)
+    found = MeasuredTests(truth, groups, 1, 5, 3).cross_validate(trials)
     assert (found.outcomes == truth).mean() == pytest.approx(0.95, abs=0.03)
 
 
@@ -63,7 +56,7 @@ def test_noise_is_not_rewarded_by_the_choice():
     groups = np.arange(200) % 40
     trials = RNG.random((2000, 200)) < 0.5
     in_sample = (trials == truth).mean(axis=1).max()
-    found = cross_validate(trials, truth, groups, folds=5, repeats=5, seed=1)
+    found = MeasuredTests(truth, groups, 1, 5, 5).cross_validate(trials)
     assert in_sample > 0.6
     assert (found.outcomes == truth).mean() == pytest.approx(0.5, abs=0.06)
 
@@ -87,7 +80,7 @@ def test_thresholds_are_judged_by_other_motions_too():
     measure = np.exp(RNG.standard_normal(300))
     groups = RNG.integers(0, 30, 300)
     fell = RNG.random(300) < 0.5
-    outcomes = cross_validated_threshold(measure, fell, groups, folds=5, repeats=4, seed=2)
+    outcomes = MeasuredTests(fell, groups, 2, 5, 4).by_threshold(measure)
     assert (outcomes == fell).mean() == pytest.approx(0.5, abs=0.08)
 
 
@@ -95,16 +88,16 @@ def test_two_measures_find_a_border_that_neither_has_alone():
     pga, ratio = np.exp(RNG.standard_normal((2, 600)))
     fell = pga * ratio > 1
     groups = RNG.integers(0, 50, 600)
-    options = {"folds": 5, "repeats": 2, "seed": 2}
-    both = cross_validated_threshold(np.column_stack([pga, ratio]), fell, groups, **options)
-    alone = cross_validated_threshold(pga, fell, groups, **options)
+    tests = MeasuredTests(fell, groups, 2, 5, 2)
+    both = tests.by_threshold(np.column_stack([pga, ratio]))
+    alone = tests.by_threshold(pga)
     assert (both == fell).mean() > 0.95
     assert (alone == fell).mean() < 0.85
 
 
 def test_both_kinds_of_error_are_counted():
     measured = np.array([True, True, False, False])
-    row = agreement_row("x", np.array([True, False, True, True]), measured, np.arange(4), 0.9)
+    row = MeasuredTests(measured, np.arange(4), 1).agreement("x", np.array([1, 0, 1, 1]) == 1)
     assert (row["false_alarms"], row["missed"], row["right"]) == (2, 1, 0.25)
     assert row["lower"] < 0.25 < row["upper"]
 
@@ -112,7 +105,7 @@ def test_both_kinds_of_error_are_counted():
 def test_a_rival_with_the_same_outcomes_is_as_good():
     measured = RNG.random(100) < 0.5
     outcomes = RNG.random(100) < 0.5
-    row = paired_row(outcomes, outcomes, measured, np.arange(100) % 20, 0.9, 1)
+    row = MeasuredTests(measured, np.arange(100) % 20, 1).lead(outcomes, outcomes)
     assert (row["better"], row["p"]) == (0, 1)
 
 
@@ -123,7 +116,7 @@ def test_the_paired_test_keeps_its_level_when_tests_share_a_motion():
         rng = np.random.default_rng(seed)
         groups = np.repeat(np.arange(15), 10)
         ours, theirs = (rng.random(15)[groups] < 0.5 for _ in range(2))
-        row = paired_row(ours, theirs, np.ones(150, dtype=bool), groups, 0.9, seed)
+        row = MeasuredTests(np.ones(150, dtype=bool), groups, seed).lead(ours, theirs)
         rejected += row["p"] < 0.1
     assert rejected / 120 < 0.18
 
@@ -131,22 +124,20 @@ def test_the_paired_test_keeps_its_level_when_tests_share_a_motion():
 def test_the_same_outcomes_have_the_same_fragility():
     measure = np.exp(RNG.normal(0, 0.7, 400))
     fell = measure * np.exp(RNG.normal(0, 0.3, 400)) > 1
-    table = fragility_beside(
-        measure, fell, {"copy": fell}, np.arange(400) % 50, level=0.9, replicates=50, seed=1
-    ).set_index("who")
+    tests = MeasuredTests(fell, np.arange(400) % 50, 1)
+    table = tests.fragility(measure, {"copy": fell}).set_index("who")
     assert table.loc["measured", "theta"] == pytest.approx(1, rel=0.1)
     assert table.loc["measured", "beta"] == pytest.approx(0.3, rel=0.3)
     assert table.loc["copy", ["theta_ratio", "beta_ratio"]].tolist() == pytest.approx([1, 1])
 
 
 def test_regions_hold_every_test_once():
-    import pandas as pd
-
     tests = pd.DataFrame(
         {"a": np.exp(RNG.standard_normal(90)), "b": np.exp(RNG.standard_normal(90))}
     )
     fell = tests["a"].to_numpy() > 1
-    regions = by_region(tests, "a", "b", fell, fell)
+    judged = tests.assign(overturned=fell, simulated=fell, right=True)
+    regions = by_region(judged, "a", "b")
     assert regions["tests"].sum() == 90
     assert (regions["right"] == 1).all()
 

@@ -76,7 +76,7 @@ def simulate_with_friction(
     """Simulate what :func:`rockfrag.rocking.simulate` does, never by pure rocking."""
     system = system_of(body, friction, omega0=omega0)
     motion = ground_motion(acceleration, dt, vertical)
-    return response_of(contact_run(Case(system, motion, request=Request(g=g))))
+    return response_of(contact_run(Case(system, motion, request=Request(g=g)), 1e-6))
 
 
 G = 9.81

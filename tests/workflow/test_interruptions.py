@@ -19,9 +19,7 @@ from rockfrag.errors import InputError
 from rockfrag.processes import in_processes
 from rockfrag.stages.log import in_words, logged
 from rockfrag.stages.preflight import check_folders
-from rockfrag.stages.run_lock import run_lock
-from rockfrag.stages.running import RUN
-from rockfrag.stages.same_numbers import same_numbers
+from rockfrag.stages.running import RUN, run_lock, same_numbers
 
 from .running import LAUNCHER, ROOT, called
 
@@ -55,7 +53,7 @@ def until(holds: Callable[[], object], seconds: float = 30.0) -> None:
 def holder(results: Path) -> AbstractContextManager[subprocess.Popen[str]]:
     """A process that runs a study."""
     return program(
-        "import time\nfrom pathlib import Path\nfrom rockfrag.stages.run_lock import run_lock\n"
+        "import time\nfrom pathlib import Path\nfrom rockfrag.stages.running import run_lock\n"
         f"with run_lock(Path({str(results)!r})):\n    print('there', flush=True)\n    time.sleep(60)"
     )
 

@@ -18,22 +18,14 @@ def floor_motions(
 
     Parameters
     ----------
-    building
-        Building; its model says whether it responds elastically or hysteretically.
-    motion
-        Ground acceleration, of n samples.
-    floors
-        Labels that the building gives to its floors; all of them if not given.
+    building : its model says whether it responds elastically or hysteretically
+    motion : ground acceleration, of n samples
+    floors : labels that the building gives to its floors; all of them if not given
 
     Returns
     -------
     One motion a floor, of n samples, named ``<motion>_<floor>`` and with ``floor``, ``level`` and
     ``ground_motion`` in its metadata. Level 0 is the ground motion itself.
-
-    Raises
-    ------
-    InputError
-        If a floor is not defined.
     """
     labels = list(building.floors) if floors is None else list(floors)
     for label in labels:
@@ -80,8 +72,7 @@ def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:
 
     Parameters
     ----------
-    building, motion
-        As of :func:`floor_motions`.
+    building, motion : as of :func:`floor_motions`
 
     Returns
     -------
@@ -98,26 +89,41 @@ def _named(moved: Motion, label: str, level: int, **more: str) -> Motion:
     return replace(moved, name=f"{moved.name}_{label}", metadata=metadata)
 
 
+_ELASTIC = (
+    ("uncracked", "below cracking, so the elastic model holds"),
+    ("cracked", "beyond cracking, so a cracked stiffness is the one to use"),
+    (
+        "beyond strength",
+        "far beyond cracking, so these are floor motions of a house that cannot break",
+    ),
+)
+_HYSTERETIC = (
+    ("uncracked", "below cracking"),
+    ("cracked", "cracked but below yield ({0:.2f} %)"),
+    ("beyond yield", "between yield and the shear limit ({1:.2f} %)"),
+    ("beyond the shear limit", "between the shear and the rocking limit ({2:.2f} %)"),
+    (
+        "beyond the rocking limit",
+        "beyond the rocking limit ({2:.2f} %), where walls fall and floor motions mean nothing",
+    ),
+)
+"""States of a storey, the milder first, and what is said of it there."""
+
+
 @dataclass(frozen=True)
 class DriftOutcome:
     """State of the storey that is worst off.
 
     Attributes
     ----------
-    storey
-        Its number, from 1.
-    drift
-        Its largest drift over height [-].
-    strength_fraction
-        Largest shear over the shear strength [-]; only an elastic model can exceed 1.
-    state
-        ``uncracked``, ``cracked``, ``beyond strength`` (of an elastic model), ``beyond yield``,
-        ``beyond the shear limit`` or ``beyond the rocking limit``.
-    credible
-        Whether the model may be used there: an elastic one up to the shear strength, a hysteretic
-        one up to the rocking limit, beyond which walls fall.
-    statement
-        One sentence for a report.
+    storey : its number, from 1
+    drift : its largest drift over height [-]
+    strength_fraction : largest shear over the shear strength [-]; only an elastic model can exceed 1
+    state : ``uncracked``, ``cracked``, ``beyond strength`` (of an elastic model), ``beyond yield``,
+        ``beyond the shear limit`` or ``beyond the rocking limit``
+    credible : whether the model may be used there
+        An elastic one up to the shear strength, a hysteretic one up to the rocking limit, beyond which walls fall.
+    statement : one sentence for a report
     """
 
     storey: int
@@ -133,60 +139,32 @@ def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftOut
 
     Parameters
     ----------
-    building
-        Building whose law judges.
-    response
-        Its response.
+    building, response : a building, whose law judges, and its response
 
     Returns
     -------
     The :class:`DriftOutcome`.
     """
-    law = building.masonry
-    if building.model != "elastic":
-        return _judge_hysteretic(building, response)
+    law, elastic = building.masonry, building.model == "elastic"
     shear = np.asarray(building.stiffnesses) * np.asarray(building.heights) * response.peak_drift
     fractions = shear / shear_strengths(building)
-    worst = int(np.argmax(fractions))
+    worst = int(np.argmax(fractions if elastic else response.peak_drift))
     fraction, drift = float(fractions[worst]), float(response.peak_drift[worst])
-    begin = (
-        f"{building.name}, elastic: storey {worst + 1} drifts {100 * drift:.2f} % of its height and carries "
-        f"{fraction:.2f} of its shear strength"
-    )
-    if fraction <= law.cracking:
-        state, end = "uncracked", "below cracking, so the elastic model holds"
-    elif fraction <= 1:
-        state, end = "cracked", "beyond cracking, so a cracked stiffness is the one to use"
+    limits = law.yield_drift, law.shear_drift, law.rocking_drift
+    cracks = fraction > law.cracking
+    begin = f"storey {worst + 1} drifts {100 * drift:.2f} % of its height"
+    if elastic:
+        begin += f" and carries {fraction:.2f} of its shear strength:"
+        state, end = _ELASTIC[cracks + (fraction > 1)]
     else:
-        state = "beyond strength"
-        end = "far beyond cracking, so these are floor motions of a house that cannot break"
-    return DriftOutcome(worst + 1, drift, fraction, state, fraction <= 1, f"{begin}: {end}.")
-
-
-def _judge_hysteretic(building: ShearBuilding, response: BuildingResponse) -> DriftOutcome:
-    law = building.masonry
-    worst = int(np.argmax(response.peak_drift))
-    drift = float(response.peak_drift[worst])
-    elastic = float(building.stiffnesses[worst] * building.heights[worst] * drift)
-    fraction = min(1.0, elastic / float(shear_strengths(building)[worst]))
-    begin = (
-        f"{building.name}, hysteretic: storey {worst + 1} drifts {100 * drift:.2f} % of its height"
+        begin += ","
+        state, end = _HYSTERETIC[cracks * (1 + sum(drift > limit for limit in limits))]
+        end = end.format(*(100 * limit for limit in limits))
+    return DriftOutcome(
+        storey=worst + 1,
+        drift=drift,
+        strength_fraction=fraction if elastic else min(1.0, fraction),
+        state=state,
+        credible=fraction <= 1 if elastic else drift <= law.rocking_drift,
+        statement=f"{building.name}, {building.model}: {begin} {end}.",
     )
-    if fraction <= law.cracking:
-        state, end = "uncracked", "below cracking"
-    elif drift <= law.yield_drift:
-        state, end = "cracked", f"cracked but below yield ({100 * law.yield_drift:.2f} %)"
-    elif drift <= law.shear_drift:
-        state = "beyond yield"
-        end = f"between yield and the shear limit ({100 * law.shear_drift:.2f} %)"
-    elif drift <= law.rocking_drift:
-        state = "beyond the shear limit"
-        end = f"between the shear and the rocking limit ({100 * law.rocking_drift:.2f} %)"
-    else:
-        state = "beyond the rocking limit"
-        end = (
-            f"beyond the rocking limit ({100 * law.rocking_drift:.2f} %), where walls fall and floor motions "
-            "mean nothing"
-        )
-    credible = drift <= law.rocking_drift
-    return DriftOutcome(worst + 1, drift, fraction, state, credible, f"{begin}, {end}.")

@@ -165,7 +165,7 @@ def respond_hysteretically(
     effective = building.stiffness_matrix() + 2 / step * viscous + np.diag(4 / step**2 * mass)
     matrices = mass, viscous, np.linalg.inv(effective)
     law = corner, strength, law_parameters(building.masonry)
-    total, shift, energy = _integrate(motion.acceleration, step, parts, *matrices, *law)
+    total, shift, energy = _integrate(motion.acceleration, step, parts, matrices, law)
     return BuildingResponse(
         time=motion.time,
         acceleration=np.vstack([motion.acceleration, total]),
@@ -175,11 +175,10 @@ def respond_hysteretically(
 
 
 @cached_njit()
-def _shears(
-    u: Any, memory: Any, moved: Any, corner: Any, strength: Any, law: Any, force: Any
-) -> None:
+def _shears(u: Any, memory: Any, moved: Any, masonry: Any, force: Any) -> None:
     """Storey states at floor displacements u, and the forces they put on the floors."""
     n = u.size
+    corner, strength, law = masonry
     below = 0.0
     for i in range(n):
         move(memory[i], u[i] - below, corner[i], strength[i], law, moved[i])
@@ -190,17 +189,9 @@ def _shears(
 
 
 @cached_njit()
-def _integrate(
-    ground: Any,
-    step: float,
-    parts: int,
-    mass: Any,
-    viscous: Any,
-    inverse: Any,
-    corner: Any,
-    strength: Any,
-    law: Any,
-) -> Any:
+def _integrate(ground: Any, step: float, parts: int, matrices: Any, masonry: Any) -> Any:
+    mass, viscous, inverse = matrices
+    corner, strength, law = masonry
     n, samples = mass.size, ground.size
     total, shift = np.zeros((n, samples)), np.zeros((n, samples))
     energy = np.zeros((5, samples))
@@ -220,7 +211,7 @@ def _integrate(
                     u1[i] = u[i] + change[i]
                     v1[i] = 2 / step * change[i] - v[i]
                     a1[i] = 4 / step * (change[i] / step - v[i]) - a[i]
-                _shears(u1, memory, moved, corner, strength, law, force1)
+                _shears(u1, memory, moved, masonry, force1)
                 for i in range(n):
                     rest[i] = -mass[i] * (g1 + a1[i]) - force1[i]
                     for j in range(n):
@@ -252,9 +243,5 @@ def _integrate(
             kinetic += 0.5 * mass[i] * v[i] ** 2
             shift[i, k + 1] = memory[i, DISPLACEMENT]
             total[i, k + 1] = a[i] + ground[k + 1]
-        energy[0, k + 1] = work_in
-        energy[1, k + 1] = kinetic
-        energy[2, k + 1] = strain
-        energy[3, k + 1] = work_damped
-        energy[4, k + 1] = work_storeys - strain
+        energy[:, k + 1] = work_in, kinetic, strain, work_damped, work_storeys - strain
     return total, shift, energy

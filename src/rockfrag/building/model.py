@@ -20,24 +20,16 @@ class MasonryLaw:
 
     Attributes
     ----------
-    base_shear
-        Shear strength of the ground storey over the weight of the building [-].
-    cracking
-        Shear at which the elastic stiffness ends, over the shear strength [-].
-    yield_drift, shear_drift, rocking_drift
-        Drift over storey height at yield, at the shear limit and at the rocking limit [-].
-    residual
-        Shear left beyond the rocking limit, over the shear strength [-].
-    pinch_force
-        Force at the point through which a storey reloads, over the force it aims for [-].
-    pinch_drift
-        Displacement of that point: its fraction of the way from zero force to the line of unloading
-        through the aim [-].  Both fractions 1 is no pinching.
-    damage_ductility, damage_energy
-        Growth of the drift aimed for at each reversal, per unit of ductility beyond cracking and of
-        energy over the area under both sides of the envelope [-]; repeated cycles lose force by it.
-    unloading
-        Exponent by which the unloading stiffness falls with ductility [-].
+    base_shear : shear strength of the ground storey over the weight of the building [-]
+    cracking : shear at which the elastic stiffness ends, over the shear strength [-]
+    yield_drift, shear_drift, rocking_drift : drift over storey height at yield and at the two limits [-]
+    residual : shear left beyond the rocking limit, over the shear strength [-]
+    pinch_force : force at the point through which a storey reloads, over the force it aims for [-]
+    pinch_drift : fraction of the way from zero force to the line of unloading through the aim at that point [-]
+        Both fractions 1 is no pinching.
+    damage_ductility, damage_energy : growth of the drift aimed for at each reversal [-]
+        Per unit of ductility beyond cracking, and of energy over the area under both sides of the envelope.
+    unloading : exponent by which the unloading stiffness falls with ductility [-]
     """
 
     base_shear: float = 0.12
@@ -91,8 +83,7 @@ class ModalDamping:
 
     Attributes
     ----------
-    ratio
-        Fraction of critical damping [-], from 0 up to, not including, 1.
+    ratio : fraction of critical damping, below 1 [-]
     """
 
     ratio: float = 0.05
@@ -107,11 +98,8 @@ class RayleighDamping:
 
     Attributes
     ----------
-    ratio
-        Fraction of critical damping in both modes [-], from 0 up to, not including, 1.
-    modes
-        Numbers of the two modes, counted from 1; a building of one storey uses its only mode, with
-        damping proportional to the mass.
+    ratio : fraction of critical damping in both modes, below 1 [-]
+    modes : numbers of the two, from 1; the only one of one storey, with damping proportional to the mass
     """
 
     ratio: float = 0.05
@@ -135,31 +123,15 @@ class ShearBuilding:
 
     Attributes
     ----------
-    masses
-        Mass of each floor [kg], shape (storeys,).
-    heights
-        Height of each storey [m], shape (storeys,).
-    stiffnesses
-        Lateral stiffness of each storey [N/m], shape (storeys,).
-    damping
-        Modal or Rayleigh damping, by the elastic modes.
-    floors
-        Label of each floor of interest and its level, 0 for the ground, ``storeys`` for the top.
-    model
-        Whether it responds ``elastic`` or ``hysteretic``.
-    masonry
-        Law of the storeys: what the hysteretic model does, and by what the elastic one is judged.
-    name
-        Short name for messages and provenance.
-    vertical_factors
-        Factor on the vertical motion of the ground by label of floor [-]; floors that are not named move up
-        and down as the ground does.
-
-    Raises
-    ------
-    InputError
-        If a mass, height or stiffness is not positive, their numbers differ, there are no storeys
-        or more than ``MOST_STOREYS``, or a floor does not exist.
+    masses : of each floor [kg]
+    heights : of each storey [m]
+    stiffnesses : lateral, of each storey [N/m]
+    damping : modal or Rayleigh, by the elastic modes
+    floors : label of each floor of interest and its level, 0 for the ground, ``storeys`` for the top
+    model : ``elastic`` or ``hysteretic``
+    masonry : law of the storeys: what the hysteretic model does, and by what the elastic one is judged
+    name : for messages and provenance
+    vertical_factors : factor on the vertical motion of the ground by label of floor [-], 1 if not named
     """
 
     masses: tuple[float, ...]
@@ -219,10 +191,6 @@ class ShearBuilding:
             )
         return level
 
-    def mass_matrix(self) -> Floats:
-        """Mass matrix [kg], shape (storeys, storeys)."""
-        return np.diag(self.masses)
-
     def stiffness_matrix(self) -> Floats:
         """Elastic stiffness matrix [N/m], shape (storeys, storeys)."""
         return chain_matrix(self.stiffnesses)
@@ -244,21 +212,13 @@ def stiffnesses_for_period(
 
     Parameters
     ----------
-    masses
-        Mass of each floor [kg].
-    heights
-        Height of each storey [m].
-    first_period
-        Wanted period of the first mode [s].
+    masses : of each floor [kg]
+    heights : of each storey [m]
+    first_period : wanted period of the first mode [s]
 
     Returns
     -------
     Stiffness of each storey [N/m].
-
-    Raises
-    ------
-    InputError
-        If the period, a mass or a height is not positive.
     """
     check_positive("building", "first_period", "s", [first_period])
     check_positive("building", "masses", "kg", masses)

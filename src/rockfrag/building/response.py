@@ -76,16 +76,11 @@ class EnergyBalance:
 
     Attributes
     ----------
-    input
-        Work of the inertial forces -m a_g on the floors.
-    kinetic
-        Kinetic energy of the floors' velocities relative to the ground.
-    strain
-        Energy that the storeys would give back on unloading.
-    damping
-        Energy dissipated by viscous damping.
-    hysteretic
-        Energy dissipated by the storeys.
+    input : work of the inertial forces -m a_g on the floors
+    kinetic : of the floors' velocities relative to the ground
+    strain : what the storeys would give back on unloading
+    damping : dissipated by viscous damping
+    hysteretic : dissipated by the storeys
     """
 
     input: Floats
@@ -109,14 +104,10 @@ class BuildingResponse:
 
     Attributes
     ----------
-    time
-        Time [s], shape (n,).
-    acceleration
-        Absolute acceleration of the ground and of every floor [m/s²], shape (storeys + 1, n).
-    drift
-        Drift of every storey over its height [-], shape (storeys, n).
-    energy
-        Energy up to each sample, if the model keeps the balance.
+    time : [s], shape (n,)
+    acceleration : absolute, of the ground and of every floor [m/s²], shape (storeys + 1, n)
+    drift : of every storey over its height [-], shape (storeys, n)
+    energy : up to each sample, if the model keeps the balance
     """
 
     time: Floats

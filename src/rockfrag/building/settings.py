@@ -19,17 +19,11 @@ def read_building(path: str | os.PathLike[str]) -> model.ShearBuilding:
 
     Parameters
     ----------
-    path
-        Path of the YAML file.
+    path : of the file
 
     Returns
     -------
     The :class:`ShearBuilding`.
-
-    Raises
-    ------
-    InputError
-        If the file is absent, is not YAML, or does not describe a building.
     """
     return make_building(read_yaml(path), str(path))
 

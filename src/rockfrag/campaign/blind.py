@@ -2,21 +2,15 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
 
-from rockfrag.campaign.comparison import curves_of, fragility_beside
-from rockfrag.campaign.validation import Bools, Floats
+from rockfrag.campaign.comparison import Bools, Floats, MeasuredTests, curves_of
 from rockfrag.errors import InputError
 
-LEVEL = 0.90
-"""Confidence of intervals."""
-
-REPLICATES = 400
-"""Resamples of input motions behind the standard error of a ratio of medians."""
-
+LEVEL = 0.90  # confidence of intervals
 _Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
 
 
@@ -51,14 +45,11 @@ class BlindAnswer:
         return self.median * math.exp(-low), self.median * math.exp(high)
 
 
-def blind_answer(
-    measure: Floats, measured: Bools, simulated: Bools, groups: np.ndarray, seed: int
-) -> BlindAnswer:
+def blind_answer(tests: MeasuredTests, measure: Floats, simulated: Bools) -> BlindAnswer:
     """Hold ways to stand, ``simulated`` (ways, tests), against what was measured; no way is chosen by it."""
-    table = fragility_beside(
-        measure, measured, {"blind": simulated.mean(axis=0)}, groups,
-        level=LEVEL, replicates=REPLICATES, seed=seed,
-    ).set_index("who")  # fmt: skip
+    measured = tests.overturned
+    seen = replace(tests, level=LEVEL)
+    table = seen.fragility(measure, {"blind": simulated.mean(axis=0)}).set_index("who")
     each = curves_of(measure, simulated.astype(np.float64), np.ones(simulated.shape))
     # a way in which nothing overturns has its median beyond all tests, one in which all does below them
     bound = np.where(simulated.mean(axis=1) < measured.mean(), np.inf, 0.0)

@@ -1,15 +1,27 @@
-"""Simulation against measurement as a referee wants it: fractions with intervals, both errors, rivals, regions."""
+"""Simulation against measurement as a referee wants it: trials chosen by some motions and judged by others.
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+A trial that was chosen by a test cannot be judged by it: trials that agree with the tests of four folds about as
+well as the best one vote on the fifth.  The best trial alone would follow the noise of the choice
+(``docs/campaigns.md``).
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
-from rockfrag.campaign.validation import Bools, Floats, Validated, clustered_error, divisions
 from rockfrag.fragility.batch_glm import fit_batch
+from rockfrag.short_repr import short_repr
+
+STANDARD_ERRORS = 2.0
+"""A trial is plausible if its fraction of right outcomes is within this many standard errors of the best."""
+
+FEWEST_VOTERS = 10
+"""Plausible trials below which votes say little: with ten they are tenths."""
 
 NEAR_CRITICAL = (0.1, 0.9)
 """A test is near-critical if plausible trials disagree: this fraction of votes or more says each outcome."""
@@ -17,200 +29,244 @@ NEAR_CRITICAL = (0.1, 0.9)
 REPEATS = "majority of repeated tests (ceiling)"
 """Who gave these outcomes, in the tables."""
 
+REPLICATES = 400
+"""Resamples of input motions behind the limits of a fragility and of ratios of fragilities."""
 
-def agreement_row(
-    name: str, outcomes: Bools, measured: Bools, groups: NDArray[np.int64], level: float
-) -> dict[str, object]:
-    """Fraction of right outcomes with an interval (t over the groups), and both errors; repeats are averaged."""
-    each = np.atleast_2d(outcomes)
-    right = (each == measured).mean(axis=0)
-    error = clustered_error(right, groups)
-    width = stats.t.ppf(0.5 + level / 2, len(np.unique(groups)) - 1) * error
-    fraction = float(right.mean())
-    return {
-        "who": name,
-        "right": fraction,
-        "lower": max(0.0, fraction - width),
-        "upper": min(1.0, fraction + width),
-        "false_alarms": float((each & ~measured).sum(axis=1).mean()),
-        "missed": float((~each & measured).sum(axis=1).mean()),
-        "tests": len(measured),
-    }
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 
-def paired_row(
-    ours: Bools, theirs: Bools, measured: Bools, groups: NDArray[np.int64], level: float, seed: int
-) -> dict[str, float]:
-    """How many more tests are right than by a rival, on the same tests.
+@dataclass(frozen=True)
+class Validated:
+    """What cross-validation says of each test."""
 
-    Returns ``better`` (difference of the fractions of right outcomes) with ``better_lower`` and ``better_upper``
-    (Student's t over the groups) and ``p``: two-sided, by changing the sign of whole groups at random (McNemar's
-    test for tests that are not independent).
+    # fraction of plausible trials under which the object overturns in each test, chosen by tests with other
+    # motions, shape (repeats, tests)
+    votes: Floats
+
+    __repr__ = short_repr
+
+    @property
+    def outcomes(self) -> Bools:
+        """Overturned where at least half of the votes say so, shape (repeats, tests)."""
+        return self.votes >= 0.5
+
+    @property
+    def mean_votes(self) -> Floats:
+        """Votes averaged over the repeats, shape (tests,)."""
+        return np.asarray(self.votes.mean(axis=0))
+
+    @property
+    def outcome(self) -> Bools:
+        """One outcome a test: by the votes averaged over the repeats, shape (tests,)."""
+        return self.mean_votes >= 0.5
+
+
+@dataclass(frozen=True)
+class MeasuredTests:
+    """What a laboratory saw, and how simulated and other outcomes are held against it."""
+
+    overturned: Bools  # shape (tests,)
+    groups: NDArray[np.int64]  # number of each test's input motion, from 0 up, shape (tests,)
+    seed: int
+    folds: int = 5
+    repeats: int = 20  # random divisions into folds
+    level: float = 0.9  # of intervals
+
+    __repr__ = short_repr
+
+    def only(self, chosen: Bools) -> "MeasuredTests":
+        """Return some of the tests."""
+        groups = pd.factorize(self.groups[chosen])[0]
+        return replace(self, overturned=self.overturned[chosen], groups=groups)
+
+    def divisions(self) -> Iterator[tuple[int, Bools]]:
+        """Yield for each fold the number of the division and which tests are outside; no fold splits a motion."""
+        rng = np.random.default_rng(self.seed)
+        for repeat in range(self.repeats):
+            fold = rng.permutation(int(self.groups.max()) + 1)[self.groups] % self.folds
+            for number in range(self.folds):
+                yield repeat, fold != number
+
+    def cross_validate(self, simulated: Bools, asked: Bools | None = None) -> Validated:
+        """Let trials that are plausible by the tests of other motions vote on each test.
+
+        ``simulated`` are outcomes, shape (trials, tests). ``asked`` is what the plausible trials vote on, if not
+        the outcomes that they are chosen by.
+        """
+        right = simulated == self.overturned
+        answers = simulated if asked is None else asked
+        votes = np.empty((self.repeats, len(self.overturned)))
+        for repeat, chosen_by in self.divisions():
+            voters = plausible_trials(right[:, chosen_by], self.groups[chosen_by])
+            votes[repeat, ~chosen_by] = answers[voters][:, ~chosen_by].mean(axis=0)
+        return Validated(votes)
+
+    def by_threshold(self, measures: Floats) -> Bools:
+        """Outcomes by thresholds on one or two measures that other motions' tests chose, shape (repeats, tests).
+
+        On two measures the line of even odds of a probit regression on their logarithms takes the place of the
+        threshold.
+        """
+        outcomes = np.empty((self.repeats, len(self.overturned)), dtype=bool)
+        for repeat, chosen_by in self.divisions():
+            known, fell, asked = measures[chosen_by], self.overturned[chosen_by], ~chosen_by
+            if measures.ndim == 1:
+                outcomes[repeat, asked] = measures[asked] >= best_threshold(known, fell)
+                continue
+            counts = fell[None].astype(np.float64), np.ones((1, len(fell)))
+            fit = fit_batch(_design(known), *counts, penalised=True)
+            outcomes[repeat, asked] = _design(measures[asked]) @ fit.coefficients[0] >= 0
+        return outcomes
+
+    def agreement(self, name: str, outcomes: Bools) -> dict[str, object]:
+        """Fraction of right outcomes with its interval, and both errors; repeats of the outcomes are averaged."""
+        each = np.atleast_2d(outcomes)
+        right = (each == self.overturned).mean(axis=0)
+        fraction, width = float(right.mean()), self._half_width(right)
+        return {
+            "who": name,
+            "right": fraction,
+            "lower": max(0.0, fraction - width),
+            "upper": min(1.0, fraction + width),
+            "false_alarms": float((each & ~self.overturned).sum(axis=1).mean()),
+            "missed": float((~each & self.overturned).sum(axis=1).mean()),
+            "tests": len(self.overturned),
+        }
+
+    def lead(self, ours: Bools, theirs: Bools) -> dict[str, float]:
+        """How many more tests are right than by a rival, on the same tests.
+
+        Returns ``better`` (difference of the fractions of right outcomes) with ``better_lower`` and
+        ``better_upper`` and ``p``: two-sided, by changing the sign of whole groups at random (McNemar's test for
+        tests that are not independent).
+        """
+        right, others = (
+            (np.atleast_2d(outcomes) == self.overturned).mean(axis=0) for outcomes in (ours, theirs)
+        )
+        difference = right - others
+        found = stats.permutation_test(
+            (np.bincount(self.groups, difference),),
+            np.sum,
+            permutation_type="samples",
+            n_resamples=9999,
+            rng=np.random.default_rng(self.seed),
+        )
+        mean, width = float(difference.mean()), self._half_width(difference)
+        limits = {"better_lower": mean - width, "better_upper": mean + width}
+        return {"better": mean, **limits, "p": float(found.pvalue)}
+
+    def _half_width(self, values: Floats) -> float:
+        """Half the interval of a mean, of Student's t over the groups."""
+        quantile = stats.t.ppf(0.5 + self.level / 2, len(np.unique(self.groups)) - 1)
+        return float(quantile * clustered_error(values, self.groups))
+
+    def fragility(self, measure: Floats, simulated: Mapping[str, Bools | Floats]) -> pd.DataFrame:
+        """Lognormal fragility of the measured and of simulated outcomes, with their ratio.
+
+        ``simulated`` has outcomes by name, or the part of votes to overturn, shape (tests,) each; the bootstrap
+        draws groups whole. A row per set of outcomes: ``who``, ``theta`` and ``beta`` with limits, and, for
+        simulated ones, ``theta_ratio`` and ``beta_ratio`` to the measured curve with limits.
+        """
+        count = int(self.groups.max()) + 1
+        draws = np.random.default_rng(self.seed).integers(0, count, (REPLICATES, count))
+        drawn = [np.bincount(draw, minlength=count)[self.groups] for draw in draws]
+        weights = np.array([np.ones(len(measure)), *drawn])
+        measured = curves_of(measure, self.overturned, weights)
+        rows = []
+        for name, outcomes in {"measured": self.overturned, **simulated}.items():
+            curve = curves_of(measure, outcomes, weights)
+            shown = {"theta": curve[:, 0], "beta": curve[:, 1]}
+            if name != "measured":
+                ratio = curve / measured
+                shown |= {"theta_ratio": ratio[:, 0], "beta_ratio": ratio[:, 1]}
+            row: dict[str, object] = {"who": name}
+            for parameter, values in shown.items():
+                row[parameter] = values[0]
+                row[f"{parameter}_lower"], row[f"{parameter}_upper"] = self._limits(values[1:])
+            rows.append(row)
+        return pd.DataFrame(rows)
+
+    def _limits(self, values: Floats) -> Floats:
+        """Quantiles of what is a number; NaN where no resample gives a curve, as of one kind of outcome."""
+        known = values[np.isfinite(values)]
+        tails = [(1 - self.level) / 2, (1 + self.level) / 2]
+        return np.quantile(known, tails) if known.size else np.full(2, np.nan)
+
+
+def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:
+    """Standard error of a mean whose values share their chance within a group.
+
+    Sum of the groups' deviations (Cameron and Miller, 2015, J. Human Resources 50: 317-372) with the
+    correction G/(G - 1) for G groups; NaN for one group.
     """
-    difference = (np.atleast_2d(ours) == measured).mean(axis=0) - (
-        np.atleast_2d(theirs) == measured
-    ).mean(axis=0)
-    sums = np.bincount(groups, difference)
-    width = stats.t.ppf(0.5 + level / 2, len(sums) - 1) * clustered_error(difference, groups)
-    found = stats.permutation_test(
-        (sums,),
-        np.sum,
-        permutation_type="samples",
-        n_resamples=9999,
-        rng=np.random.default_rng(seed),
-    )
-    mean = float(difference.mean())
-    return {
-        "better": mean,
-        "better_lower": mean - width,
-        "better_upper": mean + width,
-        "p": float(found.pvalue),
-    }
+    sums = np.bincount(groups, values - values.mean())[np.unique(groups)]
+    count = len(sums)
+    if count < 2:
+        return float("nan")
+    return float(np.sqrt(count / (count - 1) * np.sum(sums**2)) / len(values))
+
+
+def plausible_trials(right: Bools, groups: NDArray[np.int64]) -> Bools:
+    """Say which trials agree with tests about as well as the best; ``right`` has the shape (trials, tests)."""
+    fraction = right.mean(axis=1)
+    best = int(fraction.argmax())
+    error = clustered_error(right[best].astype(np.float64), groups)
+    # with one group there is no standard error, and only the best remain
+    slack = STANDARD_ERRORS * error if np.isfinite(error) else 0.0
+    return np.asarray(fraction >= fraction[best] - slack - 1e-12)
 
 
 def best_threshold(measure: Floats, overturned: Bools) -> float:
     """Return the value of a measure above which "overturned" is right most often, in the measure's unit."""
     order = np.argsort(measure, kind="stable")
-    fell = overturned[order]
-    # right outcomes if the first k tests are taken as survived
-    right = np.concatenate([[0], np.cumsum(~fell)]) + np.concatenate(
-        [np.cumsum(fell[::-1])[::-1], [0]]
-    )
-    first = int(right.argmax())
-    sorted_measure = measure[order]
-    if first == 0:
-        return float(sorted_measure[0])
-    if first == len(measure):
-        return float("inf")
-    return float(np.sqrt(sorted_measure[first - 1] * sorted_measure[first]))
-
-
-def cross_validated_threshold(
-    measures: Floats, overturned: Bools, groups: NDArray[np.int64], **division: int
-) -> Bools:
-    """Outcomes by thresholds on one or two measures that tests of other motions chose, shape (repeats, tests).
-
-    On two measures the line of even odds of a probit regression on their logarithms takes the place of the
-    threshold. ``division`` is that of :func:`rockfrag.campaign.validation.cross_validate`.
-    """
-    outcomes = np.empty((division["repeats"], len(overturned)), dtype=bool)
-    for repeat, chosen_by in divisions(groups, **division):
-        known, asked = measures[chosen_by], measures[~chosen_by]
-        outcomes[repeat, ~chosen_by] = _predicted(known, overturned[chosen_by], asked)
-    return outcomes
-
-
-def _predicted(known: Floats, overturned: Bools, asked: Floats) -> Bools:
-    if known.ndim == 1:
-        return np.asarray(asked >= best_threshold(known, overturned))
-    fit = fit_batch(
-        _design(known),
-        overturned[None].astype(np.float64),
-        np.ones((1, len(overturned))),
-        penalised=True,
-    )
-    return np.asarray(_design(asked) @ fit.coefficients[0] >= 0)
+    values = measure[order]
+    # right outcomes, but for a constant, if the first k tests are taken as survived
+    first = int(np.cumsum(np.append(0, 1 - 2 * overturned[order])).argmax())
+    return float(np.sqrt(np.append(values[0], values)[first] * np.append(values, np.inf)[first]))
 
 
 def _design(measures: Floats) -> Floats:
     return np.column_stack([np.ones(len(measures)), np.log(measures)])
 
 
-def fragility_beside(
-    measure: Floats,
-    measured: Bools,
-    simulated: Mapping[str, Bools | Floats],
-    groups: NDArray[np.int64],
-    *,
-    level: float,
-    replicates: int,
-    seed: int,
-) -> pd.DataFrame:
-    """Lognormal fragility of the measured and of simulated outcomes, with their ratio.
-
-    ``simulated`` has outcomes by name, or the part of votes to overturn, shape (tests,) each; the bootstrap draws
-    groups whole. A row per set of outcomes: ``who``, ``theta`` and ``beta`` with limits, and, for simulated ones,
-    ``theta_ratio`` and ``beta_ratio`` to the measured curve with limits.
-    """
-    rng = np.random.default_rng(seed)
-    count = int(groups.max()) + 1
-    draws = rng.integers(0, count, (replicates, count))
-    weights = np.stack([np.bincount(draw, minlength=count)[groups] for draw in draws]).astype(
-        np.float64
-    )
-    weights = np.vstack([np.ones((1, len(measure))), weights])
-    curves = {
-        name: curves_of(measure, outcomes, weights)
-        for name, outcomes in {"measured": measured, **simulated}.items()
-    }
-    tails = [(1 - level) / 2, (1 + level) / 2]
-    rows = []
-    for name, curve in curves.items():
-        row: dict[str, object] = {"who": name}
-        for i, parameter in enumerate(("theta", "beta")):
-            row[parameter] = curve[0, i]
-            row[f"{parameter}_lower"], row[f"{parameter}_upper"] = _limits(curve[1:, i], tails)
-            if name != "measured":
-                ratio = curve[:, i] / curves["measured"][:, i]
-                row[f"{parameter}_ratio"] = ratio[0]
-                limits = _limits(ratio[1:], tails)
-                row[f"{parameter}_ratio_lower"], row[f"{parameter}_ratio_upper"] = limits
-        rows.append(row)
-    return pd.DataFrame(rows)
-
-
-def _limits(values: Floats, tails: Sequence[float]) -> Floats:
-    """Quantiles of what is a number; NaN where no resample gives a curve, as of one kind of outcome."""
-    known = values[np.isfinite(values)]
-    return np.quantile(known, tails) if known.size else np.full(len(tails), np.nan)
-
-
 def curves_of(measure: Floats, outcomes: Bools | Floats, weights: Floats) -> Floats:
     """Fit a lognormal curve for each row of weights, (rows, tests): θ and β, (rows, 2); NaN where none rises."""
-    design = np.column_stack([np.ones(len(measure)), np.log(measure)])
-    coefficients = fit_batch(design, weights * outcomes, weights).coefficients
+    coefficients = fit_batch(_design(measure), weights * outcomes, weights).coefficients
     slope = np.where(coefficients[:, 1] > 0, coefficients[:, 1], np.nan)
     return np.column_stack([np.exp(-coefficients[:, 0] / slope), 1 / slope])
 
 
-def by_region(
-    tests: pd.DataFrame, first: str, second: str, outcome: Bools, measured: Bools
-) -> pd.DataFrame:
-    """Thirds of two measures, a row each: limits, ``tests``, ``overturned``, ``simulated``, ``right``."""
-    ends, third = {}, {}
-    for name in (first, second):
-        values = tests[name].to_numpy()
-        ends[name] = np.quantile(values, [0, 1 / 3, 2 / 3, 1])
-        third[name] = np.clip(np.searchsorted(ends[name], values, side="right") - 1, 0, 2)
-    rows = []
-    for i in range(3):
-        for j in range(3):
-            inside = (third[first] == i) & (third[second] == j)
-            row: dict[str, object] = {}
-            for name, k in ((first, i), (second, j)):
-                row[f"{name}_from"], row[f"{name}_to"] = ends[name][k : k + 2]
-            row["tests"] = int(inside.sum())
-            row["overturned"] = int(measured[inside].sum())
-            row["simulated"] = int(outcome[inside].sum())
-            row["right"] = (
-                float((outcome == measured)[inside].mean()) if inside.any() else float("nan")
-            )
-            rows.append(row)
-    return pd.DataFrame(rows)
-
-
-def judged_tests(tests: pd.DataFrame, validated: Validated, measured: Bools) -> pd.DataFrame:
+def judged_tests(tests: pd.DataFrame, validated: Validated) -> pd.DataFrame:
     """Each test with its votes, its outcome, whether that is right, and whether it is near-critical."""
     votes = validated.mean_votes
     return tests.assign(
         votes_to_overturn=votes,
         simulated=validated.outcome,
-        right=validated.outcome == measured,
+        right=validated.outcome == tests["overturned"],
         near_critical=(votes > NEAR_CRITICAL[0]) & (votes < NEAR_CRITICAL[1]),
     )
 
 
-def majority_of_repeats(settings: NDArray[Any], measured: Bools) -> Bools | None:
+def by_region(judged: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
+    """Thirds of two measures, a row each: limits, ``tests``, ``overturned``, ``simulated``, ``right``."""
+    ends, third = {}, {}
+    for name in (first, second):
+        values = judged[name].to_numpy()
+        ends[name] = np.quantile(values, [0, 1 / 3, 2 / 3, 1])
+        third[name] = np.clip(np.searchsorted(ends[name], values, side="right") - 1, 0, 2)
+    rows = []
+    for i, j in product(range(3), repeat=2):
+        inside = judged[(third[first] == i) & (third[second] == j)]
+        row: dict[str, object] = {}
+        for name, k in ((first, i), (second, j)):
+            row[f"{name}_from"], row[f"{name}_to"] = ends[name][k : k + 2]
+        counts = {name: int(inside[name].sum()) for name in ("overturned", "simulated")}
+        rows.append({**row, "tests": len(inside), **counts, "right": inside["right"].mean()})
+    return pd.DataFrame(rows)
+
+
+def majority_of_repeats(settings: NDArray[np.object_], measured: Bools) -> Bools | None:
     """Outcome that most tests at the same setting had, the best that a model can say; None without repeats."""
     code = pd.factorize(settings)[0]
     tests = np.bincount(code)

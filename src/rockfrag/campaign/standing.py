@@ -10,11 +10,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
-import numpy as np
 import pandas as pd
-from scipy.stats import norm, qmc
+from scipy.stats import norm
 
-from rockfrag.campaign.trials import Trials, body_of, possible_restitution
+from rockfrag.campaign.trials import (
+    Trials,
+    body_of,
+    even_guesses,
+    possible_restitution,
+    uniform,
+)
 from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.rocking.options import system_of
@@ -38,10 +43,6 @@ class Unknown:
     quantile: Callable[[float], float]  # Its quantile function
 
 
-def _uniform(low: float, high: float, fraction: float) -> float:
-    return low + (high - low) * fraction
-
-
 def lognormal(median: float, spread: float, fraction: float) -> float:
     """Quantile of a lognormal distribution by its median and the standard deviation of the logarithm."""
     return median * math.exp(spread * float(norm.ppf(fraction)))
@@ -54,7 +55,7 @@ def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, U
             "edge_retreat_mm": Unknown(
                 "how far the edges carry further in",
                 "uniform from 0 to 2 mm, of ours: edges of cut stone are broken by a millimetre or two",
-                partial(_uniform, 0.0, 2.0),
+                partial(uniform, 0.0, 2.0),
             ),
             "restitution_ratio": Unknown(
                 "the restitution over that of momentum",
@@ -66,7 +67,7 @@ def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, U
     median = 2 * (scan_accuracy_mm or SCAN_ACCURACY_MM)
     return {
         "direction_deg": Unknown(
-            "the direction of shaking", "uniform: any direction", partial(_uniform, 0.0, 360.0)
+            "the direction of shaking", "uniform: any direction", partial(uniform, 0.0, 360.0)
         ),
         "contact_tolerance_mm": Unknown(
             "the height up to which points carry",
@@ -77,13 +78,13 @@ def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, U
         "edge_retreat_mm": Unknown(
             "how far the edges carry further in",
             "uniform from 0 to 10 mm, of ours: natural and worn edges are round",
-            partial(_uniform, 0.0, 10.0),
+            partial(uniform, 0.0, 10.0),
         ),
         "restitution_ratio": Unknown(
             "the restitution over that of momentum",
             "uniform from 0.7 to 1, of ours: a body on few points takes more than momentum; 0.6 to 0.98 were "
             "plausible for a granite rock",
-            partial(_uniform, 0.7, 1.0),
+            partial(uniform, 0.7, 1.0),
         ),
     }
 
@@ -101,13 +102,10 @@ def ways_to_stand(
     the planar block of a cut one; a power of two fills the distributions most evenly. ``known`` is what was
     measured, by the name of the unknown; restitution conserves momentum if it is in neither.
     """
-    points = qmc.Sobol(len(unknowns), scramble=True, rng=np.random.default_rng(seed)).random(count)
     rows, systems = [], []
-    for point in points:
-        way = dict(known or {}) | {
-            name: unknown.quantile(u)
-            for (name, unknown), u in zip(unknowns.items(), point, strict=True)
-        }
+    quantiles = {name: unknown.quantile for name, unknown in unknowns.items()}
+    for guess in even_guesses(quantiles, count, seed):
+        way = dict(known or {}) | guess
         try:
             block = body_of(thing, way)
         except InputError:

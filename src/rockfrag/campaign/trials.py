@@ -6,15 +6,22 @@ evenly (scrambled Sobol points).
 """
 
 import math
-from collections.abc import Mapping
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, overload
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from rockfrag.engines.spatial import run_in_space
 from rockfrag.errors import InputError
+from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.rocking.ensemble import LightBodies, overturns
+from rockfrag.rocking.inputs import checked_threads
 from rockfrag.rocking.measured_restitution import largest_restitution
 from rockfrag.rocking.options import system_of
 from rockfrag.short_repr import short_repr
@@ -29,7 +36,7 @@ to which points carry, distance by which edges lie further in, and in the plane 
 an impact (values above the one that conserves momentum stand for that); in space, and of blocks on each other, the
 coefficient of friction."""
 
-_LOGARITHMIC = ("contact_tolerance_mm",)
+BATCH = 50  # motions whose outcomes are in memory at a time
 
 
 @dataclass(frozen=True)
@@ -46,23 +53,37 @@ class Trials:
     __repr__ = short_repr
 
 
+def uniform(low: float, high: float, fraction: float) -> float:
+    """Quantile of a uniform distribution."""
+    return low + (high - low) * fraction
+
+
+def even_guesses(
+    quantiles: Mapping[str, Callable[[float], float]], count: int, seed: int
+) -> Iterator[dict[str, float]]:
+    """Yield guesses that fill distributions evenly (scrambled Sobol points), most evenly by a power of two."""
+    sobol = qmc.Sobol(len(quantiles), scramble=True, rng=np.random.default_rng(seed))
+    for point in sobol.random(count):
+        fractions = zip(quantiles.items(), point, strict=True)
+        yield {name: float(quantile(fraction)) for (name, quantile), fraction in fractions}
+
+
 def sample_trials(
     thing: Shape | Block | Column, ranges: Mapping[str, tuple[float, float]], count: int, seed: int
 ) -> Trials:
-    """Fill the ranges of the unknowns evenly with trials; a power of two fills them most evenly.
+    """Fill the ranges of the unknowns evenly with trials.
 
     A shape with ``friction`` is a body in space, beside the planar block if it has ``restitution`` as well; a
     block whose edges were measured has no direction and tolerance; blocks on each other have ``friction`` too.
     """
-    names = [name for name in UNKNOWNS if name in ranges]
-    points = qmc.Sobol(len(names), scramble=True, rng=np.random.default_rng(seed)).random(count)
+    quantiles: dict[str, Callable[[float], float]] = {
+        name: partial(uniform, *ranges[name]) for name in UNKNOWNS if name in ranges
+    }
+    if "contact_tolerance_mm" in ranges:
+        low, high = ranges["contact_tolerance_mm"]
+        quantiles["contact_tolerance_mm"] = lambda fraction: low * (high / low) ** fraction
     rows, systems, planar = [], [], []
-    for point in points:
-        guess = {}
-        for name, u in zip(names, point, strict=True):
-            low, high = ranges[name]
-            logarithmic = name in _LOGARITHMIC
-            guess[name] = float(low * (high / low) ** u if logarithmic else low + (high - low) * u)
+    for guess in even_guesses(quantiles, count, seed):
         try:
             body = body_of(thing, guess)
             systems.append(_standing(thing, body, guess))
@@ -80,6 +101,26 @@ def sample_trials(
             "or lower edge_retreat_mm."
         )
     return Trials(pd.DataFrame(rows), tuple(systems), tuple(planar))
+
+
+def simulate_tests(
+    systems: Sequence[System], motions: Sequence[Motion], threads: int | None = None
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Whether a body overturns, and whether any rocks, shape (trials, tests)."""
+    overturned, rocked = np.zeros((2, len(systems), len(motions)), dtype=bool)
+    for first in range(0, len(motions), BATCH):
+        batch = motions[first : first + BATCH]
+        with warnings.catch_warnings():
+            # a guess may be squat where the object is not
+            warnings.simplefilter("ignore", LightBodies)
+            if systems[0].planar:
+                result = overturns(systems, batch, threads=threads)
+            else:
+                shaking = [GroundMotion(motion) for motion in batch]
+                result = run_in_space(systems, shaking, threads=checked_threads(threads))
+        overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
+        rocked[:, first : first + len(batch)] = (result.peak_rotation[:, :, 0] > 0).any(axis=-1)
+    return overturned, rocked
 
 
 def _in_plane(planar: Block | Column, guess: Mapping[str, float]) -> System:

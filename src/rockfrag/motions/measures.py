@@ -40,11 +40,6 @@ def measure_motion(
     ``sa_0_3s_g`` (pseudo), ``sv_0_3s_cm_s`` and ``sd_0_3s_cm``; ``avgsa_g``, ``housner_cm``, ``pulse_period_s``,
     ``pulse_velocity_cm_s`` and ``pulse_explained``.  A measure that does not exist for the motion,
     such as the duration of a motion of zeros, is NaN.
-
-    Raises
-    ------
-    InputError
-        If a period is not positive or the damping negative.
     """
     values: dict[str, Any] = {
         "name": motion.name,
@@ -82,11 +77,6 @@ def measure_motions(
     Returns
     -------
     A table with a row per motion, a column per measure, the unit in its name.
-
-    Raises
-    ------
-    InputError
-        If two motions have the same name, or as :func:`measure_motion`.
     """
     rows = in_processes(lambda motion: measure_motion(motion, periods, damping), motions, processes)
     table = pd.DataFrame(rows)
@@ -112,11 +102,6 @@ def measure_rocking(
     -------
     Table with the columns ``name``, ``block`` and, all [-], ``uplift_ratio`` a/(g tan α), ``velocity_ratio``
     p PGV/(g tan α) and ``frequency_ratio`` ωp/p with ωp that of the strongest pulse.
-
-    Raises
-    ------
-    InputError
-        If the angle or the frequency parameter is not positive.
     """
     rows = []
     for motion in motions:
@@ -150,11 +135,6 @@ def measure_pair(
     -------
     ``rotd50_pga_g``, ``rotd100_pga_g``, ``rotd50_pgv_cm_s``, ``rotd100_pgv_cm_s`` and for each
     period such as 0.3 s ``rotd50_sa_0_3s_g``, ``rotd100_sa_0_3s_g``; Boore (2010).
-
-    Raises
-    ------
-    InputError
-        If the components do not fit together, a period is not positive or the damping negative.
     """
     peaks = [measure for measure in declared() if measure.name in ("pga", "pgv")]
     rows = []

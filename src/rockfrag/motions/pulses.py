@@ -8,13 +8,13 @@ behind is exact.
 
 import math
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number, real_number
-from rockfrag.motions.checks import MOST_SAMPLES, plain, whole
+from rockfrag.input_checks import MOST_SAMPLES, positive_number, real_number, whole_number_within
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
@@ -39,13 +39,8 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
     Returns
     -------
     The :class:`Motion` [m/s²].
-
-    Raises
-    ------
-    InputError
-        If a parameter is not such a number.
     """
-    cycles = whole("sine", "cycles", cycles, 1, 1000)
+    cycles = whole_number_within("sine", "cycles", cycles, 1, 1000)
     length = cycles * _seconds("sine: period", period)
     given = {"amplitude": amplitude, "period": period, "cycles": cycles}
     source = "steady harmonic motion from rest"
@@ -60,7 +55,7 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
     Parameters
     ----------
     amplitude, period, dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -80,7 +75,7 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
     Parameters
     ----------
     amplitude, period, dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -100,7 +95,7 @@ def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion
     name = "commanded_cosine"
     positive_number(f"{name}: pga", pga, "m/s²")
     period = 2 * np.pi * _seconds(f"{name}: pgv_over_pga", pgv_over_pga)
-    cycles = whole(name, "cycles", cycles, 1, 1000)
+    cycles = whole_number_within(name, "cycles", cycles, 1, 1000)
     source = "motion of a shake table commanded by PGA and PGV/PGA"
     length, step = cycles * period, min(DT, period / 400)
     given = {"amplitude": pga, "period": period, "cycles": cycles}
@@ -115,7 +110,7 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
     Parameters
     ----------
     amplitude, duration, dt
-        As of :func:`sine`, which says what is refused too; it lasts d [s].
+        As of :func:`sine`; it lasts d [s].
 
     Returns
     -------
@@ -136,7 +131,7 @@ def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
     Parameters
     ----------
     amplitude, duration, dt
-        As of :func:`sine`, which says what is refused too; it lasts d [s].
+        As of :func:`sine`; it lasts d [s].
 
     Returns
     -------
@@ -157,7 +152,7 @@ def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
     Parameters
     ----------
     amplitude, period, dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -183,7 +178,7 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
     Parameters
     ----------
     amplitude, period, dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -222,7 +217,7 @@ def mavroeidis_papageorgiou(
     phase_deg
         Phase ν [degrees]; 0 is a symmetric velocity pulse, 90 an antisymmetric one.
     dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -263,7 +258,7 @@ def sine_sweep(
     octaves_per_minute
         Rate r [1/min], positive.
     dt
-        As of :func:`sine`, which says what is refused too.
+        As of :func:`sine`.
 
     Returns
     -------
@@ -319,3 +314,8 @@ def _pulse(
     acceleration = np.pad(given["amplitude"] * np.asarray(shape(instants)), 1)
     facts = {"synthetic": True, "kind": name, "source": source}
     return Motion(acceleration, step, name, facts, ({"step": name, **plain(given)},))
+
+
+def plain(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return parameters with numbers of NumPy's types as Python's own, which JSON can carry."""
+    return {k: v.item() if isinstance(v, np.generic) else v for k, v in parameters.items()}

@@ -9,7 +9,6 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number
-from rockfrag.motions.checks import peaks
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 
@@ -31,11 +30,6 @@ def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:
     Returns
     -------
     Motion named after the first, its provenance followed by this step.
-
-    Raises
-    ------
-    InputError
-        If the sampling intervals or the lengths differ.
     """
     _check_pair(first, second)
     angle = math.radians(real_number("rotate: angle_deg", angle_deg, "degrees"))
@@ -63,11 +57,6 @@ def rotd(
     Returns
     -------
     The value of the measure, in its unit.
-
-    Raises
-    ------
-    InputError
-        If the components do not fit together or the percentile is not from 0 to 100.
     """
     percentile = real_number("rotd: percentile", percentile)
     if not 0 <= percentile <= 100:
@@ -201,5 +190,5 @@ def _at(motion: Motion, begin: float, dt: float, count: int) -> Motion:
         left_out_at_beginning_s=begin,
         left_out_at_end_s=float(f"{max(end, 0.0):.9g}"),
         interpolated=not same,
-        **peaks(motion, samples),
+        **motion.peaks(samples),
     )

@@ -25,11 +25,6 @@ def scale(motion: Motion, factor: float) -> Motion:
     Returns
     -------
     The :class:`Motion` so changed, with the step in its provenance.
-
-    Raises
-    ------
-    InputError
-        If the factor is not a positive number.
     """
     factor = positive_number("step scale: factor", factor)
     return motion.after("scale", motion.acceleration * factor, factor=factor)
@@ -47,7 +42,7 @@ def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
     Parameters
     ----------
     motion
-        As of :func:`scale`; one that is zero throughout is refused too.
+        As of :func:`scale`, not zero throughout.
     pga_g
         Wanted peak acceleration [g], positive.
 
@@ -65,7 +60,7 @@ def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
     Parameters
     ----------
     motion
-        As of :func:`scale`; one that is zero throughout is refused too.
+        As of :func:`scale`, not zero throughout.
     pgv_cm_s
         Wanted peak velocity [cm/s], positive.
 

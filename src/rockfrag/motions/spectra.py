@@ -201,11 +201,6 @@ def response_spectrum(
     -------
     The :class:`ResponseSpectrum`, whose arrays have the shape (k,), as the periods.
 
-    Raises
-    ------
-    InputError
-        If there is no period, a period is not positive, or the damping is negative.
-
     Examples
     --------
     >>> import numpy as np

@@ -55,17 +55,11 @@ _STATES: dict[str, LimitState] = {}
 
 
 def limit_state(name: str, order: int, label: str, **more: Any) -> Callable[[Predicate], Predicate]:
-    """Declare the function below as the predicate of a limit state.
+    """Declare the function below as the predicate of a limit state; its name is one word, as in exports.
 
     Parameters
     ----------
-    name, order, label, **more
-        As of :class:`LimitState`.
-
-    Raises
-    ------
-    InputError
-        If the name is taken, or is not one word, as exports write several in a line.
+    name, order, label, **more : as of :class:`LimitState`
     """
     if not name.isidentifier():
         raise InputError(f"limit state {name!r}: expected one word of letters, digits and _.")

@@ -69,22 +69,14 @@ class Outcomes:
 
     Attributes
     ----------
-    names
-        Names of the bodies of each system, from below.
-    scales
-        Factors on the motions, shape (motions, scales).
-    engines
-        Names of the engines that answered.
-    engine
-        Which of them answered each case.
-    overturned, overturned_body, overturning_time, certain_time, impacts, flights, given_way, paradoxes
-        Of cases, see :func:`columns`.
-    parted_contact, several_modes, unstable_distance, minimum_gravity_ratio, lost_contact
-        Likewise.
-    peak_rotation, peak_velocity, turn, walk, fall_direction, fell_over
-        Of bodies.
-    slip, peak_slip, friction_demand, least_normal_force
-        Of contacts.
+    names : of the bodies of each system, from below
+    scales : factors on the motions, shape (motions, scales)
+    engines : names of those that answered
+    engine : which of them answered each case
+    overturned, overturned_body, overturning_time, certain_time, impacts, flights, given_way, paradoxes : of cases
+    parted_contact, several_modes, unstable_distance, minimum_gravity_ratio, lost_contact : of cases
+    peak_rotation, peak_velocity, turn, walk, fall_direction, fell_over : of bodies
+    slip, peak_slip, friction_demand, least_normal_force : of contacts
     """
 
     names: tuple[tuple[str, ...], ...]
@@ -216,10 +208,8 @@ class Outcomes:
 
         Parameters
         ----------
-        which
-            ``"cases"``, ``"bodies"`` or ``"contacts"``.
-        columns_of
-            Attributes that become columns; all of the table if None.
+        which : ``"cases"``, ``"bodies"`` or ``"contacts"``
+        columns_of : attributes that become columns; all of the table if None
 
         Returns
         -------

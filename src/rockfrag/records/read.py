@@ -148,12 +148,6 @@ def read_motion(
         Acceleration in m/s² (1 g = 9.81 m/s²). The metadata has ``station``, ``start_time`` (ISO
         8601, UTC, or None), ``earthquake``, ``component``, ``format`` and ``unit`` (as stored); the
         provenance has the file, its SHA-256 and every change made to its numbers.
-
-    Raises
-    ------
-    InputError
-        If the file is broken or unknown, its unit or channel is not settled, or it does not hold
-        acceleration.
     """
     record = read_record(path, dt, cut_short)
     return motion_of(record, choose_channel(record, channel), unit, force)

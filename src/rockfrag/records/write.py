@@ -54,11 +54,6 @@ def write_motion(
     Returns
     -------
     The path of the file.
-
-    Raises
-    ------
-    InputError
-        If the format or the unit is not known, or the file cannot be written.
     """
     name = _format(path, format)
     stored = asked_unit(unit) if unit is not None else _USUAL_UNITS.get(name, "m/s2")

@@ -83,27 +83,20 @@ def tests_from_ida(
 
     Parameters
     ----------
-    ida
+    ida : rows in any order
         Columns ``configuration``, ``object``, ``pedestal``, ``motion``, ``earthquake``, ``floor``,
-        ``amplitude_g``, ``overturned``, ``overturned_body``; in any order of rows.
-    protocol
-        Protocol of the laboratory; its repetitions concern the step protocol, its definition and its
-        measurement concern all definitions.
-    definitions
-        Which of ``step_protocol``, ``first_overturning`` and ``always_overturning`` to take.
-    limits_g
-        Limit of the shaker [g] for each motion that has one. The step protocol stops there; the
-        other two definitions are of the specimen and not of the laboratory, and use the whole IDA curve.
+        ``amplitude_g``, ``overturned``, ``overturned_body``.
+    protocol : of the laboratory
+        Its repetitions concern the step protocol, its definition and its measurement all definitions.
+    definitions : which of ``step_protocol``, ``first_overturning`` and ``always_overturning`` to take
+    limits_g : limit of the shaker [g] for each motion that has one
+        The step protocol stops there; the other two definitions are of the specimen and not of the laboratory, and
+        use the whole IDA curve.
 
     Returns
     -------
     Table of tests, see :mod:`rockfrag.shaketable.tests_table`; in the order in which
     the IDA curves first appear, then by definition and repetition.
-
-    Raises
-    ------
-    InputError
-        If a column is missing, a definition is unknown, or an amplitude occurs twice.
     """
     for column in _NEEDED:
         if column not in ida.columns:

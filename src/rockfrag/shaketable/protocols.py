@@ -154,23 +154,13 @@ class Protocol:
 
     Attributes
     ----------
-    steps
-        Series of levels of amplitudes.
-    limit_g
-        Amplitude at which the tests stop unless the shaker's limit comes first [g].
-    repetitions
-        Number of times the series of levels is climbed. Repetition r starts r/repetitions of a step later, as
-        the gain of a force-guided shaker is not set to the digit, so repetitions sample what the
-        coarseness of the steps does to the figure.
-    definition
-        Amplitude reported: the largest ``before`` overturning, or the one ``at`` overturning.
-    measurement
-        How the amplitude becomes a figure; None shows it as it is.
-
-    Raises
-    ------
-    InputError
-        If the limit or the number of repetitions is not positive, or the definition is unknown.
+    steps : series of levels of amplitudes
+    limit_g : amplitude at which the tests stop unless the shaker's limit comes first [g]
+    repetitions : number of times the series of levels is climbed
+        Repetition r starts r/repetitions of a step later, as the gain of a force-guided shaker is not set to the
+        digit, so repetitions sample what the coarseness of the steps does to the figure.
+    definition : the amplitude reported is the largest ``before`` overturning, or the one ``at`` overturning
+    measurement : how the amplitude becomes a figure; None shows it as it is
     """
 
     steps: Steps

@@ -130,17 +130,11 @@ def read_shaker(path: str | os.PathLike[str]) -> Shaker:
 
     Parameters
     ----------
-    path
-        Path of the YAML file.
+    path : of the file
 
     Returns
     -------
     The :class:`Shaker`.
-
-    Raises
-    ------
-    InputError
-        If the file is absent, is not YAML, or does not describe a shaker.
     """
     values = checked(read_yaml(path), "shaker", str(path))
     with errors_of(str(path)):
@@ -150,21 +144,15 @@ def read_shaker(path: str | os.PathLike[str]) -> Shaker:
 def required_corner(
     shaker: Shaker, motion: Motion, amplitude_g: float, payload: float = 0.0
 ) -> float:
-    """Lowest high-pass corner with which a motion keeps the limits.
+    """Lowest high-pass corner up to 5 Hz with which a motion keeps the limits.
 
     Parameters
     ----------
-    shaker, motion, amplitude_g, payload
-        The shaker, the wanted motion, its peak [g], and the mass on the table [kg].
+    shaker, motion, amplitude_g, payload : the wanted motion, its peak [g], and the mass on the table [kg]
 
     Returns
     -------
     The frequency [Hz]; 0 if it does without.
-
-    Raises
-    ------
-    InputError
-        If no corner up to 5 Hz is enough, because the force or the velocity is too large.
     """
     if shaker.demand(motion, amplitude_g, payload).fits:
         return 0.0
@@ -193,8 +181,7 @@ def produced_motion(
 
     Parameters
     ----------
-    shaker, motion, amplitude_g, payload
-        As of :func:`required_corner`, which says what is refused.
+    shaker, motion, amplitude_g, payload : as of :func:`required_corner`, which says what is refused
 
     Returns
     -------

@@ -69,17 +69,11 @@ def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:
 
     Parameters
     ----------
-    path
-        Path of the CSV file.
+    path : of the CSV file
 
     Returns
     -------
     Table of tests, as this module describes it, in the order of the file.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read or a field makes no sense; the message names line and column.
     """
     lines = read_cells(path)
     header = set(lines[0][1]) if lines else set()

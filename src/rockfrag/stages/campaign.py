@@ -2,22 +2,17 @@
 
 import logging
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from rockfrag.campaign import comparison
-from rockfrag.campaign.outcomes import simulate_tests
-from rockfrag.campaign.table_motions import (
-    check_peaks,
-    measured_peaks,
-    missing_motions,
-    table_motions,
-)
+from rockfrag.campaign import table_motions as table
+from rockfrag.campaign.comparison import Bools, Floats, MeasuredTests, Validated
 from rockfrag.campaign.tests import MEASURED, Campaign, read_campaign
-from rockfrag.campaign.trials import Trials, sample_trials
-from rockfrag.campaign.validation import Validated, cross_validate, plausible_trials
+from rockfrag.campaign.trials import Trials, sample_trials, simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.fragility.vector_tables import VectorTables, vector_tables
 from rockfrag.motions.processing import process
@@ -42,8 +37,8 @@ TABLES = (
 
 VARIED_FRACTION = 4
 """Other conditionings are tried with this fraction of the trials: they only show what the choice does."""
-REPLICATES = 400
 FEWEST_GROUPS = 2
+SCANS = 50  # repetitions of a scan, with its noise, behind the limits of a critical angle
 
 
 def run(job: Job[CampaignStudy]) -> Results:
@@ -53,32 +48,29 @@ def run(job: Job[CampaignStudy]) -> Results:
     thing = standing_object(study)
     trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
     outcomes, rocked = simulate_tests(trials.systems, motions, job.threads)
-    tests = campaign.tests
-    measured = tests[MEASURED].to_numpy()
-    groups = pd.factorize(tests["group"])[0]
-    validated = cross_validate(outcomes, measured, groups, **study.division)
+    measured = measured_tests(study, campaign)
+    validated = measured.cross_validate(outcomes)
     job.log.info(
         "%d tests under %d motions: %.1f %% of the outcomes right",
-        len(tests), groups.max() + 1, 100 * (validated.outcomes == measured).mean(),
+        len(campaign.tests), measured.groups.max() + 1,
+        100 * (validated.outcomes == measured.overturned).mean(),
     )  # fmt: skip
-    yield "tests", comparison.judged_tests(tests, validated, measured)
-    yield "trials", _judged_trials(trials, outcomes, measured, groups)
-    plane = None
-    if trials.planar:
-        flat, _ = simulate_tests(trials.planar, motions, job.threads)
-        plane = cross_validate(flat, measured, groups, **study.division)
-    yield "agreement", _agreement(study, campaign, validated, plane, groups)
-    yield "rocking", _rocking(study, campaign, outcomes, rocked, groups)
-    yield "fragility", _fragility(study, campaign, validated, groups)
-    both = _two_measures(study, campaign, validated)
+    judged = comparison.judged_tests(campaign.tests, validated)
+    found = _Simulated(job, campaign, motions, thing, trials, outcomes, rocked, measured, validated)
+    yield "tests", judged
+    yield "trials", found.judged_trials()
+    yield "agreement", found.agreement()
+    yield "rocking", found.rocking()
+    yield "fragility", found.fragility()
+    both = found.two_measures()
     yield "two_measures", both.fits
     yield "contours", both.contours
     yield "cells", both.cells
     first, second = (*campaign.measures, campaign.measures[0])[:2]
-    yield "regions", comparison.by_region(tests, first, second, validated.outcome, measured)
-    yield "conditioning", _conditioning(job, campaign, thing, validated, groups)
-    yield "contact", _contact(study, thing, trials, outcomes, measured)
-    yield "footprint", _footprint(study, thing, trials, outcomes == measured, groups)
+    yield "regions", comparison.by_region(judged, first, second)
+    yield "conditioning", found.conditioning()
+    yield "contact", found.contact()
+    yield "footprint", found.footprint()
 
 
 def campaign_with_motions(
@@ -89,7 +81,7 @@ def campaign_with_motions(
         fetch_url(public.url, public.sha256, public.path)
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
     if study.leave_out:
-        absent = missing_motions(study.motions, list(campaign.tests["motion"]))
+        absent = table.missing_motions(study.motions, list(campaign.tests["motion"]))
         campaign = campaign.only(~campaign.tests["motion"].isin(absent))
         log.info("%d tests without a motion are left out", len(absent))
         if campaign.tests.empty:
@@ -102,10 +94,12 @@ def campaign_with_motions(
     motions = _motions(study, campaign, study.conditioning)
     if not campaign.measures:
         campaign = Campaign(
-            campaign.tests.join(measured_peaks(motions)), ("pga_g", "pgv_cm_s"), campaign.codes
+            campaign.tests.join(table.measured_peaks(motions)),
+            ("pga_g", "pgv_cm_s"),
+            campaign.codes,
         )
     elif not study.pulse_cycles and campaign.tests["amplitude_g"].isna().all():
-        check_peaks(campaign.tests, motions, study.motions)
+        table.check_peaks(campaign.tests, motions, study.motions)
     return campaign, motions
 
 
@@ -116,7 +110,7 @@ def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> lis
             process(commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles), conditioning)
             for a, ratio in settings
         ]
-    motions = table_motions(
+    motions = table.table_motions(
         study.motions,
         list(campaign.tests["motion"]),
         unit=study.unit,
@@ -164,188 +158,185 @@ def _block(given: Mapping[str, Any]) -> Block:
     )
 
 
-def _judged_trials(trials: Trials, outcomes: Any, measured: Any, groups: Any) -> pd.DataFrame:
-    """Trials with their agreement over all tests: in sample, so it only shows where the plausible ones lie."""
-    right = outcomes == measured
-    shown = {"right_in_sample": right.mean(axis=1), "plausible": plausible_trials(right, groups)}
-    table = trials.table.assign(**shown)
-    return table.sort_values("right_in_sample", ascending=False, kind="stable", ignore_index=True)
-
-
-def _agreement(
-    study: CampaignStudy,
-    campaign: Campaign,
-    validated: Validated,
-    plane: Validated | None,
-    groups: Any,
-) -> pd.DataFrame:
-    """Who is right how often: simulations, thresholds on measures, other codes; each compared with ours."""
-    tests, level = campaign.tests, study.confidence
-    measured = tests[MEASURED].to_numpy()
-    rivals = {} if plane is None else {IN_PLANE: plane.outcomes}
-    for name in campaign.measures:
-        rivals[f"threshold on {name}"] = comparison.cross_validated_threshold(
-            tests[name].to_numpy(), measured, groups, **study.division
-        )
-    if len(campaign.measures) > 1:
-        both = list(campaign.measures[:2])
-        rivals[f"probit on {' and '.join(both)}"] = comparison.cross_validated_threshold(
-            tests[both].to_numpy(), measured, groups, **study.division
-        )
-    codes = {f"code {name}": campaign.codes[name].to_numpy() for name in campaign.codes}
-    rows = [comparison.agreement_row(OURS, validated.outcomes, measured, groups, level)]
-    if (
-        majority := comparison.majority_of_repeats(tests["motion"].to_numpy(), measured)
-    ) is not None:
-        rivals[comparison.REPEATS] = majority
-    ours = np.atleast_2d(validated.outcomes)
-    for name, outcomes in {**rivals, **codes}.items():
-        # other programs may have done a part of the tests only: all are compared on that part
-        given = ~np.isnan(np.atleast_2d(outcomes).astype(float)).any(axis=0)
-        theirs = np.atleast_2d(outcomes)[:, given].astype(bool)
-        own_groups = pd.factorize(groups[given])[0]
-        if own_groups.max(initial=0) < 1:
-            raise InputError(
-                f"{name}: its tests are of a single input motion; give those of two or more."
-            )
-        row = comparison.agreement_row(name, theirs, measured[given], own_groups, level)
-        row |= comparison.paired_row(
-            ours[:, given], theirs, measured[given], own_groups, level, study.seed
-        )
-        rows.append(row)
-    table = pd.DataFrame(rows)
-    judged = dict.fromkeys(codes, "as given") | {comparison.REPEATS: "by repeats of the same test"}
-    table["judged"] = table["who"].map(judged).fillna("by other motions")
-    return table
-
-
-def _rocking(
-    study: CampaignStudy, campaign: Campaign, outcomes: Any, rocked: Any, groups: Any
-) -> pd.DataFrame:
-    """Whether the object rocked, where the laboratory noted it: trials chosen by overturning vote on it."""
-    if "rocked" not in campaign.tests:
-        columns = ["who", "right", "lower", "upper", "false_alarms", "missed", "tests"]
-        return pd.DataFrame(columns=columns)
-    measured, noted = (campaign.tests[name].to_numpy() for name in (MEASURED, "rocked"))
-    found = cross_validate(outcomes, measured, groups, asked=rocked, **study.division)
-    row = comparison.agreement_row(OURS, found.outcomes, noted, groups, study.confidence)
-    return pd.DataFrame([row])
-
-
-def _fragility(
-    study: CampaignStudy, campaign: Campaign, validated: Validated, groups: Any
-) -> pd.DataFrame:
-    measured = campaign.tests[MEASURED].to_numpy()
-    parts = [
-        comparison.fragility_beside(
-            campaign.tests[name].to_numpy(),
-            measured,
-            {OURS: validated.outcome, VOTES: validated.mean_votes},
-            groups,
-            level=study.confidence,
-            replicates=REPLICATES,
-            seed=study.seed,
-        ).assign(measure=name)
-        for name in campaign.measures
-    ]
-    return pd.concat(parts, ignore_index=True)
-
-
-def _two_measures(study: CampaignStudy, campaign: Campaign, validated: Validated) -> VectorTables:
-    """Fragility in the first two measures, of the outcomes measured and simulated."""
-    tests = campaign.tests.assign(**{MEASURED: campaign.tests[MEASURED].astype(float)})
-    simulated = tests.assign(**{MEASURED: validated.outcome.astype(float)})
-    pair = campaign.measures[:2]
-    return vector_tables(
-        {"measured": tests, OURS: simulated},
-        ((pair[0], pair[1]),) if len(pair) == len(set(pair)) == 2 else (),
-        earthquake="group",
-        # no IDA curve: each test has a capacity of its own
-        motion=None,
-        level=study.confidence,
-        seed=study.seed,
+def measured_tests(study: CampaignStudy, campaign: Campaign) -> MeasuredTests:
+    """Return what the laboratory saw, to be compared as the study says."""
+    tests = campaign.tests
+    return MeasuredTests(
+        tests[MEASURED].to_numpy(),
+        pd.factorize(tests["group"])[0],
+        *(study.seed, study.folds, study.repeats, study.confidence),
     )
 
 
-def _conditioning(
-    job: Job[CampaignStudy], campaign: Campaign, thing: Any, validated: Validated, groups: Any
-) -> pd.DataFrame:
-    """What other ways of conditioning the motions would have given, with a part of the trials."""
-    study = job.study
-    measured = campaign.tests[MEASURED].to_numpy()
-    about = (measured, groups, study.confidence)
-    as_configured = comparison.agreement_row("as configured", validated.outcomes, *about)
-    rows = [as_configured | {"trials": study.trials}]
-    fewer = max(16, study.trials // VARIED_FRACTION)
-    trials = sample_trials(thing, study.unknowns, fewer, study.seed)
-    for name, steps in {
-        "as configured, fewer trials": study.conditioning,
-        **study.varied_conditioning,
-    }.items():
-        outcomes, _ = simulate_tests(trials.systems, _motions(study, campaign, steps), job.threads)
-        found = cross_validate(outcomes, measured, groups, **study.division)
-        rows.append(comparison.agreement_row(name, found.outcomes, *about) | {"trials": fewer})
-        job.log.info("conditioning %s", name)
-    return pd.DataFrame(rows).rename(columns={"who": "conditioning"})
+@dataclass(frozen=True)
+class _Simulated:
+    """A campaign whose tests were simulated, each method a table of it."""
+
+    job: Job[CampaignStudy]
+    campaign: Campaign
+    motions: list[Motion]
+    thing: Shape | Block | Column
+    trials: Trials
+    # whether the object overturned, and whether anything rocked, shape (trials, tests)
+    outcomes: Bools
+    rocked: Bools
+    measured: MeasuredTests
+    validated: Validated
+
+    @property
+    def plausible(self) -> Bools:
+        """Trials that agree with all tests about as well as the best, in sample: shows where they lie only."""
+        right = self.outcomes == self.measured.overturned
+        return comparison.plausible_trials(right, self.measured.groups)
+
+    def judged_trials(self) -> pd.DataFrame:
+        """Trials with their agreement over all tests."""
+        right = (self.outcomes == self.measured.overturned).mean(axis=1)
+        table = self.trials.table.assign(right_in_sample=right, plausible=self.plausible)
+        return table.sort_values(
+            "right_in_sample", ascending=False, kind="stable", ignore_index=True
+        )
+
+    def agreement(self) -> pd.DataFrame:
+        """Who is right how often: simulations, thresholds on measures, other codes; each compared with ours."""
+        tests, measures = self.campaign.tests, self.campaign.measures
+        rivals = {}
+        if self.trials.planar:
+            flat, _ = simulate_tests(self.trials.planar, self.motions, self.job.threads)
+            rivals[IN_PLANE] = self.measured.cross_validate(flat).outcomes
+        for name in measures:
+            rivals[f"threshold on {name}"] = self.measured.by_threshold(tests[name].to_numpy())
+        if len(measures) > 1:
+            both = tests[list(measures[:2])].to_numpy()
+            rivals[f"probit on {' and '.join(measures[:2])}"] = self.measured.by_threshold(both)
+        majority = comparison.majority_of_repeats(
+            tests["motion"].to_numpy(), self.measured.overturned
+        )
+        if majority is not None:
+            rivals[comparison.REPEATS] = majority
+        codes = {f"code {name}": given.to_numpy() for name, given in self.campaign.codes.items()}
+        rows = [self.measured.agreement(OURS, self.validated.outcomes)]
+        rows += [self._beside(name, given) for name, given in {**rivals, **codes}.items()]
+        judged = dict.fromkeys(codes, "as given")
+        judged[comparison.REPEATS] = "by repeats of the same test"
+        table = pd.DataFrame(rows)
+        return table.assign(judged=table["who"].map(judged).fillna("by other motions"))
+
+    def _beside(self, name: str, outcomes: Any) -> dict[str, object]:
+        """Agreement of a rival, and how much better we are on the tests of which it says something."""
+        each = np.atleast_2d(outcomes)
+        given = ~np.isnan(each.astype(float)).any(axis=0)
+        theirs, measured = each[:, given].astype(bool), self.measured.only(given)
+        if measured.groups.max(initial=0) < FEWEST_GROUPS - 1:
+            raise InputError(
+                f"{name}: its tests are of a single input motion; give those of two or more."
+            )
+        lead = measured.lead(self.validated.outcomes[:, given], theirs)
+        return measured.agreement(name, theirs) | lead
+
+    def rocking(self) -> pd.DataFrame:
+        """Whether the object rocked, where the laboratory noted it: trials chosen by overturning vote on it."""
+        noted = self.campaign.tests.get("rocked")
+        if noted is None:
+            columns = ["who", "right", "lower", "upper", "false_alarms", "missed", "tests"]
+            return pd.DataFrame(columns=columns)
+        found = self.measured.cross_validate(self.outcomes, self.rocked)
+        seen = replace(self.measured, overturned=noted.to_numpy())
+        return pd.DataFrame([seen.agreement(OURS, found.outcomes)])
+
+    def fragility(self) -> pd.DataFrame:
+        """Lognormal curves of measured and simulated outcomes in every measure."""
+        simulated: dict[str, Bools | Floats] = {
+            OURS: self.validated.outcome,
+            VOTES: self.validated.mean_votes,
+        }
+        parts = [
+            self.measured.fragility(self.campaign.tests[name].to_numpy(), simulated).assign(
+                measure=name
+            )
+            for name in self.campaign.measures
+        ]
+        return pd.concat(parts, ignore_index=True)
+
+    def two_measures(self) -> VectorTables:
+        """Fragility in the first two measures, of the outcomes measured and simulated."""
+        tests = self.campaign.tests
+        outcomes = {"measured": self.measured.overturned, OURS: self.validated.outcome}
+        pair = self.campaign.measures[:2]
+        return vector_tables(
+            {name: tests.assign(**{MEASURED: fell * 1.0}) for name, fell in outcomes.items()},
+            ((pair[0], pair[1]),) if len(pair) == len(set(pair)) == 2 else (),
+            earthquake="group",
+            # no IDA curve: each test has a capacity of its own
+            motion=None,
+            level=self.measured.level,
+            seed=self.measured.seed,
+        )
+
+    def conditioning(self) -> pd.DataFrame:
+        """What other ways of conditioning the motions would have given, with a part of the trials."""
+        study, measured = self.job.study, self.measured
+        as_configured = measured.agreement("as configured", self.validated.outcomes)
+        rows = [as_configured | {"trials": study.trials}]
+        fewer = max(16, study.trials // VARIED_FRACTION)
+        trials = sample_trials(self.thing, study.unknowns, fewer, study.seed)
+        for name, steps in {
+            "as configured, fewer trials": study.conditioning,
+            **study.varied_conditioning,
+        }.items():
+            motions = _motions(study, self.campaign, steps)
+            outcomes, _ = simulate_tests(trials.systems, motions, self.job.threads)
+            found = measured.cross_validate(outcomes)
+            rows.append(measured.agreement(name, found.outcomes) | {"trials": fewer})
+            self.job.log.info("conditioning %s", name)
+        return pd.DataFrame(rows).rename(columns={"who": "conditioning"})
+
+    def contact(self) -> pd.DataFrame:
+        """How base and outcomes depend on the contact tolerance; the critical angle with scans repeated."""
+        columns = ["contact_tolerance_mm", "worst_direction_deg", "alpha_deg", "alpha_lower_deg"]
+        columns += ["alpha_upper_deg", "trials", "width_m", "overturned", "right"]
+        thing, study, trials = self.thing, self.job.study, self.trials.table
+        if not isinstance(thing, Shape):
+            return pd.DataFrame(columns=columns, dtype=float)
+        tolerances = np.geomspace(*study.unknowns["contact_tolerance_mm"], 8)
+        scan = study.object.get("scan_tolerance_mm", 0.0) / 1e3
+        rng = np.random.default_rng(study.seed)
+        tried = trials["contact_tolerance_mm"].to_numpy()
+        nearest = np.abs(np.log(tried[:, None] / tolerances)).argmin(axis=1)
+        width = (trials["left_m"] + trials["right_m"]).to_numpy()
+        rows = []
+        for number, tolerance in enumerate(tolerances):
+            direction, angle = _worst_direction(thing, tolerance)
+            if np.isnan(angle):
+                continue
+            scans = [thing.scanned_again(scan, rng) for _ in range(SCANS if scan else 0)]
+            angles = [_worst_direction(shape, tolerance)[1] for shape in scans] or [angle]
+            limits = np.degrees(np.nanquantile(angles, [0.05, 0.95]))
+            near = nearest == number
+            found = [0, *[float("nan")] * 3]
+            if near.any():
+                right = (self.outcomes[near] == self.measured.overturned).mean()
+                found = [near.sum(), width[near].mean(), self.outcomes[near].mean(), right]
+            rows.append([tolerance, direction, np.degrees(angle), *limits, *found])
+        return pd.DataFrame(rows, columns=columns)
+
+    def footprint(self) -> pd.DataFrame:
+        """Seen from above, about the centre of gravity: outline, and what carries at plausible tolerances."""
+        columns = ["what", "contact_tolerance_mm", "x_m", "y_m"]
+        if not isinstance(self.thing, Shape):
+            return pd.DataFrame(columns=columns)
+        likely = self.trials.table.loc[self.plausible, "contact_tolerance_mm"]
+        rows = [("outline", float("nan"), *corner) for corner in self.thing.outline]
+        for name, fraction in (("contact, low", 0.05), ("contact", 0.5), ("contact, high", 0.95)):
+            tolerance = float(likely.quantile(fraction))
+            carries = self.thing.contact_polygon(tolerance / 1e3)
+            rows += [(name, tolerance, *corner) for corner in carries]
+        return pd.DataFrame(rows, columns=columns)
 
 
-SCANS = 50
-
-
-def _contact(
-    study: CampaignStudy,
-    thing: Shape | Block | Column,
-    trials: Trials,
-    outcomes: Any,
-    measured: Any,
-) -> pd.DataFrame:
-    """How base and outcomes depend on the contact tolerance; the critical angle with scans repeated."""
-    columns = ["contact_tolerance_mm", "worst_direction_deg", "alpha_deg", "alpha_lower_deg"]
-    columns += ["alpha_upper_deg", "trials", "width_m", "overturned", "right"]
-    if not isinstance(thing, Shape):
-        return pd.DataFrame(columns=columns, dtype=float)
-    low, high = study.unknowns["contact_tolerance_mm"]
-    scan = study.object.get("scan_tolerance_mm", 0.0) / 1e3
-    rng = np.random.default_rng(study.seed)
-    rows, tolerances = [], np.geomspace(low, high, 8)
-    tried = trials.table["contact_tolerance_mm"].to_numpy()
-    nearest = np.abs(np.log(tried[:, None] / tolerances)).argmin(axis=1)
-    width = (trials.table["left_m"] + trials.table["right_m"]).to_numpy()
-    for number, tolerance in enumerate(tolerances):
-        try:
-            direction, angle = thing.worst_direction(tolerance / 1e3)
-        except InputError:
-            continue
-        scans = range(SCANS if scan else 0)
-        angles = [_worst_angle(thing.scanned_again(scan, rng), tolerance) for _ in scans] or [angle]
-        limits = np.degrees(np.nanquantile(angles, [0.05, 0.95]))
-        near = nearest == number
-        found = [0, *[float("nan")] * 3]
-        if near.any():
-            right = (outcomes[near] == measured).mean()
-            found = [near.sum(), width[near].mean(), outcomes[near].mean(), right]
-        rows.append([tolerance, direction, np.degrees(angle), *limits, *found])
-    return pd.DataFrame(rows, columns=columns)
-
-
-def _footprint(
-    study: CampaignStudy, thing: Shape | Block | Column, trials: Trials, right: Any, groups: Any
-) -> pd.DataFrame:
-    """Seen from above, about the centre of gravity: outline, and what carries within the plausible tolerances."""
-    columns = ["what", "contact_tolerance_mm", "x_m", "y_m"]
-    if not isinstance(thing, Shape):
-        return pd.DataFrame(columns=columns)
-    likely = trials.table.loc[plausible_trials(right, groups), "contact_tolerance_mm"]
-    rows = [("outline", float("nan"), *corner) for corner in thing.outline]
-    for name, fraction in (("contact, low", 0.05), ("contact", 0.5), ("contact, high", 0.95)):
-        tolerance = float(likely.quantile(fraction))
-        carries = thing.contact_polygon(tolerance / 1e3)
-        rows += [(name, tolerance, *corner) for corner in carries]
-    return pd.DataFrame(rows, columns=columns)
-
-
-def _worst_angle(shape: Shape, tolerance_mm: float) -> float:
+def _worst_direction(shape: Shape, tolerance_mm: float) -> tuple[float, float]:
+    """Direction of the least critical angle, and that angle; NaN where the shape cannot stand."""
     try:
-        return shape.worst_direction(tolerance_mm / 1e3)[1]
+        return shape.worst_direction(tolerance_mm / 1e3)
     except InputError:
-        return float("nan")
+        return float("nan"), float("nan")

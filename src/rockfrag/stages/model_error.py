@@ -12,15 +12,13 @@ import sys
 from collections.abc import Sequence
 from datetime import UTC, datetime
 
-import pandas as pd
-
 from rockfrag.campaign.blind import BlindAnswer, blind_answer, model_error
-from rockfrag.campaign.outcomes import simulate_tests
 from rockfrag.campaign.standing import kind_of, unknowns_of, ways_to_stand
-from rockfrag.campaign.tests import MEASURED, Campaign
+from rockfrag.campaign.tests import Campaign
+from rockfrag.campaign.trials import simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.stages.campaign import campaign_with_motions, object_of
+from rockfrag.stages.campaign import campaign_with_motions, measured_tests, object_of
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any
 
@@ -42,10 +40,9 @@ def blind_of(
     unknowns = unknowns_of(kind_of(thing), study.object.get("scan_tolerance_mm"))
     ways = ways_to_stand(thing, unknowns, WAYS, study.seed)
     simulated, _ = simulate_tests(ways.systems, motions)
-    tests = campaign.tests
-    measured, groups = tests[MEASURED].to_numpy(), pd.factorize(tests["group"])[0]
+    measured = measured_tests(study, campaign)
     found = {
-        name: blind_answer(tests[name].to_numpy(), measured, simulated, groups, study.seed)
+        name: blind_answer(measured, campaign.tests[name].to_numpy(), simulated)
         for name in campaign.measures
     }
     return dict(sorted(found.items(), key=lambda item: item[1].dispersion))

@@ -60,11 +60,6 @@ class CampaignStudy(Heading):
     mesh: Path | None = field(default=None)
 
     @property
-    def division(self) -> dict[str, Any]:
-        """How tests are divided into folds: their number, that of divisions, and the seed."""
-        return {"folds": self.folds, "repeats": self.repeats, "seed": self.seed}
-
-    @property
     def summary(self) -> str:
         """What it computes, in a line."""
         return f"the campaign {self.tests}, {self.trials} trials"

@@ -48,39 +48,22 @@ class UnlikelyBlock(UserWarning):
 class Block:
     """A rigid body that stands on two edges.
 
+    A warning, ``UnlikelyBlock``, tells of one that is larger than 20 m and lighter than air, or has the inertia of
+    a body of another size.
+
     Parameters
     ----------
-    width
-        Distance between the two edges it stands and rocks on, 2b [m].
-    height
-        Height of the block, 2h [m]; a statue on a pedestal stands at the pedestal's height.
-    mass
-        Mass [kg].
-    inertia
-        Moment of inertia about the centre of gravity [kg m²]; that of a uniform rectangle,
-        m (b² + h²) / 3, if not given.
-    cg_height
-        Height of the centre of gravity above the base [m]; half the height if not given.
-    cg_offset
-        Distance of the centre of gravity to the right of the middle of the base [m].
-    lean
-        Angle by which an uneven base makes the block lean clockwise as it stands [rad].
-    depth
-        Width across the plane of motion [m], which makes the block a body in space with a rectangular base; its
-        inertia, where given, is then the tensor, shape (3, 3) [kg m²].
-    round
-        Whether base and block are round, of the diameter ``width``; a body in space as well.
-
-    Raises
-    ------
-    InputError
-        If a length, mass or inertia is not positive, if the centre of gravity is above the top, or if the
-        block cannot stand because its centre of gravity is not above its base.
-
-    Warns
-    -----
-    UnlikelyBlock
-        If it is larger than 20 m and lighter than air, or its inertia is that of a body of another size.
+    width : between the two edges it stands and rocks on, 2b [m]
+    height : of the block, 2h [m]
+    mass : [kg]
+    inertia : about the centre of gravity [kg m²]; if not given that of a uniform rectangle, m (b² + h²) / 3
+    cg_height : of the centre of gravity above the base [m]; half the height if not given
+    cg_offset : of the centre of gravity to the right of the middle of the base [m]
+    lean : angle by which an uneven base makes the block lean clockwise as it stands [rad]
+    depth : across the plane of motion [m]
+        It makes the block a body in space with a rectangular base; its inertia, where given, is then the tensor,
+        shape (3, 3) [kg m²].
+    round : whether base and block are round, of the diameter ``width``; a body in space as well
 
     Examples
     --------
@@ -265,16 +248,8 @@ class Stack:
 
     Parameters
     ----------
-    lower, upper
-        The lower and the upper block (blocks 1 and 2).
-    offset
-        Distance of the middle of the statue's base to the right of the pedestal's middle [m].
-
-    Raises
-    ------
-    InputError
-        If the two together cannot stand, or if the statue reaches so far beyond the pedestal that its edge
-        could touch the ground before anything has fallen.
+    lower, upper : the blocks 1 and 2
+    offset : of the middle of the statue's base to the right of the pedestal's middle [m]
 
     Examples
     --------
@@ -350,17 +325,8 @@ class Column:
 
     Parameters
     ----------
-    blocks
-        From below, 1 to 12.
-    offsets
-        Distance of the middle of each base to the right of the middle of the block below [m], for all blocks but
-        the lowest; zero if not given.
-
-    Raises
-    ------
-    InputError
-        If there is not an offset for each block but the lowest, or the blocks above a contact have their common
-        centre of gravity beside it.
+    blocks : from below, 1 to 12
+    offsets : of the middle of each base but the lowest to the right of that of the block below [m]; else zero
     """
 
     blocks: tuple[Block, ...]

@@ -52,26 +52,14 @@ class RigidBody:
 
     Attributes
     ----------
-    mass
-        Mass [kg].
-    inertia
-        About the centre of gravity [kg m²]: a number, the moment about the axis across the plane, of a planar
-        body; a symmetric tensor, shape (3, 3), of a body in space.
-    centre
-        Centre of gravity (x, y, z) in the body's frame [m]; its z is the height above the base.
-    base
-        What the body stands on.
-    height
-        Height of the face above the base [m].
-    face
-        What it carries the next body with; None where nothing stands on it.
-    name
-        Short name, for tables and messages.
-
-    Raises
-    ------
-    InputError
-        If mass or inertia is not that of a body, or the outlines are not all planar or all in space.
+    mass : [kg]
+    inertia : about the centre of gravity [kg m²]
+        Of a planar body a number, that about the axis across its plane; of one in space a symmetric tensor (3, 3).
+    centre : of gravity (x, y, z) in the body's frame [m]
+    base : what the body stands on
+    height : of the face above the base [m]
+    face : what it carries the next body with; None where nothing stands on it
+    name : for tables and messages
     """
 
     mass: float
@@ -110,6 +98,14 @@ class RigidBody:
         """Width of the base in the plane of x and z [m]."""
         left, right = interval_of(self.base, (1.0, 0.0))
         return right - left
+
+    @property
+    def ends(self) -> tuple[Interval, Interval]:
+        """Base and face of a planar body; without a face the base again."""
+        base, face = self.base, self.face or self.base
+        assert isinstance(base, Interval)
+        assert isinstance(face, Interval)
+        return base, face
 
     @property
     def tensor(self) -> NDArray[np.float64]:

@@ -41,20 +41,10 @@ class Contact:
 
     Attributes
     ----------
-    friction
-        Coefficients of friction; None: the contact never slides and no body leaves it.
-    law
-        Law of its impacts.
-    tilt
-        Angle by which the body stands turned clockwise on the face below, because of an uneven base [rad].
-    offset
-        Position of the origin of the body's base on the face below, from the origin of that face (x, y) [m]; of
-        the lowest body its position on the ground, which changes nothing.
-
-    Raises
-    ------
-    InputError
-        If tilt or offset is not a finite number.
+    friction : its coefficients; None: the contact never slides and no body leaves it
+    law : of its impacts
+    tilt : angle by which an uneven base turns the body clockwise on the face below [rad]
+    offset : of the origin of the body's base from that of the face below (x, y) [m]; of no effect on the ground
     """
 
     friction: Friction | None = None

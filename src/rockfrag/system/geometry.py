@@ -11,19 +11,12 @@ from rockfrag.elementary import atan2, hypot, sin_cos
 
 
 class Shape(NamedTuple):
-    """A block as it stands.
+    """A block as it stands."""
 
-    Attributes
-    ----------
-    b : half the width of its base [m]
-    mass : [kg]
-    inertia : about the centre of gravity [kg m²]
-    x, y : centre of gravity, from the middle of its base [m]
-    """
-
-    b: float
-    mass: float
-    inertia: float
+    b: float  # half the width of its base [m]
+    mass: float  # [kg]
+    inertia: float  # about the centre of gravity [kg m²]
+    # x, y: centre of gravity, from the middle of its base [m]
     x: float
     y: float
 
@@ -73,9 +66,6 @@ def turned_moments(
     )
 
 
-# --------------------------------------------------------------------------- one block
-
-
 def shape_of(
     width: float, height: float, mass: float, inertia: float, cg_height: float, cg_offset: float, lean: float
 ) -> Shape:  # fmt: skip
@@ -119,9 +109,6 @@ def can_stand(shape: Shape) -> bool:
     return critical_angle(shape, 1) > 0.0 and critical_angle(shape, -1) > 0.0
 
 
-# --------------------------------------------------------------------------- impacts of a lone block
-
-
 def _product(shape: Shape, pivot: int) -> float:
     """Moment of inertia in the angular momentum about the other pivot of what turns about this one."""
     x, y = arm(shape, pivot)
@@ -150,9 +137,6 @@ def impulse_position(shape: Shape, restitution: float, pivot: int) -> float:
     old, new = arm(shape, -pivot)[0], arm(shape, pivot)[0]
     excess = _product(shape, -pivot) - restitution * _product(shape, pivot)
     return excess / (shape.mass * pivot * shape.b * (old - restitution * new))
-
-
-# --------------------------------------------------------------------------- a statue on a pedestal
 
 
 def pile_of(lower: Shape, upper: Shape, height: float, lean: float, offset: float) -> Pile:
@@ -233,9 +217,6 @@ def failed_stability_check(pile: Pile) -> int:
         if beyond > 1e-12 * pile.lower.b and beyond >= lowest_edge(pile, pivot):
             return REACHES_GROUND
     return STANDS
-
-
-# --------------------------------------------------------------------------- what the kernels are told
 
 
 def fill_block(body: Any, block: Shape) -> None:

@@ -42,16 +42,11 @@ class Shape:
 
     Attributes
     ----------
-    points
-        Vertices of the surface relative to the centre of gravity [m], shape (n, 3).
-    mass
-        Mass [kg].
-    inertia
-        Tensor of inertia about the centre of gravity [kg m²], shape (3, 3).
-    volume
-        Volume [m³].
-    name
-        Name of the file it came from.
+    points : vertices of the surface relative to the centre of gravity [m], shape (n, 3)
+    mass : [kg]
+    inertia : tensor about the centre of gravity [kg m²], shape (3, 3)
+    volume : [m³]
+    name : of the file it came from
     """
 
     points: Array
@@ -228,27 +223,16 @@ def read_shape(
 
     Parameters
     ----------
-    path
-        Mesh as OBJ, PLY, STL or GLB, standing on its lowest points.
-    mass, density
-        Mass [kg] or density [kg/m³] of the body, taken as homogeneous; one of them.
-    metres_per_unit
-        Length of the mesh's unit [m].
-    up
-        Axis of the mesh that points up, ``"x"``, ``"y"`` or ``"z"``; by default z, and y in glTF files.
-    hull
-        Take the convex hull of the vertices, which closes a surface with holes and a cloud of points, and fills
-        what is hollow or undercut.
+    path : of the mesh as OBJ, PLY, STL or GLB, standing on its lowest points
+    mass, density : one of them [kg, kg/m³]; the body is taken as homogeneous
+    metres_per_unit : length of the mesh's unit [m]
+    up : axis of the mesh that points up, ``"x"``, ``"y"`` or ``"z"``; by default z, and y in glTF files
+    hull : whether to take the convex hull of the vertices
+        It closes a surface with holes and a cloud of points, and fills what is hollow or undercut.
 
     Returns
     -------
     The :class:`Shape`.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, the surface is not closed, its size is not that of an object, or mass and
-        density are both given or both missing.
     """
     if (mass is None) == (density is None):
         raise InputError(f"{path}: give either the mass or the density of the body.")

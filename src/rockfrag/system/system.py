@@ -11,7 +11,7 @@ from rockfrag.elementary import sin_cos
 from rockfrag.errors import InputError
 from rockfrag.input_checks import shown
 from rockfrag.system import geometry
-from rockfrag.system.body import Circle, Interval, Polygon, RigidBody, Vector3
+from rockfrag.system.body import Circle, Polygon, RigidBody, Vector3
 from rockfrag.system.contact import Contact
 
 MOST_BODIES = 12  # bodies of a column
@@ -33,20 +33,10 @@ class System:
 
     Attributes
     ----------
-    bodies
-        From below.
-    contacts
-        Contact k lies under body k; the first is the ground's.
-    start
-        Rotations and velocities at the start; None: at rest.
-    name
-        Short name, for tables and messages.
-
-    Raises
-    ------
-    InputError
-        If there is not one contact for each body, planar bodies and bodies in space are mixed, a body carries
-        another one without a face, or the system cannot stand.
+    bodies : from below
+    contacts : contact k lies under body k; the first is the ground's
+    start : rotations and velocities at the start; None: at rest
+    name : for tables and messages
     """
 
     bodies: tuple[RigidBody, ...]
@@ -134,9 +124,7 @@ class System:
         if self.count != 2:
             raise InputError(f"System: expected two bodies, got {self.count}.")
         lower, upper = self.in_plane().bodies
-        assert isinstance(lower.face, Interval)
-        assert isinstance(upper.base, Interval)
-        aside = self.contacts[1].offset[0] + upper.base.middle - lower.face.middle
+        aside = self.contacts[1].offset[0] + upper.ends[0].middle - lower.ends[1].middle
         below, above = self.shapes
         return geometry.pile_of(below, above, lower.height, self.contacts[0].tilt, aside)
 
@@ -150,20 +138,16 @@ class System:
         bodies = self.in_plane().bodies
         found = [self.shapes[0]]
         for k in range(1, self.count):
-            lower, upper, shape = bodies[k - 1], bodies[k], self.shapes[k]
-            assert isinstance(lower.face, Interval)
-            assert isinstance(upper.base, Interval)
-            middle = self.contacts[k].offset[0] + upper.base.middle
-            low = max(lower.face.left, middle - shape.b)
-            high = min(lower.face.right, middle + shape.b)
+            shape, face = self.shapes[k], bodies[k - 1].ends[1]
+            middle = self.contacts[k].offset[0] + bodies[k].ends[0].middle
+            low, high = max(face.left, middle - shape.b), min(face.right, middle + shape.b)
             found.append(shape._replace(b=(high - low) / 2, x=shape.x + middle - (low + high) / 2))
         return tuple(found)
 
 
 def planar_shape(body: RigidBody, tilt: float) -> geometry.Shape:
     """Return a planar body as it stands with a tilt [rad], from the middle of its base."""
-    base = body.base
-    assert isinstance(base, Interval)
+    base, _ = body.ends
     assert isinstance(body.inertia, float | int)
     x, y = geometry.turned(body.centre[0] - base.middle, body.centre[2], tilt)
     return geometry.Shape((base.right - base.left) / 2, body.mass, body.inertia, x, y)
@@ -292,7 +276,14 @@ def stands(system: System) -> bool:
 def arms_above(system: System, k: int) -> tuple[tuple[float, float], ...]:
     """From the left and the right end of contact k to the common centre of what stands on it (x, z) [m]."""
     x, z = common_centre(system, k)
-    return tuple((x - at[0], z - at[1]) for at in contact_ends(system, k))
+    bases = _bases(system)
+    angle, origin, body = bases[k]
+    low, high = body.ends[0]
+    if k:
+        face, offset = bases[k - 1][2].ends[1], system.contacts[k].offset[0]
+        low, high = max(low, face.left - offset), min(high, face.right - offset)
+    turns = [geometry.turned(end, 0.0, angle) for end in (low, high)]
+    return tuple((x - (origin[0] + dx), z - (origin[1] + dy)) for dx, dy in turns)
 
 
 def common_centre(system: System, lowest: int = 0) -> tuple[float, float]:
@@ -309,8 +300,7 @@ def standing_centres(system: System) -> list[tuple[float, float]]:
     """Centres of gravity of planar bodies as they stand on each other [m]."""
     found = []
     for (angle, (x, y), body), shape in zip(_bases(system), system.shapes, strict=True):
-        assert isinstance(body.base, Interval)
-        dx, dy = geometry.turned(body.base.middle + shape.x, shape.y, angle)
+        dx, dy = geometry.turned(body.ends[0].middle + shape.x, shape.y, angle)
         found.append((x + dx, y + dy))
     return found
 
@@ -326,19 +316,3 @@ def _bases(system: System) -> list[tuple[float, tuple[float, float], RigidBody]]
         origin = (origin[0] + dx, origin[1] + dy)
         found.append((angle, origin, body))
     return found
-
-
-def contact_ends(system: System, k: int) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Left and right end of contact k as all stand (x, z) [m]."""
-    bases = _bases(system)
-    angle, origin, body = bases[k]
-    assert isinstance(body.base, Interval)
-    low, high = body.base.left, body.base.right
-    if k:
-        face = bases[k - 1][2].face
-        assert isinstance(face, Interval)
-        offset = system.contacts[k].offset[0]
-        low, high = max(low, face.left - offset), min(high, face.right - offset)
-    turns = [geometry.turned(end, 0.0, angle) for end in (low, high)]
-    left, right = ((origin[0] + dx, origin[1] + dy) for dx, dy in turns)
-    return left, right

@@ -21,11 +21,8 @@ from rockfrag.system.system import System
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-CLOSING = 1e-6
-"""Parting speed over √(g b) below which a contact stays closed after an impact, where the history is kept."""
-
-COARSE_CLOSING = 1e-4
-"""Parting speed over √(g b) below which a contact stays closed after an impact, where only the outcome matters."""
+CLOSING = 1e-4
+"""Parting speed over √(g b) below which a contact stays closed after an impact [-]."""
 
 CHUNK = 4  # cases that a thread takes at once
 
@@ -70,10 +67,10 @@ def contact_outcomes(grid: Cases, wanted: NDArray[np.bool_] | None = None) -> ND
     def work(memory: np.void) -> None:
         for first in firsts:
             chunk = numbers[first : first + CHUNK]
-            contact.integrate_cases(chunk, cases, COARSE_CLOSING, book, memory, outcome)
+            contact.integrate_cases(chunk, cases, CLOSING, book, memory, outcome)
 
     memories = [records.working_memory() for _ in range(grid.threads)]
-    contact.integrate_cases(numbers[:0], cases, COARSE_CLOSING, book, memories[0], outcome)
+    contact.integrate_cases(numbers[:0], cases, CLOSING, book, memories[0], outcome)
     if grid.threads == 1:
         work(memories[0])
     else:
@@ -110,11 +107,7 @@ class ContactRun(NamedTuple):
 
 
 def contact_run(case: Case, closing: float = CLOSING) -> ContactRun:
-    """Integrate one planar system that may slide, rock and fly; :func:`response_of` makes a response of it.
-
-    ``closing`` is the parting speed over √(g b) below which a contact that would fall shut again stays closed
-    after an impact [-].
-    """
+    """Integrate one planar system that may slide, rock and fly; :func:`response_of` makes a response of it."""
     system, motion, g = case.system, case.motion, case.request.g
     values, interval = motion.x.acceleration, motion.dt
     up = np.zeros(0) if motion.z is None else motion.z.acceleration

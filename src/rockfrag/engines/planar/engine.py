@@ -90,10 +90,9 @@ class PlanarContact:
 
     def history(self, case: contract.Case) -> Response:
         """Return the response of a case."""
-        from rockfrag.engines.planar.cases import COARSE_CLOSING, contact_run, response_of
+        from rockfrag.engines.planar.cases import contact_run, response_of
 
-        # closing as outcomes have it, so that history and outcome are of one response
-        found = contact_run(case, COARSE_CLOSING)
+        found = contact_run(case)
         pure = replace(case, system=case.system.held())
         engine = self._pure(pure.system, case.motion, pure.request)
         if found.loose or engine is None:

@@ -234,8 +234,7 @@ def integrate(p, shaking, start, closing, book, w):
                         w.q[d] = w.q1[d]
                         w.v[d] = w.v1[d]
                 else:
-                    work = 0.0
-                    rubbed = 0.0
+                    work = rubbed = 0.0
                     for d in range(3 * p.count):
                         w.q[d] = w.q0[d]
                         w.v[d] = w.v0[d]
@@ -319,10 +318,7 @@ def _track(p, w):
 @kernel
 def _contact_event_in_step(p, w, at_end, stretch):
     """Fraction of the step at which something fails first; 2.0 if nothing does."""
-    high = 2.0
-    at_high = at_end
-    if at_end < 0.0:
-        high = 1.0
+    high, at_high = 1.0 if at_end < 0.0 else 2.0, at_end
     near = stepping.comes_near(p, w)
     if near or at_end < 0.02:
         for quarter in range(1, 4):
@@ -331,8 +327,7 @@ def _contact_event_in_step(p, w, at_end, stretch):
             tau = 0.25 * quarter
             value = stepping.margin_at(p, w, tau, stretch)
             if value < 0.0:
-                high = tau
-                at_high = value
+                high, at_high = tau, value
                 break
     if high > 1.0:
         return 2.0
@@ -359,7 +354,7 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
                 return _note(p, w, now.time, FALLEN, contact_events, count)
     look_at(p, w, w.q)
     for k in range(p.count):
-        leaves0, leaves1 = 0, 0
+        leaves = -1
         if not all_ends:
             for end in range(2):
                 if w.closed[k, end] == 1 and w.fails[k, stepping.GAP + end] == 1:
@@ -368,10 +363,8 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
                     passes = True
                     if w.closed[k, 1 - end] == 1:
                         w.kind[k, end] = 1 - w.kind[k, end]
-                    elif end == 0:
-                        leaves0 = 1
                     else:
-                        leaves1 = 1
+                        leaves = end
             if w.fails[k, stepping.FRICTION] == 1:
                 if w.slides[k] == 0:
                     exclude = True
@@ -387,16 +380,11 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
             touches = w.closed[k, end] == 1
             if not touches:
                 _, _, _, _, gap, _, kind = end_of(p, w, w.q, k, end, -1)
-                touches = gap < 1e-11 * p.size
-                if not all_ends and w.fails[k, stepping.GAP + end] == 1:
-                    touches = True
+                lands = not all_ends and w.fails[k, stepping.GAP + end] == 1
+                touches = lands or gap < 1e-11 * p.size
                 if touches:
                     w.kind[k, end] = kind
-            w.touching[k, end] = 1 if touches else 0
-        if leaves0 == 1:
-            w.touching[k, 0] = 0
-        if leaves1 == 1:
-            w.touching[k, 1] = 0
+            w.touching[k, end] = 1 if touches and end != leaves else 0
     _shut(p, w)
     kind = PASSING if passes else CHANGE
     hit = False
@@ -571,7 +559,5 @@ def _keep(p, w, i, now, history):
         history[i, 7 * n + k] = w.normal[k, 0] + w.normal[k, 1]
         history[i, 8 * n + k] = w.shear[k]
         history[i, 9 * n + k] = w.out[3 * k + 2]
-    history[i, 10 * n] = w.work
-    history[i, 10 * n + 1] = w.rubbed
-    history[i, 10 * n + 2] = w.struck
-    history[i, 10 * n + 3] = mode_number(p, w.closed, w.slides)
+    history[i, 10 * n], history[i, 10 * n + 1] = w.work, w.rubbed
+    history[i, 10 * n + 2], history[i, 10 * n + 3] = w.struck, mode_number(p, w.closed, w.slides)

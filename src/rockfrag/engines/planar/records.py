@@ -5,7 +5,6 @@ Bodies are numbered from below; interface k lies under body k.  Ends of an inter
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,6 @@ from numpy.typing import NDArray
 from rockfrag.elementary import atan2, sin_cos
 from rockfrag.engines.records import after_impact
 from rockfrag.system import geometry
-from rockfrag.system.body import Interval
 from rockfrag.system.contact import ROUGHEST
 from rockfrag.system.system import System
 
@@ -138,54 +136,33 @@ WORK = np.dtype(
 OUTCOME = np.dtype([*TOLD, ("time", F), ("slip", F, (MOST,))])  # time of the fall [s]
 
 
-class Part(NamedTuple):
-    """A planar body as it stands on what is below."""
-
-    shape: geometry.Shape  # the body by itself, from the middle of its base
-    height: float  # of its face above its base [m]
-    lean: float  # by which its uneven base turns it, and its face [rad]
-    offset: float  # of the middle of its base from the middle of the face below [m]
-    face: tuple[float, float]  # middle and half width of its face, from the middle of its base [m]
-
-
-def parts_of(system: System) -> list[Part]:
-    """Return the bodies of a planar system from below, each as it stands on what is below."""
-    found = []
-    below = 0.0
-    for body, contact, shape in zip(
-        system.in_plane().bodies, system.contacts, system.shapes, strict=True
-    ):
-        base, face = body.base, body.face or body.base
-        assert isinstance(base, Interval)
-        assert isinstance(face, Interval)
-        middle = (base.left + base.right) / 2
-        own = ((face.left + face.right) / 2 - middle, (face.right - face.left) / 2)
-        offset = contact.offset[0] + middle - below
-        found.append(Part(shape, body.height, contact.tilt, offset, own))
-        below = own[0] + middle
-    return found
-
-
-def fill_record(p: np.void, parts: Sequence[Part], g: float) -> None:
+def fill_geometry(p: np.void, system: System) -> None:
     """Fill geometry and masses of a column into its record; a base is as wide as what lies on the face below."""
-    p["count"], p["g"] = len(parts), g
+    bodies, contacts, shapes = system.in_plane().bodies, system.contacts, system.shapes
+    p["count"], p["weight"] = system.count, p["g"] * system.mass
     p["half"][0], p["tilt_cos"][:] = math.inf, 1.0
     middle, tilt = np.zeros(2), 0.0  # of the face under a body, from the middle of the lowest base
-    for k, part in enumerate(parts):
-        shape, foot, base = part.shape, middle, middle
+    for k, shape in enumerate(shapes):
+        foot, base = middle, middle
         if k > 0:
-            below = parts[k - 1]
-            wide = below.shape._replace(b=below.face[1])
-            pile = geometry.pile_of(wide, part.shape, below.height, below.lean, part.offset)
+            below, (stand, face) = bodies[k - 1], bodies[k - 1].ends
+            lean, wide = (
+                contacts[k - 1].tilt,
+                shapes[k - 1]._replace(b=(face.right - face.left) / 2),
+            )
+            right = face.middle - stand.middle
+            offset = contacts[k].offset[0] + bodies[k].ends[0].middle - (right + stand.middle)
+            pile = geometry.pile_of(wide, shape, below.height, lean, offset)
             shape = pile.upper
-            aside = np.array(geometry.turned(below.face[0], 0.0, below.lean))
-            top = np.array(geometry.turned(0.0, below.height, below.lean)) + aside
+            aside = np.array(geometry.turned(right, 0.0, lean))
+            top = np.array(geometry.turned(0.0, below.height, lean)) + aside
             foot = middle + _turned(np.array(pile.right) + aside, tilt)
-            p["face"][k] = _turned(top - (below.shape.x, below.shape.y), tilt)
-            p["half"][k] = below.face[1]
-            beside = np.array(geometry.turned(part.offset, below.height, below.lean)) + aside
-            base = middle + _turned(beside, tilt)
-            tilt += below.lean
+            p["face"][k] = _turned(top - (wide.x, wide.y), tilt)
+            p["half"][k] = wide.b
+            base = middle + _turned(
+                np.array(geometry.turned(offset, below.height, lean)) + aside, tilt
+            )
+            tilt += lean
             p["tilt_sin"][k], p["tilt_cos"][k] = sin_cos(tilt)
         p["mass"][k], p["inertia"][k] = shape.mass, shape.inertia
         p["inverse"][3 * k : 3 * k + 3] = 1 / shape.mass, 1 / shape.mass, 1 / shape.inertia
@@ -193,14 +170,11 @@ def fill_record(p: np.void, parts: Sequence[Part], g: float) -> None:
             x, y = geometry.turned(*geometry.arm(shape, pivot), tilt)
             p["corner"][k, end] = -x, -y
             p["critical"][k, end] = atan2(-pivot * x, y)
-        x, y = geometry.turned(*geometry.arm(shape, 1), tilt)
-        p["standing"][3 * k : 3 * k + 2] = (
-            (shape.x, shape.y) if k == 0 else (foot[0] + x, foot[1] + y)
-        )
+        # x, y: arm of the right end
+        stands = (foot[0] + x, foot[1] + y) if k else (shape.x, shape.y)
+        p["standing"][3 * k : 3 * k + 2] = stands
         middle = base
-    p["weight"] = g * sum(part.shape.mass for part in parts)
-    p["size"] = shape.b
-    p["speed"] = math.sqrt(g * shape.b)
+    p["size"], p["speed"] = shape.b, math.sqrt(p["g"] * shape.b)
 
 
 def _turned(vector: Array, angle: float) -> Array:
@@ -210,7 +184,8 @@ def _turned(vector: Array, angle: float) -> Array:
 def system_record(system: System, g: float) -> np.void:
     """Return the record ``BODY`` of a planar system; a contact without friction is as rough as can be."""
     p: np.void = np.zeros(1, BODY)[0]
-    fill_record(p, parts_of(system), g)
+    p["g"] = g
+    fill_geometry(p, system)
     for k, (contact, shape) in enumerate(zip(system.contacts, system.carried, strict=True)):
         p["static"][k], p["kinetic"][k] = contact.friction or (ROUGHEST, ROUGHEST)
         for end, pivot in enumerate((-1, 1)):

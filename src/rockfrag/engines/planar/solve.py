@@ -102,14 +102,11 @@ def fill_row(q, k, x, y, dx, dy, row):
     row[3] = dx
     row[4] = dy
     row[5] = dx * (y - q[3 * k + 1]) - dy * (x - q[3 * k])
+    row[0] = row[1] = row[2] = 0.0
     if k > 0:
         row[0] = -dx
         row[1] = -dy
         row[2] = dy * (x - q[3 * k - 3]) - dx * (y - q[3 * k - 2])
-    else:
-        row[0] = 0.0
-        row[1] = 0.0
-        row[2] = 0.0
 
 
 @kernel
@@ -122,9 +119,7 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     """
     if p.count == 1 and not impact:
         return _solve_lone(p, w, q, v, ah, av)
-    standing = 0
-    if not impact:
-        standing = _standing(p, w)
+    standing = 0 if impact else _standing(p, w)
     if p.count == 2:
         flat = w.closed[1, 0] == 1 and w.closed[1, 1] == 1
         if standing > 0 and not (flat and w.slides[1] == 0):
@@ -168,7 +163,7 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
             x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
             fill_row(q, k, x, y, -ty, tx, w.row[m])
             w.owner[m] = 3 * k + end
-            right = -bias(q, v, k, x, y, -ty, tx, kind) if not impact else 0.0
+            w.right[m] = 0.0 if impact else -bias(q, v, k, x, y, -ty, tx, kind)
             if w.slides[k] != 0:
                 fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
             else:
@@ -176,14 +171,13 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
                     w.column[m, d] = w.row[m, d]
             if impact and w.fraction[k, end] > 0.0:
                 _add_fraction(p, w, q, k, end, friction, w.column[m])
-            w.right[m] = right
             m += 1
             if first and w.slides[k] == 0:
                 fill_row(q, k, x, y, tx, ty, w.row[m])
                 for d in range(6):
                     w.column[m, d] = w.row[m, d]
                 w.owner[m] = 3 * k + 2
-                w.right[m] = -bias(q, v, k, x, y, tx, ty, kind) if not impact else 0.0
+                w.right[m] = 0.0 if impact else -bias(q, v, k, x, y, tx, ty, kind)
                 m += 1
             first = False
         if impact and w.drive[k] >= 0:
@@ -229,21 +223,11 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
     """Solve any mode by elimination above the first ``standing`` bodies, as :func:`solve` does in formulas."""
     m = _fill_equations(p, w, q, v, impact, rough, standing)
     for k in range(p.count):
-        if impact:
-            w.out[3 * k] = v[3 * k]
-            w.out[3 * k + 1] = v[3 * k + 1]
-            w.out[3 * k + 2] = v[3 * k + 2]
-        elif k < standing:
-            w.out[3 * k] = 0.0
-            w.out[3 * k + 1] = 0.0
-            w.out[3 * k + 2] = 0.0
-        else:
-            w.out[3 * k] = -ah
-            w.out[3 * k + 1] = -(p.g + av)
-            w.out[3 * k + 2] = 0.0
-        w.normal[k, 0] = 0.0
-        w.normal[k, 1] = 0.0
-        w.shear[k] = 0.0
+        for d in range(3 * k, 3 * k + 3):
+            w.out[d] = v[d] if impact else 0.0
+        if not impact and k >= standing:
+            w.out[3 * k], w.out[3 * k + 1] = -ah, -(p.g + av)
+        w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0
     for i in range(m):
         k = _interface_of(w, i)
         total = w.right[i]
@@ -328,8 +312,7 @@ def _solve_lone(p, w, q, v, ah, av):
     turn = v[2]
     light, slow = p.inverse[0], p.inverse[2]
     slides = w.slides[0]
-    w.normal[0, 0] = 0.0
-    w.normal[0, 1] = 0.0
+    w.normal[0, 0] = w.normal[0, 1] = 0.0
     push, shear, twist = 0.0, 0.0, 0.0
     if w.closed[0, 0] == 1 and w.closed[0, 1] == 1:
         left, _ = corner_of(p, w, q, 0, 0)
@@ -370,9 +353,7 @@ def _solve_upper(p, w, q, v, ah, av):
     """Accelerations and forces where the pedestal stands and the statue does not: those of :func:`solve`."""
     fx, fy = -ah, -(p.g + av)
     light, slow = p.inverse[3], p.inverse[5]
-    w.normal[1, 0] = 0.0
-    w.normal[1, 1] = 0.0
-    w.shear[1] = 0.0
+    w.normal[1, 0] = w.normal[1, 1] = w.shear[1] = 0.0
     pull_x, pull_y, twist, moment = 0.0, 0.0, 0.0, 0.0
     if w.closed[1, 0] == 1 and w.closed[1, 1] == 1:
         # it slides flat: what accelerates it apart vanishes, and it does not turn
@@ -420,9 +401,7 @@ def _solve_upper(p, w, q, v, ah, av):
     w.normal[0, 1] = (shear * ry + moment - push * rx0) / (rx1 - rx0)
     w.normal[0, 0] = push - w.normal[0, 1]
     w.shear[0] = shear
-    w.out[0] = 0.0
-    w.out[1] = 0.0
-    w.out[2] = 0.0
+    w.out[0] = w.out[1] = w.out[2] = 0.0
     w.out[3] = fx + pull_x * light
     w.out[4] = fy + pull_y * light
     w.out[5] = twist * slow

@@ -141,8 +141,7 @@ def least_margin(p, w, q, v):
         some = False
         w.fails[k, FALL] = 0
         for end in range(2):
-            w.fails[k, GAP + end] = 0
-            w.fails[k, EDGE + end] = 0
+            w.fails[k, GAP + end] = w.fails[k, EDGE + end] = 0
             if w.closed[k, end] == 1:
                 some = True
                 pressed += w.normal[k, end]

@@ -10,14 +10,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
-from rockfrag.records.parsing.format import Channel, Format
-from rockfrag.records.parsing.fortran_sections import Section, accelerations, positive_step
+from rockfrag.records.parsing.format import Channel, Format, section
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_at
 
 _RATE = re.compile(
-    r"^\s*SAMPLES/SEC\s*=\s*(?P<rate>[\d.]+).*\bDATA\s+TYPE\s*=\s*(?P<type>\w\w)", re.IGNORECASE
+    r"^\s*SAMPLES/SEC\s*=\s*(?P<rate>[\d.]+).*\bDATA\s+TYPE\s*=\s*(?P<type>\w\w)", re.I
 )
 _RATE_LINE = re.compile(rb"^[ \t]*SAMPLES/SEC[ \t]*=", re.I | re.M)
 _SIZE = re.compile(
@@ -26,7 +25,7 @@ _SIZE = re.compile(
 _TIME = re.compile(
     r"YEAR\s*=\s*(\d+)\s+JULIAN\s+DAY\s*=\s*(\d+)\s+HOUR\s*=\s*(\d+)\s+MINUTE\s*=\s*(\d+)\s+"
     r"SECOND\s*=\s*([\d.]+)\s*(?:COMPONENT\s*=\s*(\S+))?",
-    re.IGNORECASE,
+    re.I,
 )
 _TYPES = {"AC": "acceleration", "VL": "velocity", "DP": "displacement"}
 _ABOVE = 5
@@ -37,51 +36,39 @@ def _recognise(lines: list[str], name: str) -> bool:
     return any(_RATE.match(line) and _SIZE.match(below) for line, below in pairwise(lines[:20]))
 
 
-@accelerations
-def _parse(text: TextFile) -> Iterator[tuple[str, Channel]]:
+def _parse(text: TextFile) -> Iterator[Channel]:
     for line, following in text.parts(_RATE_LINE):
         stop = following if following == len(text) else following - _ABOVE
-        section = _section(text, line, stop)
-        words = text.lines(max(0, line - _ABOVE), line)
-        yield section.quantity, _described(section.channel(text), words)
+        values = _section(text, line, stop)
+        yield _described(values, text.lines(max(0, line - _ABOVE), line))
 
 
-def _section(text: TextFile, line: int, stop: int) -> Section:
+def _section(text: TextFile, line: int, stop: int) -> Channel:
     rate, size = _RATE.match(text.line(line)), _SIZE.match(text.line(line + 1))
     if rate is None or size is None:
         text.fail("rate, type, number of points or units cannot be read here", line)
-    quantity = _TYPES.get(rate["type"].upper())
-    if quantity is None:
+    if rate["type"].upper() not in _TYPES:
         text.fail(f"data type {rate['type']} is none of AC, VL and DP", line)
-    units = [
-        canonical_unit(word)
-        for word in re.split(r",\s*(?:AND\b)?|\bAND\b", size["units"], flags=re.I)
-    ]
-    units = [unit for unit in units if unit]
-    place = list(_TYPES.values()).index(quantity)
+    words = re.split(r",\s*(?:AND\b)?|\bAND\b", size["units"], flags=re.I)
+    units = [unit for unit in map(canonical_unit, words) if unit]
     if len(units) != len(_TYPES):
         text.fail(f"{len(units)} units are stated where acceleration, velocity and "
                   "displacement have one each", line + 1)  # fmt: skip
-    dt = positive_step(text, 1 / float(rate["rate"]) if float(rate["rate"]) else 0.0, line)
-    return Section(quantity, int(size["count"]), line + 2, stop, _WIDTH, dt, units[place])
+    unit = units[list(_TYPES).index(rate["type"].upper())]
+    quantity = _TYPES[rate["type"].upper()]
+    dt = text.interval(1 / float(rate["rate"]) if float(rate["rate"]) else 0.0, line)
+    return section(text, line + 1, stop, int(size["count"]), dt, unit, _WIDTH, quantity)
 
 
 def _described(values: Channel, words: list[str]) -> Channel:
     start, component = None, ""
-    for line in words:
-        match = _TIME.search(line)
-        if match:
-            year, day, hour, minute = (int(part) for part in match.groups()[:4])
-            component = f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
-            start = time_at(float(match[5]), year=year, julday=day, hour=hour, minute=minute)
+    for match in filter(None, map(_TIME.search, words)):
+        year, day, hour, minute = (int(part) for part in match.groups()[:4])
+        component = f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
+        start = time_at(float(match[5]), year=year, julday=day, hour=hour, minute=minute)
     earthquake = next((line.strip() for line in words if "EARTHQUAKE" in line.upper()), "")
-    return replace(
-        values,
-        start_time=start,
-        station=words[0].strip() if words else "",
-        component=component,
-        details={"earthquake": earthquake},
-    )
+    station, details = words[0].strip() if words else "", {"earthquake": earthquake}
+    return replace(values, start_time=start, station=station, component=component, details=details)
 
 
 FORMAT = Format("AGRAM", _recognise, _parse)

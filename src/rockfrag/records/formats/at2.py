@@ -5,54 +5,48 @@ points and the interval (``NPTS=  4000, DT= .01000 SEC``, ``4000  .0100  NPTS, D
 any case), then values in rows. The header may be longer and freer in files made from PEER's.
 """
 
-import os
 import re
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from obspy import Stream
+from obspy import Trace
 
 from rockfrag.errors import InputError
-from rockfrag.files import write_text
-from rockfrag.records.parsing.format import Channel, Format, one_trace, stated_unit
-from rockfrag.records.parsing.fortran_sections import QUANTITIES, first_match, positive_step
+from rockfrag.records.parsing.format import QUANTITIES, Channel, Format, stated, text_writer
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile, last_row
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
-_COUNT = re.compile(rf"\bNPTS\s*[=:]\s*(?P<npts>{_NUMBER})", re.IGNORECASE)
+_COUNT = re.compile(rf"\bNPTS\s*[=:]\s*(?P<npts>{_NUMBER})", re.I)
 _STEP = re.compile(
-    rf"\bDT\s*[=:]\s*(?P<dt>{_NUMBER})\s*(?P<milliseconds>MS|MSEC\w*|MILLI\w*)?\b", re.IGNORECASE
+    rf"\bDT\s*[=:]\s*(?P<dt>{_NUMBER})\s*(?P<milliseconds>MS|MSEC\w*|MILLI\w*)?\b", re.I
 )
 _TRAILING = re.compile(
     rf"^\s*(?P<first>{_NUMBER})[\s,]+(?P<second>{_NUMBER})[\s,]+(?P<names>NPTS\W+DT|DT\W+NPTS)\b",
-    re.IGNORECASE,
+    re.I,
 )
 _LEADING = re.compile(
     rf"\b(?P<names>NPTS\s*[,;\s]\s*DT|DT\s*[,;\s]\s*NPTS)\W*?\s*[=:]?\s*"
     rf"(?P<first>{_NUMBER})[\s,;]+(?P<second>{_NUMBER})",
-    re.IGNORECASE,
+    re.I,
 )
 _WORDS_OF_UNIT = (
     r"(?P<unit>G(?:'?S)?(?![A-Z0-9/])|G\s*/\s*10\b|M?GALS?\b|"
     r"(?:[CM]?M|IN\w*)\s*/\s*\(?S\w*(?:\s*/\s*S\w*|\*\*2|\^2)?|[CM]?M\b|IN\b)"
 )
-_UNIT = re.compile(rf"\bUNITS?\s*(?:OF|ARE|IS)?\s*[:=]?\s*[(\[]?\s*{_WORDS_OF_UNIT}", re.IGNORECASE)
-_IN_UNIT = re.compile(
-    rf"\b(?:ACC|VEL|DIS)\w*\.?\s*(?:\bIN\s+|[,(\[]\s*){_WORDS_OF_UNIT}", re.IGNORECASE
-)
-_QUANTITY = re.compile(r"\b(?P<quantity>ACCEL|VELOC|DISPL)\w*", re.IGNORECASE)
-_HISTORY = re.compile(r"\b(?P<quantity>ACCEL|VELOC|DISPL)\w*\s+TIME\b", re.IGNORECASE)
+_UNIT = re.compile(rf"\bUNITS?\s*(?:OF|ARE|IS)?\s*[:=]?\s*[(\[]?\s*{_WORDS_OF_UNIT}", re.I)
+_IN_UNIT = re.compile(rf"\b(?:ACC|VEL|DIS)\w*\.?\s*(?:\bIN\s+|[,(\[]\s*){_WORDS_OF_UNIT}", re.I)
+_QUANTITY = re.compile(r"\b(?P<quantity>ACCEL|VELOC|DISPL)\w*", re.I)
+_HISTORY = rf"{_QUANTITY.pattern}\s+TIME\b"
 _ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
 _MAX_HEADER = 30
 _WIDTH = 15
 _COMPONENT = re.compile(
     r",\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?|FN|FP)"
     r"\s*(?:\((?P<agency>[^)]*)\)\s*)?$",
-    re.IGNORECASE,
+    re.I,
 )
-_AZIMUTH = re.compile(r"\bazimuth\s*=\s*(?P<azimuth>\d{1,3})", re.IGNORECASE)
 
 
 def _size_line(lines: list[str]) -> int:
@@ -67,7 +61,7 @@ def _recognise(lines: list[str], name: str) -> bool:
         return False
     header = "\n".join(lines[: size + 1])
     return bool(
-        re.search(r"\bPEER\b", header, re.IGNORECASE)
+        re.search(r"\bPEER\b", header, re.I)
         or _quantity_and_unit(lines[: size + 1]) != ("", "")
         or name.upper().removesuffix(".GZ").endswith((".AT2", ".VT2", ".DT2"))
     )
@@ -110,14 +104,14 @@ def _quantity_and_unit(header: list[str]) -> tuple[str, str]:
         if found and not unit:
             unit = canonical_unit(found["unit"])
             if named:
-                quantity = QUANTITIES[named["quantity"].upper()]
+                quantity = QUANTITIES[named["quantity"].upper()[:3]]
     if not quantity:
-        history = first_match(_HISTORY, header)
-        quantity = QUANTITIES[history["quantity"].upper()] if history else quantity_of(unit)
+        history = stated(_HISTORY, header)
+        quantity = QUANTITIES[history.upper()[:3]] if history else quantity_of(unit)
     return quantity, unit
 
 
-def _parse(text: TextFile) -> list[Channel]:
+def _parse(text: TextFile) -> Iterator[Channel]:
     header = text.lines(0, _MAX_HEADER)
     size = _size_line(header)
     if size < 0:
@@ -127,7 +121,7 @@ def _parse(text: TextFile) -> list[Channel]:
         npts, dt = _size(header[-1])
     except (ValueError, OverflowError) as error:
         text.fail(str(error), size)
-    dt = positive_step(text, dt, size)
+    dt = text.interval(dt, size)
     quantity, unit = _quantity_and_unit(header)
     quantity = quantity or _ENDINGS.get(text.name.upper().removesuffix(".GZ")[-4:], "")
     if quantity not in ("", "acceleration"):
@@ -137,18 +131,15 @@ def _parse(text: TextFile) -> list[Channel]:
             + ", not acceleration; give the record's .AT2 file"
         )
     facts = _facts(header[:-1])
-    station, component = facts.pop("station"), facts.pop("component")
-    return [
-        Channel(
-            npts=npts,
-            dt=dt,
-            samples=lambda: _samples(text, size + 1, npts),
-            unit=unit,
-            station=station,
-            component=component,
-            details=facts,
-        )
-    ]
+    yield Channel(
+        npts=npts,
+        dt=dt,
+        samples=lambda: _samples(text, size + 1, npts),
+        unit=unit,
+        station=facts.pop("station"),
+        component=facts.pop("component"),
+        details=facts,
+    )
 
 
 def _samples(text: TextFile, start: int, npts: int) -> NDArray[np.float64]:
@@ -169,7 +160,7 @@ def _facts(header: list[str]) -> dict[str, str]:
     """Take earthquake, station and component from PEER's line ``earthquake date, station, component``."""
     title = header[0].strip() if header else ""
     facts = {"title": title, "earthquake": "", "station": "", "component": "", "agency": ""}
-    rotated = first_match(_AZIMUTH, header)
+    azimuth = stated(r"\bazimuth\s*=\s*(\d{1,3})", header)
     for line in header[1:]:
         found = _COMPONENT.search(line.strip())
         before = line.strip()[: found.start()] if found else ""
@@ -183,7 +174,7 @@ def _facts(header: list[str]) -> dict[str, str]:
         return facts | {
             "earthquake": ", ".join(parts[:first]).removeprefix("H1 for rotation:").strip(),
             "station": ", ".join(parts[first:]),
-            "component": rotated["azimuth"] if rotated else found["component"],
+            "component": azimuth or found["component"],
             "agency": (found["agency"] or "").strip(),
         }
     return facts | {"description": " ".join(header[1].split()) if header[1:] else ""}
@@ -192,22 +183,22 @@ def _facts(header: list[str]) -> dict[str, str]:
 FORMAT = Format("AT2", _recognise, _parse)
 
 
-def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
-    """Write one trace of acceleration as an AT2 file that reads back to the same samples."""
-    trace, samples = one_trace(stream, filename)
-    unit = stated_unit(trace, filename)
+def _written(trace: Trace, samples: list[float], unit: str, dt: float) -> list[str]:
     facts = trace.stats.rockfrag
     place = [
         str(facts.get("earthquake") or "UNKNOWN EARTHQUAKE"),
         str(trace.stats.station or "UNKNOWN STATION"),
         str(facts.get("component") or trace.stats.channel or "UNKNOWN"),
     ]
-    lines = [
+    values = [f"{value:24.16E}" for value in samples]
+    return [
         "PEER STRONG MOTION DATABASE RECORD. WRITTEN BY ROCKFRAG.",
         ", ".join(" ".join(words.split()) for words in place),
         f"ACCELERATION TIME SERIES IN UNITS OF {unit.upper()}",
-        f"NPTS= {samples.size:6d}, DT= {trace.stats.delta:.12g} SEC",
+        f"NPTS= {len(samples):6d}, DT= {dt:.12g} SEC",
+        *("".join(values[i : i + 5]) for i in range(0, len(values), 5)),
     ]
-    values = [f"{value:24.16E}" for value in samples.tolist()]
-    lines += ["".join(values[i : i + 5]) for i in range(0, len(values), 5)]
-    write_text("\n".join(lines) + "\n", filename)
+
+
+write = text_writer(_written)
+"""Write one trace of acceleration as an AT2 file that reads back to the same samples."""

@@ -8,24 +8,23 @@ real number, and must agree with the duration.
 """
 
 import re
+from collections.abc import Iterator
 
-from rockfrag.records.parsing.format import Channel, Format
-from rockfrag.records.parsing.fortran_sections import CHANNEL_END, positive_step
+from rockfrag.records.parsing.format import CHANNEL_END, Channel, Format, leading_number, stated
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
-_FIRST = re.compile(r"^\s*\*\s*VOL1DS\s+FILE", re.IGNORECASE)
+_FIRST = re.compile(r"^\s*\*\s*VOL1DS\s+FILE", re.I)
 _HEAD = re.compile(rb"^[ \t]*\*[ \t]*VOL1DS[ \t]+FILE", re.I | re.M)
 _UNITS_LINE = re.compile(rb"^[ \t]*UNITS\b.*\bAND\b", re.I | re.M)
-_UNIT = re.compile(r"\bUNITS\s+ARE\s+SEC\w*\s+AND\s+(?P<unit>\S+)", re.IGNORECASE)
+_UNIT = re.compile(r"\bUNITS\s+ARE\s+SEC\w*\s+AND\s+(?P<unit>\S+)", re.I)
 _SIZE = re.compile(
-    r"NO\.?\s+OF\s+POINTS\s*=\s*(?P<count>\d+)\s+DURATION\s*=\s*(?P<duration>[\d.]+)", re.IGNORECASE
+    r"NO\.?\s+OF\s+POINTS\s*=\s*(?P<count>\d+)\s+DURATION\s*=\s*(?P<duration>[\d.]+)", re.I
 )
-_COMPONENT = re.compile(r"^\s*COMP\.?\s+(?P<name>[A-Z]+)", re.IGNORECASE | re.MULTILINE)
 _STATION = re.compile(
     r"^\s*(?P<name>.*?)\s+Station\s+(?P<north>[\d.]+)\s*N\s*(?P<east>[\d.]+)\s*E"
     r"(?:.*?Azimuth(?P<azimuths>.*))?$",
-    re.IGNORECASE | re.MULTILINE,
+    re.I | re.M,
 )
 _INTEGER_LINES, _REAL_LINES, _WIDTH = 7, 7, 13
 _MAX_HEADER = 30
@@ -35,37 +34,30 @@ def _recognise(lines: list[str], name: str) -> bool:
     return bool(_FIRST.match(lines[0])) and any(_UNIT.search(line) for line in lines[:_MAX_HEADER])
 
 
-def _parse(text: TextFile) -> list[Channel]:
-    return [_component(text, first, stop) for first, stop in text.parts(_HEAD, CHANNEL_END)]
-
-
-def _component(text: TextFile, first: int, stop: int) -> Channel:
-    at_units = text.find(_UNITS_LINE, first, min(stop, first + _MAX_HEADER))
-    words = "\n".join(text.lines(first, at_units + 1)) if at_units >= 0 else ""
-    unit, size = _UNIT.search(words), _SIZE.search(words)
-    if unit is None or size is None:
-        text.fail("no number of points, duration or unit below this line", first)
-    at_integers = at_units + 1
-    while at_integers < stop and not text.line(at_integers).strip():
-        at_integers += 1
-    at_reals = at_integers + _INTEGER_LINES
-    start = at_reals + _REAL_LINES
-    count = int(size["count"])
-    dt = _step(text, at_reals, count, float(size["duration"]))
-    samples = text.counted(start, stop, count, _WIDTH)
-    component = _COMPONENT.search(words)
-    name = component["name"].upper() if component else ""
-    station = _STATION.search(words)
-    return Channel(
-        npts=count,
-        dt=dt,
-        samples=samples.copy,
-        unit=canonical_unit(unit["unit"]),
-        network="I1",
-        component=name,
-        station=station["name"].strip() if station else "",
-        details=_details(words, station, name),
-    )
+def _parse(text: TextFile) -> Iterator[Channel]:
+    for first, stop in text.parts(_HEAD, CHANNEL_END):
+        at_units = text.find(_UNITS_LINE, first, min(stop, first + _MAX_HEADER))
+        lines = text.lines(first, at_units + 1)
+        words = "\n".join(lines)
+        unit, size = _UNIT.search(words), _SIZE.search(words)
+        if unit is None or size is None:
+            text.fail("no number of points, duration or unit below this line", first)
+        at_integers = at_units + 1
+        while at_integers < stop and not text.line(at_integers).strip():
+            at_integers += 1
+        at_reals = at_integers + _INTEGER_LINES
+        count, component = int(size["count"]), stated(r"^\s*COMP\.?\s+([A-Z]+)", lines).upper()
+        station = _STATION.search(words)
+        yield Channel(
+            npts=count,
+            dt=_step(text, at_reals, count, float(size["duration"])),
+            samples=text.counted(at_reals + _REAL_LINES, stop, count, _WIDTH).copy,
+            unit=canonical_unit(unit["unit"]),
+            network="I1",
+            component=component,
+            station=station["name"].strip() if station else "",
+            details=_details(lines, station, component),
+        )
 
 
 def _step(text: TextFile, at_reals: int, count: int, duration: float) -> float:
@@ -77,7 +69,7 @@ def _step(text: TextFile, at_reals: int, count: int, duration: float) -> float:
         text.fail(
             f"{fields.strip()[:20]!r} stands where the sampling rate is expected", at_reals + 1
         )
-    dt = positive_step(text, 1 / rate if rate > 0 else 0.0, at_reals + 1)
+    dt = text.interval(1 / rate if rate > 0 else 0.0, at_reals + 1)
     if abs(count * dt - duration) > 2 * dt + 0.001:
         text.fail(
             f"the header gives {count} points at {rate:g} a second but a duration of "
@@ -87,12 +79,10 @@ def _step(text: TextFile, at_reals: int, count: int, duration: float) -> float:
     return float(f"{dt:.9g}")
 
 
-def _details(words: str, station: re.Match[str] | None, component: str) -> dict[str, object]:
-    origin = re.search(r"Origin\s+Time\s*:\s*(.*)", words, re.IGNORECASE)
-    magnitude = re.search(r"\bM[wsblL]?\s*(\d\.\d)", words)
+def _details(lines: list[str], station: re.Match[str] | None, component: str) -> dict[str, object]:
     details: dict[str, object] = {
-        "earthquake": " ".join(origin[1].split()) if origin else "",
-        "magnitude": float(magnitude[1]) if magnitude else None,
+        "earthquake": " ".join(stated(r"Origin\s+Time\s*:\s*(.*)", lines).split()),
+        "magnitude": leading_number(stated(r"\b(?-i:M[wsblL]?)\s*(\d\.\d)", lines)),
     }
     if station is None:
         return details

@@ -6,38 +6,31 @@ have several channels, and several quantities of one channel.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
-from obspy import UTCDateTime
-
-from rockfrag.records.parsing import fortran_sections
-from rockfrag.records.parsing.format import Channel, Format
+from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_at
 
 _FIRST = re.compile(
-    r"^\s*(?:un)?(?:raw|processed|corrected)?\s*\w+.*\(\s*Format\s+v\s*0?1\.\d+", re.IGNORECASE
+    r"^\s*(?:un)?(?:raw|processed|corrected)?\s*\w+.*\(\s*Format\s+v\s*0?1\.\d+", re.I
 )
-_INTEGERS = re.compile(
-    rb"^[ \t]*(\d+)[ \t]+Integer-header values follow on[ \t]+(\d+)[ \t]+lines", re.I | re.M
-)
-_REALS = re.compile(
-    rb"^[ \t]*(\d+)[ \t]+Real-header values follow on[ \t]+(\d+)[ \t]+lines", re.I | re.M
-)
+_BLOCK = rb"^[ \t]*(\d+)[ \t]+%b-header values follow on[ \t]+(\d+)[ \t]+lines"
 _COMMENTS = re.compile(rb"^[ \t]*(\d+)[ \t]+Comment line", re.I | re.M)
 _VALUES = re.compile(rb"^[ \t]*\d+[ \t]+\w[\w. ]*?[ \t]+p(?:oin)?ts\b", re.I | re.M)
 _VALUES_LINE = re.compile(
     r"^\s*(?P<count>\d+)\s+(?:raw\s+)?(?P<quantity>\w+).*?units?\s*=\s*(?P<unit>[^,(]+)"
     r"(?:\(\s*(?P<code>\d+)\s*\))?",
-    re.IGNORECASE,
+    re.I,
 )
 _END = re.compile(
     rb"^[ \t]*(?:/&|End-of-data)|\(Format[ \t]+v|^[ \t]*\d+[ \t]+\w[\w. ]*?[ \t]+p(?:oin)?ts\b",
     re.I | re.M,
 )
+Number = TypeVar("Number", int, float)
 _HEAD = re.compile(rb"\(\s*Format[ \t]+v", re.I)
 
 _UNITS_BY_CODE = {2: "g", 4: "cm/s2", 5: "cm/s", 6: "cm", 7: "in/s2", 8: "in/s", 9: "in"}
@@ -61,30 +54,23 @@ def _recognise(lines: list[str], name: str) -> bool:
     )
 
 
-@fortran_sections.accelerations
-def _parse(text: TextFile) -> Iterator[tuple[str, Channel]]:
-    if re.search(r"\bspectr", text.line(0), re.IGNORECASE):
+def _parse(text: TextFile) -> Iterator[form.Channel]:
+    if re.search(r"\bspectr", text.line(0), re.I):
         text.refuse("this file holds response spectra, not acceleration; give the V2 file")
     line = text.find(_HEAD)
     while 0 <= line < len(text):
         at_values, dt, facts = _header(text, line)
         while at_values >= 0:
-            section = _section(text, at_values, dt)
-            yield section.quantity, replace(section.channel(text), **facts)
-            line = text.find(_HEAD, section.stop)
-            at_values = text.find(_VALUES, section.stop, None if line < 0 else line)
+            stop = text.until(_END, at_values + 1)
+            yield replace(_section(text, at_values, stop, dt), **facts)
+            line = text.find(_HEAD, stop)
+            at_values = text.find(_VALUES, stop, None if line < 0 else line)
 
 
 def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
     """Return the line above the samples, the interval [s], and what the header says of the channel."""
-    at_integers = text.find(_INTEGERS, first)
-    if at_integers < 0:
-        text.fail("no integer header below this line; the file is cut short", first)
-    whole = fortran_sections.integers(text, *_block(text, at_integers, _INTEGERS, width=8))
-    at_reals = text.find(_REALS, at_integers)
-    if at_reals < 0:
-        text.fail("no real header below this line; the file is cut short", at_integers)
-    numbers = fortran_sections.reals(text, *_block(text, at_reals, _REALS, width=15))
+    at_integers, whole = _block(text, first, "integer", text.integers, width=8)
+    at_reals, numbers = _block(text, at_integers, "real", text.reals, width=15)
     at_samples = _above_samples(text, at_reals)
     words = text.lines(first, at_integers)
     comments = [line for line in text.lines(at_reals, at_samples) if line.lstrip().startswith("|")]
@@ -97,8 +83,13 @@ def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
     facts = _facts([*words, *comments], whole[_AZIMUTH])
     latitude, longitude = (None if numbers[i] == unknown else numbers[i] for i in _PLACE)
     facts["details"] |= {"latitude": latitude, "longitude": longitude}
-    facts["start_time"] = _start(whole, numbers, unknown)
-    return at_samples, fortran_sections.positive_step(text, dt, at_reals), facts
+    year, _, month, day, hour, minute = whole[_RECORD_TIME : _RECORD_TIME + 6]
+    if unknown not in (year, month, day, hour, minute) and year > 0:
+        second = 0.0 if numbers[_SECOND] == unknown else numbers[_SECOND]
+        facts["start_time"] = time_at(
+            second, year=year, month=month, day=day, hour=hour, minute=minute
+        )
+    return at_samples, text.interval(dt, at_reals), facts
 
 
 def _above_samples(text: TextFile, at_reals: int) -> int:
@@ -114,40 +105,33 @@ def _above_samples(text: TextFile, at_reals: int) -> int:
 
 
 def _block(
-    text: TextFile, line: int, pattern: re.Pattern[bytes], width: int
-) -> tuple[int, int, int, int]:
-    """Return first line, end, field width and number of values of a header block."""
-    match = pattern.match(text.raw(line))
-    assert match is not None
+    text: TextFile, first: int, kind: str, read: Callable[..., list[Number]], width: int
+) -> tuple[int, list[Number]]:
+    """Return the line above a header block below line ``first``, and its values."""
+    pattern = re.compile(_BLOCK % kind.encode(), re.I | re.M)
+    line = text.find(pattern, first)
+    match = pattern.match(text.raw(max(line, 0)))
+    if line < 0 or match is None:
+        text.fail(f"no {kind} header below this line; the file is cut short", first)
     count, lines = int(match[1]), int(match[2])
     if lines > len(text):
         text.fail(f"the header promises {lines} lines, the file has {len(text)}", line)
-    return line + 1, line + 1 + lines, fortran_sections.field_width(text.line(line)) or width, count
+    width = form.field_width(text.line(line)) or width
+    return line, read(line + 1, line + 1 + lines, width, count)
 
 
-def _section(text: TextFile, line: int, dt: float) -> fortran_sections.Section:
+def _section(text: TextFile, line: int, stop: int, dt: float) -> form.Channel:
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("the line above the samples does not state their unit", line)
-    quantity = fortran_sections.QUANTITIES.get(
-        match["quantity"].upper()[:5], match["quantity"].lower()
-    )
+    quantity = form.QUANTITIES.get(match["quantity"].upper()[:3], match["quantity"].lower())
     unit = canonical_unit(match["unit"])
     if match["code"] is not None:
         unit = _UNITS_BY_CODE.get(int(match["code"]), unit)
     if unit in {"counts", "volts"}:
         text.refuse(f"the samples are raw {unit}; give the V1 or V2 file, in units of motion", line)
-    stop = text.until(_END, line + 1)
-    width = fortran_sections.field_width(text.line(line).split("ormat", 1)[-1])
-    return fortran_sections.Section(quantity, int(match["count"]), line + 1, stop, width, dt, unit)
-
-
-def _start(whole: list[int], numbers: list[float], unknown: float) -> UTCDateTime | None:
-    year, _, month, day, hour, minute = whole[_RECORD_TIME : _RECORD_TIME + 6]
-    if unknown in (year, month, day, hour, minute) or year <= 0:
-        return None
-    second = 0.0 if numbers[_SECOND] == unknown else numbers[_SECOND]
-    return time_at(second, year=year, month=month, day=day, hour=hour, minute=minute)
+    width = form.field_width(text.line(line).split("ormat", 1)[-1])
+    return form.section(text, line, stop, int(match["count"]), dt, unit, width, quantity)
 
 
 def _facts(words: list[str], azimuth: int) -> dict[str, Any]:
@@ -159,7 +143,7 @@ def _facts(words: list[str], azimuth: int) -> dict[str, Any]:
             network, station, name = found[1], found[2], found[3].strip()
         found = re.search(r"Sta\s+Cha\w*\s*:?\s*[\d?]+\s*:\s*(.*?)\s*(?:\(|Location|$)", line)
         if found:
-            component = re.sub(r"\s*deg\w*$", "", found[1], flags=re.IGNORECASE)
+            component = re.sub(r"\s*deg\w*$", "", found[1], flags=re.I)
         found = re.search(r"SCNL\W+(\w+)\.(\w+)\.(\w+)\.([\w-]+)", line)
         if found:
             code, location = found[2], found[4].strip("-")
@@ -171,4 +155,4 @@ def _facts(words: list[str], azimuth: int) -> dict[str, Any]:
     return {**seed, "component": component, "details": details}
 
 
-FORMAT = Format("COSMOS", _recognise, _parse)
+FORMAT = form.Format("COSMOS", _recognise, _parse)

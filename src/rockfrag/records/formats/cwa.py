@@ -9,8 +9,7 @@ import re
 
 from obspy import UTCDateTime
 
-from rockfrag.records.parsing.format import Channel, Format
-from rockfrag.records.parsing.fortran_sections import field_width, in_rows, positive_step
+from rockfrag.records.parsing.format import Channel, Format, field_width, in_columns
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import clock_time, step_of_times
@@ -36,7 +35,7 @@ def _header(lines: list[str]) -> tuple[dict[str, tuple[str, str]], int]:
 
 
 def _recognise(lines: list[str], name: str) -> bool:
-    if not re.match(r"^\s*#\s*(?:Earthquake Information|StationCode)", lines[0], re.IGNORECASE):
+    if not re.match(r"^\s*#\s*(?:Earthquake Information|StationCode)", lines[0], re.I):
         return False
     facts, _ = _header(lines)
     return "stationcode" in facts and "samplerate" in facts
@@ -48,38 +47,34 @@ def _parse(text: TextFile) -> list[Channel]:
     def value(key: str) -> str:
         return facts.get(key, ("", ""))[0]
 
-    unit = canonical_unit(value("amplitudeunit").split(".")[0])
     order = re.findall(r"\b([UNEZ])\s*\(", value("datasequence")) or list(_ORDER)
     values = text.numbers(start, None, field_width(f"({value('data')})") or 10)
-    table = in_rows(text, values, len(order) + 1, start)
+    table = text.in_rows(values, len(order) + 1, start)
     try:
         rate = float(value("samplerate"))
     except ValueError:
         text.fail("#SampleRate is not a number")
-    dt = positive_step(text, 1 / rate if rate > 0 else 0.0, 0)
+    dt = text.interval(1 / rate if rate > 0 else 0.0, 0)
     if table.shape[0] > 1:
         measured = step_of_times(table[:, 0], text, start)
         if abs(measured - dt) > 1e-6:
             text.fail(f"times step by {measured:g} s, but #SampleRate gives {dt:g} s", start)
     _check_length(text, value("recordlength"), table.shape[0] * dt, start)
-    return [
-        Channel(
-            npts=table.shape[0],
-            dt=dt,
-            samples=table[:, column].copy,
-            unit=unit,
-            start_time=_time(*facts.get("starttime", ("", ""))),
-            network="TW",
-            station=value("stationcode"),
-            component=direction,
-            details={
-                "station_name": value("stationname"),
-                "earthquake": f"{value('origin time')} M {value('magnitude')}".strip(" M"),
-                "instrument": value("instrumentkind"),
-            },
-        )
-        for column, direction in enumerate(order, start=1)
-    ]
+    shared = Channel(
+        npts=table.shape[0],
+        dt=dt,
+        samples=table.copy,
+        unit=canonical_unit(value("amplitudeunit").split(".")[0]),
+        start_time=_time(*facts.get("starttime", ("", ""))),
+        network="TW",
+        station=value("stationcode"),
+        details={
+            "station_name": value("stationname"),
+            "earthquake": f"{value('origin time')} M {value('magnitude')}".strip(" M"),
+            "instrument": value("instrumentkind"),
+        },
+    )
+    return in_columns(shared, table[:, 1:], order)
 
 
 def _check_length(text: TextFile, stated: str, length: float, line: int) -> None:

@@ -5,11 +5,12 @@ line without a key above it.
 """
 
 import re
+from collections.abc import Iterator
+from contextlib import suppress
 
 from obspy import UTCDateTime
 
 from rockfrag.records.parsing.format import Channel, Format
-from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import clock_time
@@ -51,7 +52,7 @@ def _recognise(lines: list[str], name: str) -> bool:
     return all(key in facts for key in _NEEDED) and "STATION_CODE" in facts
 
 
-def _parse(text: TextFile) -> list[Channel]:
+def _parse(text: TextFile) -> Iterator[Channel]:
     facts, start = _header(text.lines(0, _MAX_HEADER))
     for key in _NEEDED:
         if not facts.get(key):
@@ -69,22 +70,20 @@ def _parse(text: TextFile) -> list[Channel]:
     if count < 1:
         text.fail(f"the header promises {count} samples")
     location = facts.get("LOCATION", "")
-    return [
-        Channel(
-            npts=count,
-            dt=positive_step(text, dt, 0),
-            samples=lambda: text.counted(start, None, count),
-            unit=unit,
-            start_time=time_of(facts.get(_SAMPLE_TIME, "")),
-            network=facts.get("NETWORK", ""),
-            station=facts.get("STATION_CODE", ""),
-            # the Turkish variant has the name of a place here
-            location=location if len(location) <= 2 else "",
-            code=facts.get("STREAM", ""),
-            component=facts.get("STREAM") or facts.get("COMPONENT", ""),
-            details=_details(facts),
-        )
-    ]
+    yield Channel(
+        npts=count,
+        dt=text.interval(dt, 0),
+        samples=lambda: text.counted(start, None, count),
+        unit=unit,
+        start_time=time_of(facts.get(_SAMPLE_TIME, "")),
+        network=facts.get("NETWORK", ""),
+        station=facts.get("STATION_CODE", ""),
+        # the Turkish variant has the name of a place here
+        location=location if len(location) <= 2 else "",
+        code=facts.get("STREAM", ""),
+        component=facts.get("STREAM") or facts.get("COMPONENT", ""),
+        details=_details(facts),
+    )
 
 
 def time_of(words: str) -> UTCDateTime | None:
@@ -97,28 +96,22 @@ def time_of(words: str) -> UTCDateTime | None:
 
 
 def _details(facts: dict[str, str]) -> dict[str, object]:
-    earthquake = " ".join(
-        facts[key]
-        for key in ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "EVENT_TIME_HHMMSS")
-        if facts.get(key)
-    )
-    details: dict[str, object] = {
-        "earthquake": earthquake,
-        "station_name": facts.get("STATION_NAME", ""),
-        "processing": facts.get("PROCESSING", ""),
-        "licence": facts.get("DATA_LICENSE", ""),
-    }
+    named = ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "EVENT_TIME_HHMMSS")
     numbers = {
         "magnitude": facts.get("MAGNITUDE_W") or facts.get("MAGNITUDE_L"),
         "distance_km": facts.get("EPICENTRAL_DISTANCE_KM"),
         "latitude": facts.get("STATION_LATITUDE_DEGREE"),
         "longitude": facts.get("STATION_LONGITUDE_DEGREE"),
     }
+    details: dict[str, object] = {
+        "earthquake": " ".join(facts[key] for key in named if facts.get(key)),
+        "station_name": facts.get("STATION_NAME", ""),
+        "processing": facts.get("PROCESSING", ""),
+        "licence": facts.get("DATA_LICENSE", ""),
+    }
     for key, words in numbers.items():
-        try:
+        with suppress(ValueError):
             details[key] = float(words) if words else None
-        except ValueError:
-            details[key] = None
     return details
 
 

@@ -5,19 +5,17 @@ acceleration in m/s2`` states the unit of the values times the factor; OpenSees 
 Older scripts say ``Series -dt .02 -filePath elcentro.txt -factor 1``.
 """
 
-import os
 import re
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from obspy import Stream
+from obspy import Trace
 
 from rockfrag.errors import InputError
-from rockfrag.files import write_text
-from rockfrag.records.parsing.format import Channel, Format, one_trace, stated_unit
-from rockfrag.records.parsing.fortran_sections import positive_step
+from rockfrag.records.parsing.format import Channel, Format, text_writer
 from rockfrag.records.parsing.number_fields import NumberError, parse_separated
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
 from rockfrag.records.parsing.text_file import TextFile, read_text
@@ -36,24 +34,23 @@ def _recognise(lines: list[str], name: str) -> bool:
     return any(_SERIES.search(line) for line in lines[:200])
 
 
-def _parse(text: TextFile) -> list[Channel]:
+def _parse(text: TextFile) -> Iterator[Channel]:
     if text.find(_SERIES_BYTES) < 0:
         text.fail("no timeSeries Path in this script")
     unit = _UNIT.search(text.data)
     stated = canonical_unit(unit["unit"].decode("ascii", errors="replace")) if unit else ""
     promised = int(unit["count"]) if unit and unit["count"] else None
-    return [
-        _series(text, first, stop, stated, promised) for first, stop in text.parts(_SERIES_BYTES)
-    ]
+    for first, stop in text.parts(_SERIES_BYTES):
+        yield _series(text, first, stop, stated, promised)
 
 
 def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | None) -> Channel:
     script = _command(text, line, stop)
-    tag = re.search(r"Path[\"']?\s+(\w+)", script, re.IGNORECASE)
+    tag = re.search(r"Path[\"']?\s+(\w+)", script, re.I)
     step, factor = _option(script, "dt"), _option(script, "factor")
     if step is None:
         text.fail("the Path series states no -dt; a series of -time or -fileTime is not read", line)
-    dt = positive_step(text, _number(text, line, "-dt", step), line)
+    dt = text.interval(_number(text, line, "-dt", step), line)
     scale = 1.0 if factor is None else _number(text, line, "-factor", factor)
     samples = scale * _values(text, line, script)
     if promised is not None and samples.size != promised:
@@ -112,7 +109,7 @@ def _values(text: TextFile, line: int, script: str) -> NDArray[np.float64]:
 
 
 def _option(script: str, name: str) -> str | None:
-    match = re.search(_OPTION.format(name=name), script, re.IGNORECASE)
+    match = re.search(_OPTION.format(name=name), script, re.I)
     if match is None:
         return None
     return next(group for group in match.groups() if group is not None)
@@ -132,17 +129,15 @@ def _number(text: TextFile, line: int, name: str, words: str) -> float:
 FORMAT = Format("OPENSEES", _recognise, _parse)
 
 
-def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:
-    """Write one trace as a Path series with its unit in a comment; OpenSees can ``source`` the file."""
-    trace, samples = one_trace(stream, filename)
-    unit = stated_unit(trace, filename)
-    dt = float(f"{trace.stats.delta:.12g}")
-    values = [repr(value) for value in samples.tolist()]
-    rows = [" ".join(values[i : i + _PER_LINE]) for i in range(0, len(values), _PER_LINE)]
-    lines = [
-        f"# acceleration in {unit}, {samples.size} samples",
+def _written(trace: Trace, samples: list[float], unit: str, dt: float) -> list[str]:
+    values = [repr(value) for value in samples]
+    return [
+        f"# acceleration in {unit}, {len(samples)} samples",
         f"timeSeries Path 1 -dt {dt!r} -values {{",
-        *rows,
+        *(" ".join(values[i : i + _PER_LINE]) for i in range(0, len(values), _PER_LINE)),
         "}",
     ]
-    write_text("\n".join(lines) + "\n", filename)
+
+
+write = text_writer(_written)
+"""Write one trace as a Path series with its unit in a comment; OpenSees can ``source`` the file."""

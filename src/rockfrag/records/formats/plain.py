@@ -7,29 +7,26 @@ stands above is never a sample: a row of numbers there that states nothing known
 stated must agree, with the file and with what the user names; what is not stated is asked for.
 """
 
-import os
 import re
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from obspy import Stream
+from obspy import Trace
 
 from rockfrag.errors import InputError
-from rockfrag.files import write_text
 from rockfrag.records.formats import HEADED
 from rockfrag.records.parsing import number_fields
 from rockfrag.records.parsing.column_titles import Column, column_titles
-from rockfrag.records.parsing.format import Channel, Format, one_trace
-from rockfrag.records.parsing.fortran_sections import positive_step
+from rockfrag.records.parsing.format import Channel, Format, text_writer
 from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.timestamps import check_rising, step_of_times
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 _OF_OBSPY = re.compile(
-    r"\s*(?:Origin Time|TIMESERIES |WID[12]\b|BEGIN (?:GSE|IMS)|XW01|DELTA\s*:)", re.IGNORECASE
+    r"\s*(?:Origin Time|TIMESERIES |WID[12]\b|BEGIN (?:GSE|IMS)|XW01|DELTA\s*:)", re.I
 )
 """First words of text formats that ObsPy reads, or that are refused by name."""
 
@@ -46,10 +43,9 @@ _LONGEST_ROUND = 3  # significant digits of an interval that stands above sample
 
 @dataclass(frozen=True)
 class _Layout:
-    """All that a file says of its samples, and its rows of numbers; ``asked`` is the user's interval [s]."""
+    """All that a file says of its samples, and its rows of numbers."""
 
     text: TextFile
-    asked: float | None
     table: number_fields.NumberTable
     stop: int
     facts: StatedFacts
@@ -66,7 +62,7 @@ class _Layout:
     @property
     def interval(self) -> float | None:
         """Interval that the file states, else the user's [s]."""
-        return self.asked if self.dt is None else self.dt
+        return self.text.asked_dt if self.dt is None else self.dt
 
     def channel(
         self, samples: NDArray[np.float64], step: float, column: Column, component: str, title: str
@@ -81,7 +77,7 @@ class _Layout:
             )
         return Channel(
             npts=self.npts or samples.size,
-            dt=positive_step(self.text, step, self.line),
+            dt=self.text.interval(step, self.line),
             samples=samples.copy,
             unit=column.unit or stated,
             component=component,
@@ -112,10 +108,11 @@ def _recognise(lines: list[str], name: str) -> bool:
     )
 
 
-def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
+def _parse(text: TextFile) -> list[Channel]:
+    dt = text.asked_dt
     if dt is not None and not (np.isfinite(dt) and dt > 0):
         raise InputError(f"dt must be a positive number of seconds, got {dt}.")
-    layout = _layout(text, dt)
+    layout = _layout(text)
     columns = layout.table.columns
     values, widths = text.rows(layout.line, layout.stop, layout.table.decimal_comma)
     # only the last row of a series is shorter
@@ -129,7 +126,7 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
     return [_series(layout, values)]
 
 
-def _layout(text: TextFile, dt: float | None) -> _Layout:
+def _layout(text: TextFile) -> _Layout:
     """Return what the lines above the samples say of them."""
     lines = text.lines(0, number_fields.LOOKED_AT)
     table = number_fields.number_table(lines)
@@ -154,8 +151,9 @@ def _layout(text: TextFile, dt: float | None) -> _Layout:
         )
     titles = column_titles(table, lines[table.start])
     stop = last_row(text, table.start)
-    layout = _Layout(text, dt, table, stop, facts, titles, facts.npts, facts.dt)
+    layout = _Layout(text, table, stop, facts, titles, facts.npts, facts.dt)
     layout = _with_numbers_above(layout, lines)
+    dt = text.asked_dt
     if dt is not None and layout.dt is not None and abs(dt - layout.dt) > 1e-6 * dt:
         text.fail(f"the file states an interval of {layout.dt:g} s, not {dt:g} s; leave dt= out")
     return layout
@@ -302,7 +300,7 @@ def _without_leading(
     They are told by the count, which is that of the numbers below, and by a notation that no sample has.
     What looks like one and does not fit is an error, not a sample.
     """
-    text, dt = layout.text, layout.asked
+    text, dt = layout.text, layout.text.asked_dt
     if layout.table.numbers:
         return layout, values
     words = [
@@ -438,7 +436,7 @@ def _interval(
 
     The user's replaces a column of times that was printed wrongly; a note says so.
     """
-    text, dt = layout.text, layout.asked
+    text, dt = layout.text, layout.text.asked_dt
     timed = [i for i, column in enumerate(columns) if column.quantity == "time"]
     left = [i for i in timed if i < column] or timed[:1]
     if not left:
@@ -472,14 +470,13 @@ def _interval(
     return measured, ()
 
 
-FORMAT = Format("PLAINTEXT", _recognise, _parse, wants_dt=True, encoding="latin-1")
+FORMAT = Format("PLAINTEXT", _recognise, _parse, encoding="latin-1")
 
 
-def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
-    """Write one trace as CSV, time and acceleration, that read back to the same samples."""
-    trace, samples = one_trace(stream, filename)
-    unit = trace.stats.get("rockfrag", {}).get("unit", "")
-    dt = float(f"{trace.stats.delta:.12g}")
-    rows = [f"Time [s],Acceleration [{unit}]" if unit else "Time [s],Acceleration"]
-    rows += [f"{i * dt:.12g},{value!r}" for i, value in enumerate(samples.tolist())]
-    write_text("\n".join(rows) + "\n", filename)
+def _written(trace: Trace, samples: list[float], unit: str, dt: float) -> list[str]:
+    title = f"Time [s],Acceleration [{unit}]" if unit else "Time [s],Acceleration"
+    return [title, *(f"{i * dt:.12g},{value!r}" for i, value in enumerate(samples))]
+
+
+write = text_writer(_written, with_unit=False)
+"""Write one trace as CSV, time and acceleration, that read back to the same samples."""

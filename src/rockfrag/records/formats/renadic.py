@@ -5,15 +5,15 @@ second line.
 """
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import PurePath
 
-from rockfrag.records.parsing.format import Channel, Format
-from rockfrag.records.parsing.fortran_sections import CHANNEL_END
+from rockfrag.records.parsing.format import CHANNEL_END, Channel, Format, stated
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import american_time, read_pairs
 
-_FIRST = re.compile(r"^\s*UNCORRECTED\s+ACCELEROGRAM\s+DATA\b", re.IGNORECASE)
+_FIRST = re.compile(r"^\s*UNCORRECTED\s+ACCELEROGRAM\s+DATA\b", re.I)
 _HEAD = re.compile(rb"^[ \t]*UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA\b", re.I | re.M)
 _HEADER = 13
 
@@ -23,31 +23,20 @@ def _recognise(lines: list[str], name: str) -> bool:
     return bool(_FIRST.match(lines[0])) and "RENADIC" in header
 
 
-def _parse(text: TextFile) -> list[Channel]:
-    return [
-        _channel(text, first, read_pairs(text, first, stop))
-        for first, stop in text.parts(_HEAD, CHANNEL_END)
-    ]
-
-
-def _channel(text: TextFile, first: int, values: Channel) -> Channel:
-    lines = text.lines(first, first + _HEADER)
-    header = "\n".join(lines)
-    component = re.search(r"^\s*CHAN\s*\d+\s*:\s*(\S+)", header, re.M | re.I)
-    trigger = re.search(r"TRIGGER\s+TIME\s*:(.*)$", header, re.M | re.I)
-    number = lines[1].strip()
-    return replace(
-        values,
-        start_time=american_time(trigger[1]) if trigger else None,
-        # the station that the file is named by, without the record's number
-        station=PurePath(text.name).name.split(".")[0].replace(number, "").strip(" _-"),
-        component=component[1] if component else "",
-        details={
-            "earthquake": re.split(r"\s*\(ORIGIN", " ".join(lines[2].split()))[0],
-            "record": number,
-            **values.details,
-        },
-    )
+def _parse(text: TextFile) -> Iterator[Channel]:
+    for first, stop in text.parts(_HEAD, CHANNEL_END):
+        values = read_pairs(text, first, stop)
+        header = text.lines(first, first + _HEADER)
+        number = header[1].strip()
+        earthquake = re.split(r"\s*\(ORIGIN", " ".join(header[2].split()))[0]
+        yield replace(
+            values,
+            start_time=american_time(stated(r"TRIGGER\s+TIME\s*:(.*)$", header)),
+            # the station that the file is named by, without the record's number
+            station=PurePath(text.name).name.split(".")[0].replace(number, "").strip(" _-"),
+            component=stated(r"^\s*CHAN\s*\d+\s*:\s*(\S+)", header),
+            details={"earthquake": earthquake, "record": number, **values.details},
+        )
 
 
 FORMAT = Format("RENADIC", _recognise, _parse)

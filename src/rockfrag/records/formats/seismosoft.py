@@ -1,12 +1,11 @@
 """SeismoSoft accelerograms: four lines of description, ``Time[s] Accel[g]``, then two columns."""
 
-import os
 import re
+from collections.abc import Iterator
 
-from obspy import Stream
+from obspy import Trace
 
-from rockfrag.files import write_text
-from rockfrag.records.parsing.format import Channel, Format, one_trace, stated_unit
+from rockfrag.records.parsing.format import Channel, Format, text_writer
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import step_of_times
@@ -14,7 +13,7 @@ from rockfrag.records.parsing.timestamps import step_of_times
 _COLUMNS = re.compile(
     r"^\s*time\s*[\[(]\s*(?:s|sec|seconds)\s*[\])][\s,;]+"
     r"(?P<quantity>accel\w*|veloc\w*|displ\w*)\.?\s*[\[(](?P<unit>[^\])]+)[\])]\s*$",
-    re.IGNORECASE,
+    re.I,
 )
 _BEFORE_COMPONENT = re.compile(r"^(?P<station>[^()]+)\((?P<component>[^()]+)\)\s*$")
 _BEHIND_COMPONENT = re.compile(r"^(?P<component>\d{3})\s+(?P<station>\D.*)$")
@@ -29,12 +28,12 @@ def _recognise(lines: list[str], name: str) -> bool:
     # the titles of the columns alone are a plain two-column file
     columns = _find_columns(lines)
     return columns > 0 and any(
-        re.match(r"\s*(recording station|source|frequency range)\s*:", line, re.IGNORECASE)
+        re.match(r"\s*(recording station|source|frequency range)\s*:", line, re.I)
         for line in lines[:columns]
     )
 
 
-def _parse(text: TextFile) -> list[Channel]:
+def _parse(text: TextFile) -> Iterator[Channel]:
     columns = _find_columns(text.lines(0, _MAX_HEADER))
     titles = _COLUMNS.match(text.line(columns)) if columns >= 0 else None
     if titles is None:
@@ -50,46 +49,42 @@ def _parse(text: TextFile) -> list[Channel]:
         if colon:
             header[key.strip().lower()] = value.strip()
     table = text.table(columns + 1, 2)
-    # TOLMEZZO(000) or 090 CDMG STATION 47381
     place = header.get("recording station", "")
+    # TOLMEZZO(000) or 090 CDMG STATION 47381
     found = _BEFORE_COMPONENT.match(place) or _BEHIND_COMPONENT.match(place)
-    station, component = (
-        (found["station"].strip(), found["component"].strip()) if found else (place, "")
+    station, component = found.group("station", "component") if found else (place, "")
+    yield Channel(
+        npts=table.shape[0],
+        dt=step_of_times(table[:, 0], text, columns + 1),
+        samples=lambda: table[:, 1].copy(),
+        unit=unit,
+        station=station.strip(),
+        component=component.strip(),
+        details={
+            "earthquake": header["earthquake"].rstrip("."),
+            "source": header.get("source", ""),
+            "frequency_range": header.get("frequency range", ""),
+            "recording_station": place,
+        },
     )
-    return [
-        Channel(
-            npts=table.shape[0],
-            dt=step_of_times(table[:, 0], text, columns + 1),
-            samples=lambda: table[:, 1].copy(),
-            unit=unit,
-            station=station,
-            component=component,
-            details={
-                "earthquake": header["earthquake"].rstrip("."),
-                "source": header.get("source", ""),
-                "frequency_range": header.get("frequency range", ""),
-                "recording_station": place,
-            },
-        )
-    ]
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)
 
 
-def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:
-    """Write one trace as a SeismoSoft accelerogram that reads back to the same samples."""
-    trace, samples = one_trace(stream, filename)
-    unit, facts = stated_unit(trace, filename), trace.stats.rockfrag
-    dt = float(f"{trace.stats.delta:.12g}")
+def _written(trace: Trace, samples: list[float], unit: str, dt: float) -> list[str]:
+    facts = trace.stats.rockfrag
     component = str(facts.get("component") or trace.stats.channel or "")
     station = " ".join(str(trace.stats.station or "unknown").split())
-    lines = [
+    return [
         " ".join(str(facts.get("earthquake") or "Unknown earthquake").split()),
         f"Source: {' '.join(str(facts.get('source') or 'rockfrag').split())}",
         f"Recording station: {station}" + (f"({component})" if component else ""),
         "Frequency range: not stated",
         f"Time[s]\tAccel[{unit}]",
-        *(f"{i * dt:.12g}\t{value!r}" for i, value in enumerate(samples.tolist())),
+        *(f"{i * dt:.12g}\t{value!r}" for i, value in enumerate(samples)),
     ]
-    write_text("\n".join(lines) + "\n", filename)
+
+
+write = text_writer(_written)
+"""Write one trace as a SeismoSoft accelerogram that reads back to the same samples."""

@@ -7,6 +7,7 @@ Where the header has no sampling rate, the values are pairs of time [s] and acce
 """
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,6 @@ from numpy.typing import NDArray
 from obspy import UTCDateTime
 
 from rockfrag.records.parsing.format import Channel, Format
-from rockfrag.records.parsing.fortran_sections import integers, positive_step, reals
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import pairs_of, time_at
 
@@ -23,7 +23,7 @@ _FIRST_DATA = _TEXT_LINES + _INTEGER_LINES + _REAL_LINES
 _KINDS = re.compile(
     r"^\s*(?:[0-5]\s+)?(?P<kind>UNKNOWN|UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGRAM|VELOCITY|"
     r"DISPLACEMENT|RESPONSE SPECTRA|FOURIER)\b|^\s*\*",
-    re.IGNORECASE,
+    re.I,
 )
 _FIRST_FIELD = re.compile(rb"^\s*[+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?")
 _HIGH_PRECISION = 8
@@ -43,7 +43,7 @@ def _recognise(lines: list[str], name: str) -> bool:
     return all(re.fullmatch(r"\s*-?\d+\s*", field) for field in fields)
 
 
-def _parse(text: TextFile) -> list[Channel]:
+def _parse(text: TextFile) -> Iterator[Channel]:
     words = text.lines(0, _TEXT_LINES)
     kind = _KINDS.match(words[0])
     if kind is None or len(text) <= _FIRST_DATA:
@@ -52,8 +52,8 @@ def _parse(text: TextFile) -> list[Channel]:
     if held and "ACCELEROGRAM" not in held and held != "UNKNOWN":
         text.refuse(f"this file holds {held.lower()}, not acceleration", 0)
     at_reals = _TEXT_LINES + _INTEGER_LINES
-    whole = integers(text, _TEXT_LINES, at_reals, 10, 48)
-    numbers = reals(text, at_reals, _FIRST_DATA, 15, 50)
+    whole = text.integers(_TEXT_LINES, at_reals, 10, 48)
+    numbers = text.reals(at_reals, _FIRST_DATA, 15, 50)
     count, comments = whole[_COUNT], whole[_COMMENTS]
     if count < 1 or not 0 <= comments < len(text):
         text.fail(f"the header promises {count} samples and {comments} comments", _TEXT_LINES + 1)
@@ -65,28 +65,26 @@ def _parse(text: TextFile) -> list[Channel]:
         values = pairs_of(samples, "cm/s2", text, start, count // 2)
     else:
         dt = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
-        values = Channel(count, positive_step(text, dt, at_reals), samples.copy, "cm/s2")
+        values = Channel(count, text.interval(dt, at_reals), samples.copy, "cm/s2")
     step = {"step": "leave out values beyond the count of the header", "values": left_out}
     steps = (*([step] if left_out else []), *values.details.get("steps", ()))
     place = {"latitude": numbers[_LATITUDE], "longitude": numbers[_LONGITUDE]}
     # a fifth character of the code names the channel
     number = "" if whole[_STATION] == whole[_MISSING] else str(whole[_STATION])
-    station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.IGNORECASE)
-    return [
-        replace(
-            values,
-            start_time=_start(whole),
-            station=words[2][:4].strip().strip("\x00*") or number,
-            component=_component(whole, station[2].strip() if station else ""),
-            details={
-                "station_name": station[1] if station else "",
-                "earthquake": " ".join(words[3].split()),
-                "corrected": held.startswith("CORRECTED"),
-                **{k: value for k, value in place.items() if value != numbers[_MISSING_REAL]},
-                **({"steps": steps} if steps else {}),
-            },
-        )
-    ]
+    station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.I)
+    yield replace(
+        values,
+        start_time=_start(whole),
+        station=words[2][:4].strip().strip("\x00*") or number,
+        component=_component(whole, station[2].strip() if station else ""),
+        details={
+            "station_name": station[1] if station else "",
+            "earthquake": " ".join(words[3].split()),
+            "corrected": held.startswith("CORRECTED"),
+            **{k: value for k, value in place.items() if value != numbers[_MISSING_REAL]},
+            **({"steps": steps} if steps else {}),
+        },
+    )
 
 
 def _without_surplus_lines(

@@ -7,15 +7,15 @@ of samples more may follow.
 """
 
 import re
+from dataclasses import replace
 
 from obspy import UTCDateTime
 
-from rockfrag.records.parsing import fortran_sections
-from rockfrag.records.parsing.format import Channel, Format
+from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
-_TITLE = re.compile(r"^\s*ARCHIVO\s+EST.NDAR\s+DE\s+ACELERACI.N", re.IGNORECASE)
+_TITLE = re.compile(r"^\s*ARCHIVO\s+EST.NDAR\s+DE\s+ACELERACI.N", re.I)
 _DATA = re.compile(rb"^[ \t]*DATOS DE ACELERACI", re.I | re.M)
 _RULER = re.compile(r"^-+\+-+\+[-+]*$")
 _MAX_HEADER = 200
@@ -26,11 +26,11 @@ def _recognise(lines: list[str], name: str) -> bool:
     return any(_TITLE.match(line) for line in lines[:30])
 
 
-def _parse(text: TextFile) -> list[Channel]:
+def _parse(text: TextFile) -> list[form.Channel]:
     at_data = text.find(_DATA, 0, _MAX_HEADER)
     if at_data < 0:
         text.fail("no line DATOS DE ACELERACION; the file is cut short")
-    facts = fortran_sections.header_keys(text.lines(0, at_data))
+    facts = form.header_keys(text.lines(0, at_data))
     rulers = [i for i in range(at_data, at_data + 10) if _RULER.match(text.line(i))]
     if len(rulers) < 2:
         text.fail("the two rulers above the samples are missing", at_data)
@@ -42,34 +42,31 @@ def _parse(text: TextFile) -> list[Channel]:
         dt, promised = float(steps[0]), int(counts[0])
     except ValueError:
         text.fail("sampling interval or number of samples is not a number")
-    dt = fortran_sections.positive_step(text, dt, at_data)
-    form = next((value for key, value in facts.items() if key.startswith("formato datos")), "")
-    values = text.numbers(rulers[1] + 1, None, fortran_sections.field_width(f"({form})"))
+    dt = text.interval(dt, at_data)
+    width = next((value for key, value in facts.items() if key.startswith("formato datos")), "")
+    values = text.numbers(rulers[1] + 1, None, form.field_width(f"({width})"))
     if text.cut_short:
         values = values[: values.size // len(steps) * len(steps)]
-    table = fortran_sections.in_rows(text, values, len(steps), rulers[1] + 1)
+    table = text.in_rows(values, len(steps), rulers[1] + 1)
     extra = table.shape[0] - promised
     if not 0 <= extra < 1 / dt:
         text.check_count(promised, table.shape[0], rulers[1] + 1)
     step = {"step": "read samples beyond the nominal duration", "samples": extra}
-    unit = canonical_unit(facts.get("unidades de los datos", "").split("(")[0])
+    sides = [orientation.partition(";") for orientation in orientations]
+    shared = form.Channel(
+        npts=max(table.shape[0], promised),
+        dt=dt,
+        samples=table.copy,
+        unit=canonical_unit(facts.get("unidades de los datos", "").split("(")[0]),
+        start_time=_start(facts),
+        station=facts.get("clave de la estacion", ""),
+        details={**_details(facts), "steps": (step,) if extra > 0 else ()},
+    )
+    # "rumbo;orientacion": the sense of a vertical stands behind it
+    found = form.in_columns(shared, table, [side[0].strip() for side in sides])
     return [
-        Channel(
-            npts=max(table.shape[0], promised),
-            dt=dt,
-            samples=table[:, column].copy,
-            unit=unit,
-            start_time=_start(facts),
-            station=facts.get("clave de la estacion", ""),
-            # "rumbo;orientacion": the sense of a vertical stands behind it
-            component=orientation.split(";")[0].strip(),
-            details={
-                **_details(facts),
-                "sense": orientation.partition(";")[2].strip(),
-                "steps": (step,) if extra > 0 else (),
-            },
-        )
-        for column, orientation in enumerate(orientations)
+        replace(channel, details={**channel.details, "sense": side[2].strip()})
+        for channel, side in zip(found, sides, strict=True)
     ]
 
 
@@ -109,4 +106,4 @@ def _details(facts: dict[str, str]) -> dict[str, object]:
     }
 
 
-FORMAT = Format("UNAM", _recognise, _parse, encoding="latin-1")
+FORMAT = form.Format("UNAM", _recognise, _parse, encoding="latin-1")

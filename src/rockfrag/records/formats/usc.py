@@ -4,18 +4,19 @@ Each text line has its length in columns 73 and 74, which tells the format from 
 """
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 
-from rockfrag.records.parsing.format import Channel, Format
-from rockfrag.records.parsing.fortran_sections import CHANNEL_END
+from rockfrag.records.parsing.format import CHANNEL_END, Channel, Format, stated
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import read_pairs
 
-_FIRST = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME\s+I\b", re.IGNORECASE)
+_FIRST = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME\s+I\b", re.I)
 _HEAD = re.compile(
     rb"^.*OF[ \t]+UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA[ \t]+OF[ \t]+VOLUME", re.I | re.M
 )
 _HEADER = 13
+_STATION = re.compile(r"^STATION\s+(?:NO\.?|\w+\s*#)?\s*(\d+)", re.I)
 _LENGTH = slice(72, 76)
 
 
@@ -27,29 +28,28 @@ def _recognise(lines: list[str], name: str) -> bool:
     )
 
 
-def _parse(text: TextFile) -> list[Channel]:
-    channels = []
+def _parse(text: TextFile) -> Iterator[Channel]:
     for first, stop in text.parts(_HEAD):
         pairs = read_pairs(text, first, min(stop, text.until(CHANNEL_END, first)))
-        channels.append(place_of(text.lines(first, first + _HEADER), pairs))
-    return channels
+        yield place_of(text.lines(first, first + _HEADER), pairs)
 
 
 def place_of(words: list[str], values: Channel) -> Channel:
     """Return a channel with the station, component and earthquake of the text header above it."""
     lines = [line[: _LENGTH.start].strip() for line in words]
-    station = component = name = ""
-    for number, line in enumerate(lines):
-        found = re.match(r"STATION\s+(?:NO\.?|\w+\s*#)?\s*(\d+)", line, re.IGNORECASE)
-        if found and not station:
-            station, name = found[1], lines[number + 1] if lines[number + 1 :] else ""
-        found = re.match(r"COMP\w*\s+(\S+)", line, re.IGNORECASE)
-        component = found[1] if found and not component else component
+    station = next((i for i, line in enumerate(lines) if _STATION.match(line)), len(lines))
     # the earthquake's name and date stand below the line that names the volume
     volume = next((i for i, line in enumerate(lines) if "OF VOLUME" in line.upper()), 0)
-    earthquake = ", ".join(lines[volume + 1 : volume + 3])
-    details = {"station_name": name, "earthquake": earthquake, **values.details}
-    return replace(values, station=station, component=component, details=details)
+    return replace(
+        values,
+        station=stated(_STATION.pattern, lines),
+        component=stated(r"^COMP\w*\s+(\S+)", lines),
+        details={
+            "station_name": next(iter(lines[station + 1 :]), ""),
+            "earthquake": ", ".join(lines[volume + 1 : volume + 3]),
+            **values.details,
+        },
+    )
 
 
 FORMAT = Format("USC", _recognise, _parse)

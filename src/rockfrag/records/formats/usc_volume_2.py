@@ -13,13 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.records.formats.usc import place_of
-from rockfrag.records.parsing import fortran_sections
-from rockfrag.records.parsing.format import Channel, Format
+from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
-_FIRST = re.compile(r"^\s*CORRECTED\s+ACCELEROGRAM\b(?P<code>\s+II[A-Z]+\d+)?", re.IGNORECASE)
-_SECOND = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME", re.IGNORECASE)
+_FIRST = re.compile(r"^\s*CORRECTED\s+ACCELEROGRAM\b(?P<code>\s+II[A-Z]+\d+)?", re.I)
+_SECOND = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME", re.I)
 _HEAD = re.compile(rb"^[ \t]*CORRECTED[ \t]+ACCELEROGRAM\b", re.I | re.M)
 _VALUES = re.compile(
     rb"^[ \t]*\d+[ \t]+POINTS[ \t]+OF[ \t]+\w+[ \t]+DATA[ \t]+EQUALLY", re.I | re.M
@@ -28,17 +27,16 @@ _END = re.compile(_VALUES.pattern + rb"|^[ \t]*/&|" + _HEAD.pattern, re.I | re.M
 _VALUES_LINE = re.compile(
     r"^\s*(?P<count>\d+)\s+POINTS\s+OF\s+(?P<quantity>ACC|VEL|DIS)\w*\s+DATA\s+EQUALLY[\s-]+SPACED\s+"
     r"AT\s+(?P<dt>[\d.]+)\s*SEC\.?(?:\s*(?:\(|IN\s+)?\s*(?:UNITS?\b\s*(?:OF|:)?\s*)?(?P<unit>[A-Z]+/[A-Z/*\d]+))?",
-    re.IGNORECASE,
+    re.I,
 )
 _PEAK = re.compile(
-    r"PEAK\s+ACCELERATION\s*=\s*(?P<value>[-+]?[\d.]+)\s+(?P<unit>[A-Z]+/[A-Z/*\d]+)", re.IGNORECASE
+    r"PEAK\s+ACCELERATION\s*=\s*(?P<value>[-+]?[\d.]+)\s+(?P<unit>[A-Z]+/[A-Z/*\d]+)", re.I
 )
 _COUNT_IN_WORDS = re.compile(r"(?P<count>\d+)\s+INSTRUMENT\s+AND\s+BASELINE\s+CORRECTED", re.I)
-_STEP_IN_WORDS = re.compile(r"SPACED\s+INTERVALS?\s+OF\s+(?P<dt>[\d.]+)\s*SEC", re.IGNORECASE)
+_STEP_IN_WORDS = re.compile(r"SPACED\s+INTERVALS?\s+OF\s+(?P<dt>[\d.]+)\s*SEC", re.I)
 _WHOLE_NUMBERS = re.compile(rb"^[ \t]*(?:-?\d+[ \t]+){9,}-?\d+[ \t]*$", re.M)
 _AS_STATED = 0.01  # fraction by which the largest value may be off the stated peak
 _NUMBER_LINES = 7 + 13  # lines of 100 integers (16I5) and of 100 reals (8F10) above the samples
-_QUANTITIES = {"ACC": "acceleration", "VEL": "velocity", "DIS": "displacement"}
 _MAX_HEADER = 60
 _SECOND_LINES = 6
 _WIDTH = 10
@@ -51,29 +49,26 @@ def _recognise(lines: list[str], name: str) -> bool:
     )
 
 
-@fortran_sections.accelerations
-def _parse(text: TextFile) -> Iterator[tuple[str, Channel]]:
+def _parse(text: TextFile) -> Iterator[form.Channel]:
     for first, stop in text.parts(_HEAD):
-        line = text.find(_VALUES, first, stop)
-        if line < 0:
-            yield "acceleration", _in_words(text, first, stop)
+        sections = list(text.parts(_VALUES, _END, first, stop))
+        if not sections:
+            yield _in_words(text, first, stop)
             continue
-        words = text.lines(first, min(line, first + _MAX_HEADER))
-        while line >= 0:
-            section = _section(text, line, words)
-            channel = section.channel(text)
-            if section.quantity == "acceleration":
+        words = text.lines(first, min(sections[0][0], first + _MAX_HEADER))
+        for line, end in sections:
+            channel = _section(text, line, end, words)
+            if channel.quantity == "acceleration":
                 _check_peak(text, words, channel.samples(), line)
-            yield section.quantity, place_of(words, channel)
-            line = text.find(_VALUES, section.stop, stop)
+            yield place_of(words, channel)
 
 
-def _in_words(text: TextFile, first: int, stop: int) -> Channel:
+def _in_words(text: TextFile, first: int, stop: int) -> form.Channel:
     """Return the acceleration of a file whose words alone state count and interval."""
     start = text.find(_WHOLE_NUMBERS, first, stop)
     words = text.lines(first, start if start >= 0 else first + _MAX_HEADER)
     count, step, peak = (
-        fortran_sections.first_match(p, words) for p in (_COUNT_IN_WORDS, _STEP_IN_WORDS, _PEAK)
+        form.first_match(p, words) for p in (_COUNT_IN_WORDS, _STEP_IN_WORDS, _PEAK)
     )
     if start < 0 or count is None or step is None or peak is None:
         text.fail(
@@ -87,13 +82,13 @@ def _in_words(text: TextFile, first: int, stop: int) -> Channel:
     text.check_count(promised, values.size, line)
     _check_peak(text, words, values, line)
     unit = canonical_unit(peak["unit"].upper().replace("CMS", "CM"))
-    dt = fortran_sections.positive_step(text, float(step["dt"]), first)
-    return place_of(words, Channel(promised, dt, values.copy, unit))
+    dt = text.interval(float(step["dt"]), first)
+    return place_of(words, form.Channel(promised, dt, values.copy, unit))
 
 
 def _check_peak(text: TextFile, words: list[str], samples: NDArray[np.float64], line: int) -> None:
     """Check the largest value against the peak that the header states, in the same unit."""
-    peak = fortran_sections.first_match(_PEAK, words)
+    peak = form.first_match(_PEAK, words)
     stated, found = abs(float(peak["value"])) if peak else 0.0, float(np.abs(samples).max())
     if stated and not text.cut_short and abs(found - stated) > _AS_STATED * stated:
         text.fail(
@@ -103,22 +98,16 @@ def _check_peak(text: TextFile, words: list[str], samples: NDArray[np.float64], 
         )
 
 
-def _section(text: TextFile, line: int, words: list[str]) -> fortran_sections.Section:
+def _section(text: TextFile, line: int, stop: int, words: list[str]) -> form.Channel:
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("number of samples, interval or quantity cannot be read here", line)
-    peak = fortran_sections.first_match(_PEAK, words)
+    peak = form.first_match(_PEAK, words)
     unit = match["unit"] or (peak["unit"] if peak else "")
-    dt = fortran_sections.positive_step(text, float(match["dt"]), line)
-    return fortran_sections.Section(
-        _QUANTITIES[match["quantity"].upper()],
-        int(match["count"]),
-        line + 1,
-        text.until(_END, line + 1),
-        _WIDTH,
-        dt,
-        canonical_unit(unit.upper().replace("CMS", "CM")),
-    )
+    unit = canonical_unit(unit.upper().replace("CMS", "CM"))
+    quantity = form.QUANTITIES[match["quantity"].upper()]
+    count, dt = int(match["count"]), float(match["dt"])
+    return form.section(text, line, stop, count, dt, unit, _WIDTH, quantity)
 
 
-FORMAT = Format("USC2", _recognise, _parse)
+FORMAT = form.Format("USC2", _recognise, _parse)

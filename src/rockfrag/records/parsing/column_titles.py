@@ -10,12 +10,12 @@ from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_
 _TIME = re.compile(
     r"^(?:elapsed\s*|relative\s*)?(?:t|times?|sec|seconds?|ms|msec|millis\w*|min|minutes?|zeit|temps|tiempo|tempo)"
     r"(?![a-z])",
-    re.IGNORECASE,
+    re.I,
 )
 _INDEX = re.compile(
     r"^(?:no|nr|index|idx|i|samples?|points?|steps?|rows?|counter|line)\W*(?:no|nr|number|index|id)?\W*$"
     r"|^#$|^number$",
-    re.IGNORECASE,
+    re.I,
 )
 _SECONDS = {"": 1.0, "s": 1.0, "sek": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
 _SECONDS |= {"min": 60.0, "h": 3600.0}
@@ -25,24 +25,22 @@ _LONG_NAMES = (
     (re.compile(r"^min.*"), "min"),
     (re.compile(r"^(?:h|hrs?|hours?)$"), "h"),
 )
-_SPECTRA = re.compile(
-    r"^(?:period|freq|omega)|\bspectr|\b(?:psa|psv|sa|sv|sd|rotd\d*)\b", re.IGNORECASE
-)
+_SPECTRA = re.compile(r"^(?:period|freq|omega)|\bspectr|\b(?:psa|psv|sa|sv|sd|rotd\d*)\b", re.I)
 _WORDS = {
-    "acceleration": re.compile(r"(?<![a-z])a(?:cc(?:el\w*|n)?)?(?![a-z])|accel", re.IGNORECASE),
-    "velocity": re.compile(r"(?<![a-z])(?:v|vel(?:oc\w*)?)(?![a-z])", re.IGNORECASE),
-    "displacement": re.compile(r"(?<![a-z])(?:d|u|dis(?:pl?\w*)?)(?![a-z])", re.IGNORECASE),
+    "acceleration": re.compile(r"(?<![a-z])a(?:cc(?:el\w*|n)?)?(?![a-z])|accel", re.I),
+    "velocity": re.compile(r"(?<![a-z])(?:v|vel(?:oc\w*)?)(?![a-z])", re.I),
+    "displacement": re.compile(r"(?<![a-z])(?:d|u|dis(?:pl?\w*)?)(?![a-z])", re.I),
 }
 _OTHERS = re.compile(
     r"\b(?P<what>force|load|temp(?:erature)?|resistance|pressure|stress|strain|moment|rotation|angle|volt(?:age)?"
     r"|current|depth|elevation|height|energy|power|humidity|weight|mass|torque|speed|drift|stiffness|gyro\w*"
     r"|friction)s?(?![a-z])",
-    re.IGNORECASE,
+    re.I,
 )
 _ORIENTATION = re.compile(
     r"^(?:[NSEWUD]-?[NSEWUD]|[NEZUVLTXYH]|UP|VERT\w*|H[12]|[BHE][NLGH][ENZ123]|[NS]\d{1,2}[EW]|\d{1,3}"
     r"|north\w*|east\w*|radial|transverse|longitudinal|ch(?:annel)?\W?\d+)$",
-    re.IGNORECASE,
+    re.I,
 )
 _NO_QUANTITY = frozenset({"s", "ms", "-", "min"})
 _AMBIGUOUS = frozenset("vud")

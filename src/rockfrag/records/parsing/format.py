@@ -1,7 +1,8 @@
-"""A record format as ObsPy wants it: a test for it, a reader of its channels, and what every writer checks."""
+"""A record format as ObsPy wants it: a test for it, a reader of its channels, a writer, and what headers share."""
 
 import os
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
@@ -12,6 +13,7 @@ from obspy import Stream, Trace, UTCDateTime
 from obspy.core import AttribDict
 
 from rockfrag.errors import InputError
+from rockfrag.files import write_text
 from rockfrag.records.parsing import text_file
 from rockfrag.records.parsing.quantities import TO_SI
 from rockfrag.tabular import printable
@@ -38,6 +40,7 @@ class Channel:
     # gives the samples in the unit of the file, shape (npts,)
     samples: Callable[[], NDArray[np.float64]]
     unit: str = ""  # canonical unit (``g``, ``cm/s2``, …); empty if the file does not state it
+    quantity: str = "acceleration"  # other quantities of a file are left out
     # time of the first sample, or None if the file does not state it; a time before 1900 or after
     # 2100 is a mistake of the header and counts as not stated
     start_time: UTCDateTime | None = None
@@ -113,10 +116,8 @@ class Format:
     name: str  # name of the ObsPy plugin
     # tells from the first lines of a file (and its name) whether it is of this format
     recognise: Callable[[list[str], str], bool]
-    # gives the channels of a file of this format; with ``wants_dt`` also told the sampling interval
-    # that the user named
-    parse: Callable[..., list[Channel]]
-    wants_dt: bool = False
+    # gives the channels of a file of this format, of any quantity
+    parse: Callable[[text_file.TextFile], Iterable[Channel]]
     # encoding of text that is not UTF-8, where the format's network writes in one
     encoding: str = ""
 
@@ -138,9 +139,9 @@ class Format:
         ``dt`` [s] is for plain text that does not state its own. With ``cut_short`` a file with fewer samples than
         its header promises is read all the same, and a step of the channel says so.
         """
-        text = text_file.read_text(source, self.encoding)
+        text = replace(text_file.read_text(source, self.encoding), asked_dt=dt)
         try:
-            channels = self._parsed(text, dt)
+            channels = self._parsed(text)
             if cut_short:
                 for channel in channels:
                     # samples are read on demand, and may be too few
@@ -151,11 +152,15 @@ class Format:
         except InputError:
             if not cut_short:
                 raise
-        return [_shortened(channel) for channel in self._parsed(text.up_to_last_line_end(), dt)]
+        return [_shortened(channel) for channel in self._parsed(text.up_to_last_line_end())]
 
-    def _parsed(self, text: text_file.TextFile, dt: float | None) -> list[Channel]:
+    def _parsed(self, text: text_file.TextFile) -> list[Channel]:
         try:
-            channels = self.parse(text, dt) if self.wants_dt else self.parse(text)
+            found = list(self.parse(text))
+            channels = [channel for channel in found if channel.quantity == "acceleration"]
+            if found and not channels:
+                held = sorted({channel.quantity for channel in found})
+                text.refuse(f"this file holds {' and '.join(held)}, not acceleration")
             if not text.cut_short:
                 for channel in channels:
                     channel.check(text.name)
@@ -222,24 +227,115 @@ def _lines_of(head: bytes) -> tuple[str, ...]:
     return tuple(line[:_LONGEST].rstrip() for line in lines)
 
 
-def one_trace(
-    stream: Stream, filename: str | os.PathLike[str]
-) -> tuple[Trace, NDArray[np.float64]]:
-    """Return the only trace of a stream and its samples, shape (n,)."""
-    if len(stream) != 1:
-        raise InputError(f"{filename}: a file holds one trace, not {len(stream)}; choose one.")
-    samples = np.asarray(stream[0].data, dtype=np.float64)
-    if samples.size == 0 or not np.isfinite(samples).all():
-        raise InputError(f"{filename}: a record needs at least one sample, and all of them finite.")
-    return stream[0], samples
+def text_writer(
+    lines: Callable[[Trace, list[float], str, float], list[str]], with_unit: bool = True
+) -> Callable[..., None]:
+    """Return what writes one trace of a stream to a file, ``(stream, filename)``, as ObsPy wants it.
+
+    ``lines`` are made of the trace, its samples, its unit and its interval [s]; a writer ``with_unit`` needs one.
+    """
+
+    def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
+        if len(stream) != 1:
+            raise InputError(f"{filename}: a file holds one trace, not {len(stream)}; choose one.")
+        trace = stream[0]
+        samples = np.asarray(trace.data, dtype=np.float64)
+        if samples.size == 0 or not np.isfinite(samples).all():
+            raise InputError(
+                f"{filename}: a record needs at least one sample, and all of them finite."
+            )
+        unit = str(trace.stats.get("rockfrag", {}).get("unit") or "")
+        if with_unit and unit not in TO_SI:
+            raise InputError(
+                f"{filename}: the trace does not state a unit of acceleration; set stats.rockfrag = "
+                "{'unit': 'g'} (or 'cm/s2', 'm/s2', …) once it is known."
+            )
+        dt = float(f"{trace.stats.delta:.12g}")
+        write_text("\n".join(lines(trace, samples.tolist(), unit, dt)) + "\n", filename)
+
+    return write
 
 
-def stated_unit(trace: Trace, filename: str | os.PathLike[str]) -> str:
-    """Return the unit of acceleration that ``stats.rockfrag.unit`` states."""
-    unit = str(trace.stats.get("rockfrag", {}).get("unit") or "")
-    if unit not in TO_SI:
-        raise InputError(
-            f"{filename}: the trace does not state a unit of acceleration; set stats.rockfrag = "
-            "{'unit': 'g'} (or 'cm/s2', 'm/s2', …) once it is known."
-        )
-    return unit
+CHANNEL_END = re.compile(rb"^[ \t]*/&", re.M)
+QUANTITIES = {"ACC": "acceleration", "VEL": "velocity", "DIS": "displacement"}
+"""First letters of a quantity's name in a header, and the quantity."""
+
+_LINE = re.compile(r"^\s*(?P<key>[^:]*?)\s*:\s*(?P<value>.*?)\s*$")
+_NOTE = re.compile(r"\s*[(\[][^)\]]*[)\]]")
+
+
+def header_keys(lines: Iterable[str]) -> dict[str, str]:
+    """Return the values of a header by their keys.
+
+    Keys are in lower case, without notes in brackets, with single blanks: ``SAMPLING INTERVAL
+    (sec)`` becomes ``sampling interval``. The first of two equal keys counts; a line with a colon
+    but no key goes on with the value above it.
+    """
+    facts: dict[str, str] = {}
+    key = ""
+    for line in lines:
+        match = _LINE.match(line)
+        if match is None:
+            continue
+        named = " ".join(_NOTE.sub("", match["key"]).lower().split())
+        if named:
+            key = "" if named in facts else named
+            if key:
+                facts[key] = match["value"]
+        elif key and match["value"]:
+            facts[key] = f"{facts[key]} {match['value']}"
+    return facts
+
+
+def first_match(pattern: re.Pattern[str], lines: Iterable[str]) -> re.Match[str] | None:
+    """Return the match in the first line that has a pattern."""
+    return next(filter(None, map(pattern.search, lines)), None)
+
+
+def stated(pattern: str, lines: Iterable[str]) -> str:
+    """Return what a pattern's first group holds in the first line in which it holds anything, or nothing."""
+    found = (
+        (match[1] or "").strip() for match in map(re.compile(pattern, re.I).search, lines) if match
+    )
+    return next(filter(None, found), "")
+
+
+def leading_number(words: str) -> float | None:
+    """Return the number that words are or begin with, or None."""
+    match = re.match(r"\s*\d+(?:\.\d*)?", words)
+    return float(match[0]) if match else None
+
+
+def section(
+    text: text_file.TextFile,
+    line: int,
+    stop: int,
+    count: int,
+    dt: float,
+    unit: str,
+    width: int | None,
+    quantity: str = "acceleration",
+) -> Channel:
+    """Return the ``count`` values in the lines below ``line``, which states them, up to ``stop``."""
+    dt = text.interval(dt, line)
+    samples = text.counted(line + 1, stop, count, width)
+    return Channel(count, dt, samples.copy, unit, quantity)
+
+
+def in_columns(
+    channel: Channel, table: NDArray[np.float64], components: Iterable[str]
+) -> list[Channel]:
+    """Return a channel of each column of a table, with what they share from ``channel``."""
+    return [
+        replace(channel, samples=column.copy, component=name)
+        for name, column in zip(components, table.T, strict=True)
+    ]
+
+
+_FORTRAN = re.compile(r"\(\s*\d*\s*\(?\s*(?:\d+P\s*,?\s*\d*)?\s*[FEGID]S?\s*(?P<width>\d+)", re.I)
+
+
+def field_width(words: str) -> int | None:
+    """Return the field width that a Fortran format such as ``(8F10.5)`` gives, or None."""
+    match = _FORTRAN.search(words)
+    return int(match["width"]) if match and 1 <= int(match["width"]) <= 40 else None

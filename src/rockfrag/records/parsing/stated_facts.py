@@ -15,7 +15,7 @@ _STEP = re.compile(
     r"|sampl\w*[\s_-]*(?:step|increment|interval|period|spacing|time)|spaced\s+at|intervals?\s+of)"
     r"|(?<![\w.])Δt|\b(?P<unsure>delta|interval))"
     rf"{_IS}(?P<value>{_VALUE})\s*(?P<unit>ms|msec\w*|millis\w*|[uµ]s|microsec\w*|min\w*|deg\w*|km|°)?",
-    re.IGNORECASE,
+    re.I,
 )
 _STEP_BEFORE = re.compile(
     rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b", re.I
@@ -24,13 +24,13 @@ _RATE = re.compile(
     rf"\bsampl\w*[\s_-]*(?P<named>rate|freq\w*)?(?:\s+at\b)?{_IS}(?P<value>{_VALUE})\s*(?P<unit>k?hz|sps|samples|pts|points)?"
     r"|(?<![\w.])fs\s*(?:\([^)]*\))?\s*[=:]\s*(?P<value2>[\d.]+)"
     r"|(?P<value3>[\d.]+)\s*(?:sps\b|(?:samples?|pts|points)\s*(?:/|per)\s*s)",
-    re.IGNORECASE,
+    re.I,
 )
 _COUNT = re.compile(
     r"(?:\b(?:npts|npoints|ndata|nsamples?|npt|(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
     r"(?:data\s+|time\s+)?(?:points?|pts|samples?|data|values?|steps?))|(?P<unsure>\bsamples|\bpoints))"
     rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))",
-    re.IGNORECASE,
+    re.I,
 )
 _COUNTED = re.compile(
     r"^\s*(?P<count>\d+)\s+(?:data\s+)?(?:points?|samples?|values?)\b(?!\s*(?:/|per))", re.I
@@ -41,15 +41,15 @@ _UNIT_WORDS = re.compile(
 _QUANTITY = r"\b(?P<quantity>acc|vel|dis(?=p))(?:[a-z]*\.?)"
 _QUANTITY_IN = re.compile(
     rf"{_QUANTITY}[^,;:(\[=\d]{{0,40}}?(?:\bin\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=_]\s*)(?P<rest>.+)$",
-    re.IGNORECASE,
+    re.I,
 )
-_NAMED_QUANTITY = re.compile(rf"{_QUANTITY}", re.IGNORECASE)
-_IN_UNIT = re.compile(r"(?:\bin\s+|[(\[{]\s*)(?P<rest>[^)\]}]+)", re.IGNORECASE)
+_NAMED_QUANTITY = re.compile(rf"{_QUANTITY}", re.I)
+_IN_UNIT = re.compile(r"(?:\bin\s+|[(\[{]\s*)(?P<rest>[^)\]}]+)", re.I)
 _ONE_VALUE = re.compile(r"\b(?:pga|pgv|pgd|peak|max\w*|largest|min\w*|full\s*scale|filter)\b", re.I)
 _VALUE_OF = re.compile(r"[=:]\s*[-+]?\.?\d")
 _UNIT_TOKEN = re.compile(
     r"[\s\"'=:(\[{]*(?P<unit>(?:[a-z%°µ]+[\w%°^*²-]*(?:\.[a-z-]+\d?)?(?:\s*/\s*\(?\s*[a-z\d]+\)?(?:\^|\*\*)?[\d²]*)*))",
-    re.IGNORECASE,
+    re.I,
 )
 _LIST = re.compile(
     r"^\W*(?:components?|channels?|directions?|orientations?)\s*[=:]\s*(?P<names>.+)$", re.I

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
+from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 HEAD_BYTES = 16_384  # how much of a file is looked at to recognise its format
 MAX_BYTES = 256 * 2**20
@@ -81,6 +82,9 @@ class TextFile:
     encoding: str = ""
     # whether fewer samples than the header promises are to be read and not refused
     cut_short: bool = False
+    asked_dt: float | None = (
+        None  # the user's interval [s], for plain text that does not state its own
+    )
 
     @cached_property
     def _ends(self) -> NDArray[np.int64]:
@@ -136,14 +140,19 @@ class TextFile:
         return len(self) if found < 0 else found
 
     def parts(
-        self, head: re.Pattern[bytes], end: re.Pattern[bytes] | None = None
+        self,
+        head: re.Pattern[bytes],
+        end: re.Pattern[bytes] | None = None,
+        start: int = 0,
+        stop: int | None = None,
     ) -> Iterator[tuple[int, int]]:
         """Yield first line and end of each part that a ``head`` begins: up to its ``end`` or the next one."""
-        first = self.find(head)
+        last = len(self) if stop is None else stop
+        first = self.find(head, start, last)
         while first >= 0:
-            stop = self.until(head, first + 1) if end is None else self.until(end, first)
-            yield first, stop
-            first = self.find(head, stop)
+            after = min(last, self.until(end or head, first + 1))
+            yield first, after
+            first = self.find(head, after, last)
 
     def fail(self, what: str, line: int | None = None) -> NoReturn:
         """Raise an :class:`InputError` about a line (from zero) or the whole file."""
@@ -188,6 +197,40 @@ class TextFile:
         except NumberError as error:
             wrong = wrong or error
         self.fail(str(wrong), start + wrong.line)
+
+    def reals(
+        self, start: int, stop: int, width: int, count: int, kind: str = "numbers"
+    ) -> list[float]:
+        """Return the numbers of header lines ``start`` up to ``stop`` (columns of ``width``)."""
+        values = self.numbers(start, stop, width)
+        if values.size < count:
+            self.fail(f"{count} {kind} are expected in this header, not {values.size}", start)
+        return [float(value) for value in values]
+
+    def integers(self, start: int, stop: int, width: int, count: int) -> list[int]:
+        """Return the whole numbers of header lines ``start`` up to ``stop`` (columns of ``width``)."""
+        values = self.reals(start, stop, width, count, "whole numbers")
+        if any(value % 1 for value in values):
+            self.fail("the header has a fraction where whole numbers are expected", start)
+        return [int(value) for value in values]
+
+    def in_rows(self, values: NDArray[np.float64], columns: int, start: int) -> NDArray[np.float64]:
+        """Return the values from line ``start`` on as whole rows, shape (rows, columns)."""
+        if values.size == 0 or values.size % columns:
+            self.fail(
+                f"{values.size} values do not fill rows of {columns}; the file is cut short", start
+            )
+        return values.reshape(-1, columns)
+
+    def interval(self, dt: float, line: int) -> float:
+        """Return the sampling interval [s] that the header gives, if it can be one."""
+        if not (np.isfinite(dt) and SHORTEST_STEP <= dt <= LONGEST_STEP):
+            self.fail(
+                f"the header gives {dt:g} s as sampling interval; records have from "
+                f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} s",
+                line,
+            )
+        return dt
 
     def _body(self, start: int, stop: int | None) -> bytes:
         return self.data[self.offset(start) : self.offset(len(self) if stop is None else stop)]

@@ -8,7 +8,6 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.records.parsing.format import Channel, cut_short_step
-from rockfrag.records.parsing.fortran_sections import reals
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
@@ -151,8 +150,8 @@ def american_time(words: str) -> UTCDateTime | None:
     return None if match is None else clock_time(**match.groupdict(default=""))
 
 
-_POINTS = re.compile(r"\bno\.?\s+of\s+points\s*=?\s*(?P<count>\d+)", re.IGNORECASE)
-_UNITS = re.compile(r"\bunits\b.*?\bsec\w*\s+and\s+(?P<unit>[^\s.,]+)", re.IGNORECASE)
+_POINTS = re.compile(r"\bno\.?\s+of\s+points\s*=?\s*(?P<count>\d+)", re.I)
+_UNITS = re.compile(r"\bunits\b.*?\bsec\w*\s+and\s+(?P<unit>[^\s.,]+)", re.I)
 _NUMBERS_ONLY = re.compile(r"^[\s\d.+\-]+$")
 _FIELD = 7
 _MAX_HEADER = 30
@@ -182,7 +181,7 @@ def read_pairs(text: TextFile, first: int, stop: int) -> Channel:
     if count is None or unit is None or not at_numbers:
         text.fail("no number of points, unit or numeric header below this line", first)
     # 100 integers (16I5) and 50 reals (8F10) are seven lines each
-    reals(text, at_numbers + 7, at_numbers + 14, 10, 50)
+    text.reals(at_numbers + 7, at_numbers + 14, 10, 50)
     values = _flat(text, at_numbers + 14, stop, 2 * count)
     return pairs_of(values, unit, text, at_numbers + 14, count)
 
