@@ -1,12 +1,15 @@
 """Motions of assessments: made ones, which need no network, and the default set."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Request, make_request
+
+from ..conftest import write_records
 
 
 @pytest.fixture(scope="session")
@@ -21,6 +24,12 @@ def few(motions) -> MotionSet:
     """Four records of two components."""
     ground, base = motions.ground[:8], motions.base[:8]
     return replace(motions, ground=ground, base=base, pairs=motions.pairs[:4])
+
+
+@pytest.fixture(scope="session")
+def few_records(tmp_path_factory) -> Path:
+    """Catalogue of six records of as many earthquakes, which are soon simulated."""
+    return write_records(tmp_path_factory.mktemp("few"), 6)
 
 
 def asked(**settings) -> Request:
