@@ -10,11 +10,9 @@ import pytest
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.as_json import as_json
 from rockfrag.assess.as_nrml import as_nrml
-from rockfrag.assess.hazard.measure import PGA
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.mitigations import compare
 from rockfrag.assess.narrowing import is_wide, narrowed
-from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.page import page_of
 from rockfrag.assess.place import PERIOD_FACTORS
 from rockfrag.assess.request import read_request
@@ -26,7 +24,7 @@ from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.outcomes.limit_states import forget_limit_state, limit_state
 
-from .conftest import asked
+from .conftest import asked, outcomes_of
 
 STATUE = {"width": "42 cm", "height": "1.65 m", "mass": "410 kg", "cg_height": "0.75 m"}
 
@@ -50,19 +48,12 @@ def on_pedestal(motions):
     return assess_with(request, motions.at(request.place))
 
 
-def only_one_earthquake_topples() -> ObjectOutcomes:
-    """Six motions of as many earthquakes, all of which rock and one of which topples."""
-    levels = np.geomspace(0.1, 1.0, 10)
-    rocked = np.ones((6, 10), dtype=bool)
+def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
     fell = np.zeros((6, 10), dtype=bool)
     fell[0, 4:] = True
-    intensity_levels = IntensityLevels(PGA, levels, np.broadcast_to(levels, (6, 10)), rocked)
-    return ObjectOutcomes(intensity_levels, fell, rocked, np.arange(6).astype(object))
-
-
-def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
-    outcomes = only_one_earthquake_topples()
-    target = fraction_target(float(outcomes.intensity_levels.levels[5]))
+    levels = np.geomspace(0.1, 1.0, 10)
+    outcomes = outcomes_of(fell, levels, range(6), all_rock=True)
+    target = fraction_target(float(levels[5]))
     (change,) = compare(target, outcomes, {"a change": outcomes})
     assert change.factor == 1 and not change.helps
     found = estimate(target, outcomes, {}, {}, {})
