@@ -98,14 +98,11 @@ def quantity(given: object, to: str, unit: str | None) -> float:
     if found is None:
         raise InputError(f"{expected}, found {given!r:.60} without a unit.")
     if found not in units:
-        known = ", ".join(_as_written(unit) for unit in units)
+        # m_s2 is written m/s²
+        known = ", ".join(re.sub(r"_s(2?)$", r"/s\1", unit) for unit in units)
+        known = known.replace("_", " ").replace("2", "²")
         raise InputError(f"{expected} in one of the units {known}, found {given!r:.60}.")
     return convert(value, found, to)
-
-
-def _as_written(unit: str) -> str:
-    """A unit as people write it: ``m_s2`` is m/s²."""
-    return re.sub(r"_s(2?)$", r"/s\1", unit).replace("_", " ").replace("2", "²")
 
 
 def other_names(name: str) -> dict[str, str | None]:

@@ -7,8 +7,6 @@ local (UTC+8) where the key says ``GMT+08``.
 
 import re
 
-from obspy import UTCDateTime
-
 from rockfrag.records.parsing.format import Channel, Format, field_width, in_columns
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
@@ -60,12 +58,15 @@ def _parse(text: TextFile) -> list[Channel]:
         if abs(measured - dt) > 1e-6:
             text.fail(f"times step by {measured:g} s, but #SampleRate gives {dt:g} s", start)
     _check_length(text, value("recordlength"), table.shape[0] * dt, start)
+    moment, note = facts.get("starttime", ("", ""))
+    match, zone = _TIME.search(moment), re.search(r"(?:GMT|UTC)\s*([+-]\d+)", note)
+    began = clock_time(*match.groups()) if match else None
     shared = Channel(
         npts=table.shape[0],
         dt=dt,
         samples=table.copy,
         unit=canonical_unit(value("amplitudeunit").split(".")[0]),
-        start_time=_time(*facts.get("starttime", ("", ""))),
+        start_time=began and began - 3600.0 * (int(zone[1]) if zone else 0),
         network="TW",
         station=value("stationcode"),
         details={
@@ -90,13 +91,6 @@ def _check_length(text: TextFile, stated: str, length: float, line: int) -> None
             "the file is cut short, or its header is wrong",
             line,
         )
-
-
-def _time(stated: str, note: str) -> UTCDateTime | None:
-    match = _TIME.search(stated)
-    start = clock_time(*match.groups()) if match else None
-    zone = re.search(r"(?:GMT|UTC)\s*([+-]\d+)", note)
-    return None if start is None else start - 3600.0 * (int(zone[1]) if zone else 0)
 
 
 FORMAT = Format("CWA", _recognise, _parse)

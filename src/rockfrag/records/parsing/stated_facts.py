@@ -89,7 +89,8 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
     units = list(dict.fromkeys(u for found in behind for u in [u for u in found if u in TO_SI][:1]))
     contradiction = next(
         (
-            f"the header states {what} {_both(found)}"
+            f"the header states {what} "
+            + " and ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in found[:2])
             for what, found in (("intervals of", steps), ("counts of", counts), ("units of", units))
             if len(found) > 1 and not _close(found)
         ),
@@ -198,7 +199,3 @@ def _close(found: Sequence[float | int | str]) -> bool:
     """Tell whether statements of one fact are numbers that differ by rounding only, to a ten-thousandth."""
     numbers = [value for value in found if isinstance(value, float)]
     return len(numbers) == len(found) and max(numbers) - min(numbers) <= 1e-4 * max(numbers)
-
-
-def _both(found: Sequence[float | int | str]) -> str:
-    return " and ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in found[:2])

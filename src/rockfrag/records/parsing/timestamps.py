@@ -69,12 +69,6 @@ def step_of_times(
     return dt if seconds == 1 else float(f"{dt * seconds:.12g}")
 
 
-def even_step(times: NDArray[np.float64]) -> float:
-    """Return the interval [s] to interpolate unevenly digitised points to: about as many samples as points."""
-    mean = float(times[-1] - times[0]) / max(times.size - 1, 1)
-    return next((step for step in _EVEN_STEPS if step <= _COARSEST * mean), _EVEN_STEPS[-1])
-
-
 def check_rising(times: NDArray[np.float64], text: TextFile, first_line: int) -> None:
     """Check that each time is later than the one before."""
     falls = np.flatnonzero(np.diff(times) <= 0)
@@ -208,7 +202,8 @@ def pairs_of(
                 f"times lie {mean:.3g} s apart on average, those of a record at most {LONGEST_STEP:g} s",
                 line,
             )
-        dt = even_step(times)
+        # about as many samples as points
+        dt = next((step for step in _EVEN_STEPS if step <= _COARSEST * mean), _EVEN_STEPS[-1])
         count = int(np.floor((times[-1] - times[0]) / dt * (1 + 1e-12))) + 1
         accelerations = np.interp(times[0] + np.arange(count) * dt, times, accelerations)
         found = {"dt_s": dt, "digitised_points": int(times.size)}
