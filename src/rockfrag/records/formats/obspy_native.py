@@ -31,15 +31,11 @@ _READ_BY_OBSPY = ("MSEED", "SAC", "KNET", "KINEMETRICS_EVT", "SLIST", "TSPAIR", 
 """Formats left to ObsPy. Of its others PICKLE would run what a file says, GSE ends the process on a
 damaged file, and the rest are of other fields."""
 
-_SCALED_FORMATS = frozenset({"KNET", "KINEMETRICS_EVT"})
-"""Formats whose ``calib`` turns counts into m/s²."""
-
+_SCALED_FORMATS = frozenset({"KNET", "KINEMETRICS_EVT"})  # whose ``calib`` turns counts into m/s²
 _SAC_QUANTITIES = {6: "displacement", 7: "velocity"}
 _WATER_LEVEL = 60.0
 
-MOST_SAMPLES = 20_000_000
-"""Samples of a file, all channels together: a day at 200 Hz has 17 million."""
-
+MOST_SAMPLES = 20_000_000  # of all channels of a file: a day at 200 Hz has 17 million
 _SMALL = 2**20  # bytes of a file that cannot have so many
 _SHOWN = 60
 

@@ -19,9 +19,7 @@ from rockfrag.records.parsing.number_fields import NumberError, parse_columns, p
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 HEAD_BYTES = 16_384  # how much of a file is looked at to recognise its format
-MAX_BYTES = 256 * 2**20
-"""No record is larger: three components of a day at 200 Hz are a third of it."""
-
+MAX_BYTES = 256 * 2**20  # three components of a day at 200 Hz are a third of it
 MAX_TEXT = 96 * 2**20  # bytes of a text file: three components of a day at 200 Hz have as many
 MOST_NUMBERS = 20_000_000  # numbers of a table: more than memory should hold beside the text
 MAX_LINE = 8_192  # no line of a known format is longer, comments and citations included

@@ -13,14 +13,10 @@ from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.units import LONGEST_STEP
 
-_FRACTION_OF_STEP = 1e-4
-"""Fraction of a step by which a time may be off beyond the rounding of its print."""
-
+_FRACTION_OF_STEP = 1e-4  # of which a time may be off beyond the rounding of its print
 _FINEST_DIGITS = 9
 
-_EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)
-"""Sampling intervals [s] that unevenly digitised film records are interpolated to."""
-
+_EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)  # [s], to which unevenly digitised film is interpolated
 _COARSEST = 1.25  # largest ratio of that interval to the mean distance of the digitised points
 
 _HOURS_BEHIND = {"UTC": 0, "UT": 0, "GMT": 0, "Z": 0, "EST": 5, "EDT": 4, "CST": 6, "CDT": 5}
