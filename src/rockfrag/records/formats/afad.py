@@ -19,10 +19,6 @@ _DISTANT = re.compile(r"(?P<north>-?\d+\.\d+)\s*N\s*-?\s*(?P<east>-?\d+\.\d+)\s*
 _MAX_HEADER = 40
 
 
-def _recognise(lines: list[str], name: str) -> bool:
-    return bool(_FIRST.match(lines[0])) and any(_TITLES.match(line) for line in lines[1:40])
-
-
 def _parse(text: TextFile) -> list[form.Channel]:
     header = text.lines(0, _MAX_HEADER)
     titles = next((i for i, line in enumerate(header) if _TITLES.match(line)), -1)
@@ -69,4 +65,6 @@ def _number_of(text: TextFile, facts: dict[str, str], key: str) -> float:
     return value
 
 
-FORMAT = form.Format("AFAD", _recognise, _parse, encoding="iso8859-9")
+FORMAT = form.Format(
+    "AFAD", form.headed(_FIRST, _TITLES, within=_MAX_HEADER), _parse, encoding="iso8859-9"
+)

@@ -22,10 +22,6 @@ _MAX_HEADER = 200
 _HALF_A_DAY = 12 * 3600
 
 
-def _recognise(lines: list[str], name: str) -> bool:
-    return any(_TITLE.match(line) for line in lines[:30])
-
-
 def _parse(text: TextFile) -> list[form.Channel]:
     at_data = text.find(_DATA, 0, _MAX_HEADER)
     if at_data < 0:
@@ -106,4 +102,4 @@ def _details(facts: dict[str, str]) -> dict[str, object]:
     }
 
 
-FORMAT = form.Format("UNAM", _recognise, _parse, encoding="latin-1")
+FORMAT = form.Format("UNAM", form.headed(None, _TITLE, within=30), _parse, encoding="latin-1")

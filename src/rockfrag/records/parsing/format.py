@@ -189,6 +189,18 @@ class Format:
         return stream
 
 
+def headed(
+    first: re.Pattern[str] | None, *others: re.Pattern[str], within: int
+) -> Callable[[list[str], str], bool]:
+    """Return what recognises a format by how a file begins and by what some of its first lines hold."""
+
+    def recognise(lines: list[str], name: str) -> bool:
+        begins = first is None or first.match(lines[0]) is not None
+        return begins and all(any(map(each.search, lines[:within])) for each in others)
+
+    return recognise
+
+
 def _shortened(channel: Channel) -> Channel:
     """Return a channel with as many samples as there are, and a note where more were promised."""
     samples = channel.samples()
