@@ -96,13 +96,14 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
         ),
         "",
     )
+    listed = next(filter(None, map(_LIST.match, lines)), None)
     quantity, unit = _quantity_and_unit(lines)
     return StatedFacts(
         npts=counts[0] if counts else None,
         dt=steps[0] if steps else None,
         unit=units[0] if units else unit,
         quantity="acceleration" if units else quantity,
-        components=next((tuple(names) for line in lines if (names := _components(line))), ()),
+        components=tuple(re.findall(r"[^\s,;]+", listed["names"])) if listed else (),
         factor=next(
             (x for x in lines if (m := _FACTOR.search(x)) and number_in(m["value"]) != 1), ""
         ),
@@ -188,11 +189,6 @@ def _sure_unit(line: str) -> str:
         ),
         canonical_unit(line),
     )
-
-
-def _components(line: str) -> list[str]:
-    match = _LIST.match(line)
-    return [word for word in re.split(r"[\s,;]+", match["names"].strip()) if word] if match else []
 
 
 def _close(found: Sequence[float | int | str]) -> bool:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
-from rockfrag.records.parsing.format import Channel, cut_short_step
+from rockfrag.records.parsing.format import Channel, cut_short_step, first_match
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
@@ -159,17 +159,12 @@ def read_pairs(text: TextFile, first: int, stop: int) -> Channel:
     digitised at uneven intervals; they are interpolated linearly to even ones.
     """
     header = text.lines(first, first + _MAX_HEADER)
-    count = unit = None
-    at_numbers = 0
-    for number, line in enumerate(header):
-        points, units = _POINTS.search(line), _UNITS.search(line)
-        count = int(points["count"]) if points and count is None else count
-        unit = canonical_unit(units["unit"]) if units and unit is None else unit
-        if number > 8 and line.strip() and _NUMBERS_ONLY.match(line):
-            at_numbers = first + number
-            break
-    if count is None or unit is None or not at_numbers:
+    points, units = first_match(_POINTS, header), first_match(_UNITS, header)
+    numbers = (i for i, x in enumerate(header) if i > 8 and x.strip() and _NUMBERS_ONLY.match(x))
+    at_numbers = first + next(numbers, -first)
+    if points is None or units is None or not at_numbers:
         text.fail("no number of points, unit or numeric header below this line", first)
+    count, unit = int(points["count"]), canonical_unit(units["unit"])
     # 100 integers (16I5) and 50 reals (8F10) are seven lines each
     text.reals(at_numbers + 7, at_numbers + 14, 10, 50)
     values = _flat(text, at_numbers + 14, stop, 2 * count)
