@@ -24,7 +24,7 @@ from rockfrag.report.page import Column, Row, estimated, p_values, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.words import says
 from rockfrag.report.wording import decimals_of, estimates, number, sentence
-from rockfrag.stages.measure_selection import best_of
+from rockfrag.stages.fragility import best_of
 
 _TWO_MEASURES = (
     Column("configuration", "Object"),
