@@ -57,14 +57,10 @@ def evolutionary(
         Seed of the white noise, a whole number from zero.
     arias_m_s
         Arias intensity expected before the high-pass [m/s]; one motion scatters about it.
-    d5_95_s
-        Expected significant duration [s], less than 4.9 × ``mid_s``.
-    mid_s
-        Time at which 45 % of the Arias intensity is expected [s].
-    mid_hz
-        Filter frequency at that time [Hz].
-    slope_hz_s
-        Rate of change of the filter frequency [Hz/s], mostly negative.
+    d5_95_s, mid_s
+        Expected significant duration, less than 4.9 × ``mid_s``, and time of 45 % of the Arias intensity [s].
+    mid_hz, slope_hz_s
+        Filter frequency at that time [Hz] and its rate of change [Hz/s], mostly negative.
     filter_damping
         Damping of the filter [-], between 0.02 and 1: its bandwidth.
     corner_hz
