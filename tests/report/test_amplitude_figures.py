@@ -20,7 +20,7 @@ from rockfrag.report.figures.effects import forest_figure, ratio_axis
 from rockfrag.report.figures.fragility import fragility_figure
 from rockfrag.report.figures.ida import outcome_map
 from rockfrag.report.figures.shaker import shaker_limits
-from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
+from rockfrag.shaketable.definitions import mean_amplitudes
 
 OBJECTS = ("vase", "column & capital")
 SLENDERNESS = dict(zip(OBJECTS, (3.0, 4.0), strict=True))

@@ -33,7 +33,7 @@ def lone(body, friction=None):
     return System((body,), (Contact(friction=friction),))
 
 
-BOX = lone(box(0.35, 0.35, 1.2, 300.0, None, (0, 0, 0.6)))
+BOX = lone(box((0.35, 0.35, 1.2), 300.0, None, (0, 0, 0.6)))
 ROUND = lone(cylinder(0.3, 1.0, 100.0, None, (0, 0, 0.5)))
 
 
@@ -69,7 +69,7 @@ def test_outcomes_say_over_which_edge_or_vertex_each_body_fell_and_a_file_keeps_
 def test_a_round_body_falls_before_a_box_of_its_slenderness():
     motions = [ground_motion(seed, 1.0) for seed in range(10, 16)]
     scales = [0.3, 0.4, 0.5]
-    box_as_wide = lone(box(0.3, 0.3, 1.0, 100.0, None, (0, 0, 0.5)))
+    box_as_wide = lone(box((0.3, 0.3, 1.0), 100.0, None, (0, 0, 0.5)))
     fallen = run_in_space([ROUND, box_as_wide], motions, scales, threads=2).overturned
     assert fallen[0].sum() > fallen[1].sum()
 
