@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from rockfrag.report import stages as reports
+from rockfrag.report import campaign_page, measured_page, space_page, study_report
 from rockfrag.stages import (
     campaign,
     fragility,
@@ -30,18 +30,18 @@ Stage = Callable[[Job], Results]
 def stages_of(study: AnyStudy) -> list[Stage]:
     """Stages of a study in the order in which data flow."""
     if isinstance(study, CampaignStudy):
-        return [campaign.run, reports.campaign_report]
+        return [campaign.run, campaign_page.run]
     if isinstance(study, SpaceStudy):
-        return [space.run, reports.space_report]
+        return [space.run, space_page.run]
     if not isinstance(study, Study):
-        return [reports.measured_table]
+        return [measured_page.run]
     optional = (
         (pedestal.run, study.has_pairs),
         (sensitivity_analysis.run, settings_of(study).sensitivity_analysis),
         (sensitivity.run, settings_of(study).sensitivity),
         (measured_tests.run, study.measured_tests),
         (hypotheses.run, settings_of(study).compares),
-        (reports.report, True),
+        (study_report.run, True),
     )
     asked = [stage for stage, wanted in optional if wanted]
     return [motions.run, _swept, tests.run, fragility.run, *asked]

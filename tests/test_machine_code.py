@@ -9,7 +9,7 @@ from pathlib import Path
 import numba
 import pytest
 
-from rockfrag.stages import digest
+from rockfrag.stages import job
 
 PROGRAM = """
 from rockfrag.machine_code import cached_njit
@@ -80,10 +80,10 @@ def test_without_a_folder_for_it_the_function_is_compiled_all_the_same(tmp_path,
 
 
 def test_what_a_run_leaves_beside_the_source_does_not_change_its_digest(tmp_path, monkeypatch):
-    monkeypatch.setattr(digest, "ROOT", tmp_path)
+    monkeypatch.setattr(job, "PACKAGE", tmp_path)
     (tmp_path / "a.py").write_text("")
-    before = digest.package_digest.__wrapped__()
+    before = job.package_digest.__wrapped__()
     (tmp_path / "__pycache__").mkdir()
     for name in ("a.cpython-311.pyc", "a.f-1.py311.nbi", "a.f-1.py311.1.nbc", "f.lock"):
         (tmp_path / "__pycache__" / name).write_text("x")
-    assert digest.package_digest.__wrapped__() == before
+    assert job.package_digest.__wrapped__() == before

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 
+MOST_SAMPLES = 10_000_000  # more samples of a motion than this are taken for a mistake in a unit
 _LONGEST_SHOWN = 60
 
 
@@ -51,6 +52,15 @@ def whole_number(name: str, value: object) -> int:
     """Return a whole number, or say in one sentence why it is none; True and False are none."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
         raise InputError(f"{name}: expected a whole number, got {shown(value)}.")
+    return int(value)
+
+
+def whole_number_within(owner: str, name: str, value: Any, least: int, most: int) -> int:
+    """Return ``value`` as an int if it is a whole number from ``least`` to ``most``."""
+    if real_number(f"{owner}: {name}", value) != int(value) or not least <= value <= most:
+        raise InputError(
+            f"{owner}: {name} must be a whole number from {least} to {most}, got {value!r}."
+        )
     return int(value)
 
 

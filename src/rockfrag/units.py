@@ -18,22 +18,22 @@ Standard gravity, which other programs mean by g, is 9.80665 m/s².
 
 CENTIMETRES_PER_METRE = 100.0
 
-_LENGTHS = {"m": (1.0, 1.0), "cm": (1.0, 100.0), "mm": (1.0, 1000.0)}
-_LENGTHS |= {"in": (0.0254, 1.0), "ft": (0.3048, 1.0)}
-_MASSES = {"kg": (1.0, 1.0), "g": (1.0, 1000.0), "t": (1000.0, 1.0), "lb": (0.45359237, 1.0)}
-_INERTIAS = {"kg_m2": (1.0, 1.0), "kg_cm2": (1.0, 1e4), "g_cm2": (1.0, 1e7)}
-_INERTIAS |= {"t_m2": (1000.0, 1.0), "lb_ft2": (0.45359237 * 0.3048**2, 1.0)}
-_ACCELERATIONS = {"m_s2": (1.0, 1.0), "cm_s2": (1.0, 100.0), "gal": (1.0, 100.0)}
-_ACCELERATIONS |= {"g": (GRAVITY, 1.0)}
-_VELOCITIES = {"m_s": (1.0, 1.0), "cm_s": (1.0, 100.0), "mm_s": (1.0, 1000.0)}
-_TIMES = {"s": (1.0, 1.0), "ms": (1.0, 1000.0)}
 DIMENSIONS: Mapping[str, Mapping[str, tuple[float, float]]] = {
-    "length": _LENGTHS,
-    "mass": _MASSES,
-    "moment of inertia": _INERTIAS,
-    "acceleration": _ACCELERATIONS,
-    "velocity": _VELOCITIES,
-    "time": _TIMES,
+    "length": {
+        **{"m": (1.0, 1.0), "cm": (1.0, 100.0), "mm": (1.0, 1000.0)},
+        **{"in": (0.0254, 1.0), "ft": (0.3048, 1.0)},
+    },
+    "mass": {"kg": (1.0, 1.0), "g": (1.0, 1000.0), "t": (1000.0, 1.0), "lb": (0.45359237, 1.0)},
+    "moment of inertia": {
+        **{"kg_m2": (1.0, 1.0), "kg_cm2": (1.0, 1e4), "g_cm2": (1.0, 1e7)},
+        **{"t_m2": (1000.0, 1.0), "lb_ft2": (0.45359237 * 0.3048**2, 1.0)},
+    },
+    "acceleration": {
+        **{"m_s2": (1.0, 1.0), "cm_s2": (1.0, 100.0), "gal": (1.0, 100.0)},
+        "g": (GRAVITY, 1.0),
+    },
+    "velocity": {"m_s": (1.0, 1.0), "cm_s": (1.0, 100.0), "mm_s": (1.0, 1000.0)},
+    "time": {"s": (1.0, 1.0), "ms": (1.0, 1000.0)},
 }
 """Of each dimension its units, and of each unit the factor and the divisor that lead to SI.
 
@@ -120,8 +120,8 @@ def other_names(name: str) -> dict[str, str | None]:
 
 def split_name(name: str) -> tuple[str, str]:
     """Split a name such as ``inertia_kg_m2`` into what it names and its unit."""
-    for units in (_INERTIAS, _MASSES, _LENGTHS):
-        for unit in units:
+    for dimension in ("moment of inertia", "mass", "length"):
+        for unit in DIMENSIONS[dimension]:
             if name.endswith(f"_{unit}"):
                 return name.removesuffix(f"_{unit}"), unit
     raise ValueError(f"{name} names no unit")

@@ -8,7 +8,7 @@ import statsmodels.api as sm
 from rockfrag.errors import InputError
 from rockfrag.fragility.vector import fit_vector, linearly_separable
 from rockfrag.fragility.vector_tables import check_vector, monotone_probability, vector_tables
-from rockfrag.report.figures.two_measures import two_measures_figure
+from rockfrag.report.sections.curves import two_measures_figure
 
 MEASURES = ("pga_g", "pgv_over_pga_s")
 VELOCITY = 0.6

@@ -47,7 +47,7 @@ rule campaign_report:
         mem_mb=MEMORY_MB,
         runtime=120,
     params:
-        stage="rockfrag.report.stages:campaign_report",
+        stage="rockfrag.report.campaign_page:run",
         study=STUDY_FILE,
         settings=settings("title", "conditioning", "confidence"),
     script:

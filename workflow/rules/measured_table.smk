@@ -17,7 +17,7 @@ rule measured_table:
         mem_mb=MEMORY_MB,
         runtime=120,
     params:
-        stage="rockfrag.report.stages:measured_table",
+        stage="rockfrag.report.measured_page:run",
         study=STUDY_FILE,
         settings=settings(
             *("title", "seed", "table", "columns", "measures"),

@@ -39,7 +39,7 @@ rule report:
         mem_mb=MEMORY_MB,
         runtime=120,
     params:
-        stage="rockfrag.report.stages:report",
+        stage="rockfrag.report.study_report:run",
         study=STUDY_FILE,
         settings=settings(
             *("title", "bodies", "amplitudes", "protocol", "fragility", "seed"),

@@ -39,7 +39,7 @@ rule space_report:
         mem_mb=MEMORY_MB,
         runtime=120,
     params:
-        stage="rockfrag.report.stages:space_report",
+        stage="rockfrag.report.space_page:run",
         study=STUDY_FILE,
         settings=settings("title"),
     script:

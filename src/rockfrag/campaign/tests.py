@@ -1,6 +1,5 @@
 """The table of a campaign: one row a test, what the table was told to do and what the object did."""
 
-import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.tests_file import read_columns, read_titles
+from rockfrag.fragility.tests_file import product_of, read_columns, read_titles
 from rockfrag.short_repr import short_repr
 
 MEASURED = "overturned"
@@ -60,17 +59,14 @@ def read_campaign(
     product it is.
     """
     source = Path(path).name
-    recipes = list(measures.values())
-    peaks = [columns[key] for key in ("amplitude_g", "lower_g", "upper_g") if key in columns]
-    raw = read_columns(
-        path,
-        labels=[columns[key] for key in ("test", "motion", "group", "which_way") if key in columns],
-        positive=[
-            *(factor for recipe in recipes for factor in recipe if isinstance(factor, str)),
-            *peaks,
-        ],
-        outcomes=[columns[key] for key in (MEASURED, *NOTED) if key in columns],
-    )
+    factors = [part for recipe in measures.values() for part in recipe if isinstance(part, str)]
+    keys = {
+        "label": ("test", "motion", "group", "which_way"),
+        "positive": ("amplitude_g", "lower_g", "upper_g"),
+        "outcome": (MEASURED, *NOTED),
+    }
+    kinds = {columns[key]: kind for kind, some in keys.items() for key in some if key in columns}
+    raw = read_columns(path, dict.fromkeys(factors, "positive") | kinds)
     tests = pd.DataFrame(
         {
             "test": raw[columns["test"]],
@@ -82,8 +78,7 @@ def read_campaign(
     if len(doubled):
         raise InputError(f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test.")
     for name, recipe in measures.items():
-        factors = [raw[factor] if isinstance(factor, str) else factor for factor in recipe]
-        tests[name] = math.prod(factors)
+        tests[name] = product_of(raw, recipe)
     if "motion" not in columns:
         tests["motion"] = settings_of(tests, list(measures))
         tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
@@ -133,7 +128,9 @@ def _codes(
         return pd.DataFrame(index=range(len(tests)))
     source = Path(path).name
     names = [name for name in read_titles(path) if name != column]
-    table = read_columns(path, labels=[column], outcomes=names).set_index(column)
+    table = read_columns(path, {column: "label"} | dict.fromkeys(names, "outcome")).set_index(
+        column
+    )
     if not set(tests) & set(table.index):
         raise InputError(
             f"{source}: has none of the {len(tests)} tests; check that the column {column!r} has their names."

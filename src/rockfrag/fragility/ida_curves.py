@@ -153,16 +153,11 @@ def fragility_table(
         One row per configuration, motion and amplitude, with ``motion``, ``amplitude_g``,
         ``overturned``, the columns ``by`` and ``earthquake``, and the measures
         (:func:`with_measures`).
-    columns
-        Columns of the intensity measures.
-    by
-        Columns that tell the curves apart.
-    earthquake
-        Column of the earthquake, whose resampling gives the limits; None resamples motions.
-    record_set
-        Hash of the motions (:func:`record_set_hash`).
-    level
-        Confidence level of the limits.
+    columns, by, earthquake
+        Columns of the measures, of what tells the curves apart, and of the earthquake, whose resampling gives the
+        limits; None resamples motions.
+    record_set, level
+        Hash of the motions (:func:`record_set_hash`), and confidence level of the limits.
 
     Returns
     -------

@@ -30,10 +30,9 @@ class MeasureSelection:
 
     Attributes
     ----------
-    recommended
-        Column of the recommended measure; empty where no measure has a rising curve.
-    name
-        The same as the field writes it, for example ``PGV``.
+    recommended, name
+        Column of the recommended measure, and what the field calls it, for example ``PGV``; empty where no measure
+        has a rising curve.
     table
         One row per measure, best first: ``measure``, ``im``, ``unit``, ``theta``, ``beta``
         (efficiency: the smaller the better), ``beta_lower``, ``beta_upper``, ``aic``, ``auc``,
@@ -56,16 +55,14 @@ class MeasureSelection:
 def area_under_curve(outcomes: Observations) -> float:
     """Probability that an overturned test had the larger measure than a survived one; ties half.
 
-    NaN where all tests agree.
-
     Parameters
     ----------
     outcomes
-        Outcomes with their measure, see :class:`Observations`.
+        Outcomes with their measure.
 
     Returns
     -------
-    The area [-], from 0 to 1.
+    The area [-], from 0 to 1; NaN where all tests agree.
     """
     fell, stood = outcomes.overturned, outcomes.trials - outcomes.overturned
     _, level = np.unique(outcomes.im, return_inverse=True)
@@ -126,20 +123,13 @@ def recommend_measure(
 
     Parameters
     ----------
-    table
-        One row per test, with a column per measure.
-    measures
-        Columns of the measures, at least one.
-    given
-        Columns (magnitude, distance, …) against which sufficiency is tested.
-    overturned, motion, earthquake
-        Names of columns.
-    level
-        Of the limits of β.
-    replicates, seed
-        Of the bootstrap over motions (earthquakes where given) for ``chosen_fraction``.
-    source
-        What messages call the table.
+    table, measures
+        One row per test, and its columns of measures.
+    given, overturned, motion, earthquake
+        Columns of what sufficiency is tested against (magnitude, distance, …), and of each test.
+    level, replicates, seed, source
+        Of the limits of β; of the bootstrap over motions (earthquakes where given) for ``chosen_fraction``; what
+        messages call the table.
 
     Returns
     -------

@@ -75,8 +75,7 @@ def check_vector(
 
     Returns
     -------
-    VectorChecks
-        p value and non-parametric surface.
+    The :class:`VectorChecks`.
     """
     logs = [np.log(positive(table, column)) for column in fit.measures]
     outcome = read_observations(table, overturned)

@@ -9,7 +9,6 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number
-from rockfrag.motions.checks import peaks
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 
@@ -191,5 +190,5 @@ def _at(motion: Motion, begin: float, dt: float, count: int) -> Motion:
         left_out_at_beginning_s=begin,
         left_out_at_end_s=float(f"{max(end, 0.0):.9g}"),
         interpolated=not same,
-        **peaks(motion, samples),
+        **motion.peaks(samples),
     )

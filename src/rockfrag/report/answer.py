@@ -1,12 +1,17 @@
 """What stands first on the page of any study: the question, what was found, what to do, and what it rests on."""
 
-import numpy as np
+from collections.abc import Sequence
 
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from rockfrag.figure_style import BLACK, COLUMN_WIDTH, one_panel, plain_log
 from rockfrag.report import findings
-from rockfrag.report.figures.answer import strength_figure
+from rockfrag.report.figures.amplitudes import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results, figure_of
-from rockfrag.report.sides import sides_of
-from rockfrag.report.wording import Macros, said, sentence
+from rockfrag.report.wording import Macros, said, sentence, shortened
 
 FEW = 10
 """Intervals over fewer earthquakes than this rest on little."""
@@ -67,7 +72,9 @@ def sentences(results: Results) -> list[Finding]:
     if results.study.has_pairs:
         return [
             *found,
-            findings.pedestal_effect(results.table("pedestal/effects"), sides_of(results.study))[0],
+            findings.pedestal_effect(
+                results.table("pedestal/effects"), findings.sides_of(results.study)
+            )[0],
         ]
 
     resurrections = findings.resurrections_found(
@@ -120,6 +127,55 @@ def _figure(results: Results) -> FigureSpec:
     names = [configuration.name for configuration in results.study.configurations]
     text = says.answer_figure(sentences(results)[0], results.level if len(curves) else "")
     return figure_of(text, "answer", lambda: strength_figure(results.tests, curves, names))
+
+
+MOST_ROWS = 24
+"""More configurations than this are not legible; the first are drawn."""
+
+
+def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[str]) -> Figure:
+    """Draw a row for each configuration: its tests, and its curves with medians of PGA [g], if any."""
+    shown = list(names)[:MOST_ROWS]
+    with one_panel(COLUMN_WIDTH, 0.8 + 0.33 * len(shown)) as (figure, axes):
+        for y, name in enumerate(shown):
+            rows = drawn_tests(tests[tests["configuration"] == name])
+            colour = SIDE_COLOUR[str(rows["pedestal"].iloc[0])]
+            known = ~(rows["up"] | rows["down"])
+            # carets to the right and to the left for bounds
+            for own, marker, size in ((known, "|", 7), (rows["up"], 5, 5), (rows["down"], 4, 5)):
+                x = rows.loc[own, "a"].to_numpy(dtype=float)
+                axes.plot(x, np.full(x.size, y + 0.12), ls="", marker=marker, color=colour, ms=size)
+            _median(figure, curves[curves["configuration"] == name], y - 0.2)
+        axes.set_ylim(len(shown) - 0.4, -0.6)
+        axes.set_yticks(range(len(shown)), [shortened(name, 20) for name in shown])
+        axes.tick_params(axis="y", length=0)
+        axes.set(xscale="log", xlabel="Overturning amplitude [g]")
+        low, high = axes.get_xlim()
+        axes.set_xlim(min(low, 0.8 * high), high)
+        plain_log(axes, "x")
+        sides = list(dict.fromkeys(tests["pedestal"]))
+        handles = []
+        for side in sides if len(sides) > 1 else []:
+            words, colour = f"tests {SIDE_NAME[side]}", SIDE_COLOUR[side]
+            handles.append(Line2D([], [], ls="", marker="|", color=colour, ms=8, label=words))
+        if len(curves):
+            words = "median, interval"
+            handles.append(Line2D([], [], color=BLACK, marker="D", mfc="white", ms=4, label=words))
+        if tests["amplitude_g"].isna().any():
+            handles.append(Line2D([], [], ls="", marker=5, color=GREY, label="bound only"))
+        if handles:
+            figure.legend(handles=handles, loc="outside upper center", ncols=2, handlelength=1.4)
+        return figure
+
+
+def _median(figure: Figure, curve: pd.DataFrame, y: float) -> None:
+    """Mark a median and its interval, where there are any."""
+    axes = figure.axes[0]
+    for row in curve.to_dict("records"):
+        limits = [row["theta_lower"], row["theta_upper"]]
+        if np.isfinite(limits).all() and limits[0] < limits[1]:
+            axes.plot(limits, [y, y], color=BLACK, lw=1.2)
+        axes.plot(row["theta"], y, "D", mec=BLACK, mfc="white", ms=4)
 
 
 def rests_on(results: Results) -> list[str]:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 
 import pandas as pd
 from markupsafe import Markup
@@ -32,17 +31,17 @@ from rockfrag.report.part import (
     finding_of,
     section_of,
 )
-from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import Macros, estimate, estimates, number, one_line, probability, said
 from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
+from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
 
 
-def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
+def run(job: Job[CampaignStudy]) -> Results:
     """Draw the figures of a campaign and write its page, ``report.html``, beside the tables of its stages."""
-    tables = {name: pd.read_parquet(folder / f"{name}.parquet") for name in TABLES}
+    study, tables = job.study, {name: job.table(name) for name in TABLES}
     sections = [
         _agreement(study, tables),
         _fragility(study, tables),
@@ -52,15 +51,10 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         _conditioning(study, tables),
     ]
     tests = tables["tests"]
-    write_page(
-        folder,
-        _answer(study, tables, sections),
-        sections,
-        title=study.title,
-        lead=one_line(says.lead(tests, _motion(study))),
-        provenance=provenance(study, {"Tests": study.tests.name}),
-        basis="measured",
-    )
+    lead, about = one_line(says.lead(tests, _motion(study))), {"Tests": study.tests.name}
+    answer = _answer(study, tables, sections)
+    write_page(job, answer, sections, about, lead=lead, basis="measured")
+    yield from ()
 
 
 def _percent(row: Row) -> str:

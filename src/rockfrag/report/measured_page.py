@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -10,14 +9,14 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from rockfrag.figure_style import note_figure
-from rockfrag.fragility.user_table import UserFragility
+from rockfrag.fragility.user_table import UserFragility, fit_user_table
 from rockfrag.report.figures.fragility import calibration_figure, measures_figure
 from rockfrag.report.page import Column, estimated, p_values, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, finding_of, section_of
-from rockfrag.report.provenance import provenance
 from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import Macros, estimates, one_line, said
+from rockfrag.stages.job import Job, Results
 from rockfrag.study.measured_table import MeasuredTable
 
 _CAPTIONS = {
@@ -28,6 +27,37 @@ _CAPTIONS = {
 
 
 says = Macros("rockfrag.report", "measured_page.j2")
+
+
+def run(job: Job[MeasuredTable]) -> Results:
+    """Yield the fitted tables; draw the figures and write the page, ``report.html``."""
+    study = job.study
+    found = fit_user_table(
+        study.table,
+        study.measures,
+        overturned=study.overturned,
+        motion=study.motion,
+        earthquake=study.earthquake,
+        given=study.given,
+        level=study.confidence,
+        replicates=study.replicates,
+        seed=study.seed,
+    )
+    tables, specs = result_tables(found), figure_specs(found)
+    yield from tables.items()
+    answer = _answer(study, found, specs)
+    sections = [
+        _choice(tables["recommendation"], answer.sentences[0]),
+        _curves(study, tables, specs),
+    ]
+    both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
+    if both:
+        sections.append(both)
+    digest = tables["fragility"]["record_set_sha256"].iloc[0]
+    values = f"{study.table.name}, SHA-256 of the values used {digest}"
+    lead = one_line(says.lead(found.tests))
+    write_page(job, answer, sections, {"Table": values}, lead=lead, basis="measured")
+    job.log.info("%s", found.choice.words)
 
 
 def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
@@ -61,31 +91,6 @@ def figure_specs(found: UserFragility) -> dict[str, FigureSpec]:
         name: FigureSpec(name, f"{text} {found.choice.words}", text, drawings.get(name, nothing))
         for name, text in _CAPTIONS.items()
     }
-
-
-def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Path) -> None:
-    """Draw the figures and write the page, ``report.html``."""
-    tables = result_tables(found)
-    specs = figure_specs(found)
-    answer = _answer(study, found, specs)
-    sections = [
-        _choice(tables["recommendation"], answer.sentences[0]),
-        _curves(study, tables, specs),
-    ]
-    both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
-    if both:
-        sections.append(both)
-    digest = tables["fragility"]["record_set_sha256"].iloc[0]
-    values = f"{study.table.name}, SHA-256 of the values used {digest}"
-    write_page(
-        folder,
-        answer,
-        sections,
-        title=study.title,
-        lead=one_line(says.lead(found.tests)),
-        provenance=provenance(study, {"Table": values}),
-        basis="measured",
-    )
 
 
 def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, FigureSpec]) -> Answer:

@@ -189,26 +189,6 @@ def inline_svg(svg: str, name: str, alt: str) -> Markup:
     ).format(box[1] if box else "", alt, Markup(inner.strip()))
 
 
-@dataclass(frozen=True)
-class _Chapter:
-    """A section with its pictures and its tables apart, as they stand on the page."""
-
-    section: Section
-    pictures: Sequence[Picture]
-    tables: Sequence[Markup]
-
-
-def _chapter(
-    section: Section, pictures: Mapping[str, Picture], shown: FigureSpec | None
-) -> _Chapter:
-    """Part a section's figures, but for the one that the answer shows already, from its tables."""
-    specs = [part for part in section.parts if isinstance(part, FigureSpec) and part is not shown]
-    drawn = [pictures[spec.name] for spec in specs]
-    return _Chapter(
-        section, drawn, [part for part in section.parts if isinstance(part, Markup) and part]
-    )
-
-
 def _texts(answer: Answer, sections: Sequence[Section]) -> str:
     """All that a page says in words, its tables included."""
     words = [sentence.said for sentence in answer.sentences]
@@ -252,8 +232,8 @@ def render(
         title=title,
         lead=lead,
         answer=answer,
-        answer_picture=answer.figure and pictures[answer.figure.name],
-        chapters=[_chapter(section, pictures, answer.figure) for section in sections],
+        sections=sections,
+        pictures=pictures,
         glossary=terms_used(_texts(answer, sections)),
         provenance=provenance,
         basis=basis,

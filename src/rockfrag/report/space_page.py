@@ -1,36 +1,29 @@
 """The report of a study of bodies in space: medians over planar ones, and what they come from."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
+import numpy as np
 import pandas as pd
 from markupsafe import Markup
+from matplotlib.figure import Figure
 
+from rockfrag import figure_style as style
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.report.figures.space import WORDS, fractions_figure, ratios_figure, words_of
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Column, estimated, table_html
 from rockfrag.report.part import Answer, Finding, Section, figure_of, finding_of
-from rockfrag.report.provenance import provenance
 from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import Macros, one_line, said
-from rockfrag.rocking.space_medians import LOSS, PLANAR, body_of
+from rockfrag.rocking.space_medians import LOSS, NO_LOSS, PLANAR, body_of
+from rockfrag.stages.job import Job, Results
 from rockfrag.study.space import SpaceStudy
 
 says = Macros("rockfrag.report", "space_page.j2")
 
 
-def write_space_report(
-    study: SpaceStudy,
-    medians: pd.DataFrame,
-    fractions: pd.DataFrame,
-    ground: Sequence[Motion],
-    folder: Path,
-) -> None:
-    """Draw the figures of a study of bodies in space and write its page, ``report.html``.
-
-    ``ground`` are the components of its records, both of each in turn.
-    """
+def run(job: Job[SpaceStudy]) -> Results:
+    """Draw the figures of a study of bodies in space and write its page, ``report.html``."""
+    study, medians, fractions = job.study, job.table("medians"), job.table("fractions")
     ratios = figure_of(says.ratios_figure(), "ratios", lambda: ratios_figure(medians))
     levels = figure_of(says.fractions_figure(), "fractions", lambda: fractions_figure(fractions))
     findings = [_finding(base, medians) for base in study.bases]
@@ -45,15 +38,9 @@ def write_space_report(
         Section("medians", "Medians", f"{findings[0].headline}.", [], [_table(medians), ratios]),
         Section("fractions", "Fractions by level", "What the medians come from.", [], [levels]),
     ]
-    write_page(
-        folder,
-        answer,
-        sections,
-        title=study.title,
-        lead=one_line(says.lead(study)),
-        provenance=provenance(study, {}),
-        live=_live(study, ground),
-    )
+    live = _live(study, job.motions("motions/ground"))
+    write_page(job, answer, sections, {}, lead=one_line(says.lead(study)), live=live)
+    yield from ()
 
 
 def _live(study: SpaceStudy, ground: Sequence[Motion]) -> Markup:
@@ -77,7 +64,7 @@ def _finding(base: str, medians: pd.DataFrame) -> Finding:
 
 
 def _table(medians: pd.DataFrame) -> Markup:
-    shown = medians.assign(body=[words_of(row) for _, row in medians.iterrows()])
+    shown = medians.assign(body=[_words_of(row) for _, row in medians.iterrows()])
     columns = [
         Column("body", "Base"),
         Column("slenderness", "Height over width", 1),
@@ -87,3 +74,66 @@ def _table(medians: pd.DataFrame) -> Markup:
         Column("flip_rate", "Flip rate", 2),
     ]
     return table_html(shown, columns, "Medians in space over planar ones, with 90 % intervals.")
+
+
+WORDS = {
+    "one_component": "one component",
+    "mean_direction": "mean of directions",
+    "worst_direction": "worst direction",
+}
+COLOURS = dict(zip(PLANAR, (style.BLUE, style.ORANGE, style.GREEN), strict=True))
+
+
+def _words_of(row: pd.Series) -> str:
+    """Return the base of a row in words, and that planar impacts lose nothing where they do not."""
+    without = ", no loss" if row["planar_impacts"] == NO_LOSS else ""
+    return f"{row['base']}{without}"
+
+
+def ratios_figure(medians: pd.DataFrame) -> Figure:
+    """Draw medians in space over the planar ones, with their limits."""
+    with style.one_panel(style.PAGE_WIDTH, 0.6 + 0.2 * len(medians)) as (figure, panel):
+        places = -np.arange(len(medians), dtype=float)
+        for k, name in enumerate(PLANAR):
+            value = medians[name].to_numpy()
+            limits = medians[[f"{name}_lower", f"{name}_upper"]].to_numpy()
+            off = places + 0.2 * (1 - k)
+            panel.hlines(off, *limits.T, color=COLOURS[name], lw=1.0)
+            panel.plot(value, off, "os^"[k], color=COLOURS[name], ms=3.5, label=WORDS[name])
+        panel.axvline(1.0, color=style.BLACK, lw=0.8, ls="--")
+        names = [
+            f"{_words_of(r)}, {r['slenderness']:g}, {r['height_m']:g} m"
+            for _, r in medians.iterrows()
+        ]
+        panel.set_yticks(places, names)
+        panel.set_ylim(places[-1] - 0.6, 0.6)
+        panel.set_xlabel("Median level in space over that of planar rocking [-]; unsafe below 1")
+        panel.set_ylabel("Base, height over width, height")
+        figure.legend(loc="outside upper center", ncols=3)
+        return figure
+
+
+def fractions_figure(fractions: pd.DataFrame) -> Figure:
+    """Draw the fraction of records that topple each body in space and in the plane, one panel a body."""
+    bodies = list(fractions.groupby(["base", "slenderness", "height_m"], sort=False))
+    columns = min(len(bodies), 6)
+    rows = -(-len(bodies) // columns)
+    with style.figure_style():
+        figure = style.new_figure(style.PAGE_WIDTH, 0.6 + 1.35 * rows)
+        panels = figure.subplots(rows, columns, sharey=True, squeeze=False)
+        for panel, (about, part) in zip(panels.flat, bodies, strict=False):
+            base, slenderness, height = about
+            first = part[part["planar_impacts"] == part["planar_impacts"].iloc[0]]
+            panel.plot(first["level_g"], first["space"], color=style.RED, label="in space")
+            for name in PLANAR:
+                line = {"color": COLOURS[name], "label": WORDS[name]}
+                panel.plot(first["level_g"], first[name], lw=0.9, **line)
+            style.plain_log(panel, "x")
+            panel.set_title(f"{base}\n{slenderness:g}, {height:g} m", loc="left")
+        for panel in list(panels.flat)[len(bodies) :]:
+            panel.set_visible(False)
+        figure.supxlabel("Level, geometric mean of both peaks [g]", fontsize=8)
+        figure.supylabel("Fraction of records that topple it [-]", fontsize=8)
+        handles = panels.flat[0].get_legend_handles_labels()
+        figure.legend(*handles, loc="outside upper center", ncols=4)
+        return figure

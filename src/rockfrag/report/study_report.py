@@ -1,7 +1,8 @@
-"""The report of a study: its parts in order, every figure drawn once, and one page."""
+"""The report of a study: its parts in order, every figure drawn once, one page, and what made it."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from importlib.metadata import version
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -10,56 +11,110 @@ from markupsafe import Markup
 
 from rockfrag.figure_style import save_figure
 from rockfrag.files import write_text
+from rockfrag.plugins import plugins_of
 from rockfrag.processes import in_processes
+from rockfrag.report.answer import study_answer
 from rockfrag.report.live import live_kernel
-from rockfrag.report.page import Picture, render
-from rockfrag.report.part import Answer, FigureSpec, Part, Results, Section
-from rockfrag.report.provenance import study_provenance
+from rockfrag.report.page import MOST_TABLE_ROWS, Picture, render
+from rockfrag.report.part import Answer, FigureSpec, Part, Section
+from rockfrag.report.part import Results as StudyResults
+from rockfrag.report.sections import PARTS
 from rockfrag.report.wording import counted
+from rockfrag.stages.job import Job, Results, package_digest
 from rockfrag.study.study import Study
 
-FIGURES = "figures"
-"""Folder of the figures in that of the results, each as SVG and as PNG."""
+_LIBRARIES = ("numpy", "scipy", "pandas", "numba", "statsmodels", "obspy", "matplotlib")
 
 
-def write_report(
-    study: Study,
-    parts: Sequence[Part],
-    answer: Callable[[Results], Answer],
-    folder: Path,
-    processes: int = 1,
-) -> None:
+def run(job: Job[Study]) -> Results:
     """Draw the figures of a study and write its page, ``report.html``, into the folder of its results.
 
-    Of the parts those that the study did not ask for are left out; their tables, the IDA curves and the motions
-    are in the folder. ``answer`` says what stands first, and several processes may draw at once.
+    Parts that the study did not ask for are left out; the tables, IDA curves and motions of the others are there.
     """
-    results = Results(study, folder)
+    study, results = job.study, StudyResults(job.study, job.folder)
+    parts: Sequence[Part] = PARTS
+    answer: Callable[[StudyResults], Answer] = study_answer
+    for plugin in plugins_of(study):
+        parts, answer = plugin.report(study, parts, answer)
     asked = [part for part in parts if part.asked(study)]
     sections = [section for part in asked if (section := part.section(results)) is not None]
-    write_page(
-        folder,
-        answer(results),
-        sections,
-        processes,
-        title=study.title,
-        lead=_lead(results),
-        provenance=study_provenance(results),
-        live=_live(results),
+    earthquakes = len({record.get("earthquake") for record in results.records})
+    lead = (
+        f"Rocking and overturning of {counted(len(study.configurations), 'configuration')} under "
+        f"{counted(len(results.records), 'record')} of {counted(earthquakes, 'earthquake')}"
+        + (", on the floors of a building." if study.building else ".")
     )
+    page = {"lead": lead, "live": _live(results), "libraries": _LIBRARIES}
+    write_page(job, answer(results), sections, _settings(results), **page)
+    yield from ()
+
+
+def _settings(results: StudyResults) -> dict[str, str]:
+    """What the numbers of a simulated study depend on."""
+    study, amplitudes = results.study, results.study.amplitudes
+    shown = study.catalogue.head(MOST_TABLE_ROWS)
+    records = ", ".join(_record(row) for row in shown.to_dict("records"))
+    if rest := len(study.catalogue) - len(shown):
+        records += f" and {rest} more of {study.catalogue_file.name}"
+    return {
+        "Amplitudes": f"{amplitudes.lowest_g:g} to {amplitudes.highest_g:g} g in steps of "
+        f"{amplitudes.step_percent:g} %",
+        "Step protocol": f"from {amplitudes.lowest_g:g} g in steps of "
+        f"{study.protocol_step_percent:g} %, read before overturning",
+        "Records": records,
+        "Motions, SHA-256": ", ".join(sorted(set(results.table("fragility")["record_set_sha256"]))),
+    }
+
+
+def _record(row: Mapping[Any, Any]) -> str:
+    checked = f", SHA-256 {row['sha256'][:12]} checked" if row["sha256"] else ""
+    return f"{row['name']} ({row['source']}{checked})"
+
+
+def _live(results: StudyResults) -> Markup:
+    """Return the simulation in the page; nothing where it could not give the outcomes of the study."""
+    study = results.study
+    if not study.simulated_in_page:
+        return Markup()
+    systems = {configuration.name: configuration for configuration in study.configurations}
+    return live_kernel(systems, results.floors, results.outcomes)
 
 
 def write_page(
-    folder: Path, answer: Answer, sections: Sequence[Section], processes: int = 1, **page: Any
+    job: Job[Any],
+    answer: Answer,
+    sections: Sequence[Section],
+    about: Mapping[str, str],
+    libraries: Sequence[str] = (),
+    **page: Any,
 ) -> None:
-    """Draw the figures of a page into a folder, and write the page there, ``report.html``.
+    """Draw the figures of a page as SVG and PNG into the folder ``figures``, and write it, ``report.html``.
 
-    What else it shows goes to :func:`rockfrag.report.page.render`.
+    Its last section says what a reader needs to get the same results again, also what is in ``about`` and
+    ``libraries``; no dates, no names of machines. What else it shows goes to :func:`rockfrag.report.page.render`.
     """
-    pictures = draw_all(figures_of(answer, sections), folder / FIGURES, processes)
-    write_captions(answer, sections, folder / FIGURES)
-    text = render(answer=answer, sections=sections, pictures=pictures, **page)
-    write_text(text, folder / "report.html")
+    study, figures = job.study, job.folder / "figures"
+    pictures = draw_all(figures_of(answer, sections), figures, job.threads)
+    write_captions(answer, sections, figures)
+    digest = package_digest(*(plugin.rules.parent for plugin in plugins_of(study)))
+    provenance = {
+        "Configuration": study.source.name,
+        **about,
+        "Seed": str(study.seed),
+        "Source": f"rockfrag {version('rockfrag')}, digest {digest}",
+    }
+    if libraries:
+        provenance["Libraries"] = ", ".join(f"{name} {version(name)}" for name in libraries)
+    text = render(
+        title=study.title,
+        answer=answer,
+        sections=sections,
+        pictures=pictures,
+        provenance=provenance,
+        **page,
+    )
+    write_text(text, job.folder / "report.html")
+    job.log.info("%s", job.folder / "report.html")
 
 
 def page_text(answer: Answer, sections: Sequence[Section], **page: Any) -> str:
@@ -108,23 +163,3 @@ def _drawn(spec: FigureSpec, folder: Path) -> Path:
     svg = folder / f"{spec.name}.svg"
     save_figure(spec.draw(), svg, folder / f"{spec.name}.png")
     return svg
-
-
-def _live(results: Results) -> Markup:
-    """Return the simulation in the page; nothing where it could not give the outcomes of the study."""
-    study = results.study
-    if not study.simulated_in_page:
-        return Markup()
-    systems = {configuration.name: configuration for configuration in study.configurations}
-    return live_kernel(systems, results.floors, results.outcomes)
-
-
-def _lead(results: Results) -> str:
-    study, motions = results.study, len(results.records)
-    earthquakes = len({record.get("earthquake") for record in results.records})
-    return (
-        f"Rocking and overturning of {counted(len(study.configurations), 'configuration')} under "
-        f"{counted(motions, 'record')} of {counted(earthquakes, 'earthquake')}"
-        + (", on the floors of a building" if study.building else "")
-        + "."
-    )

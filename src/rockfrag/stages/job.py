@@ -1,8 +1,10 @@
 """A job: one rule of the workflow at work on one study."""
 
+import hashlib
 import logging
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -81,3 +83,20 @@ class Job(Generic[S]):
 def memory_mb(study: Any) -> int:
     """Memory that a cluster should lend to a job [MiB]: libraries, and what is known of every IDA curve."""
     return _LIBRARIES_MB + int(getattr(study, "ida_curves", 0) * _BYTES_A_IDA / 2**20)
+
+
+PACKAGE = Path(__file__).resolve().parents[1]
+
+
+@cache
+def package_digest(*plugins: Path) -> str:
+    """Return a digest of source and data of the whole package and of plugins' folders: an edit computes again."""
+    digest = hashlib.sha256()
+    for folder in (PACKAGE, *plugins):
+        for path in sorted(folder.rglob("*")):
+            # what Python and numba keep there of a run is no source
+            if path.is_file() and path.parent.name != "__pycache__":
+                digest.update(path.relative_to(folder).as_posix().encode())
+                digest.update(b"\0")
+                digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]

@@ -18,7 +18,7 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from rockfrag import figure_style as style
-from rockfrag.report.sides import WITH_PEDESTAL, Sides
+from rockfrag.report.findings import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import shortened
 
 GREY = "#777777"
@@ -82,17 +82,9 @@ def top(rows: pd.DataFrame) -> float:
     return 1.15 * float(rows["a"].max())
 
 
-def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
-    """Amplitudes of each object, without and with a pedestal, in tests of one definition, with their means."""
-    return _amplitudes_by("object", tests, means[means["by"] == "configuration"])
-
-
-def amplitudes_by_floor(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
-    """Amplitudes on each floor, without and with a pedestal, in tests of one definition, with their means."""
-    return _amplitudes_by("floor", tests, means[means["by"] == "floor"])
-
-
-def _amplitudes_by(by: str, tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
+def amplitudes_by(by: str, tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
+    """Amplitudes by ``object`` or ``floor``, with and without a pedestal, of one definition, with their means."""
+    means = means[means["by"] == ("configuration" if by == "object" else by)]
     levels, rows = list(dict.fromkeys(tests[by])), drawn_tests(tests)
     width = style.PAGE_WIDTH if by == "object" and len(levels) > 5 else style.COLUMN_WIDTH
     with style.one_panel(width, 2.8) as (figure, axes):

@@ -1,20 +1,26 @@
 """Overturning amplitudes: as recorded, of every test, and side by side by object, floor and pedestal."""
 
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
+import numpy as np
 import pandas as pd
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
 
+from rockfrag import figure_style as style
 from rockfrag.files import file_name
 from rockfrag.pedestal.paired_tests import with_counterparts
 from rockfrag.report import findings
 from rockfrag.report.figures import amplitudes as figures
-from rockfrag.report.figures import as_recorded, ida
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.words import says
-from rockfrag.report.sides import sides_of
-from rockfrag.report.wording import amplitude
+from rockfrag.report.wording import amplitude, label, shortened
 
 _MOTION = (Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion"))
 _MEANS = (
@@ -40,8 +46,8 @@ def _as_recorded(results: Results) -> Section:
     columns = [*_MOTION, Column("pga_g", "Peak [g]", 3), *(Column(name, name) for name in names)]
     found = findings.recorded_found(recorded)
     motions = recorded["motion"].nunique()
-    text = says.as_recorded_figure(found, motions, as_recorded.MOST_ROWS)
-    figure = figure_of(text, "as_recorded", lambda: as_recorded.recorded_map(recorded))
+    text = says.as_recorded_figure(found, motions, MOST_MOTIONS)
+    figure = figure_of(text, "as_recorded", lambda: recorded_map(recorded))
     texts = [_outcome(row) for row in recorded.to_dict("records")]
     shown = _wide(recorded, texts, ("earthquake", "floor", "motion", "pga_g"))
     caption = "Outcome under each motion as recorded."
@@ -83,8 +89,8 @@ def _maps(results: Results) -> list[FigureSpec]:
         configurations = list(dict.fromkeys(own["configuration"]))
         curves = resurrections[resurrections["configuration"].isin(configurations)]
         fallen, motions = curves["first_upper"].count(), curves["motion"].nunique()
-        text = says.outcomes_figure(name, fallen, len(curves), motions, ida.MOST_ROWS)
-        draw = partial(ida.outcome_map, own, configurations)
+        text = says.outcomes_figure(name, fallen, len(curves), motions, MOST_ROWS)
+        draw = partial(outcome_map, own, configurations)
         specs.append(figure_of(text, f"outcomes_{file_name(name)}", draw))
     return specs
 
@@ -103,12 +109,12 @@ def _comparisons(results: Results) -> Section | None:
         what=lambda t: t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
     )
     text = says.by_object_figure(len(results.objects), words, study.has_pairs)
-    draw = partial(figures.amplitudes_by_object, tests, means)
+    draw = partial(figures.amplitudes_by, "object", tests, means)
     parts: list[Any] = [figure_of(text, "amplitudes_by_object", draw)]
     of_floors = tests["floor"].nunique()
     if of_floors > 1:
         text = says.by_floor_figure(of_floors)
-        draw = partial(figures.amplitudes_by_floor, tests, means)
+        draw = partial(figures.amplitudes_by, "floor", tests, means)
         parts.append(figure_of(text, "amplitudes_by_floor", draw))
     if study.has_pairs:
         parts.append(_scatter(results))
@@ -120,11 +126,122 @@ def _comparisons(results: Results) -> Section | None:
 
 
 def _scatter(results: Results) -> FigureSpec:
-    about = sides_of(results.study)
+    about = findings.sides_of(results.study)
     ratio = findings.ratio_of(results.table("pedestal/effects"), about)("whole", "all")
     tests, _ = with_counterparts(results.tests, results.study.counterparts)
     draw = partial(figures.pedestal_scatter, tests, ratio, about)
     return figure_of(says.pedestal_scatter_figure(about, ratio), "with_and_without_pedestal", draw)
+
+
+MOST_MOTIONS = 30
+"""More motions than this are not legible; the strongest are drawn."""
+
+_SHADES = ListedColormap(["#ffffff", "#d6e6f2", "#a9cbe3", "#74abd2", "#3d86bb"])
+"""Rotation from none to the critical angle; darker is nearer to overturning."""
+
+_OVERTURNED = "#8c2d04"
+
+
+def recorded_map(recorded: pd.DataFrame) -> Figure:
+    """Draw a row for each motion and a column for each configuration, shaded by the largest rotation."""
+    names = list(dict.fromkeys(recorded["configuration"]))
+    motions = recorded.drop_duplicates("motion")
+    if len(motions) > MOST_MOTIONS:
+        motions = motions.nlargest(MOST_MOTIONS, "pga_g")
+    rows = list(motions["motion"])
+    shown = recorded[recorded["motion"].isin(rows)]
+    rotation = np.where(shown["overturned"], np.inf, shown["peak_rotation"].clip(0.0, 0.999))
+    table = shown.assign(rotation=rotation).pivot_table(
+        index="motion", columns="configuration", values="rotation", aggfunc="first"
+    )
+    table = table.reindex(index=rows, columns=names)
+    sensitive = shown[shown["fraction_near"].between(0, 1, inclusive="neither")]
+    with style.one_panel(style.WIDEST, 1.35 + 0.185 * len(rows)) as (figure, axes):
+        colours = _SHADES.with_extremes(over=_OVERTURNED, bad="#ffffff")
+        mesh = axes.pcolormesh(
+            np.arange(len(names) + 1) - 0.5,
+            np.arange(len(rows) + 1) - 0.5,
+            np.where(np.isinf(table.to_numpy(dtype=float)), 2.0, table.to_numpy(dtype=float)),
+            cmap=colours,
+            vmin=0.0,
+            vmax=1.0,
+            edgecolors="#cccccc",
+            linewidth=0.4,
+        )
+        axes.plot(
+            [names.index(name) for name in sensitive["configuration"]],
+            [rows.index(motion) for motion in sensitive["motion"]],
+            ls="",
+            marker="o",
+            ms=3.4,
+            mfc="white",
+            mec=style.BLACK,
+            mew=0.7,
+        )
+        axes.set_ylim(len(rows) - 0.5, -0.5)
+        peaks = dict(zip(motions["motion"], motions["pga_g"], strict=True))
+        axes.set_yticks(range(len(rows)), [f"{label(row)}, {peaks[row]:.2f} g" for row in rows])
+        axes.set_xticks(range(len(names)), [shortened(name, 16) for name in names], rotation=90)
+        axes.tick_params(length=0, labelsize=7)
+        axes.xaxis.tick_top()
+        axes.spines[:].set_visible(False)
+        bar = figure.colorbar(
+            mesh, ax=axes, location="bottom", extend="max", extendfrac=0.12, aspect=28, pad=0.02
+        )
+        bar.set_label("Rotation / critical angle (brown: overturned)")
+        return figure
+
+
+MOST_ROWS = 24
+"""More motions than this are not legible; the first are drawn."""
+
+_TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
+
+
+def outcome_map(ida: pd.DataFrame, configurations: Sequence[str]) -> Figure:
+    """Draw the amplitudes that overturn one object per motion, its configurations in one row of the figure."""
+    rows = ida[ida["configuration"].isin(list(configurations))]
+    motions = list(dict.fromkeys(rows["motion"]))[:MOST_ROWS]
+    height = 0.8 / len(configurations)
+    bars: dict[str, list[NDArray[np.float64]]] = {name: [] for name in configurations}
+    line = {motion: len(motions) - 1 - i for i, motion in enumerate(motions)}
+    for (motion, name), group in rows.groupby(["motion", "configuration"], sort=False):
+        if motion in line:
+            bottom = line[motion] + 0.4 - (list(configurations).index(str(name)) + 1) * height
+            bars[str(name)] += _bars(group, bottom, height)
+    low, high = rows["amplitude_g"].min(), rows["amplitude_g"].max()
+    with style.one_panel(style.WIDEST, 0.9 + 0.22 * len(motions)) as (figure, axes):
+        handles = []
+        for name, colour in zip(configurations, style.CONFIGURATION_COLOURS, strict=False):
+            axes.add_collection(PolyCollection(bars[name], facecolor=colour, linewidth=0))
+            handles.append(Patch(color=colour, label=f"{shortened(name)} overturns"))
+        axes.set_xscale("log")
+        axes.set_xlim(0.98 * low, 1.02 * high)
+        ticks = [tick for tick in _TICKS if low <= tick <= high] or [float(f"{low:.2g}")]
+        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        axes.minorticks_off()
+        axes.set_ylim(-0.6, len(motions) - 0.4)
+        axes.set_yticks(range(len(motions)), [label(name) for name in motions[::-1]])
+        axes.tick_params(axis="y", length=0, labelsize=7)
+        axes.set_xlabel("Peak acceleration of the motion [g]")
+        figure.legend(handles=handles, loc="outside upper center", ncols=2)
+        return figure
+
+
+def _bars(table: pd.DataFrame, bottom: float, height: float) -> list[NDArray[np.float64]]:
+    """Corners of a bar over each range of consecutive amplitudes that overturn."""
+    ordered = table.sort_values("amplitude_g")
+    amplitude = ordered["amplitude_g"].to_numpy(dtype=float)
+    # each amplitude stands for the range up to the next one
+    ratio = amplitude[-1] / amplitude[-2] if amplitude.size > 1 else 1.05
+    edges = np.append(amplitude, amplitude[-1] * ratio)
+    fallen = np.concatenate([[False], ordered["overturned"].to_numpy(), [False]])
+    starts = edges[np.flatnonzero(~fallen[:-1] & fallen[1:])]
+    ends = edges[np.flatnonzero(fallen[:-1] & ~fallen[1:])]
+    return [
+        np.array([(a, bottom), (b, bottom), (b, bottom + height), (a, bottom + height)])
+        for a, b in zip(starts, ends, strict=True)
+    ]
 
 
 AS_RECORDED = Part(_as_recorded)

@@ -1,25 +1,24 @@
 """The effect of the pedestal: ratios of amplitudes with and without it."""
 
+from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from markupsafe import Markup
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
-from rockfrag.report.figures.effects import forest_figure
-from rockfrag.report.findings import pedestal_effect, ratio_of
-from rockfrag.report.page import (
-    MOST_TABLE_ROWS,
-    Column,
-    Row,
-    by_row,
-    estimated,
-    p_values,
-    table_html,
-)
+from rockfrag import figure_style as style
+from rockfrag.report import page
+from rockfrag.report.figures.amplitudes import BAND, GREY
+from rockfrag.report.findings import WITH_PEDESTAL, Sides, pedestal_effect, ratio_of, sides_of
+from rockfrag.report.page import Column, Row, by_row, estimated, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.words import says
-from rockfrag.report.sides import WITH_PEDESTAL, Sides, sides_of
-from rockfrag.report.wording import has_interval, number, probability, sentence
+from rockfrag.report.wording import counted, has_interval, number, probability, sentence, shortened
 from rockfrag.shaketable.definitions import DEFINITION
 
 MOST_ROWS = 45
@@ -84,8 +83,8 @@ def _section(results: Results) -> Section:
             Column("definition", "Definition"),
             Column("method", "Method"),
             estimated("estimate", f"{ratio} [95 % interval]", 3, limits=("lower", "upper")),
-            p_values("p", "p"),
-            p_values("smallest_p", "Smallest possible p"),
+            page.p_values("p", "p"),
+            page.p_values("smallest_p", "Smallest possible p"),
             Column("remark", "Remark"),
         ]
         caption = "All pairs, by other methods and other ways to read the amplitude."
@@ -99,7 +98,7 @@ def _section(results: Results) -> Section:
 
 def _table(effects: pd.DataFrame, ratio: str) -> Markup:
     caption = "Effect by scope, step protocol."
-    if len(effects) > MOST_TABLE_ROWS:
+    if len(effects) > page.MOST_TABLE_ROWS:
         of_earthquakes = effects["scope"] == "earthquake"
         caption += f" Each of the {of_earthquakes.sum()} earthquakes is in pedestal/effects.csv."
         effects = effects[~of_earthquakes]
@@ -116,6 +115,84 @@ def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
     ratio = ratio_of(effects, about)("whole", "all")
     text = says.pedestal_effect_figure(about, left_out, ratio)
     return figure_of(text, "pedestal_effect", lambda: forest_figure(shown, about))
+
+
+NONE = (1 / 1.1, 1.1)
+"""Ratios between which an effect counts as none."""
+
+_TICKS = (0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.5, 2, 3, 5, 10)
+_MOST_TICKS = 7
+_LEAST_APART = 0.11
+"""Ticks nearer than this part of the axis would print over each other."""
+
+
+def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure:
+    """Ratio of amplitudes of every scope with its 95 % interval, and the ±10 % that counts as none."""
+    scope = effects["scope"].to_numpy()
+    # room for one empty line between the scopes
+    place = np.arange(len(effects)) + 0.7 * np.cumsum(np.r_[False, scope[1:] != scope[:-1]])
+    names = ["level", "units", "unit"]
+    labels = [_label(*row) for row in effects[names].itertuples(index=False, name=None)]
+    columns = ["lower", "ratio", "upper", "p_holm"]
+    figures = effects[columns].to_numpy(dtype=float)
+    with style.one_panel(style.COLUMN_WIDTH + 1.1, 0.9 + 0.19 * float(place[-1] + 1)) as (
+        figure,
+        axes,
+    ):
+        axes.axvspan(*NONE, color=BAND, lw=0)
+        axes.axvline(1.0, color=GREY, lw=0.8)
+        for y, (lower, ratio, upper, p) in zip(place, figures, strict=True):
+            if np.isfinite([lower, upper]).all():
+                axes.plot([lower, upper], [y, y], color=style.BLUE, lw=1.2)
+            axes.plot(ratio, y, "o", mec=style.BLUE, mfc=style.BLUE if p < 0.05 else "white", ms=5)
+        axes.set_yticks(place, labels)
+        axes.invert_yaxis()
+        axes.tick_params(axis="y", length=0)
+        ratio_axis(axes, figures[:, :3].ravel(), sides)
+        handles = [
+            Line2D(
+                [],
+                [],
+                color=style.BLUE,
+                marker="o",
+                mfc=style.BLUE,
+                label="differs from 1 (Holm, 5 %)",
+            ),
+            Line2D([], [], color=style.BLUE, marker="o", mfc="white", label="does not"),
+            Line2D([], [], color=BAND, lw=6, label="±10 %"),
+        ]
+        figure.legend(handles=handles, loc="outside upper center", ncols=3, handlelength=1.4)
+    return figure
+
+
+def _label(level: str, units: int, unit: str) -> str:
+    name = "all pairs" if level == "all" else shortened(level.replace("/", ", "), 30)
+    return f"{name} ({counted(int(units), 'earthquake' if unit == 'earthquake' else unit)})"
+
+
+def _too_near(ticks: Sequence[float], low: float, high: float) -> bool:
+    places = np.log(ticks) / np.log(high / low)
+    return bool(len(ticks) > 1 and np.diff(places).min() < _LEAST_APART)
+
+
+def ratio_axis(
+    axes: Axes, values: NDArray[np.float64] | Sequence[float], sides: Sides = WITH_PEDESTAL
+) -> None:
+    """A logarithmic axis of ratios with plain ticks that covers all values and the band of none."""
+    known = np.asarray(values, dtype=float)
+    known = known[np.isfinite(known) & (known > 0)]
+    # one interval without a useful limit may not press all others together
+    low = max(0.2, min(0.97 * known.min(initial=1.0), NONE[0] / 1.03))
+    high = min(5.0, max(1.03 * known.max(initial=1.0), NONE[1] * 1.03))
+    axes.set_xscale("log")
+    axes.set_xlim(low, high)
+    ticks = [tick for tick in _TICKS if low <= tick <= high]
+    for crowded in ((0.9, 1.1), (0.7, 1.2), (0.8, 1.5), (0.3, 3)):
+        if len(ticks) > _MOST_TICKS or _too_near(ticks, low, high):
+            ticks = [tick for tick in ticks if tick not in crowded]
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.minorticks_off()
+    axes.set_xlabel(sides.axis)
 
 
 PEDESTAL = Part(_section, asked=lambda study: study.has_pairs)

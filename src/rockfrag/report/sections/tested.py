@@ -1,14 +1,23 @@
 """What was tested: the bodies, the motions and the shaking table, and what a study went on without."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+import pandas as pd
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from rockfrag import figure_style as style
 from rockfrag.motions.declared import intensity_measures
-from rockfrag.report.figures.motion import MOST_PANELS, acceleration_histories
-from rockfrag.report.figures.shaker import shaker_limits
+from rockfrag.records.motion import Motion
+from rockfrag.report.figures.amplitudes import GREY, MARKERS, drawn_tests
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
+from rockfrag.report.sections.amplitudes import MOST_ROWS
 from rockfrag.report.sections.words import says
-from rockfrag.report.wording import number
+from rockfrag.report.wording import label, number, shortened
 from rockfrag.stages.tests import LIMITED
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
@@ -90,6 +99,87 @@ def _bodies(results: Results) -> Section:
     may_differ = results.study.slides or results.study.vertical
     table = table_html(shown, _BODIES, "The objects, alone and on their pedestals.")
     return section_of(says.bodies(len(shown), *ends, may_differ), "bodies", [table])
+
+
+def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
+    """Draw the amplitude at which each motion leaves the shaker's limits beside what lone objects need, if any."""
+    motions = list(limits["motion"])[:MOST_ROWS][::-1]
+    place = {motion: number for number, motion in enumerate(motions)}
+    lone = tests[tests["pedestal"] == "NP"]
+    rows = drawn_tests(lone if len(lone) else tests)
+    rows = rows[rows["motion"].isin(motions)]
+    names = list(dict.fromkeys(rows["configuration"]))
+    with style.one_panel(style.WIDEST, 1.2 + 0.22 * len(motions)) as (figure, axes):
+        largest = limits.set_index("motion")["limit_g"]
+        axes.barh(range(len(motions)), largest[motions], color="#dddddd", height=0.8)
+        handles: list[Artist] = [
+            Patch(color="#dddddd", label="up to the table's limit of the stated quantity")
+        ]
+        for number, name in enumerate(names):
+            marker, colour = (
+                MARKERS[number % len(MARKERS)],
+                style.OKABE_ITO[number % len(style.OKABE_ITO)],
+            )
+            own = rows[rows["configuration"] == name]
+            y = own["motion"].map(place).to_numpy(dtype=float)
+            (line,) = axes.plot(own["a"], y, ls="", marker=marker, mfc="none", mec=colour, ms=4)
+            line.set_label(f"{shortened(name)} overturns")
+            handles.append(line)
+            bounds = own["up"].to_numpy(dtype=bool)
+            axes.plot(own["a"].to_numpy()[bounds], y[bounds], ls="", marker=">", color=colour, ms=3)
+        reasons = limits.set_index("motion")["limited_by"]
+        for place_of, motion in enumerate(motions):
+            axes.text(
+                largest[motion],
+                place_of,
+                f" {reasons[motion]}",
+                va="center",
+                fontsize=6.5,
+                color=GREY,
+            )
+        axes.set_xlim(0, 1.2 * float(largest[motions].max()))
+        axes.set_yticks(range(len(motions)), [label(name) for name in motions])
+        axes.tick_params(axis="y", length=0)
+        axes.set_xlabel("Peak acceleration of the motion [g]")
+        figure.legend(handles=handles, loc="outside upper center", ncols=2)
+        return figure
+
+
+MOST_PANELS = 8
+"""More motions than this do not fit one figure; the first are drawn."""
+
+
+def _title(motion: Motion, peak_g: float) -> str:
+    """Name of the earthquake and of the record, and the peak."""
+    name, earthquake = motion.name, str(motion.metadata.get("earthquake") or "")
+    if earthquake.casefold() not in name.casefold():
+        name = f"{earthquake}, {name}"
+    return f"{shortened(name, 44)}: {peak_g:.2f} g"
+
+
+def acceleration_histories(motions: Sequence[Motion]) -> Figure:
+    """Draw the acceleration of each motion over time, one panel a motion, on the same scales.
+
+    The peak is marked. No more than ``MOST_PANELS`` motions are drawn.
+    """
+    shown = motions[:MOST_PANELS]
+    with style.figure_style():
+        figure = style.new_figure(style.COLUMN_WIDTH, 0.5 + 0.95 * len(shown))
+        panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+        highest = 1.12 * max(motion.pga for motion in shown) / GRAVITY
+        for panel, motion in zip(panels, shown, strict=True):
+            values = motion.acceleration / GRAVITY
+            peak = int(np.abs(values).argmax())
+            panel.axhline(0, color="#999999", linewidth=0.6, zorder=1)
+            panel.plot(motion.time, values, color=style.BLUE, linewidth=0.5)
+            panel.plot(motion.time[peak], values[peak], "o", color=style.RED, markersize=3)
+            panel.set_ylim(-highest, highest)
+            panel.set_title(_title(motion, abs(values[peak])), loc="left")
+        style.letter_panels(panels, size=6.5)
+        panels[-1].set_xlabel("Time [s]")
+        panels[-1].set_xlim(0, max(motion.time[-1] for motion in shown))
+        figure.supylabel("Acceleration [g]", fontsize=8)
+        return figure
 
 
 LEFT_OUT = Part(_left_out, asked=lambda study: study.keep_going)

@@ -24,7 +24,7 @@ def _section(results: Results) -> Section | None:
     slenderness = says.slenderness_figure(found[0].said if found else words)
     draw = partial(amplitudes.slenderness_figure, tests, means, results.slenderness)
     scatter = partial(amplitudes.pedestal_scatter, tests, whole)
-    by_floor = partial(amplitudes.amplitudes_by_floor, tests, means)
+    by_floor = partial(amplitudes.amplitudes_by, "floor", tests, means)
     parts = [
         figure_of(slenderness, "figure_4_1", draw),
         figure_of(says.scatter_figure(whole, levels), "figure_4_3", scatter),

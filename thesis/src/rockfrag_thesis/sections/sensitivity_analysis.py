@@ -12,12 +12,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockfrag.figure_style import BLACK, OKABE_ITO, WIDEST, one_panel
-from rockfrag.pedestal.power import benjamini_hochberg
+from rockfrag.pedestal.cluster_means import benjamini_hochberg
 from rockfrag.report.figures.amplitudes import BAND, GREY, MARKERS
-from rockfrag.report.figures.effects import NONE, ratio_axis
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, estimated, table_html
 from rockfrag.report.part import Part, Results, Section, figure_of, section_of
+from rockfrag.report.sections.pedestal import NONE, ratio_axis
 from rockfrag.report.wording import has_interval, one_line, probability, sentence, shortened
 from rockfrag.study.study import Study
 from rockfrag_thesis.sections import says
