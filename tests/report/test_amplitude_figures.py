@@ -18,7 +18,7 @@ from rockfrag.report.sections.amplitudes import outcome_map
 from rockfrag.report.sections.curves import fragility_figure
 from rockfrag.report.sections.pedestal import forest_figure, ratio_axis
 from rockfrag.report.sections.tested import shaker_limits
-from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
+from rockfrag.shaketable.definitions import mean_amplitudes
 from rockfrag_thesis.sections.counterparts import slenderness_figure
 
 OBJECTS = ("vase", "column & capital")

@@ -2,7 +2,7 @@
 
 A test that never overturned is an open marker with an arrow up, at the largest amplitude it survived;
 one that overturned at the first step has an arrow down. Neither is in a mean: means come from
-:func:`rockfrag.shaketable.mean_amplitudes.mean_amplitudes`, over motions that overturned all.
+:func:`rockfrag.shaketable.definitions.mean_amplitudes`, over motions that overturned all.
 """
 
 from collections.abc import Sequence
