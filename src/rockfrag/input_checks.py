@@ -82,13 +82,7 @@ def real_array(name: str, data: object, unit: str = "") -> NDArray[np.float64]:
     if values.dtype.kind == "c":
         raise InputError(f"{wanted}, got complex ones; take their real part if that is meant.")
     if values.dtype.kind not in "iuf" and values.size:
-        raise InputError(f"{wanted}, got {_kind(values)}.")
+        known = {"b": "booleans", "U": "text", "S": "text"}
+        kind = known.get(values.dtype.kind) or f"{type(values.ravel()[0]).__name__} objects"
+        raise InputError(f"{wanted}, got {kind}.")
     return np.ascontiguousarray(values, dtype=np.float64)
-
-
-def _kind(values: NDArray[Any]) -> str:
-    if values.dtype.kind == "b":
-        return "booleans"
-    if values.dtype.kind in "US":
-        return "text"
-    return f"{type(values.ravel()[0]).__name__} objects"
