@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from rockfrag.campaign.comparison import MeasuredTests
-from rockfrag.campaign.trials import sample_trials, simulate_tests
+from rockfrag.campaign.standing import sample_trials, simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.report.campaign_page import says
 from rockfrag.report.wording import one_line
@@ -287,7 +287,7 @@ def test_the_granite_rock_is_simulated_better_than_by_any_rival(tmp_path, shared
 
 
 def test_the_laboratory_s_own_files_are_read_as_the_archive_holds_them(shared):
-    from rockfrag.campaign.table_motions import table_motions
+    from rockfrag.campaign.laboratory import table_motions
 
     folder = shared / "measured" / "granite"
     (text,) = table_motions(

@@ -8,7 +8,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.campaign.comparison import FEWEST_VOTERS, REPEATS
-from rockfrag.campaign.trials import preferred_edges
+from rockfrag.campaign.standing import preferred_edges
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector_tables import VectorTables
 from rockfrag.report.figures import campaign as figures
