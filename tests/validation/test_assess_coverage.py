@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
+from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import ON_POINTS, Objects, higher, wider
 from rockfrag.assess.outcomes import make_intensity_levels, outcomes_of_all
