@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.request import Request, make_request

@@ -9,9 +9,8 @@ import pytest
 from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import load_motions, read_catalogue, repeated_motions
-from rockfrag.records.make_catalogue import make_catalogue
+from rockfrag.records.make_catalogue import make_catalogue, read_search_results
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
-from rockfrag.records.peer_search import read_search_results
 
 from .built_records import pack, peer_download, wave
 
