@@ -252,13 +252,9 @@ def started() -> Iterator[str]:
     yield "snakemake_logger_plugin_rockfrag"
 
 
-def unreached() -> list[str]:
+def test_every_definition_is_reached():
     graph = Graph()
     doors = filter(DOOR.fullmatch, graph.known)
     seen = graph.reached({*exported(graph.known), *started(), *doors})
-    return sorted(full for full in graph.known if full not in seen and not hasattr(builtins, full))
-
-
-def test_every_definition_is_reached():
-    left = unreached()
-    assert not left, "\n".join(left)
+    left = [full for full in graph.known if full not in seen and not hasattr(builtins, full)]
+    assert not left, "\n".join(sorted(left))

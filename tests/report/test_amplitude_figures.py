@@ -95,18 +95,15 @@ def test_an_overturning_at_the_first_step_points_down():
     assert np.asarray(arrow.vertices)[:, 1].min() < 0
 
 
-def effects() -> pd.DataFrame:
+def test_the_forest_draws_an_interval_only_where_there_is_one():
     rows = [
         ("whole", "all", 3, 1.02, 0.97, 1.07),
         ("floor", "cellar", 3, 1.00, np.nan, np.nan),
         ("floor", "attic", 1, 1.04, np.nan, np.nan),
     ]
     columns = ["scope", "level", "units", "ratio", "lower", "upper"]
-    return pd.DataFrame(rows, columns=columns).assign(unit="earthquake", p_holm=0.4)
-
-
-def test_the_forest_draws_an_interval_only_where_there_is_one():
-    figure = forest_figure(effects())
+    effects = pd.DataFrame(rows, columns=columns).assign(unit="earthquake", p_holm=0.4)
+    figure = forest_figure(effects)
     labels = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
     assert labels == ["all pairs (3 earthquakes)", "cellar (3 earthquakes)", "attic (1 earthquake)"]
     lines = [line for line in figure.axes[0].lines if len(line.get_xdata()) == 2]
