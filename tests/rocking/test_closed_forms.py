@@ -9,22 +9,10 @@ from scipy.optimize import brentq
 from rockfrag import Block, simulate
 from rockfrag.rocking import closed_forms as cf
 
-from .reference_bodies import T1, T2, T3, P, uniform
+from .reference_bodies import T2, uniform
 
 G = 9.81
 BLOCK = uniform(2.14, 0.25)
-
-
-@pytest.mark.parametrize(
-    ("block", "e", "p"),
-    [
-        (T1, 0.850000, 6.12589), (T2, 0.911765, 5.36484), (T3, 0.942308, 4.82421),
-        (P, 0.341494, 7.27928),
-    ],
-)  # fmt: skip
-def test_restitution_and_frequency_of_the_specimens(block: Block, e: float, p: float) -> None:
-    assert block.momentum_restitution() == pytest.approx(e, abs=1e-6)
-    assert block.frequency() == pytest.approx(p, abs=1e-5)
 
 
 @pytest.mark.parametrize(("ratio", "expected"), [(2.0, 2.3499), (5.0, 7.1681)])
