@@ -29,8 +29,7 @@ def main(study_file: str, arguments: Sequence[str]) -> int:
         # what takes much memory is loaded now that there is some
         from rockfrag.cli import main as rockfrag
         from rockfrag.stages.log import in_words
-        from rockfrag.stages.run_lock import run_lock
-        from rockfrag.stages.running import results_folder
+        from rockfrag.stages.running import results_folder, run_lock
         from rockfrag.study.loading import load_any
     except InputError as error:
         print(error, file=sys.stderr)

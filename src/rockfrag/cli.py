@@ -7,7 +7,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 from rockfrag import __version__
 from rockfrag.assess.app.commands import add_app_command
@@ -15,7 +15,7 @@ from rockfrag.assess.commands import add_assess_commands
 from rockfrag.errors import InputError, errors_of
 from rockfrag.record_commands import add_record_commands, read_told
 from rockfrag.survival.commands import add_survival_commands
-from rockfrag.units import GRAVITY, quantity
+from rockfrag.units import GRAVITY, STONE, check_density, peak_warning, quantity, size_warning
 
 if TYPE_CHECKING:
     from rockfrag.engines.response import Response
@@ -30,7 +30,8 @@ MOST_CONTACT_EVENTS = 30  # lines of the pattern history that are printed unless
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return 0, 1 if a file could not be read, 2 if an input is not usable."""
     with warnings.catch_warnings():
-        warnings.showwarning = _print_warning
+        # a warning is a sentence, without the line of code that gave it
+        warnings.showwarning = lambda said, *_: print(f"warning: {said}", file=sys.stderr)
         try:
             options = make_parser().parse_args(arguments)
             status = int(options.run(options))
@@ -43,18 +44,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 0
     return status
-
-
-def _print_warning(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    file: TextIO | None = None,
-    line: str | None = None,
-) -> None:
-    """Print a warning as a sentence, without the line of code that gave it."""
-    print(f"warning: {message}", file=sys.stderr)
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -249,14 +238,6 @@ def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
     """Return the body and the motion that the options tell."""
     from rockfrag.system.blocks import stacked
 
-    _check_space(options)
-    below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
-    body = stacked([*below, _block("--body", options.body)])
-    return body, read_told(options.record, options, options.channel)
-
-
-def _check_space(options: argparse.Namespace) -> None:
-    """Refuse options of a body in space that do not fit together."""
     based = options.depth is not None or options.round
     if based and options.second is None:
         raise InputError("--depth and --round are of a body in space; give --second as well.")
@@ -264,6 +245,9 @@ def _check_space(options: argparse.Namespace) -> None:
         raise InputError("--second: a body in space has --depth or is --round; give either.")
     if options.second is not None and options.pedestal:
         raise InputError("--second: a body in space stands on the ground; leave out --pedestal.")
+    below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
+    body = stacked([*below, _block("--body", options.body)])
+    return body, read_told(options.record, options, options.channel)
 
 
 def _case_in_space(
@@ -301,7 +285,6 @@ def _block(option: str, given: Sequence[str]) -> "Block":
     """Make a block of width, height and mass as people write them."""
     from rockfrag.input_checks import positive_number
     from rockfrag.system.blocks import Block
-    from rockfrag.units import STONE, check_density, size_warning
 
     with errors_of(option):
         if len(given) not in (2, 3):
@@ -322,7 +305,6 @@ def _block(option: str, given: Sequence[str]) -> "Block":
 def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
     """Say that a motion looks as if it were in another unit, if it does."""
     from rockfrag.system.system import uplift_ratios
-    from rockfrag.units import peak_warning
 
     if quality_flag := peak_warning(peak, GRAVITY * min(uplift_ratios(body.system()))):
         print(f"warning: {record}: {quality_flag}", file=sys.stderr)

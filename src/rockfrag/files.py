@@ -14,14 +14,8 @@ from rockfrag.errors import InputError
 
 LONGEST_NAME = 80  # characters of a name, and of the file name made of it
 FORMULA = ("=", "+", "-", "@")  # characters with which a spreadsheet takes a cell for a formula
-_RESERVED = {
-    "con",
-    "prn",
-    "aux",
-    "nul",
-    *(f"{port}{n}" for port in ("com", "lpt") for n in range(10)),
-}
-"""Names of devices, which no file may bear on Windows, whatever its ending."""
+_DEVICES = (f"{port}{n}" for port in ("com", "lpt") for n in range(10))
+_RESERVED = {"con", "prn", "aux", "nul", *_DEVICES}  # devices, not files, on Windows
 
 
 def is_file(path: Path) -> bool:

@@ -3,6 +3,7 @@
 import difflib
 import functools
 import inspect
+import re
 from collections.abc import Callable, Iterable
 from typing import Any, TypeVar, cast, get_args, get_type_hints
 
@@ -85,3 +86,19 @@ def check_names(where: str, names: Iterable[object], known: Iterable[object]) ->
     """Refuse a name of old whose new one is among those known here: where, the name, and what it is called now."""
     if said := renamed(names, known):
         raise InputError(f"{where}: {said}")
+
+
+_OPTION = re.compile(r"\b(unit|dt|channel|force|cut_short)=(?:True\b)?")
+_FORCED = " with force=True or in the file"
+
+
+def for_command_line(message: object, force: bool = True) -> str:
+    """Return a message that names arguments of functions with the options of ``rockfrag`` instead."""
+    words = str(message) if force else str(message).replace(_FORCED, " in the file")
+    return _OPTION.sub(lambda found: f"--{found[1].replace('_', '-')}", words)
+
+
+def for_catalogue(message: object) -> str:
+    """Return a message that names arguments of functions with the columns of a catalogue instead."""
+    words = str(message).replace(_FORCED, " in the file")
+    return _OPTION.sub(lambda found: f"the column {found[1]}", words)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockfrag.errors import InputError
-from rockfrag.records.wording import for_command_line
+from rockfrag.keywords import for_command_line
 from rockfrag.tabular import printable
 
 if TYPE_CHECKING:

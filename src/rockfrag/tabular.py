@@ -154,8 +154,7 @@ class Row:
         text = self.cells.get(column, "")
         if not text:
             raise self.error(column, f"expected a number of {usual}, found nothing")
-        title = self.titles.get(column, column)
-        unit = other_names(column)[title]
+        unit = other_names(column)[self.titles.get(column, column)]
         try:
             return quantity(text, usual, unit)
         except InputError as error:

@@ -18,22 +18,22 @@ Standard gravity, which other programs mean by g, is 9.80665 m/s².
 
 CENTIMETRES_PER_METRE = 100.0
 
-_LENGTHS = {"m": (1.0, 1.0), "cm": (1.0, 100.0), "mm": (1.0, 1000.0)}
-_LENGTHS |= {"in": (0.0254, 1.0), "ft": (0.3048, 1.0)}
-_MASSES = {"kg": (1.0, 1.0), "g": (1.0, 1000.0), "t": (1000.0, 1.0), "lb": (0.45359237, 1.0)}
-_INERTIAS = {"kg_m2": (1.0, 1.0), "kg_cm2": (1.0, 1e4), "g_cm2": (1.0, 1e7)}
-_INERTIAS |= {"t_m2": (1000.0, 1.0), "lb_ft2": (0.45359237 * 0.3048**2, 1.0)}
-_ACCELERATIONS = {"m_s2": (1.0, 1.0), "cm_s2": (1.0, 100.0), "gal": (1.0, 100.0)}
-_ACCELERATIONS |= {"g": (GRAVITY, 1.0)}
-_VELOCITIES = {"m_s": (1.0, 1.0), "cm_s": (1.0, 100.0), "mm_s": (1.0, 1000.0)}
-_TIMES = {"s": (1.0, 1.0), "ms": (1.0, 1000.0)}
 DIMENSIONS: Mapping[str, Mapping[str, tuple[float, float]]] = {
-    "length": _LENGTHS,
-    "mass": _MASSES,
-    "moment of inertia": _INERTIAS,
-    "acceleration": _ACCELERATIONS,
-    "velocity": _VELOCITIES,
-    "time": _TIMES,
+    "length": {
+        **{"m": (1.0, 1.0), "cm": (1.0, 100.0), "mm": (1.0, 1000.0)},
+        **{"in": (0.0254, 1.0), "ft": (0.3048, 1.0)},
+    },
+    "mass": {"kg": (1.0, 1.0), "g": (1.0, 1000.0), "t": (1000.0, 1.0), "lb": (0.45359237, 1.0)},
+    "moment of inertia": {
+        **{"kg_m2": (1.0, 1.0), "kg_cm2": (1.0, 1e4), "g_cm2": (1.0, 1e7)},
+        **{"t_m2": (1000.0, 1.0), "lb_ft2": (0.45359237 * 0.3048**2, 1.0)},
+    },
+    "acceleration": {
+        **{"m_s2": (1.0, 1.0), "cm_s2": (1.0, 100.0), "gal": (1.0, 100.0)},
+        "g": (GRAVITY, 1.0),
+    },
+    "velocity": {"m_s": (1.0, 1.0), "cm_s": (1.0, 100.0), "mm_s": (1.0, 1000.0)},
+    "time": {"s": (1.0, 1.0), "ms": (1.0, 1000.0)},
 }
 """Of each dimension its units, and of each unit the factor and the divisor that lead to SI.
 
@@ -98,14 +98,11 @@ def quantity(given: object, to: str, unit: str | None) -> float:
     if found is None:
         raise InputError(f"{expected}, found {given!r:.60} without a unit.")
     if found not in units:
-        known = ", ".join(_as_written(unit) for unit in units)
+        # m_s2 is written m/s²
+        known = ", ".join(re.sub(r"_s(2?)$", r"/s\1", unit) for unit in units)
+        known = known.replace("_", " ").replace("2", "²")
         raise InputError(f"{expected} in one of the units {known}, found {given!r:.60}.")
     return convert(value, found, to)
-
-
-def _as_written(unit: str) -> str:
-    """A unit as people write it: ``m_s2`` is m/s²."""
-    return re.sub(r"_s(2?)$", r"/s\1", unit).replace("_", " ").replace("2", "²")
 
 
 def other_names(name: str) -> dict[str, str | None]:
@@ -120,16 +117,14 @@ def other_names(name: str) -> dict[str, str | None]:
 
 def split_name(name: str) -> tuple[str, str]:
     """Split a name such as ``inertia_kg_m2`` into what it names and its unit."""
-    for units in (_INERTIAS, _MASSES, _LENGTHS):
-        for unit in units:
+    for dimension in ("moment of inertia", "mass", "length"):
+        for unit in DIMENSIONS[dimension]:
             if name.endswith(f"_{unit}"):
                 return name.removesuffix(f"_{unit}"), unit
     raise ValueError(f"{name} names no unit")
 
 
-DENSITIES = (20.0, 22_600.0)
-"""Least and largest density of a whole object [kg/m³]: packaging foam, and osmium."""
-
+DENSITIES = (20.0, 22_600.0)  # of a whole object [kg/m³]: from packaging foam to osmium
 AIR = 1.2  # density of air [kg/m³]
 STONE = 2500.0  # density of stone [kg/m³], where nobody says how heavy an object is
 MEAN_DENSITIES = (100.0, DENSITIES[1])
@@ -139,27 +134,15 @@ DEPTHS = (0.1, 3.0)
 """Least depth of an object over its width, largest over the longer of width and height: a panel rocking in its
 strong direction, and a long shelf seen from its end."""
 
-GYRATIONS = (1e-3, 30.0)
-"""Least and largest radius of gyration of a body over the diagonal of its width and height [-]."""
-
+GYRATIONS = (1e-3, 30.0)  # radius of gyration of a body over the diagonal of width and height [-]
 LARGEST_SIZE = 20.0  # free-standing objects are hardly taller [m]
-LARGEST_PEAK = 50.0
-"""No accelerometer has recorded a larger ground acceleration [m/s²]; floors hardly feel more."""
-
+LARGEST_PEAK = 50.0  # no accelerometer has recorded more [m/s²]; floors hardly feel more
 LARGEST_IN_G = 2.0  # peaks of more than this many g are rare: a number above it is hardly one of g
-FLOOR_MASSES = (1e3, 1e9)
-"""Least and largest mass of a floor of a building [kg]: a wooden attic, and more than any palace's."""
-
-STOREY_HEIGHTS = (1.0, 30.0)
-"""Least and largest height of a storey [m]: a crawl space, and the nave of a cathedral."""
-
+FLOOR_MASSES = (1e3, 1e9)  # of a floor of a building [kg]: a wooden attic, more than any palace's
+STOREY_HEIGHTS = (1.0, 30.0)  # of a storey [m]: a crawl space, and the nave of a cathedral
 FIRST_PERIODS = (0.01, 20.0)  # shortest and longest first period of a building [s]
-SHORTEST_STEP = 1e-5
-"""Shortest sampling interval [s] of a record; recorders take at most some thousand samples a second."""
-
-LONGEST_STEP = 1.0
-"""Longest sampling interval [s] of a record; slower channels are not of strong motion."""
-
+SHORTEST_STEP = 1e-5  # sampling interval [s]; recorders take at most some thousand samples a second
+LONGEST_STEP = 1.0  # sampling interval [s] of a record; slower channels are not of strong motion
 LEAST_PEAK = 0.05  # a motion whose peak is below this [m/s²] moves nothing that stands
 
 

@@ -13,8 +13,7 @@ from rockfrag.errors import InputError
 from rockfrag.tabular import read_text, unfit_character
 
 MOST_BYTES = 256 * 1024  # largest configuration; three thousand names of motions are a third of it
-MOST_VALUES, DEEPEST = 20_000, 20
-"""Values in a configuration, and mappings and lists within each other."""
+MOST_VALUES, DEEPEST = 20_000, 20  # values, and mappings and lists within each other
 
 
 class _StrictLoader(yaml.SafeLoader):

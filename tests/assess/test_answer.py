@@ -9,7 +9,7 @@ import pytest
 
 from rockfrag import Block
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.as_json import as_json
+from rockfrag.assess.export import as_json
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.request import make_request, read_request
 from rockfrag.assess.risk import Estimate

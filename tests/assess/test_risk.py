@@ -10,8 +10,7 @@ import pytest
 from scipy import integrate, stats
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.hazard.curve import HazardCurve, curve_of_one_level
-from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.hazard.curve import PGA, HazardCurve, curve_of_one_level
 from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.request import make_request

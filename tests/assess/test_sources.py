@@ -11,7 +11,6 @@ import pytest
 from scipy import stats
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.as_nrml import as_nrml
 from rockfrag.assess.conversion import (
     OF_THE_SITE,
     UNKNOWN,
@@ -20,8 +19,8 @@ from rockfrag.assess.conversion import (
     SiteVelocity,
     VelocityRelation,
 )
-from rockfrag.assess.hazard.curve import make_curve
-from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
+from rockfrag.assess.export import as_nrml
+from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G, make_curve
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.page import page_of

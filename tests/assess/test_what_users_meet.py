@@ -8,18 +8,16 @@ import numpy as np
 import pytest
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.as_json import as_json
-from rockfrag.assess.as_nrml import as_nrml
-from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.export import as_json, as_nrml
+from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.mitigations import compare
-from rockfrag.assess.narrowing import is_wide, narrowed
 from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.page import page_of
 from rockfrag.assess.place import PERIOD_FACTORS
 from rockfrag.assess.request import read_request
-from rockfrag.assess.risk import Estimate, estimate, fraction_target
-from rockfrag.assess.scale import step_of
+from rockfrag.assess.risk import Estimate, estimate, fraction_target, step_of
+from rockfrag.assess.sources import is_wide, narrowed
 from rockfrag.assess.words import assumptions, five_lines, range_words
 from rockfrag.building.floors import floor_motions
 from rockfrag.cli import main

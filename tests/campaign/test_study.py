@@ -9,9 +9,10 @@ import pytest
 import yaml
 
 from rockfrag.campaign.comparison import MeasuredTests
-from rockfrag.campaign.trials import sample_trials, simulate_tests
+from rockfrag.campaign.standing import sample_trials, simulate_tests
 from rockfrag.errors import InputError
-from rockfrag.report.campaign_page import _beside_plane
+from rockfrag.report.campaign_page import says
+from rockfrag.report.wording import one_line
 from rockfrag.rocking import overturns
 from rockfrag.stages import model_error
 from rockfrag.stages.campaign import campaign_with_motions, standing_object
@@ -249,7 +250,7 @@ def test_a_mesh_is_simulated_in_space_and_in_one_plane_side_by_side(tmp_path, la
 def test_space_is_called_better_or_worse_only_where_the_numbers_say_so(better, p, said):
     row = {"right": 0.9, "lower": 0.8, "upper": 0.95, "missed": 3.0, "false_alarms": 1.0, "p": p}
     row |= dict(zip(("better", "better_lower", "better_upper"), better, strict=True))
-    assert said in _beside_plane(row, row).headline
+    assert said in one_line(says.beside_plane(row, row))
 
 
 @pytest.mark.slow
@@ -286,7 +287,7 @@ def test_the_granite_rock_is_simulated_better_than_by_any_rival(tmp_path, shared
 
 
 def test_the_laboratory_s_own_files_are_read_as_the_archive_holds_them(shared):
-    from rockfrag.campaign.table_motions import table_motions
+    from rockfrag.campaign.laboratory import table_motions
 
     folder = shared / "measured" / "granite"
     (text,) = table_motions(

@@ -7,17 +7,20 @@ import pytest
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
-from rockfrag.pedestal import permutation
+from rockfrag.pedestal import cluster_means
 from rockfrag.pedestal.cluster_means import (
     Estimate,
+    benjamini_hochberg,
+    detectable_ratio,
     equivalence,
+    holm,
+    leave_one_earthquake_out,
     mean_effect,
+    sign_flip_test,
     t_estimate,
     unit_means,
 )
 from rockfrag.pedestal.paired_tests import pair_tests
-from rockfrag.pedestal.permutation import leave_one_earthquake_out, sign_flip_test
-from rockfrag.pedestal.power import benjamini_hochberg, detectable_ratio, holm
 from rockfrag.pedestal.study import rank_probabilities
 from rockfrag_thesis.hypotheses.contrasts import (
     contrast,
@@ -51,7 +54,7 @@ def test_four_earthquakes_never_give_a_sign_flip_p_below_an_eighth():
 def test_drawn_sign_flips_agree_with_enumerated_ones(monkeypatch):
     x = np.random.default_rng(2).normal(0.1, 0.2, 12)
     exact = sign_flip_test(x).p
-    monkeypatch.setattr("rockfrag.pedestal.permutation.DRAWS", 2_000)
+    monkeypatch.setattr("rockfrag.pedestal.cluster_means.DRAWS", 2_000)
     drawn = sign_flip_test(x, seed=5)
     assert not drawn.exact
     assert drawn.p == pytest.approx(exact, abs=4 * np.sqrt(exact * (1 - exact) / 2e3))
@@ -102,14 +105,14 @@ def test_leaving_an_earthquake_out_finds_the_one_that_matters(tests_table):
 
 def test_of_very_many_earthquakes_none_is_left_out(tests_table, monkeypatch):
     table = pair_tests(tests_table(3)).table
-    monkeypatch.setattr("rockfrag.pedestal.permutation.MOST_LEFT_OUT", 3)
+    monkeypatch.setattr("rockfrag.pedestal.cluster_means.MOST_LEFT_OUT", 3)
     assert leave_one_earthquake_out(table).empty
 
 
 def test_flipped_signs_of_many_are_those_that_are_drawn(monkeypatch):
     values = np.random.default_rng(4).normal(0.08, 1.0, 400)
     drawn = sign_flip_test(values)
-    monkeypatch.setattr(permutation, "MOST_DRAWN", 100)
+    monkeypatch.setattr(cluster_means, "MOST_DRAWN", 100)
     assert sign_flip_test(values).p == pytest.approx(drawn.p, abs=0.015)
 
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from rockfrag.pedestal import study_pedestal
-from rockfrag.pedestal.cluster_means import equivalence, mean_effect, t_estimate
+from rockfrag.pedestal.cluster_means import detectable_ratio, equivalence, mean_effect, t_estimate
 from rockfrag.pedestal.paired_tests import pair_tests
-from rockfrag.pedestal.power import detectable_ratio
 from rockfrag_thesis.hypotheses.contrasts import contrast, power_note, slope_effect
 
 LOWEST = 0.05

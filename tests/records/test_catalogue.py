@@ -53,7 +53,7 @@ def wheel(monkeypatch, tmp_path):
         version="1.0",
         wheel=path.name,
         sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
-        files={"small/data/X.dat": "X.dat"},
+        folder="small/data",
         digests={"X.dat": hashlib.sha256(record).hexdigest()},
         note="made for a test",
     )

@@ -11,16 +11,15 @@ from matplotlib.text import Text
 
 from rockfrag.figure_style import figure_style, new_figure, save_figure
 from rockfrag.report.figures.amplitudes import (
-    amplitudes_by_floor,
-    amplitudes_by_object,
+    amplitudes_by,
     pedestal_scatter,
-    slenderness_figure,
 )
-from rockfrag.report.figures.fragility import fragility_figure
 from rockfrag.report.sections.amplitudes import outcome_map
+from rockfrag.report.sections.curves import fragility_figure
 from rockfrag.report.sections.pedestal import forest_figure, ratio_axis
 from rockfrag.report.sections.tested import shaker_limits
-from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
+from rockfrag.shaketable.definitions import mean_amplitudes
+from rockfrag_thesis.sections.counterparts import slenderness_figure
 
 OBJECTS = ("vase", "column & capital")
 SLENDERNESS = dict(zip(OBJECTS, (3.0, 4.0), strict=True))
@@ -59,8 +58,8 @@ def test_every_test_is_drawn_and_those_that_never_overturned_have_arrows(unfinis
     tests = laboratory(unfinished)
     means = mean_amplitudes(tests)
     for figure in (
-        amplitudes_by_object(tests, means),
-        amplitudes_by_floor(tests, means),
+        amplitudes_by("object", tests, means),
+        amplitudes_by("floor", tests, means),
         slenderness_figure(tests, means, SLENDERNESS),
     ):
         assert sum(drawn(axes) for axes in figure.axes) == 24
@@ -89,7 +88,7 @@ def test_pairs_are_points_and_unfinished_ones_have_arrows():
 def test_an_overturning_at_the_first_step_points_down():
     tests = laboratory()
     tests.loc[0, ["lower_g", "upper_g", "amplitude_g"]] = [0.0, 0.1, np.nan]
-    figure = amplitudes_by_object(tests, mean_amplitudes(tests))
+    figure = amplitudes_by("object", tests, mean_amplitudes(tests))
     (arrow,) = [
         line.get_marker() for line in figure.axes[0].lines if isinstance(line.get_marker(), Outline)
     ]
@@ -179,7 +178,7 @@ def test_a_crowd_of_tests_is_drawn_as_its_distribution():
     means = mean_amplitudes(tests)
     for figure in (
         slenderness_figure(tests, means, SLENDERNESS),
-        amplitudes_by_floor(tests, means),
+        amplitudes_by("floor", tests, means),
     ):
         labels = [text.get_text() for text in figure.legends[0].get_texts()]
         assert "median, 25–75 %, 5–95 %" in labels

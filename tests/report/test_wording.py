@@ -26,7 +26,7 @@ from rockfrag.report.wording import (
     probability,
     shortened,
 )
-from rockfrag.stages.measure_selection import best_of
+from rockfrag.stages.fragility import best_of
 
 NAN, INF = math.nan, math.inf
 

@@ -100,10 +100,13 @@ def test_a_mirrored_motion_mirrors_the_response(body: Body, motion: np.ndarray) 
 @given(body=bodies(crooked=False), motion=motions())
 def test_a_mirrored_motion_gives_a_symmetric_body_the_same_outcome(body, motion):
     found = overturns([body], [motion, -motion], DT, [0.7, 1.0, 1.6])
-    for name in ("overturned", "overturned_body", "impacts"):
+    for name in ("overturned", "overturned_body"):
         values = getattr(found, name)[0]
         assert (values[0] == values[1]).all(), name
     first, other = found.peak_rotation[0]
+    # at the very acceleration that lifts a body, rounding decides whether it rises, to close again at once
+    moves = first.max(axis=-1) > 1e-9
+    assert (found.impacts[0, 0] == found.impacts[0, 1])[moves].all()
     assert first == pytest.approx(other, rel=1e-9)
 
 

@@ -6,10 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag import simulate
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import with_measures
-from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.stages import validity
 from rockfrag.stages.floor_curves import export_curves, floor_curves
@@ -74,39 +72,6 @@ def test_rocking_starts_at_b_over_h_and_varies_in_other_measures(curves):
     assert 0.05 < rocks.loc["pgv_cm_s", "beta"] < 0.5
 
 
-def test_what_slides_is_a_state_of_its_own_between_standing_and_falling(tmp_path):
-    rng = np.random.default_rng(5)
-    rows = []
-    for k in range(8):
-        slides, falls = 0.25 * np.exp(0.1 * rng.normal()), 0.6 * np.exp(0.1 * rng.normal())
-        rows.append(ida_of(f"m{k}", f"e{k}", "hall", overturned=falls, slides=slides))
-    measures = pd.DataFrame({"name": [f"m{k}" for k in range(8)]} | dict.fromkeys(MEASURES, 0.3))
-    ida = with_measures(pd.concat(rows), measures, list(MEASURES))
-    curves, _ = floor_curves(
-        {
-            "overturns": {("statue", "hall"): TableIda(ida)},
-            "slides": {("statue", "hall"): TableIda(ida.assign(overturned=ida["slides"]))},
-        },
-        measures,
-        FLOORS,
-        {"statue": STATUE.system()},
-        "abc",
-        0.90,
-        rocks_at_once=False,
-    )
-    peak = curves[curves["measure"] == "pga_g"].set_index("state")
-    assert set(peak.index) == {"slides", "overturns"}
-    assert peak.loc["slides", "theta"] == pytest.approx(0.25, rel=0.15)
-    assert peak.loc["overturns", "theta"] == pytest.approx(0.6, rel=0.15)
-    written = export_curves(curves, tmp_path)
-    assert "fragility_pga.xml" in written
-    assert (
-        "<limitStates>slides overturns</limitStates>"
-        in (tmp_path / "fragility_pga.xml").read_text()
-    )
-    assert "Slides and may be displaced" in (tmp_path / "fragility_pga.json").read_text()
-
-
 def test_files_are_one_per_floor_and_measure(curves, tmp_path):
     written = export_curves(curves, tmp_path)
     assert {"fragility_pga.xml", "fragility_avgsa.xml", "fragility_pfa_loft.csv"} <= set(written)
@@ -128,17 +93,6 @@ def readings_of(names: list[str]) -> pd.DataFrame:
     about = {"configuration": "T", "object": "T", "pedestal": "NP", "earthquake": "e", "floor": "g"}
     table = pd.DataFrame({"motion": names, **about, "amplitude_g": 0.4})
     return table.assign(test=table["motion"])
-
-
-def test_forces_are_those_of_one_history():
-    known = motions(3)
-    configuration = replace(BODY.system(), name="T")
-    table = validity.validity_table(readings_of([*known]), [configuration], known)
-    for row in table.to_dict("records"):
-        response = simulate(BODY, scale_to_pga(known[row["motion"]], 0.4))
-        assert row["friction_demand"] == response.friction_demand.max()
-        assert row["least_normal_force_n"] == response.least_normal_force.min()
-        assert row["unstable_distance"] == response.unstable_distance
 
 
 def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch: pytest.MonkeyPatch):
@@ -175,22 +129,6 @@ def test_amplitudes_grow_by_the_step_up_to_the_highest():
     assert values == pytest.approx([0.5, 1.0, 2.0])
     ratios = AMPLITUDES.values_g[1:] / AMPLITUDES.values_g[:-1]
     assert ratios == pytest.approx(1.1)
-
-
-@pytest.mark.parametrize("body", [TOWER, STACK])
-def test_a_ida_does_not_depend_on_threads_or_on_the_batch(body: Block | Stack):
-    configuration = replace(body.system(), name="X")
-    whole = ida(configuration, waves(), AMPLITUDES.values_g, threads=2)
-    parts = [ida(configuration, [motion], AMPLITUDES.values_g, threads=1) for motion in waves()]
-    pd.testing.assert_frame_equal(whole, pd.concat(parts, ignore_index=True), check_exact=True)
-
-
-def test_below_its_threshold_a_block_never_moves():
-    table = ida(TOWER.system(), waves(), AMPLITUDES.values_g)
-    low = table["amplitude_g"] < 1 / 3
-    assert (table.loc[low, "peak_rotation_body_1"] == 0).all()
-    assert table.loc[~low, "peak_rotation_body_1"].iloc[-1] > 0
-    assert set(table["overturned_body"]) <= {"", "statue"}
 
 
 def test_a_statue_that_its_pedestal_carries_along_rocks_and_does_not_stay():

@@ -13,8 +13,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from rockfrag.pedestal.cluster_means import equivalence, mean_effect, t_estimate
-from rockfrag.pedestal.power import holm
+from rockfrag.pedestal.cluster_means import equivalence, holm, mean_effect, t_estimate
 from rockfrag_thesis.hypotheses.contrasts import contrast, power_of_t
 
 from .made import document, drawn, pairs_of

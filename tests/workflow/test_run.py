@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from rockfrag.cli import main
-from rockfrag.stages.same_numbers import same_numbers
+from rockfrag.stages.running import same_numbers
 from rockfrag.study.loading import load_any
 
 from ..stages_in_process import run_stages, stages_of

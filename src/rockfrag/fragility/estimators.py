@@ -22,10 +22,8 @@ class Fragility:
 
     Attributes
     ----------
-    fit
-        The fitted curve.
-    interval
-        Its confidence limits.
+    fit, interval
+        The fitted curve, and its confidence limits.
     checks
         Goodness of fit and influence of single motions.
     """
@@ -57,16 +55,14 @@ class IncrementalFragility:
 
     Attributes
     ----------
-    first
-        First overturning amplitude of each motion (first passage).
-    always
-        Amplitude above which each motion always overturns, as far as it was raised.
+    first, always
+        First overturning amplitude of each motion (first passage), and that above which each always overturns, as
+        far as it was raised.
     probability
         Mean P(overturn | amplitude) over the motions, structural resurrections included.
-    resurrections
-        Table of :func:`rockfrag.fragility.empirical.find_resurrections`.
-    fraction_with_resurrections
-        Fraction of the motions that overturned and have at least one window.
+    resurrections, fraction_with_resurrections
+        Table of :func:`rockfrag.fragility.empirical.find_resurrections`; fraction of the motions that overturned
+        and have at least one window.
     """
 
     first: Fragility
@@ -108,16 +104,10 @@ def fit_cloud(
 
     Parameters
     ----------
-    table
-        One row a test.
-    im
-        Column of the intensity measure.
-    overturned
-        Column with the outcomes.
-    motion
-        Column with the name of the motion; None where tests have none.
-    earthquake
-        Column with the name of the earthquake; None where it is not known.
+    table, im, overturned
+        One row a test; its columns of the intensity measure and of the outcome.
+    motion, earthquake
+        Columns of their names; None where tests have none.
     level
         Of the confidence limits [-], 0 to 1.
 
@@ -151,12 +141,8 @@ def fit_stripes(
 
     Parameters
     ----------
-    table, im, overturned
-        As of :func:`fit_cloud`.
-    trials
-        Column with the number of tests in a row; None where a row is one test.
-    motion, earthquake, level
-        As of :func:`fit_cloud`.
+    table, im, overturned, trials, motion, earthquake, level
+        As of :func:`fit_cloud`; column with the number of tests in a row, None where a row is one test.
 
     Returns
     -------
@@ -187,10 +173,8 @@ def fit_incremental(
     ----------
     ida
         One row per motion and amplitude, with ``overturned``; or the IDA curves in another form. One body.
-    amplitude, motion, earthquake
-        Names of the columns.
-    level
-        Of the confidence limits [-], 0 to 1.
+    amplitude, motion, earthquake, level
+        Names of the columns, and the level of the confidence limits [-], 0 to 1.
 
     Returns
     -------
@@ -237,12 +221,8 @@ def fit_step_tests(
 
     Parameters
     ----------
-    tests
-        One row a test.
-    lower
-        Column of the largest amplitude survived.
-    upper
-        Column of the amplitude that overturned.
+    tests, lower, upper
+        One row a test; its columns of the largest amplitude survived and of the one that overturned.
     motion, earthquake, level
         As of :func:`fit_cloud`.
 

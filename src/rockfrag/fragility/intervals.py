@@ -43,14 +43,11 @@ class Interval:
     method
         ``jackknife``; ``common step`` where all capacities lie in one step (:func:`step_limits`); or
         ``none``.
-    groups
-        Number of independent groups that were resampled.
-    over
-        What a group is: ``motion`` or ``earthquake``.
-    estimate
-        Intercept and slope of the fit that the interval belongs to.
-    replicates
-        Intercept and slope without each group (or block of groups), shape (replicates, 2).
+    groups, over
+        Number of independent groups that were resampled, and what one is: ``motion`` or ``earthquake``.
+    estimate, replicates
+        Intercept and slope of the fit that the interval belongs to, and without each group (or block of groups),
+        shape (replicates, 2).
     warnings
         What a reader must know before trusting the limits.
     """
@@ -135,13 +132,10 @@ def interval_over_motions(
 
     Parameters
     ----------
-    outcomes
-        The tests.
-    over
-        ``motion`` answers for other motions of the same earthquakes, ``earthquake`` for other earthquakes; None
-        takes earthquakes where they are known and some have several motions.
-    level
-        Of the confidence limits [-], 0 to 1.
+    outcomes, over, level
+        The tests, and the level of the limits [-]. Over ``motion`` they answer for other motions of the same
+        earthquakes, over ``earthquake`` for other earthquakes; None takes earthquakes where they are known and
+        some have several motions.
 
     Returns
     -------

@@ -46,10 +46,9 @@ class FragilityFit:
 
     Attributes
     ----------
-    theta
-        Median of the intensity measure at overturning, in ``unit``; NaN where the data give none.
-    beta
-        Logarithmic standard deviation (probit) or logistic scale (logit); NaN likewise.
+    theta, beta
+        Median of the intensity measure at overturning, in ``unit``, and logarithmic standard deviation (probit) or
+        logistic scale (logit); NaN where the data give none.
     covariance
         Covariance of (ln θ, β), 2 × 2, by the delta method from the expected information. It takes
         tests for independent; where motions repeat, use an interval over motions instead.
@@ -57,14 +56,10 @@ class FragilityFit:
         With binomial coefficients.
     n, n_overturned, n_motions
         Tests, those that overturned, and different motions.
-    method
-        How it was fitted, in words.
-    im, unit
-        Intensity measure and its unit.
-    link
-        ``probit`` or ``logit``.
-    warnings
-        One sentence for each thing that a reader must know before using the curve.
+    method, warnings
+        How it was fitted, in words, and a sentence for each thing that a reader must know before using the curve.
+    im, unit, link
+        Intensity measure and its unit; ``probit`` or ``logit``.
     """
 
     theta: float
@@ -131,10 +126,8 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
 
     Parameters
     ----------
-    outcomes
-        Outcomes with their measure, see :class:`Observations`.
-    link
-        ``probit`` (lognormal curve) or ``logit``.
+    outcomes, link
+        Outcomes with their measure; ``probit`` (lognormal curve) or ``logit``.
 
     Returns
     -------

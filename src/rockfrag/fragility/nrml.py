@@ -68,11 +68,9 @@ def write_nrml(
         One row per configuration and limit state (one estimator and one measure each), as
         :func:`rockfrag.fragility.ida_curves.fragility_table` gives them; a column ``state`` names the limit
         state (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. A column ``floor`` must be
-        empty: only motions of the ground are known to OpenQuake.
-    path
-        File to write.
-    identifier
-        Name of the model.
+        empty: only motions of the ground are known to OpenQuake. No function may lack a state that another has.
+    path, identifier
+        File to write, and name of the model.
     by
         Column whose value names the function (OpenQuake's taxonomy); what OpenQuake
         does not take in a name becomes ``_``.
@@ -81,12 +79,6 @@ def write_nrml(
         with columns ``by`` and ``state``. A function of which a state has such points is written as discrete
         levels; so is one whose lognormal curves would make a state more probable than the one that comes before
         it.
-
-    Raises
-    ------
-    InputError
-        If a row has no lognormal curve, a measure that OpenQuake does not know, or a floor above
-        ground; if a name comes twice, or lacks a limit state that another has.
     """
     # OpenQuake takes letters, digits, "_", "-" and ":" in a name
     curves = curves_by_name("NRML", table, by, "_:-", fractions)

@@ -47,15 +47,11 @@ class Observations(Grouped):
     ----------
     im
         Intensity measure of each row, > 0, shape (n,).
-    overturned
-        Number of tests of the row that overturned, shape (n,).
-    trials
-        Number of tests of the row, shape (n,); 1 for single tests.
-    motion
-        Label of the motion, shape (n,): rows of one motion are not independent.
-    earthquake
-        Label of the earthquake, shape (n,): motions of one earthquake may share an effect. The motion's
-        label where no earthquake is known.
+    overturned, trials
+        Number of tests of the row that overturned, and of all, shape (n,); 1 for single tests.
+    motion, earthquake
+        Labels, shape (n,): rows of one motion are not independent, and motions of one earthquake may share an
+        effect. The motion's label where no earthquake is known.
     name, unit
         The intensity measure as the field writes it, for example ``PGA`` and ``g``.
     """
@@ -232,29 +228,17 @@ def observations_from_table(
 
     Parameters
     ----------
-    table
-        One row per test, or per group of equal tests when ``trials`` names a column of counts.
-    im
-        Column of the intensity measure; its unit is read from the name (``pga_g``, ``pgv_cm_s``).
-    overturned
-        Column of outcomes (0/1, false/true), or of counts when ``trials`` is given.
-    trials
-        Column with the number of tests of each row.
-    motion, earthquake
-        Columns with the labels of motion and earthquake; None where every row is a motion (earthquake)
-        of its own.
-    source
-        What to call the table in an error message, for example its file name.
+    table, im
+        One row per test, or per group of equal tests when ``trials`` names a column of counts; and the column of
+        the intensity measure, whose unit is read from the name (``pga_g``, ``pgv_cm_s``).
+    overturned, trials
+        Column of outcomes (0/1, false/true), or of counts when the column with the number of tests is given.
+    motion, earthquake, source
+        Columns with labels, None where every row is a motion (earthquake) of its own; what messages call it.
 
     Returns
     -------
     The :class:`Observations`, of n rows.
-
-    Raises
-    ------
-    InputError
-        If the table is empty, a column is absent, a value is missing or not finite, an intensity
-        measure is not above zero, an outcome is not 0 or 1, or counts are outside 0 … trials.
     """
     if len(table) == 0:
         raise InputError(f"{source}: there is no row; give at least one test.")

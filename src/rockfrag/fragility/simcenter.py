@@ -45,22 +45,15 @@ def write_simcenter(
     Parameters
     ----------
     table
-        One row per configuration and limit state (one estimator and one measure each), as
-        :func:`rockfrag.fragility.ida_curves.fragility_table` gives them; a column ``state`` names the limit
-        state (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. PGA and PGV
-        are demands of the ground, PFA and PFV of the floor on which the object stands.
+        As of :func:`rockfrag.fragility.nrml.write_nrml`. PGA and PGV are demands of the ground, PFA and PFV of the
+        floor on which the object stands.
     csv_path, json_path
         Files to write.
     by
         Column that names the curve; the ID is ``ROCKFRAG.`` and its letters and digits.
     fractions
-        Points of the non-parametric fragility function, as of :func:`rockfrag.fragility.nrml.write_nrml`; a state
-        that has them is written with the family ``multilinear_CDF``.
-
-    Raises
-    ------
-    InputError
-        If a row has no lognormal curve or another measure, or a configuration has a state twice.
+        As of :func:`rockfrag.fragility.nrml.write_nrml`; a state that has such points is written with the family
+        ``multilinear_CDF``.
     """
     rows = []
     notes: dict[str, object] = {
@@ -95,16 +88,11 @@ def _component(
             )
         demand, units = known[im]
         demands.add((demand, units[unit]))
-        family: str = "lognormal"
-        parameters: tuple[float | str, float | str] = (curve.theta, curve.beta)
+        parameters: tuple[object, ...] = "lognormal", curve.theta, curve.beta, ""
         if levels.size:
-            family, parameters = "multilinear_CDF", (_multilinear(levels, fraction), "")
-        line |= {
-            f"LS{number}-Family": family,
-            f"LS{number}-Theta_0": parameters[0],
-            f"LS{number}-Theta_1": parameters[1],
-            f"LS{number}-DamageStateWeights": "",
-        }
+            parameters = "multilinear_CDF", _multilinear(levels, fraction), "", ""
+        keys = ("Family", "Theta_0", "Theta_1", "DamageStateWeights")
+        line |= {f"LS{number}-{key}": x for key, x in zip(keys, parameters, strict=True)}
         reached = limit_state_named(state)
         words = reached.damage or reached.label
         damage = {"Description": words, "RepairAction": reached.repair}

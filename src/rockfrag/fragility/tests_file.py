@@ -59,22 +59,24 @@ def read_tests(
                 f"measures, {name!r}: the name does not tell a unit; end it with one, such as pga_g, "
                 f"pgv_cm_s or sa_0_3s_g (write {name}_g: [{name}] for a column of the file in g)."
             )
-    factors = [
-        factor for recipe in recipes.values() for factor in recipe if isinstance(factor, str)
-    ]
+    factors = [part for recipe in recipes.values() for part in recipe if isinstance(part, str)]
     labels = [name for name in (motion, earthquake) if name is not None]
-    needed = list(dict.fromkeys([overturned, *labels, *factors, *given]))
-
-    def columns(read: _Numbers) -> dict[str, object]:
-        return {
-            "motion": read.labels(motion),
-            "earthquake": read.labels(earthquake if earthquake is not None else motion),
-            "overturned": read.outcomes(overturned),
-            **{name: read.product(recipe) for name, recipe in recipes.items()},
-            **{name: read.numbers(name) for name in given},
+    kinds = {
+        **dict.fromkeys(labels, "label"),
+        overturned: "outcome",
+        **dict.fromkeys(factors, "positive"),
+    }
+    raw = read_columns(path, kinds | {name: "number" for name in given if name not in kinds})
+    motions = raw[motion] if motion is not None else [f"row {row + 2}" for row in raw.index]
+    table = pd.DataFrame(
+        {
+            "motion": motions,
+            "earthquake": motions if earthquake is None else raw[earthquake],
+            "overturned": raw[overturned],
+            **{name: product_of(raw, recipe) for name, recipe in recipes.items()},
+            **{name: raw[name] for name in given},
         }
-
-    table = _read(path, needed, columns)
+    )
     for name in recipes:
         _warn_of_peaks(table, name, source)
     return table
@@ -107,81 +109,88 @@ _PEAKS = (
 overturn nothing taller than a centimetre."""
 
 
-def read_columns(
-    path: str | os.PathLike[str],
-    *,
-    labels: Sequence[str] = (),
-    positive: Sequence[str] = (),
-    outcomes: Sequence[str] = (),
-) -> pd.DataFrame:
-    """Read columns of a table of tests: of text, of numbers above zero, and of outcomes (0 and 1)."""
-
-    def columns(read: _Numbers) -> dict[str, object]:
-        return {
-            **{name: read.labels(name) for name in labels},
-            **{name: read.product([name]) for name in positive},
-            **{name: read.outcomes(name) for name in outcomes},
-        }
-
-    return _read(path, list(dict.fromkeys([*labels, *positive, *outcomes])), columns)
-
-
-def _read(
-    path: str | os.PathLike[str],
-    needed: Sequence[str],
-    columns: Callable[["_Numbers"], dict[str, object]],
-) -> pd.DataFrame:
-    """Read the needed columns piece by piece, each by its own reader."""
+def read_columns(path: str | os.PathLike[str], kinds: Mapping[str, str]) -> pd.DataFrame:
+    """Read columns of a table of tests, each as what it is: label, number, positive or outcome (0 and 1)."""
     source = Path(path).name
     parts, first = [], 2
-    with closing(_pieces(path, source, needed)) as pieces:
-        for piece, decimal_comma in pieces:
-            parts.append(pd.DataFrame(columns(_Numbers(piece, source, first, decimal_comma))))
+    with closing(_pieces(path, kinds)) as pieces:
+        for piece in pieces:
+            columns = {
+                name: _READERS[kind](piece, name, source, first) for name, kind in kinds.items()
+            }
+            parts.append(pd.DataFrame(columns))
             first += len(piece)
     if not any(map(len, parts)):
         raise InputError(f"{source}: there is no row below the header; give at least one test.")
     return pd.concat(parts, ignore_index=True)
 
 
+def product_of(raw: pd.DataFrame, recipe: Sequence[str | float]) -> Floats:
+    """Return the product of columns and numbers, shape (rows,)."""
+    result = np.ones(len(raw))
+    for factor in recipe:
+        result = result * (raw[factor].to_numpy() if isinstance(factor, str) else float(factor))
+    return result
+
+
+def _labels(piece: pd.DataFrame, column: str, source: str, first: int) -> list[str]:
+    return [str(value).strip() for value in observations.labels(piece, column, source, first)]
+
+
+def _outcomes(piece: pd.DataFrame, column: str, source: str, first: int) -> Floats:
+    text = piece[column].fillna("").str.strip().str.lower()
+    text = text.str.replace(r"^([01])[.,]0*$", r"\1", regex=True)
+    known = text.isin(_YES | _NO).to_numpy()
+    if not known.all():
+        row = int(np.flatnonzero(~known)[0])
+        raise InputError(
+            f"{source}, row {first + row}, column {column!r}: {piece[column].iloc[row]!r} is no outcome; "
+            "write 1 or yes for overturned, 0 or no for survived."
+        )
+    return np.asarray(text.isin(_YES), dtype=np.float64)
+
+
+_READERS: Mapping[str, Callable[[pd.DataFrame, str, str, int], list[str] | Floats]] = {
+    "label": _labels,
+    "outcome": _outcomes,
+    "number": observations.numbers,
+    "positive": observations.positive,
+}
+"""How a column of a piece of the table is read; messages name the file and count rows from that of the piece."""
+
+
 def read_titles(path: str | os.PathLike[str]) -> list[str]:
     """Return the titles of the columns of a table of tests."""
-    source = Path(path).name
-    encoding = table_encoding(path)
-    head = _head(path, encoding)[1]
-    titles = [title.strip() for title in next(csv.reader([head], delimiter=_separator(head)), [])]
-    if not any(titles):
-        raise InputError(f"{source}: not a readable CSV table (it has no header); mend the file.")
-    return titles
+    return _head(path)[-1]
 
 
-def _head(path: str | os.PathLike[str], encoding: str) -> tuple[int, str]:
-    """Return the number of comments, lines that start with ``#``, before the header, and the header."""
+def _head(path: str | os.PathLike[str]) -> tuple[str, int, str, list[str]]:
+    """Return encoding, number of comments above the header, separator and titles of a table."""
+    source, encoding = Path(path).name, table_encoding(path)
     comments = 0
     try:
         with open(path, encoding=encoding, newline="") as file:
-            for line in file:
-                if not line.startswith("#"):
-                    return comments, line
+            while (head := next(file, "")).startswith("#"):
                 comments += 1
     except UnicodeError as error:
         raise InputError(
-            f"{Path(path).name}: is not text in one encoding; save the table as CSV (UTF-8)."
+            f"{source}: is not text in one encoding; save the table as CSV (UTF-8)."
         ) from error
-    return comments, ""
-
-
-def _separator(head: str) -> str:
-    return max(",;\t", key=head.count)
+    separator = max(",;\t", key=head.count)
+    titles = [title.strip() for title in next(csv.reader([head], delimiter=separator), [])]
+    if not any(titles):
+        raise InputError(f"{source}: not a readable CSV table (it has no header); mend the file.")
+    return encoding, comments, separator, titles
 
 
 def _pieces(
-    path: str | os.PathLike[str], source: str, needed: Sequence[str]
-) -> Generator[tuple[pd.DataFrame, bool], None, None]:
-    """Yield the needed columns as text, piece by piece, and whether a comma may be a decimal point."""
-    encoding = table_encoding(path)
-    titles = read_titles(path)
-    comments, head = _head(path, encoding)
-    separator = _separator(head)
+    path: str | os.PathLike[str], kinds: Mapping[str, str]
+) -> Generator[pd.DataFrame, None, None]:
+    """Yield columns as text, piece by piece, numbers with points for decimal commas."""
+    source = Path(path).name
+    encoding, comments, separator, titles = _head(path)
+    numeric = [name for name, kind in kinds.items() if kind in ("number", "positive")]
+    needed = list(kinds)
     places = []
     for name in needed:
         if name not in titles:
@@ -211,7 +220,11 @@ def _pieces(
             )
             with reader:
                 for piece in reader:
-                    yield piece[places].set_axis(list(needed), axis=1), separator != ","
+                    part = piece[places].set_axis(needed, axis=1)
+                    part[numeric] = part[numeric].apply(lambda values: values.str.strip())
+                    if separator != ",":
+                        part[numeric] = part[numeric].replace(",", ".", regex=True)
+                    yield part
     except pd.errors.EmptyDataError:
         return
     except (pd.errors.ParserError, pd.errors.ParserWarning, UnicodeError) as error:
@@ -220,50 +233,3 @@ def _pieces(
             f"{source}: not a readable CSV table ({reason}); if its numbers have decimal commas, separate "
             "the columns by semicolons."
         ) from error
-
-
-class _Numbers:
-    """One piece of the table, and how to read its columns; ``first`` is the number of its first row."""
-
-    def __init__(self, piece: pd.DataFrame, source: str, first: int, decimal_comma: bool) -> None:
-        self.piece, self.where = piece, (source, first)
-        self.decimal_comma = decimal_comma
-
-    def labels(self, column: str | None) -> list[str]:
-        """Text of a column; the row's own label where there is no column."""
-        found = observations.labels(self.piece, column, *self.where)
-        return [str(value).strip() for value in found]
-
-    def _numeric(self, column: str) -> pd.DataFrame:
-        """A column as text of numbers that have points."""
-        text: pd.DataFrame = self.piece[[column]].apply(lambda values: values.str.strip())
-        return text.replace(",", ".", regex=True) if self.decimal_comma else text
-
-    def numbers(self, column: str) -> Floats:
-        """Column as finite numbers, shape (rows,)."""
-        return observations.numbers(self._numeric(column), column, *self.where)
-
-    def product(self, recipe: Sequence[str | float]) -> Floats:
-        """Product of columns and numbers, above zero because it enters by its logarithm, (rows,)."""
-        result = np.ones(len(self.piece))
-        for factor in recipe:
-            if isinstance(factor, str):
-                numeric = self._numeric(factor)
-                result = result * observations.positive(numeric, factor, *self.where)
-            else:
-                result = result * float(factor)
-        return result
-
-    def outcomes(self, column: str) -> Floats:
-        """Outcomes as 0 and 1, shape (rows,)."""
-        text = self.piece[column].fillna("").str.strip().str.lower()
-        text = text.str.replace(r"^([01])[.,]0*$", r"\1", regex=True)
-        known = text.isin(_YES | _NO).to_numpy()
-        if not known.all():
-            row = int(np.flatnonzero(~known)[0])
-            source, first = self.where
-            raise InputError(
-                f"{source}, row {first + row}, column {column!r}: {self.piece[column].iloc[row]!r} is no outcome; "
-                "write 1 or yes for overturned, 0 or no for survived."
-            )
-        return np.asarray(text.isin(_YES), dtype=np.float64)

@@ -26,16 +26,13 @@ class UserFragility:
     ----------
     tests
         The table as used: ``motion``, ``earthquake``, ``overturned`` and a column per measure.
-    outcomes, fits
-        By measure, in the order given.
-    choice
-        Recommendation of a measure.
+    outcomes, fits, choice
+        By measure, in the order given, and the recommendation of a measure.
     two_measures
         Fragility in the first two measures with contours and cells; None with one measure.
-    table
-        Tidy table of curves, see :func:`rockfrag.fragility.ida_curves.fragility_table`.
-    bins
-        Empirical fractions in bins, by measure (column ``measure``).
+    table, bins
+        Tidy table of curves, see :func:`rockfrag.fragility.ida_curves.fragility_table`, and empirical fractions in
+        bins, by measure (column ``measure``).
     """
 
     tests: pd.DataFrame
@@ -76,22 +73,14 @@ def fit_user_table(
     measures
         As of :func:`rockfrag.fragility.tests_file.read_tests`, for example
         ``{"pga_g": ["pga_g"], "pgv_cm_s": ["pga_g", "pgv_over_pga_s", 980.665]}``.
-    overturned, motion, earthquake
-        Columns, likewise.
-    given
-        Columns against which sufficiency is tested.
+    overturned, motion, earthquake, given
+        Columns; sufficiency is tested against the last.
     level, replicates, seed
         Of confidence limits and bootstraps.
 
     Returns
     -------
     The :class:`UserFragility`.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, a column is absent, or a value cannot be used; file, row (the
-        header is row 1) and column are named.
     """
     source = Path(path).name
     tests = read_tests(

@@ -72,18 +72,14 @@ class VectorFragility:
     coefficients, covariance
         Of 1, ln IM1, ln IM2 and, where it earned its place, ln IM1 ln IM2; the covariance is from the expected
         information, which takes tests for independent.
-    log_likelihood, method
-        Of the fit, and how it was found: maximum likelihood, or penalised under separation.
+    log_likelihood, method, interaction
+        Of the fit; maximum likelihood, or penalised under separation; and the test of an interaction.
     replicates
         Coefficients without one earthquake each, shape (earthquakes, coefficients).
-    interaction
-        Test of the interaction.
     n, n_overturned, n_earthquakes
         Tests, those that overturned, and earthquakes.
-    level
-        Two-sided confidence level of limits.
-    warnings
-        What a reader must know before using it.
+    level, warnings
+        Two-sided confidence level of limits, and what a reader must know before using it.
     """
 
     measures: tuple[str, str]
@@ -169,30 +165,17 @@ def fit_vector(
 
     Parameters
     ----------
-    table
-        One row a test.
-    measures
-        Columns of the two measures, such as ``pga_g`` and ``pgv_over_pga_s``.
-    overturned
-        Column with the outcomes (0 or 1).
-    earthquake
-        Column with the earthquake of each test; None where each test is one of its own.
-    level
-        Two-sided confidence level of limits [-].
-    source
-        What messages call the table.
-    try_interaction
-        Whether to test an interaction, which takes most of the time; without it none is kept.
+    table, measures
+        One row a test, and the columns of the two measures, such as ``pga_g`` and ``pgv_over_pga_s``.
+    overturned, earthquake
+        Columns of outcome (0 or 1) and earthquake; None where each test has an earthquake of its own.
+    level, source, try_interaction
+        Two-sided confidence level of limits [-]; what messages call the table; whether to test an interaction,
+        which takes most of the time: without it none is kept.
 
     Returns
     -------
-    VectorFragility
-        The fit, with replicates by earthquake and the test of an interaction.
-
-    Raises
-    ------
-    InputError
-        If a value is missing or out of range, all tests agree, or the measures are proportional to each other.
+    The :class:`VectorFragility`, with replicates by earthquake.
     """
     if not 0.0 < level < 1.0:
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")

@@ -15,8 +15,7 @@ from fractions import Fraction
 import numpy as np
 
 from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number
-from rockfrag.motions.checks import peaks, whole
+from rockfrag.input_checks import positive_number, whole_number_within
 from rockfrag.records.motion import Motion
 
 
@@ -47,7 +46,7 @@ def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz:
                 f"step {kind}: {name} {corner} is not below the Nyquist frequency {nyquist:g} Hz of "
                 f"motion {motion.name!r} (dt {motion.dt:g} s)."
             )
-    order = whole(f"step {kind}", "order", order, 1, 10)
+    order = whole_number_within(f"step {kind}", "order", order, 1, 10)
     if not isinstance(causal, bool):
         raise InputError(f"step {kind}: causal must be true or false, got {causal!r}.")
     if kind == "bandpass" and corners["low_hz"] >= corners["high_hz"]:
@@ -62,7 +61,7 @@ def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz:
     )
     ends = [float(samples[0]), float(samples[-1])]
     settings = {**corners, "order": order, "causal": causal}
-    return motion.after(kind, samples, **settings, **peaks(motion, samples), ends_m_s2=ends)
+    return motion.after(kind, samples, **settings, **motion.peaks(samples), ends_m_s2=ends)
 
 
 def resample(motion: Motion, dt_s: float) -> Motion:
@@ -87,7 +86,7 @@ def resample(motion: Motion, dt_s: float) -> Motion:
     samples = resample_poly(motion.acceleration, ratio.numerator, ratio.denominator, padtype=ends)
     count = int((motion.acceleration.size - 1) * motion.dt / dt_s * (1 + 1e-12)) + 1
     samples = samples[:count]
-    return motion.after("resample", samples, dt=dt_s, dt_s=dt_s, **peaks(motion, samples))
+    return motion.after("resample", samples, dt=dt_s, dt_s=dt_s, **motion.peaks(samples))
 
 
 def interpolate(motion: Motion, dt_s: float) -> Motion:

@@ -11,6 +11,7 @@ and steps that scale to a measure are named long before they are taken.
 from __future__ import annotations
 
 import math
+from functools import partial
 from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING
 
@@ -122,16 +123,12 @@ def significant_duration(motion: Motion, lower: float = 0.05, upper: float = 0.9
     return end - start
 
 
-@intensity_measure("s", power=0, label="D5-75", name="d5_75")
-def _d5_75(motion: Motion) -> float:
-    return significant_duration(motion, 0.05, 0.75)
-
-
-@intensity_measure(
-    "s", power=0, label="D5-95", name="d5_95", decimals=1, title="Significant duration, 5–95 %"
+intensity_measure("s", power=0, label="D5-75", name="d5_75")(
+    partial(significant_duration, upper=0.75)
 )
-def _d5_95(motion: Motion) -> float:
-    return significant_duration(motion, 0.05, 0.95)
+intensity_measure(
+    "s", power=0, label="D5-95", name="d5_95", decimals=1, title="Significant duration, 5–95 %"
+)(significant_duration)
 
 
 def bracketed_times(motion: Motion, threshold: float) -> tuple[float, float]:
@@ -162,8 +159,7 @@ def mean_period(motion: Motion) -> float:
     return float((power / frequency[band]).sum() / total) if total > 0 else math.nan
 
 
-PREDOMINANT_PERIODS = np.geomspace(0.02, 10.0, 541)
-"""Periods searched for the predominant one [s]: 200 in a decade, 1.2 % apart."""
+PREDOMINANT_PERIODS = np.geomspace(0.02, 10.0, 541)  # searched [s]: 200 in a decade
 
 
 @intensity_measure("s", power=0, label="predominant period")
@@ -188,10 +184,7 @@ def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) 
 
 
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)  # periods of the Housner intensity [s]
-
-
-AVERAGE_PERIODS = np.linspace(0.2, 2.0, 10)
-"""Periods over which the average spectral acceleration is taken [s]."""
+AVERAGE_PERIODS = np.linspace(0.2, 2.0, 10)  # of the average spectral acceleration [s]
 
 
 def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, float]:

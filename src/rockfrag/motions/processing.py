@@ -45,19 +45,15 @@ def process(motion: Motion, steps: Sequence[Mapping[str, Any]] = ()) -> Motion:
     The processed motion; each step and its parameters are appended to its provenance.
     """
     # a misspelt last step is reported before the first one has cost anything
-    for function, parameters in _checked_steps(steps):
+    for function, parameters in check_steps(steps):
         motion = function(motion, **parameters)
     return motion
 
 
-def check_steps(steps: Sequence[Mapping[str, Any]]) -> None:
-    """Raise InputError if :func:`process` would not know a step or one of its parameters."""
-    _checked_steps(steps)
-
-
-def _checked_steps(
+def check_steps(
     steps: Sequence[Mapping[str, Any]],
 ) -> list[tuple[Callable[..., Motion], dict[str, Any]]]:
+    """Return the functions and parameters of steps; InputError if :func:`process` does not know one."""
     if isinstance(steps, str | Mapping) or not isinstance(steps, Sequence):
         raise InputError(f"processing: a list of steps is needed, got {steps!r}.")
     return [_checked(number, entry) for number, entry in enumerate(steps, start=1)]

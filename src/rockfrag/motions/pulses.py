@@ -8,13 +8,13 @@ behind is exact.
 
 import math
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number, real_number
-from rockfrag.motions.checks import MOST_SAMPLES, plain, whole
+from rockfrag.input_checks import MOST_SAMPLES, positive_number, real_number, whole_number_within
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
@@ -40,7 +40,7 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
     -------
     The :class:`Motion` [m/s²].
     """
-    cycles = whole("sine", "cycles", cycles, 1, 1000)
+    cycles = whole_number_within("sine", "cycles", cycles, 1, 1000)
     length = cycles * _seconds("sine: period", period)
     given = {"amplitude": amplitude, "period": period, "cycles": cycles}
     source = "steady harmonic motion from rest"
@@ -95,7 +95,7 @@ def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion
     name = "commanded_cosine"
     positive_number(f"{name}: pga", pga, "m/s²")
     period = 2 * np.pi * _seconds(f"{name}: pgv_over_pga", pgv_over_pga)
-    cycles = whole(name, "cycles", cycles, 1, 1000)
+    cycles = whole_number_within(name, "cycles", cycles, 1, 1000)
     source = "motion of a shake table commanded by PGA and PGV/PGA"
     length, step = cycles * period, min(DT, period / 400)
     given = {"amplitude": pga, "period": period, "cycles": cycles}
@@ -314,3 +314,8 @@ def _pulse(
     acceleration = np.pad(given["amplitude"] * np.asarray(shape(instants)), 1)
     facts = {"synthetic": True, "kind": name, "source": source}
     return Motion(acceleration, step, name, facts, ({"step": name, **plain(given)},))
+
+
+def plain(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return parameters with numbers of NumPy's types as Python's own, which JSON can carry."""
+    return {k: v.item() if isinstance(v, np.generic) else v for k, v in parameters.items()}

@@ -9,13 +9,11 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number
-from rockfrag.motions.checks import peaks
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 
 _RIGHT_ANGLE = 5.0  # degrees by which two components may be off a right angle
-DIRECTIONS_DEG = range(180)
-"""Directions that are looked in [degrees]; the other half of the circle sees the same."""
+DIRECTIONS_DEG = range(180)  # directions looked in; the other half of the circle sees the same
 
 
 def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:
@@ -191,5 +189,5 @@ def _at(motion: Motion, begin: float, dt: float, count: int) -> Motion:
         left_out_at_beginning_s=begin,
         left_out_at_end_s=float(f"{max(end, 0.0):.9g}"),
         interpolated=not same,
-        **peaks(motion, samples),
+        **motion.peaks(samples),
     )

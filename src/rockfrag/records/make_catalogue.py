@@ -46,6 +46,8 @@ class Component:
 
     file: str
     name: str
+    stem: str  # name of the file without what names the component
+    suffix: str  # component that ends the name of its file, as in ``A-TMZ000``; empty if none does
     path: str
     facts: dict[str, Any]
     npts: int
@@ -71,23 +73,6 @@ class Component:
         return named or ("" if self.suffix in {"1", "2", "3"} else self.suffix)
 
     @property
-    def suffix(self) -> str:
-        """Component that ends the name of its file, as in ``A-TMZ000``; empty if none does."""
-        return self._parts[1]
-
-    @property
-    def stem(self) -> str:
-        """Name of the file without what names the component."""
-        return self._parts[0]
-
-    @property
-    def _parts(self) -> tuple[str, str]:
-        found = next(filter(None, (pattern.match(self.name) for pattern in _SUFFIXES)), None)
-        if found is None or self.several:
-            return self.name, ""
-        return found["stem"] + found["rest"], found["name"]
-
-    @property
     def is_vertical(self) -> bool:
         """Whether it is named as a vertical one."""
         return is_vertical(self.orientation)
@@ -108,7 +93,10 @@ class Component:
 class CatalogueDraft:
     """A catalogue made: its table, and what a person should look at: files and what looks wrong in each."""
 
-    table: pd.DataFrame
+    unit: str | None  # of files that do not state theirs
+    dt: float | None  # sampling interval [s] of files without one
+    folder: Path  # files are named from here
+    table: pd.DataFrame = field(default_factory=pd.DataFrame)
     notes: list[tuple[str, str]] = field(default_factory=list)
     errors: list[str] = field(default_factory=list)
 
@@ -136,6 +124,198 @@ class CatalogueDraft:
         """Note what looks wrong in a file."""
         self.notes.append((file, what))
 
+    def look_through(self, path: Path) -> tuple[list[Component], list[PeerRecord]]:
+        """Return the components below a path and what PEER says of them."""
+        inside = path.is_dir()
+        files = [file for file in files_of(path) if not is_catalogue(file)] if inside else [path]
+        components = [component for file in files for component in self._components(file)]
+        listed: list[PeerRecord] = []
+        try:
+            if inside:
+                for file in sorted(path.rglob(FILE_NAME)):
+                    listed += read_search_results(file)
+            elif path.name == FILE_NAME:
+                raise InputError(
+                    f"{path}: give the folder that this file lies in, with its records."
+                )
+            for file in filter(is_archive, files):
+                with unpacked(file) as members:
+                    for member in members:
+                        if PurePosixPath(member.name).name == FILE_NAME:
+                            listed += read_search_results(member.path)
+        except InputError as error:
+            self.errors.append(str(error))
+        return components, listed
+
+    def _components(self, file: Path) -> list[Component]:
+        """Read every component of a file; what is wrong with it goes into the errors."""
+        try:
+            record, dt_given = _read(file, self.dt)
+        except NotAcceleration:
+            return []
+        except InputError as error:
+            self.errors.append(str(error))
+            return []
+        self.errors += [str(e) for _, e in record.left_out if not isinstance(e, NotAcceleration)]
+        relative = Path(os.path.relpath(file, self.folder)).as_posix()
+        if not relative.isprintable():
+            self.errors.append(
+                f"{printable(relative)}: its name has characters that no table shows; rename the file"
+            )
+            return []
+        found = []
+        for number, channel in enumerate(record.channels, start=1):
+            own = [c for c in record.channels if c.member == channel.member]
+            label = channel.code or channel.component
+            unique = label and [c.code or c.component for c in own].count(label) == 1
+            chosen = (label if unique else str(number)) if len(own) > 1 else ""
+            unit = None if channel.unit else self.unit
+            try:
+                motion = motion_of(record, channel, unit)
+            except InputError as error:
+                self.errors.append(str(error))
+                continue
+            samples = motion.acceleration.tobytes() + repr(motion.dt).encode()
+            name = _stem(PurePosixPath(channel.member or file.name).name)
+            stem, suffix = _parts(name) if len(own) == 1 else (name, "")
+            component = Component(
+                file="#".join(filter(None, (relative, channel.member, chosen))),
+                name=name,
+                stem=stem,
+                suffix=suffix,
+                path=channel.member or str(file),
+                facts=dict(motion.metadata),
+                npts=channel.npts,
+                dt=channel.dt,
+                sha256=record.sha256,
+                several=len(own) > 1,
+                unit=unit or "",
+                dt_given=dt_given,
+                container=str(file) if channel.member else "",
+                digest=sha256(samples).hexdigest(),
+                quality_flags=tuple(quality_flags(motion)),
+            )
+            found.append(component)
+        return found
+
+    def peer_rows(
+        self, listed: PeerRecord, found: Sequence[Component], used: set[str]
+    ) -> list[dict[str, Any]]:
+        """Return the rows of one record of a download."""
+
+        def component(name: str) -> Component | None:
+            """Find the component of a file; names may have the folder of PEER's disk before them."""
+            own = PurePosixPath(name.replace("\\", "/")).name.lower()
+            named = (c for c in found if Path(c.path).name.lower() == own)
+            return next(named, None) if own else None
+
+        horizontal = [component(listed.first), component(listed.second)]
+        vertical = component(listed.vertical)
+        for name, side in zip((listed.first, listed.second), horizontal, strict=True):
+            if name and side is None:
+                self.note(f"RSN{listed.number}", f"{name} is listed but not among the files")
+        facts = {
+            "earthquake": f"{listed.earthquake} {listed.year}".strip(),
+            "date": listed.year if re.fullmatch(r"\d{4}", listed.year) else "",
+            "station": listed.station,
+            "magnitude": listed.magnitude,
+            "distance_km": listed.distance_km,
+            "scale_factor": listed.scale_factor if listed.scale_factor != 1 else None,
+        }
+        known = {key: value for key, value in facts.items() if value not in ("", None)}
+        there = [component for component in horizontal if component is not None]
+        used.update(component.file for component in (*there, *([vertical] if vertical else [])))
+        return [self._row(component, there, vertical) | known for component in there]
+
+    def rows_of(self, group: Sequence[Component]) -> list[dict[str, Any]]:
+        """Return the rows of the components of one record."""
+        flat = _horizontal(group)
+        upright = next((component for component in group if component.is_vertical), None)
+        if not flat and upright is not None:
+            self.note(upright.file, "a vertical component of no record here; left out")
+        if len(flat) == 1:
+            self.note(flat[0].file, "its other horizontal component was not found")
+        return [self._row(component, flat, upright) for component in flat]
+
+    def _row(
+        self, component: Component, pair: Sequence[Component], vertical: Component | None
+    ) -> dict[str, Any]:
+        """Return the row of one component of a pair, and note what looks wrong in it."""
+        other = next((other for other in pair if other is not component), None)
+        file, facts = component.file, component.facts
+        self.notes += [(file, quality_flag) for quality_flag in component.quality_flags]
+        if (
+            other is not None
+            and file < other.file
+            and abs(component.npts - other.npts) > 0.1 * component.npts
+        ):
+            unlike = (
+                f"{component.npts} samples, but {other.npts} in {other.file} of the same record"
+            )
+            self.note(file, unlike)
+        earthquake = str(facts.get("earthquake") or "")
+        if not earthquake:
+            earthquake = component.stem
+            column = f"the column earthquake has {earthquake!r}"
+            self.note(file, f"its earthquake is not stated; {column}")
+        channel = facts.get("channel", "") if component.several else ""
+        return {
+            "name": f"{component.name} {channel}".strip() if component.several else component.name,
+            "earthquake": earthquake,
+            "date": _date(facts),
+            "station": facts.get("station", ""),
+            "component": component.orientation,
+            "magnitude": facts.get("magnitude"),
+            "distance_km": facts.get("distance_km"),
+            "source": "folder",
+            "file": file,
+            "second": other.file if other else "",
+            "vertical": vertical.file if vertical else "",
+            "sha256": component.sha256,
+            "unit": component.unit,
+            "dt": component.dt_given,
+        }
+
+    def without_copies(
+        self, groups: Sequence[list[Component]], seen: dict[str, str]
+    ) -> list[list[Component]]:
+        """Leave out records that are there already, as in an archive and beside it.
+
+        Of two the one with both horizontals is kept, of those the file and not the member of an archive.
+        """
+
+        def worth(number: int) -> tuple[int, bool, int]:
+            group = groups[number]
+            return -len(_horizontal(group)), any(component.container for component in group), number
+
+        kept = []
+        for number in sorted(range(len(groups)), key=worth):
+            told = _horizontal(groups[number]) or groups[number]
+            if all(component.digest in seen for component in told):
+                for first in groups[number]:
+                    other = seen.get(first.digest, "") or told[0].file
+                    self.note(first.file, f"the same record as {other}; left out")
+                continue
+            kept.append(number)
+            for first in groups[number]:
+                seen.setdefault(first.digest, first.file)
+        return [groups[number] for number in sorted(kept)]
+
+    def note_names_of_one_day(self, rows: Sequence[dict[str, Any]]) -> None:
+        """Note days of which several earthquakes are named: they may be one under two names."""
+        by_day: dict[str, dict[str, str]] = {}
+        for row in rows:
+            if len(row["date"]) == len("1976-05-06"):
+                by_day.setdefault(row["date"], {}).setdefault(row["earthquake"], row["file"])
+        for day, earthquakes in by_day.items():
+            if len(earthquakes) > 1:
+                first, other = list(earthquakes)[:2]
+                self.note(
+                    earthquakes[other],
+                    f"its earthquake is {other!r}, that of {earthquakes[first]} on the same day ({day}) "
+                    f"{first!r}; if they are one, give it one name in the column earthquake",
+                )
+
 
 def make_catalogue(
     paths: Iterable[str | os.PathLike[str]],
@@ -149,152 +329,32 @@ def make_catalogue(
     file, by station and time, and by names that differ in the component alone. Each horizontal
     component becomes a row that names the other one as ``second`` and the vertical one.
     """
-    draft = CatalogueDraft(pd.DataFrame(columns=list(COLUMNS)))
+    draft = CatalogueDraft(unit, dt, Path(folder))
     paths = list(paths)
     rows: list[dict[str, Any]] = []
     groups: list[list[Component]] = []
     seen: dict[str, str] = {}
     for path in map(Path, paths):
-        found, listed = _look_through(path, unit, dt, Path(folder), draft)
+        found, listed = draft.look_through(path)
         used: set[str] = set()
         for record in listed:
-            rows += _peer_rows(record, found, used, draft)
+            rows += draft.peer_rows(record, found, used)
         seen |= {component.digest: component.file for component in found if component.file in used}
         groups += _records_of([component for component in found if component.file not in used])
-    for group in _without_copies(groups, seen, draft):
-        rows += _rows_of(group, draft)
+    for group in draft.without_copies(groups, seen):
+        rows += draft.rows_of(group)
     if not rows:
         more = f": {draft.errors[0]}" if draft.errors else "."
         where = ", ".join(map(str, paths))
         raise InputError(f"{where}: no horizontal component of acceleration was found{more}")
     _name_uniquely(rows)
-    _note_names_of_one_day(rows, draft)
+    draft.note_names_of_one_day(rows)
     draft.table = pd.DataFrame(rows, columns=list(COLUMNS)).fillna("")
     return draft
 
 
-def _without_copies(
-    groups: Sequence[list[Component]], seen: dict[str, str], draft: CatalogueDraft
-) -> list[list[Component]]:
-    """Leave out records that are there already, as in an archive and beside it.
-
-    Of two the one with both horizontals is kept, of those the file and not the member of an archive.
-    """
-
-    def worth(number: int) -> tuple[int, bool, int]:
-        group = groups[number]
-        return -len(_horizontal(group)), any(component.container for component in group), number
-
-    kept = []
-    for number in sorted(range(len(groups)), key=worth):
-        told = _horizontal(groups[number]) or groups[number]
-        if all(component.digest in seen for component in told):
-            for first in groups[number]:
-                other = seen.get(first.digest, "")
-                draft.note(first.file, f"the same record as {other or told[0].file}; left out")
-            continue
-        kept.append(number)
-        for first in groups[number]:
-            seen.setdefault(first.digest, first.file)
-    return [groups[number] for number in sorted(kept)]
-
-
 def _horizontal(group: Sequence[Component]) -> list[Component]:
     return [component for component in group if not component.is_vertical]
-
-
-def _note_names_of_one_day(rows: Sequence[dict[str, Any]], draft: CatalogueDraft) -> None:
-    """Note days of which several earthquakes are named: they may be one under two names."""
-    by_day: dict[str, dict[str, str]] = {}
-    for row in rows:
-        day, earthquake = str(row["date"]), str(row["earthquake"])
-        if len(day) == len("1976-05-06"):
-            by_day.setdefault(day, {}).setdefault(earthquake, str(row["file"]))
-    for day, earthquakes in by_day.items():
-        if len(earthquakes) > 1:
-            first, other = list(earthquakes)[:2]
-            draft.note(
-                earthquakes[other],
-                f"its earthquake is {other!r}, that of {earthquakes[first]} on the same day ({day}) {first!r}; if "
-                "they are one, give it one name in the column earthquake",
-            )
-
-
-def _look_through(
-    path: Path, unit: str | None, dt: float | None, folder: Path, draft: CatalogueDraft
-) -> tuple[list[Component], list[PeerRecord]]:
-    """Return the components below a path and what PEER says of them."""
-    files = [file for file in files_of(path) if not is_catalogue(file)] if path.is_dir() else [path]
-    components: list[Component] = []
-    for file in files:
-        components += _components(file, unit, dt, folder, draft)
-    listed: list[PeerRecord] = []
-    try:
-        if path.is_dir():
-            for file in sorted(path.rglob(FILE_NAME)):
-                listed += read_search_results(file)
-        elif path.name == FILE_NAME:
-            raise InputError(f"{path}: give the folder that this file lies in, with its records.")
-        for file in files:
-            if is_archive(file):
-                with unpacked(file) as members:
-                    for member in members:
-                        if PurePosixPath(member.name).name == FILE_NAME:
-                            listed += read_search_results(member.path)
-    except InputError as error:
-        draft.errors.append(str(error))
-    return components, listed
-
-
-def _components(
-    file: Path, unit: str | None, dt: float | None, folder: Path, draft: CatalogueDraft
-) -> list[Component]:
-    """Read every component of a file; what is wrong with it goes into the errors of ``draft``."""
-    try:
-        record, dt_given = _read(file, dt)
-    except NotAcceleration:
-        return []
-    except InputError as error:
-        draft.errors.append(str(error))
-        return []
-    draft.errors += [str(e) for _, e in record.left_out if not isinstance(e, NotAcceleration)]
-    relative = Path(os.path.relpath(file, folder)).as_posix()
-    if not relative.isprintable():
-        draft.errors.append(
-            f"{printable(relative)}: its name has characters that no table shows; rename the file"
-        )
-        return []
-    found = []
-    for number, channel in enumerate(record.channels, start=1):
-        own = [c for c in record.channels if c.member == channel.member]
-        label = channel.code or channel.component
-        unique = label and [c.code or c.component for c in own].count(label) == 1
-        chosen = (label if unique else str(number)) if len(own) > 1 else ""
-        parts = [relative, channel.member, chosen]
-        needs_unit = not channel.unit
-        try:
-            motion = motion_of(record, channel, unit if needs_unit else None)
-        except InputError as error:
-            draft.errors.append(str(error))
-            continue
-        samples = motion.acceleration.tobytes() + repr(motion.dt).encode()
-        component = Component(
-            file="#".join(part for part in parts if part),
-            name=_stem(PurePosixPath(channel.member or file.name).name),
-            path=channel.member or str(file),
-            facts=dict(motion.metadata),
-            npts=channel.npts,
-            dt=channel.dt,
-            sha256=record.sha256,
-            several=len(own) > 1,
-            unit=unit or "" if needs_unit else "",
-            dt_given=dt_given,
-            container=str(file) if channel.member else "",
-            digest=sha256(samples).hexdigest(),
-            quality_flags=tuple(quality_flags(motion)),
-        )
-        found.append(component)
-    return found
 
 
 def _read(file: Path, dt: float | None) -> tuple[Record, float | None]:
@@ -315,36 +375,10 @@ def _stem(name: str) -> str:
     return plain.rsplit(".", 1)[0] or plain
 
 
-def _peer_rows(
-    listed: PeerRecord, found: Sequence[Component], used: set[str], draft: CatalogueDraft
-) -> list[dict[str, Any]]:
-    """Return the rows of one record of a download."""
-
-    def component(name: str) -> Component | None:
-        """Find the component of a file; names may have the folder of PEER's disk before them."""
-        own = PurePosixPath(name.replace("\\", "/")).name.lower()
-        return next((c for c in found if Path(c.path).name.lower() == own), None) if own else None
-
-    horizontal = [component(listed.first), component(listed.second)]
-    vertical = component(listed.vertical)
-    for name, side in zip((listed.first, listed.second), horizontal, strict=True):
-        if name and side is None:
-            draft.note(f"RSN{listed.number}", f"{name} is listed but not among the files")
-    facts = {
-        "earthquake": f"{listed.earthquake} {listed.year}".strip(),
-        "date": listed.year if re.fullmatch(r"\d{4}", listed.year) else "",
-        "station": listed.station,
-        "magnitude": listed.magnitude,
-        "distance_km": listed.distance_km,
-        "scale_factor": listed.scale_factor if listed.scale_factor != 1 else None,
-    }
-    there = [component for component in horizontal if component is not None]
-    used.update(component.file for component in (*there, *([vertical] if vertical else [])))
-    return [
-        _row(component, there, vertical, draft)
-        | {key: value for key, value in facts.items() if value not in ("", None)}
-        for component in there
-    ]
+def _parts(name: str) -> tuple[str, str]:
+    """Return the name of a file without the component that ends it, and that component."""
+    found = next(filter(None, (pattern.match(name) for pattern in _SUFFIXES)), None)
+    return (found["stem"] + found["rest"], found["name"]) if found else (name, "")
 
 
 def _records_of(components: Sequence[Component]) -> list[list[Component]]:
@@ -381,61 +415,6 @@ def _is_record(group: Sequence[Component]) -> bool:
         return True
     apart = abs((first - second + 90) % 180 - 90)
     return abs(apart - 90) <= _PERPENDICULAR
-
-
-def _rows_of(group: Sequence[Component], draft: CatalogueDraft) -> list[dict[str, Any]]:
-    flat = _horizontal(group)
-    upright = next((component for component in group if component.is_vertical), None)
-    if not flat and upright is not None:
-        draft.note(upright.file, "a vertical component of no record here; left out")
-    if len(flat) == 1:
-        draft.note(flat[0].file, "its other horizontal component was not found")
-    return [_row(component, flat, upright, draft) for component in flat]
-
-
-def _row(
-    component: Component,
-    pair: Sequence[Component],
-    vertical: Component | None,
-    draft: CatalogueDraft,
-) -> dict[str, Any]:
-    """Return the row of one component of a pair, and note what looks wrong in it."""
-    other = next((other for other in pair if other is not component), None)
-    for quality_flag in component.quality_flags:
-        draft.note(component.file, quality_flag)
-    if (
-        other is not None
-        and component.file < other.file
-        and abs(component.npts - other.npts) > 0.1 * component.npts
-    ):
-        draft.note(
-            component.file,
-            f"{component.npts} samples, but {other.npts} in {other.file} of the same record",
-        )
-    earthquake = str(component.facts.get("earthquake") or "")
-    if not earthquake:
-        earthquake = component.stem
-        draft.note(
-            component.file,
-            f"its earthquake is not stated; the column earthquake has {earthquake!r}",
-        )
-    channel = component.facts.get("channel", "") if component.several else ""
-    return {
-        "name": f"{component.name} {channel}".strip() if component.several else component.name,
-        "earthquake": earthquake,
-        "date": _date(component.facts),
-        "station": component.facts.get("station", ""),
-        "component": component.orientation,
-        "magnitude": component.facts.get("magnitude"),
-        "distance_km": component.facts.get("distance_km"),
-        "source": "folder",
-        "file": component.file,
-        "second": other.file if other else "",
-        "vertical": vertical.file if vertical else "",
-        "sha256": component.sha256,
-        "unit": component.unit,
-        "dt": component.dt_given,
-    }
 
 
 def _date(facts: dict[str, Any]) -> str:

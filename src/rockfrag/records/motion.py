@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.short_repr import short_repr
+from rockfrag.units import GRAVITY
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,7 +55,12 @@ class Motion:
     __repr__ = short_repr
 
     def __post_init__(self) -> None:
-        acceleration = _own(self.acceleration)
+        acceleration = self.acceleration
+        # nobody can change those of another motion; others are copied
+        if not (isinstance(acceleration, np.ndarray) and acceleration.dtype == np.float64) or (
+            acceleration.base is not None or acceleration.flags.writeable
+        ):
+            acceleration = np.array(acceleration, dtype=np.float64)
         if acceleration.ndim != 1 or acceleration.size == 0:
             raise InputError(
                 f"motion {self.name!r}: acceleration needs shape (n,) with n ≥ 1, got {acceleration.shape}."
@@ -81,11 +87,34 @@ class Motion:
         return float(np.abs(self.acceleration).max())
 
     def plot(self) -> "Figure":
-        """Draw acceleration [g], velocity [cm/s] and displacement [cm] over time."""
+        """Draw acceleration [g], velocity [cm/s] and displacement [cm]; a dot marks the largest sample of each."""
         # matplotlib is loaded only by those who draw
-        from rockfrag.records.motion_figure import motion_figure
+        from rockfrag.figure_style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
 
-        return motion_figure(self.acceleration, self.dt, self.name)
+        velocity, displacement = integrate(self.acceleration, self.dt)
+        drawn = (
+            ("Acceleration [g]", self.acceleration / GRAVITY),
+            ("Velocity [cm/s]", 100 * velocity),
+            ("Displacement [cm]", 100 * displacement),
+        )
+        with figure_style():
+            figure = new_figure(COLUMN_WIDTH, 4.2)
+            panels = figure.subplots(3, 1, sharex=True)
+            for panel, (label, values) in zip(panels, drawn, strict=True):
+                peak = int(np.abs(values).argmax())
+                panel.axhline(0, color="#999999", linewidth=0.6, zorder=1)
+                panel.plot(self.time, values, color=BLUE, linewidth=0.6)
+                panel.plot(self.time[peak], values[peak], "o", color=RED, markersize=3)
+                panel.set_ylabel(label)
+            panels[0].set_title(self.name, loc="left")
+            panels[-1].set_xlabel("Time [s]")
+            figure.align_ylabels(panels)
+            return figure
+
+    def peaks(self, samples: NDArray[np.float64]) -> dict[str, float]:
+        """Return the peaks [m/s²] before and after a step that changes samples, for its provenance."""
+        after = float(np.abs(samples).max()) if samples.size else 0.0
+        return {"peak_before_m_s2": self.pga, "peak_after_m_s2": after}
 
     def after(
         self,
@@ -101,13 +130,6 @@ class Motion:
             dt=self.dt if dt is None else dt,
             provenance=(*self.provenance, {"step": step, **parameters}),
         )
-
-
-def _own(values: Any) -> NDArray[np.float64]:
-    """Return values that nobody can change: those of another motion as they are, others copied."""
-    if isinstance(values, np.ndarray) and values.dtype == np.float64 and values.base is None:
-        return values.copy() if values.flags.writeable else values
-    return np.array(values, dtype=np.float64)
 
 
 def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) -> None:
@@ -146,7 +168,17 @@ def read_motion_set(
             end = begin + file.metadata.row_group(group).num_rows
             if begin < last and end > first:
                 rows = file.read_row_group(group).slice(max(first - begin, 0))
-                found += _motions(rows.slice(0, last - max(first, begin)).to_pandas())
+                table = rows.slice(0, last - max(first, begin)).to_pandas()
+                found += [
+                    Motion(
+                        acceleration=np.asarray(row["acceleration_m_s2"], dtype=np.float64),
+                        dt=row["dt_s"],
+                        name=row["name"],
+                        metadata=json.loads(row["metadata"]),
+                        provenance=tuple(json.loads(row["provenance"])),
+                    )
+                    for row in table.to_dict("records")
+                ]
             begin = end
     return found
 
@@ -155,19 +187,6 @@ def read_motion_metadata(path: str | os.PathLike[str]) -> list[dict[str, Any]]:
     """Read what is known of each motion of a set, without its samples."""
     found = pq.read_table(path, columns=["metadata"])["metadata"].to_pylist()
     return [json.loads(line) for line in found]
-
-
-def _motions(table: pd.DataFrame) -> list[Motion]:
-    return [
-        Motion(
-            acceleration=np.asarray(row["acceleration_m_s2"], dtype=np.float64),
-            dt=row["dt_s"],
-            name=row["name"],
-            metadata=json.loads(row["metadata"]),
-            provenance=tuple(json.loads(row["provenance"])),
-        )
-        for row in table.to_dict("records")
-    ]
 
 
 SAME_STEP = 1e-9  # relative difference of sampling intervals that is rounding of a file

@@ -5,8 +5,10 @@ Records --`` and a line of titles, a row a record, and ends with an empty line.
 """
 
 import csv
+import math
 import os
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,11 +84,9 @@ def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
 
 
 def _record(cells: dict[str, str], where: str) -> PeerRecord:
-    def file(key: str) -> str:
-        name = cells.get(key, "")
-        return "" if set(name) <= {"-", " "} else name
-
-    if not cells.get("number", "").isdigit() or not file("first"):
+    files = {key: cells.get(key, "") for key in ("first", "second", "vertical")}
+    files = {key: "" if set(name) <= {"-", " "} else name for key, name in files.items()}
+    if not cells.get("number", "").isdigit() or not files["first"]:
         raise InputError(f"{where}: no record sequence number, or no file of the first component.")
     return PeerRecord(
         number=cells["number"],
@@ -96,15 +96,12 @@ def _record(cells: dict[str, str], where: str) -> PeerRecord:
         magnitude=_number(cells.get("magnitude", "")),
         distance_km=_number(cells.get("rrup", "")) or _number(cells.get("rjb", "")),
         scale_factor=_number(cells.get("scale_factor", "")),
-        first=file("first"),
-        second=file("second"),
-        vertical=file("vertical"),
+        **files,
     )
 
 
 def _number(words: str) -> float | None:
-    try:
+    value = math.nan
+    with suppress(ValueError):
         value = float(words)
-    except ValueError:
-        return None
     return value if 0 < value < 1e6 else None

@@ -9,25 +9,20 @@ from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 
 _GSE = "a GSE file, which is not read here; convert it with ObsPy: obspy.read(file).write('record.mseed', 'MSEED')"
-_MAGIC: tuple[tuple[bytes, str], ...] = (
-    (b"\xff\xfe", "UTF-16 text; save it as UTF-8"),
-    (b"\xfe\xff", "UTF-16 text; save it as UTF-8"),
-    (b"%PDF", "a PDF document"),
-    (b"\xd0\xcf\x11\xe0", "an Excel workbook; save the sheet as CSV"),
-    (b"version https://git-lfs", "a pointer of git-lfs; fetch the file itself with git lfs pull"),
-    (b"\x89HDF", "an HDF5 file; export the record as text"),
-    (b"MATLAB 5.0 MAT-file", "a MATLAB file; export the record as text"),
-    (b"PAR1", "a Parquet table; export the record as text"),
-    (b"\x89PNG", "a picture"),
-    (b"\xff\xd8\xff", "a picture"),
-    (b"7z\xbc\xaf", "an archive of a kind not unpacked here; unpack it first"),
-    (b"WID1 ", _GSE),
-    (b"WID2 ", _GSE),
-    (b"XW01", _GSE),
-    (b"BEGIN GSE", _GSE),
-    (b"BEGIN IMS", _GSE),
-    (b"Rar!", "an archive of a kind not unpacked here; unpack it first"),
-)
+_KINDS: dict[tuple[bytes, ...], str] = {
+    (b"\xff\xfe", b"\xfe\xff"): "UTF-16 text; save it as UTF-8",
+    (b"%PDF",): "a PDF document",
+    (b"\xd0\xcf\x11\xe0",): "an Excel workbook; save the sheet as CSV",
+    (b"version https://git-lfs",): "a pointer of git-lfs; fetch the file itself with git lfs pull",
+    (b"\x89HDF",): "an HDF5 file; export the record as text",
+    (b"MATLAB 5.0 MAT-file",): "a MATLAB file; export the record as text",
+    (b"PAR1",): "a Parquet table; export the record as text",
+    (b"\x89PNG", b"\xff\xd8\xff"): "a picture",
+    (b"WID1 ", b"WID2 ", b"XW01", b"BEGIN GSE", b"BEGIN IMS"): _GSE,
+    (b"7z\xbc\xaf", b"Rar!"): "an archive of a kind not unpacked here; unpack it first",
+}
+"""First bytes of files, and what these are."""
+
 _HTML = re.compile(rb"^\s*(?:<!--.*?-->\s*)*<(?:!doctype\s+html|html)\b", re.I | re.S)
 _XML = re.compile(rb"^\s*<\?xml\b")
 _SPECTRA = re.compile(rb"\b(?:response|fourier|pseudo\S*|elastic)\s+(?:\w+\s+){0,3}spectr", re.I)
@@ -35,7 +30,7 @@ _SPECTRA = re.compile(rb"\b(?:response|fourier|pseudo\S*|elastic)\s+(?:\w+\s+){0
 
 def foreign_kind(head: bytes) -> str:
     """Return what a file is, from its first bytes, if it is a known kind of no record; else ``""``."""
-    for magic, kind in _MAGIC:
+    for magic, kind in _KINDS.items():
         if head.startswith(magic):
             return kind
     head = head.removeprefix(b"\xef\xbb\xbf")
@@ -54,12 +49,8 @@ def foreign_kind(head: bytes) -> str:
 STRONGEST_G = 3.0  # peak [g] that hardly any record of an earthquake exceeds
 _COARSEST = 0.025  # sampling interval [s] above which 20 Hz, which rocking bodies feel, are lost
 _DRIFT = 0.5  # fraction of the peak velocity that is left at the end of a record with a drift
-_CLIPPED_RUN = 4
-"""Samples in a row at the largest value of a record that is cut off at its sensor's range."""
-
-_LATE = 0.2
-"""Fraction of the peak that a record has in its first tenth of a second if it began too late."""
-
+_CLIPPED_RUN = 4  # samples in a row at the largest value of a record cut off at its sensor's range
+_LATE = 0.2  # fraction of the peak in the first tenth of a second of a record begun too late
 _SPIKE = 0.5  # fraction of the peak by which a lone sample leaves its neighbours
 _SPIKE_RATIO = 20.0  # ratio of a spike to what nine tenths of the samples leave their neighbours by
 _DOUBLED = 0.9  # fraction of the samples that repeat the one before in a record of doubled samples

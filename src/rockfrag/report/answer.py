@@ -11,7 +11,6 @@ from rockfrag.figure_style import BLACK, COLUMN_WIDTH, one_panel, plain_log
 from rockfrag.report import findings
 from rockfrag.report.figures.amplitudes import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results, figure_of
-from rockfrag.report.sides import sides_of
 from rockfrag.report.wording import Macros, said, sentence, shortened
 
 FEW = 10
@@ -73,7 +72,9 @@ def sentences(results: Results) -> list[Finding]:
     if results.study.has_pairs:
         return [
             *found,
-            findings.pedestal_effect(results.table("pedestal/effects"), sides_of(results.study))[0],
+            findings.pedestal_effect(
+                results.table("pedestal/effects"), findings.sides_of(results.study)
+            )[0],
         ]
 
     resurrections = findings.resurrections_found(

@@ -1,6 +1,7 @@
 """What a study found, said of its tables; the sentences stand in ``findings.j2``."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,13 +10,61 @@ import pandas as pd
 from rockfrag.fragility.curve_facts import Compared, compared_curves
 from rockfrag.report import wording
 from rockfrag.report.part import Finding, finding_of
-from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag.study.study import Study
 
 FRICTION = 0.6
 """Coefficient of friction of dry stone on stone, with which demands are compared [-]."""
 
 _RATIO_DECIMALS = 3
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Two sides of a comparison."""
+
+    change: str = "the pedestal"  # Subject of a sentence about what the difference does
+    ratio: str = "with/without pedestal"  # The ratio of amplitudes
+    # An arrangement and its counterpart, after "amplitude"
+    first: str = "with pedestal"
+    second: str = "without pedestal"
+
+    @property
+    def divided(self) -> str:
+        """The ratio in a sentence."""
+        return f"Amplitude {self.first} divided by that {self.second.removesuffix(' pedestal')}"
+
+    @property
+    def both(self) -> str:
+        """The two sides."""
+        return f"{self.first.removesuffix(' pedestal')} and {self.second}"
+
+    @property
+    def axis(self) -> str:
+        """Label of an axis of ratios."""
+        if self == Sides():
+            return "Amplitude with / without pedestal"
+        return "Amplitude over the other's"
+
+
+WITH_PEDESTAL = Sides()
+"""What is compared unless arrangements name their counterparts."""
+
+
+def sides_of(study: Study) -> Sides:
+    """Return what is compared in a study."""
+    named = study.counterparts
+    if not named:
+        return WITH_PEDESTAL
+    ((name, other), *more) = named.items()
+    if more or study.with_and_alone:
+        return Sides(
+            "an arrangement instead of the one it is compared with",
+            "arrangement/the other",
+            "of an arrangement",
+            "of the other",
+        )
+    return Sides(f"{name} instead of {other}", f"{name}/{other}", f"of {name}", f"of {other}")
 
 
 def _finding(name: str, **about: Any) -> Finding:

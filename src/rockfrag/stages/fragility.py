@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from rockfrag.motions.declared import declared
+from rockfrag.motions.declared import declared, intensity_measures
 from rockfrag.outcomes.limit_states import OVERTURNS, LimitState, limit_states
 from rockfrag.shaketable.swept import Swept
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
 from rockfrag.stages.ida import ida_curves_of
 from rockfrag.stages.job import Job, Results
-from rockfrag.stages.measure_selection import best_of, candidates, measure_selection
 from rockfrag.study.study import Study
 from rockfrag.system.system import System
 
@@ -80,6 +79,44 @@ def _two_measures(job: Job[Study], measures: pd.DataFrame) -> Results:
     yield "fragility_cells", found.cells
 
 
+def candidates() -> tuple[str, ...]:
+    """Return the columns of the measures that are compared; all grow with the amplitude."""
+    return tuple(measure.column for measure in intensity_measures() if measure.compared)
+
+
+GIVEN = ("mean_period_s", "d5_95_s")
+"""Properties of which a sufficient measure leaves nothing to tell."""
+
+
+def best_of(choice: pd.DataFrame, asked: Sequence[str]) -> list[str]:
+    """Names of the best measures of all configurations among those that a study asks for."""
+    known = choice[choice["measure"].isin(list(asked)) & choice["score"].notna()]
+    return list(dict.fromkeys(known.drop_duplicates("configuration")["im"]))
+
+
+def measure_selection(
+    ida_curves: Mapping[str, "IdaData"], measures: pd.DataFrame, level: float, seed: int
+) -> pd.DataFrame:
+    """Compare measures for every configuration.
+
+    One row per configuration and measure, best first: the columns of
+    :class:`rockfrag.fragility.measure_selection.MeasureSelection`, ``recommended`` (True for one row each) and
+    ``words``, the recommendation with its reasons.
+    """
+    from rockfrag.fragility.measure_selection import recommend_ida_measure
+
+    parts = []
+    for name, ida in ida_curves.items():
+        choice = recommend_ida_measure(
+            ida, measures, candidates(), given=GIVEN, level=level, seed=seed
+        )
+        table = choice.table.copy()
+        table.insert(0, "configuration", name)
+        chosen = table["measure"] == choice.recommended
+        parts.append(table.assign(recommended=chosen, words=choice.words))
+    return pd.concat(parts, ignore_index=True)
+
+
 MOST_LEVELS = 200
 """Intensity levels of a motion that stand in a table of tests; of more every so many-th does."""
 
@@ -89,17 +126,9 @@ def rows_of(parts: Iterable[Swept]) -> pd.DataFrame:
 
     Columns: ``earthquake``, ``floor``, ``motion``, ``amplitude_g`` and ``overturned`` (0 or 1).
     """
-    tables = []
-    for part in parts:
-        chosen = slice(None, None, -(-part.amplitude_g.size // MOST_LEVELS))
-        amplitude = part.amplitude_g[chosen]
-        about = part.about[["earthquake", "floor", "motion"]]
-        rows = about.loc[about.index.repeat(amplitude.size)].reset_index(drop=True)
-        overturned = part.overturned[:, chosen].ravel().astype(np.int64)
-        tables.append(
-            rows.assign(amplitude_g=np.tile(amplitude, len(about)), overturned=overturned)
-        )
-    return pd.concat(tables, ignore_index=True)
+    about = ("earthquake", "floor", "motion")
+    tables = [part.rows(about, -(-part.amplitude_g.size // MOST_LEVELS)) for part in parts]
+    return pd.concat(tables, ignore_index=True).astype({"overturned": np.int64})
 
 
 BY = ["configuration", "earthquake", "floor", "motion"]

@@ -1,8 +1,8 @@
 """Every configuration under every motion at every amplitude: what all statistics start from."""
 
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -96,17 +96,13 @@ def _say_how_light(job: Job[Study], configuration: System, number: int) -> None:
     job.log.info(words, configuration.name, light, len(ratio))
 
 
-def _write(tables: Iterable[pa.Table], path: Path) -> int:
+def _write(tables: Iterator[pa.Table], path: Path) -> int:
     """Write tables to one Parquet file, a row group each, and return the number of rows."""
-    writer, rows = None, 0
-    with ExitStack() as open_files:
-        for table in tables:
-            if writer is None:
-                # texts are read as texts, however compactly they are handed on here
-                to_file = pq.ParquetWriter(
-                    path, table.schema, compression="zstd", store_schema=False
-                )
-                writer = open_files.enter_context(to_file)
+    first = next(tables)
+    rows = 0
+    # texts are read as texts, however compactly they are handed on here
+    with pq.ParquetWriter(path, first.schema, compression="zstd", store_schema=False) as writer:
+        for table in chain([first], tables):
             writer.write_table(table)
             rows += table.num_rows
     return rows

@@ -1,6 +1,6 @@
 """Motions: records read, processed, felt by the floors of a building, and measured."""
 
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +25,8 @@ def run(job: Job[Study]) -> Results:
 
     study = job.study
     rows, felt, left_out = _felt(job)
-    records = [motion.record for motion in felt]
-    yield "motions/records", records
-    yield "motions/ground", [motion.ground for motion in felt]
-    floors = [floor for motion in felt for floor in motion.floors]
-    yield "motions/floors", floors
-    if study.vertical:
-        yield "motions/vertical", [floor for motion in felt for floor in motion.vertical]
+    floors = felt["floors"]
+    yield from ((f"motions/{name}", motions) for name, motions in felt.items())
     if study.keep_going:
         yield LEFT_OUT, pd.DataFrame(left_out, columns=["motion", "reason"], dtype=str)
     if study.write_motions is not None:
@@ -51,27 +46,25 @@ def run(job: Job[Study]) -> Results:
         table = table.merge(pairs, on="name", how="left")
     yield "measures", table
     missing = f", {len(left_out)} left out" if left_out else ""
-    job.log.info("records: %d%s, motions of floors: %d", len(records), missing, len(floors))
+    job.log.info("records: %d%s, motions of floors: %d", len(rows), missing, len(floors))
 
 
-@dataclass(frozen=True)
-class _Felt:
-    """A record as read, as it shakes the ground, and as every floor feels it, up and down too if asked for."""
+def _felt(
+    job: Job[Study],
+) -> tuple[list[dict[str, Any]], dict[str, list[Motion]], list[dict[str, str]]]:
+    """Rows of the catalogue that can be used, their motions by kind, and which were left out and why.
 
-    record: Motion
-    ground: Motion
-    floors: list[Motion]
-    vertical: list[Motion]
-
-
-def _felt(job: Job[Study]) -> tuple[list[dict[str, Any]], list[_Felt], list[dict[str, str]]]:
-    """Rows of the catalogue, what became of each, and which were left out and why."""
+    Kinds are ``records`` as read, ``ground`` as they shake it, ``floors`` as every floor feels them, and with
+    vertical motion ``vertical``, as they shake it up and down.
+    """
     from rockfrag.motions.directions import motion_and_vertical, motion_of_row
     from rockfrag.motions.processing import process
     from rockfrag.records.sources.wheel import NotFetched
 
     study = job.study
-    rows, felt, left_out = [], [], []
+    kinds = ("records", "ground", "floors", *(["vertical"] if study.vertical else []))
+    felt: dict[str, list[Motion]] = {kind: [] for kind in kinds}
+    rows, left_out = [], []
     unfetched: dict[str, NotFetched] = {}
     for row in study.catalogue.to_dict("records"):
         named = {str(key): value for key, value in row.items()}
@@ -80,16 +73,18 @@ def _felt(job: Job[Study]) -> tuple[list[dict[str, Any]], list[_Felt], list[dict
             if source in unfetched:
                 # asked for once in a run, which takes a minute where there is no network
                 raise unfetched[source]
-            ups: list[Motion] = []
+            found: dict[str, list[Motion]] = {}
             if study.vertical:
                 record, up = motion_and_vertical(named, *_place(study))
-                ups = _vertical_floors(study, process(up, study.processing))
+                found["vertical"] = _floors(study, process(up, study.processing), vertical=True)
             else:
                 record = motion_of_row(named, *_place(study))
             if record.pga == 0:
                 raise InputError(f"{record.name}: the record is zero throughout; leave it out.")
             ground = process(record, study.processing)
-            felt.append(_Felt(record, ground, _floors(study, ground), ups))
+            found |= {"records": [record], "ground": [ground], "floors": _floors(study, ground)}
+            for kind, motions in felt.items():
+                motions += found[kind]
             rows.append(named)
         except InputError as error:
             if not study.keep_going:
@@ -98,7 +93,7 @@ def _felt(job: Job[Study]) -> tuple[list[dict[str, Any]], list[_Felt], list[dict
                 unfetched[source] = error
             left_out.append({"motion": str(named["name"]), "reason": str(error)})
             job.log.warning("left out: %s", error)
-    if not felt:
+    if not rows:
         raise InputError(f"{study.catalogue_file}: no record can be used; {left_out[0]['reason']}")
     return rows, felt, left_out
 
@@ -107,25 +102,15 @@ def _place(study: Study) -> tuple[Path, Path]:
     return study.catalogue_file.parent, Path(RECORDS_FOLDER)
 
 
-def _floors(study: Study, ground: Motion) -> list[Motion]:
+def _floors(study: Study, ground: Motion, vertical: bool = False) -> list[Motion]:
     if study.building is None:
         return [on_the_ground(ground)]
-    from rockfrag.building.floors import floor_motions
+    from rockfrag.building.floors import floor_motions, vertical_motions
 
-    return floor_motions(study.building, ground)
-
-
-def _vertical_floors(study: Study, up: Motion) -> list[Motion]:
-    if study.building is None:
-        return [on_the_ground(up)]
-    from rockfrag.building.floors import vertical_motions
-
-    return vertical_motions(study.building, up)
+    return (vertical_motions if vertical else floor_motions)(study.building, ground)
 
 
 def on_the_ground(motion: Motion) -> Motion:
     """Return a ground motion labelled as the floors of a building are: ``<name>_ground``."""
-    from dataclasses import replace
-
     metadata = {**motion.metadata, "floor": GROUND, "level": 0, "ground_motion": motion.name}
     return replace(motion, name=f"{motion.name}_{GROUND}", metadata=metadata)

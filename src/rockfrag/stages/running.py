@@ -1,13 +1,19 @@
 """Running a study's stages as the workflow does: what comes before the first job, and one job."""
 
 import os
-from collections.abc import Iterable, Mapping
+import platform
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
+from rockfrag.lock import locked
 from rockfrag.processes import end_with
 from rockfrag.stages.job import Job
 from rockfrag.stages.log import logged
@@ -19,6 +25,9 @@ RESULTS = Path("results")
 
 OWNER = "configuration.txt"
 """File in a study's folder that names the configuration whose results these are."""
+
+LOCK = ".run"
+"""File in a study's folder that its run holds locked, and that says which process it is."""
 
 RUN = "ROCKFRAG_RUN"
 """Variable of the environment: the process of the run, with which its jobs end."""
@@ -45,6 +54,26 @@ def results_folder(study: AnyStudy) -> Path:
                 "name of its own, or remove that folder."
             )
     return folder
+
+
+@contextmanager
+def run_lock(results: Path) -> Iterator[None]:
+    """Be the only run of a study while the block lasts; half-written files of a killed one are removed.
+
+    A study that is running already is refused; the message says in which process and since when.
+    """
+    file = results / LOCK
+    with locked(file) as free:
+        if not free:
+            raise InputError(
+                f"{results}: the study is running already, in process {file.read_text()}; wait for it, or "
+                "end that process."
+            )
+        for part in results.rglob(".*.part"):
+            part.unlink(missing_ok=True)
+        results.mkdir(parents=True, exist_ok=True)
+        file.write_text(f"{os.getpid()} since {time.strftime('%H:%M:%S on %Y-%m-%d')}")
+        yield
 
 
 def run_job(
@@ -83,3 +112,35 @@ def end_with_run() -> None:
 
 def _named(study: AnyStudy) -> str:
     return Path(os.path.relpath(study.source)).as_posix()
+
+
+_BLAS = {"x86_64": "PRESCOTT", "AMD64": "PRESCOTT", "aarch64": "ARMV8", "arm64": "ARMV8"}
+"""The kernels of OpenBLAS that every processor of an architecture can run."""
+
+_C_LIBRARY = "glibc.cpu.hwcaps=" + ",".join(
+    # the C library has known each of them by two names
+    f"-{feature}{ending}"
+    for feature in ("FMA", "FMA4", "AVX2")
+    for ending in ("", "_Usable")
+)
+
+
+def same_numbers(environment: Mapping[str, str]) -> dict[str, str]:
+    """Variables, set before Python starts, by which numbers depend on architecture and libraries alone.
+
+    Versions of a function for older and for newer processors add in another order or round once, not twice. A
+    job takes the oldest of each, so that all machines of one architecture write the same bytes; kernels need none.
+    """
+    tunables = environment.get("GLIBC_TUNABLES", "").split(":")
+    kept = [each for each in tunables if each and not each.startswith("glibc.cpu.hwcaps=")]
+    simd = np.show_config(mode="dicts")["SIMD Extensions"]
+    chosen = {
+        "NPY_ENABLE_CPU_FEATURES": "",
+        "NPY_DISABLE_CPU_FEATURES": " ".join([*simd.get("found", ()), *simd.get("not found", ())]),
+        # sums of several threads are added in another order
+        "OPENBLAS_NUM_THREADS": "1",
+        "GLIBC_TUNABLES": ":".join([*kept, _C_LIBRARY]),
+    }
+    if blas := _BLAS.get(platform.machine()):
+        chosen["OPENBLAS_CORETYPE"] = blas
+    return chosen

@@ -120,28 +120,23 @@ def sliding_table(files: Iterable[Path]) -> pd.DataFrame:
     One row per configuration: ``configuration``, ``cases``, ``slid``, ``flew`` (cases), ``largest_slip_m``,
     ``saved`` and ``felled`` (cases that overturn only without, and only with, sliding and flight).
     """
-    parts = [_sliding(pd.read_parquet(path, columns=list(_SLIDING))) for path in files]
-    how = dict.fromkeys(parts[0].columns[1:], "sum") | {"largest_slip_m": "max"}
-    both = pd.concat(parts, ignore_index=True)
-    return both.groupby("configuration", sort=False, as_index=False).agg(how)
+    outcomes = ["overturned", "overturned_without_sliding", "peak_slip_m", "flights"]
+    parts = []
+    for path in files:
+        cases = pd.read_parquet(path, columns=["configuration", *outcomes])
+        fell, fell_rough, slip, flights = (cases[name] for name in outcomes)
+        each = cases[["configuration"]].assign(
+            cases=1,
+            slid=slip > 0,
+            flew=flights > 0,
+            largest_slip_m=slip,
+            saved=fell_rough & ~fell,
+            felled=fell & ~fell_rough,
+        )
+        parts.append(_added_up(each))
+    return _added_up(pd.concat(parts, ignore_index=True))
 
 
-_SLIDING = ("configuration", "overturned", "overturned_without_sliding", "peak_slip_m", "flights")
-
-
-def _sliding(ida_curves: pd.DataFrame) -> pd.DataFrame:
-    fell, fell_rough = ida_curves["overturned"], ida_curves["overturned_without_sliding"]
-    peak = ida_curves["peak_slip_m"]
-    each = pd.DataFrame(
-        {
-            "configuration": ida_curves["configuration"],
-            "cases": 1,
-            "slid": peak > 0,
-            "flew": ida_curves["flights"] > 0,
-            "largest_slip_m": peak,
-            "saved": fell_rough & ~fell,
-            "felled": fell & ~fell_rough,
-        }
-    )
-    how = dict.fromkeys(each.columns[1:], "sum") | {"largest_slip_m": "max"}
-    return each.groupby("configuration", sort=False, as_index=False).agg(how)
+def _added_up(table: pd.DataFrame) -> pd.DataFrame:
+    how = dict.fromkeys(table.columns[1:], "sum") | {"largest_slip_m": "max"}
+    return table.groupby("configuration", sort=False, as_index=False).agg(how)

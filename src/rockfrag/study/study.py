@@ -136,18 +136,11 @@ class Study(Heading):
     @property
     def with_and_alone(self) -> bool:
         """Whether an object is compared with itself alone on the floor."""
-        lone = {
-            configuration.names[-1]
-            for configuration in self.configurations
-            if configuration.count == 1
-        }
-        rest = (
-            configuration
-            for configuration in self.configurations
-            if configuration.name not in self.counterparts
-        )
+        lone = {system.names[-1] for system in self.configurations if system.count == 1}
         return any(
-            configuration.names[-1] in lone for configuration in rest if configuration.count > 1
+            system.names[-1] in lone
+            for system in self.configurations
+            if system.count > 1 and system.name not in self.counterparts
         )
 
     @property

@@ -59,19 +59,16 @@ TABLE_4_1 = (
 
 
 def compare(
-    things: Mapping[str, Any],
-    quantities: Sequence[Quantity],
-    printed: str | os.PathLike[str] | None,
+    things: Mapping[str, Any], quantities: Sequence[Quantity], printed: str | os.PathLike[str]
 ) -> pd.DataFrame:
     """Compute quantities of things by their names, and put them beside printed ones.
 
-    ``printed`` is a CSV file whose first column has the names and whose numbers have the printed decimals, or
-    None.
+    ``printed`` is a CSV file whose first column has the names and whose numbers have the printed decimals.
 
     Returns ``COLUMNS``. Where nothing is printed, ``printed`` is empty and ``agrees`` is missing; ``printed`` is
     text, so that its decimals are kept.
     """
-    wanted = {} if printed is None else _printed(printed, quantities)
+    wanted = _printed(printed, quantities)
     rows = []
     for name, thing in things.items():
         for quantity in quantities:

@@ -67,7 +67,6 @@ def read_settings(content: Mapping[str, Any], study: Study) -> Settings:
 def _check_perturbed_bodies(study: Study, levels: Mapping[str, Any]) -> None:
     """Raise where a level makes a body that cannot stand, or a restitution that adds energy."""
     from rockfrag_thesis.sensitivity_analysis.simulated import factor_cases
-    from rockfrag_thesis.stages.sensitivity_analysis import tested_stacks
 
     for name, stack in tested_stacks(study).items():
         try:
@@ -131,3 +130,13 @@ def stacks_of(study: Study) -> dict[str, Stack]:
         for pair in study.configurations
         if pair.count == 2
     }
+
+
+def tested_stacks(study: Study) -> dict[str, Stack]:
+    """Stack of each object that is tested with and without a pedestal; of several the first."""
+    lone = {system.names[-1] for system in study.configurations if system.count == 1}
+    stacks: dict[str, Stack] = {}
+    for system in study.configurations:
+        if system.count == 2 and system.names[-1] in lone:
+            stacks.setdefault(system.names[-1], stacks_of(study)[system.name])
+    return stacks

@@ -201,7 +201,7 @@ def _of_plain_types(find: Any) -> Any:
 @contextmanager
 def _shortcuts() -> Iterator[None]:
     """Spare numba what it would work out anew for each operation; the compiler's lock is held meanwhile."""
-    kinds = BaseFunction, Dispatcher
+    kinds: tuple[Any, ...] = (BaseFunction, Dispatcher)
     before = [kind.get_call_type for kind in kinds]
     if before[0].__module__ == __name__:
         yield

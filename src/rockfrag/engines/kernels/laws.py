@@ -9,37 +9,47 @@ from rockfrag.laws import Law, laws
 
 def _chosen(of: Sequence[Law]) -> Any:
     """Return the function that asks the law of a number for its rate; the last law answers for all others."""
-    number, own = of[0].number, inlined_kernel(of[0].rate)  # type: ignore[arg-type]
-    others = _chosen(of[1:]) if of[1:] else None
-
-    @inlined_kernel
-    def last(law, value, by_momentum, before, moved):  # type: ignore[no-untyped-def]
-        return own(value, by_momentum, before, moved)
+    law = of[0]
+    number, own = law.number, inlined_kernel(law.rate)  # type: ignore[arg-type]
+    if not of[1:]:
+        return own_rate(own)
+    others = _chosen(of[1:])
 
     @inlined_kernel
     def chosen(law, value, by_momentum, before, moved):  # type: ignore[no-untyped-def]
         if law == number:
             return own(value, by_momentum, before, moved)
-        return others(law, value, by_momentum, before, moved)  # type: ignore[misc]
+        return others(law, value, by_momentum, before, moved)
 
-    return chosen if others else last
+    return chosen
 
 
-@inlined_kernel
-def _is_none(law):  # type: ignore[no-untyped-def]
-    return False
+def own_rate(own: Any) -> Any:
+    """Return the function of a law's number that is the rate of one law."""
+
+    @inlined_kernel
+    def chosen(law, value, by_momentum, before, moved):  # type: ignore[no-untyped-def]
+        return own(value, by_momentum, before, moved)
+
+    return chosen
 
 
 def _any_of(of: Sequence[Law]) -> Any:
-    """Return the function that says whether a number is that of one of some laws."""
-    if not of:
-        return _is_none
-    number, others = of[0].number, _any_of(of[1:])
+    """Return the function that says whether a number is that of one of some laws, at least one."""
+    number = of[0].number
+    others = _any_of(of[1:]) if of[1:] else None
 
-    @inlined_kernel
-    def known(law):  # type: ignore[no-untyped-def]
-        # a membership test would call what numba brings along, which the module of a page cannot hold
-        return law == number or others(law)
+    # a membership test would call what numba brings along, which the module of a page cannot hold
+    if others is None:
+
+        @inlined_kernel
+        def known(law):  # type: ignore[no-untyped-def]
+            return law == number
+    else:
+
+        @inlined_kernel
+        def known(law):  # type: ignore[no-untyped-def]
+            return law == number or others(law)
 
     return known
 

@@ -39,11 +39,10 @@ def _header(lines: list[str]) -> tuple[dict[str, str], int]:
     facts: dict[str, str] = {}
     for number, line in enumerate(lines):
         match = _KEY.match(line)
-        if match is None and not facts and re.match(r"\s*[A-Za-z]|\s*$", line):
-            continue
-        if match is None:
+        if match:
+            facts[match["key"]] = match["value"].strip()
+        elif facts or not re.match(r"\s*[A-Za-z]|\s*$", line):
             return facts, number
-        facts[match["key"]] = match["value"].strip()
     return facts, len(lines)
 
 

@@ -34,9 +34,7 @@ _MIN_ROWS = 3
 _RISING = 0.9  # fraction of the rows in which a column without title must rise to be one of times
 _FEW_ROWS = 20
 
-_SMOOTHER = 0.6
-"""Ratio of steps along columns to steps along rows below which columns are channels side by side."""
-
+_SMOOTHER = 0.6  # ratio of steps along columns to steps along rows below which columns are channels
 _SHOWN = 60
 _LONGEST_ROUND = 3  # significant digits of an interval that stands above samples of more digits
 

@@ -3,9 +3,10 @@
 import hashlib
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from obspy import UTCDateTime
 
@@ -35,10 +36,7 @@ class FdsnRequest:
 
     words: str
     client: str
-    network: str
-    station: str
-    location: str
-    channel: str
+    codes: Mapping[str, str]  # ``network``, ``station``, ``location`` and ``channel``
     begin: UTCDateTime | float
     end: UTCDateTime | float
     earthquake: str = ""
@@ -47,7 +45,8 @@ class FdsnRequest:
     def folder(self) -> str:
         """Name of the folder that keeps the answer: readable, and different for each request."""
         digest = hashlib.sha256(" ".join(self.words.split()).encode()).hexdigest()[:12]
-        return f"{self.network}.{self.station}-{digest}".replace("*", "_").replace("?", "_")
+        place = f"{self.codes['network']}.{self.codes['station']}-{digest}"
+        return place.replace("*", "_").replace("?", "_")
 
 
 def parse_request(words: str) -> FdsnRequest:
@@ -62,25 +61,22 @@ def parse_request(words: str) -> FdsnRequest:
             f"FDSN request {words!r} is not of the form 'CLIENT NET.STA.LOC.CHA START END' or "
             "'CLIENT NET.STA.LOC.CHA EVENT -30 +120'."
         )
-    codes = match["network"], match["station"], match["location"], match["channel"]
     window, times = _WINDOW.match(match["rest"]), match["rest"].split()
+    earthquake = window["earthquake"] if window else ""
     begin: UTCDateTime | float
     if window is not None:
-        begin, end, earthquake = (
-            float(window["before"]),
-            float(window["after"]),
-            window["earthquake"],
-        )
+        begin, end = float(window["before"]), float(window["after"])
     elif len(times) != 2:
         raise InputError(f"FDSN request {words!r}: expected START and END, or EVENT -30 +120.")
     else:
         try:
-            begin, end, earthquake = UTCDateTime(times[0]), UTCDateTime(times[1]), ""
+            begin, end = UTCDateTime(times[0]), UTCDateTime(times[1])
         except Exception as error:  # UTCDateTime raises several kinds
             raise InputError(f"FDSN request {words!r}: a time is not readable.") from error
     if end <= begin:
         raise InputError(f"FDSN request {words!r}: the window ends before it begins.")
-    return FdsnRequest(words, match["client"], *codes, begin, end, earthquake)
+    codes = {name: match[name] for name in ("network", "station", "location", "channel")}
+    return FdsnRequest(words, match["client"], codes, begin, end, earthquake)
 
 
 def fetch_fdsn(words: str, records: Path) -> Path:
@@ -94,7 +90,17 @@ def fetch_fdsn(words: str, records: Path) -> Path:
         # put there by hand
         return found
     try:
-        stream, inventory, facts = _ask(request)
+        # imported here: the client is slow to import and only this source needs it
+        from obspy.clients.fdsn import Client
+
+        client = Client(request.client)
+        start, end, facts = _window(request, client)
+        place = {**request.codes, "location": request.codes["location"] or "--"}
+        asked = {**place, "starttime": start, "endtime": end}
+        stream = client.get_waveforms(**asked)
+        if not stream:
+            raise InputError(f"FDSN request {words!r}: the service has no records of it.")
+        inventory = client.get_stations(**asked, level="response")
         with whole_file(stations) as part:
             inventory.write(str(part), format="STATIONXML")
         with whole_file(found) as part:
@@ -119,22 +125,6 @@ def _answered(folder: Path) -> bool:
         return all(sha256_of(folder / name) == digest for name, digest in listed.items())
     except (OSError, ValueError, KeyError, AttributeError, TypeError):
         return False
-
-
-def _ask(request: FdsnRequest) -> tuple[Any, Any, dict[str, str]]:
-    """Return waveforms, stations and what is known of the earthquake."""
-    # imported here: the client is slow to import and only this source needs it
-    from obspy.clients.fdsn import Client
-
-    client = Client(request.client)
-    start, end, facts = _window(request, client)
-    place = {"network": request.network, "station": request.station}
-    place |= {"location": request.location or "--", "channel": request.channel}
-    window = {"starttime": start, "endtime": end}
-    stream = client.get_waveforms(**place, **window)
-    if not stream:
-        raise InputError(f"FDSN request {request.words!r}: the service has no records of it.")
-    return stream, client.get_stations(**place, **window, level="response"), facts
 
 
 def _window(

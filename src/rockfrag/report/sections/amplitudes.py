@@ -20,7 +20,6 @@ from rockfrag.report.figures import amplitudes as figures
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.words import says
-from rockfrag.report.sides import sides_of
 from rockfrag.report.wording import amplitude, label, shortened
 
 _MOTION = (Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion"))
@@ -110,12 +109,12 @@ def _comparisons(results: Results) -> Section | None:
         what=lambda t: t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
     )
     text = says.by_object_figure(len(results.objects), words, study.has_pairs)
-    draw = partial(figures.amplitudes_by_object, tests, means)
+    draw = partial(figures.amplitudes_by, "object", tests, means)
     parts: list[Any] = [figure_of(text, "amplitudes_by_object", draw)]
     of_floors = tests["floor"].nunique()
     if of_floors > 1:
         text = says.by_floor_figure(of_floors)
-        draw = partial(figures.amplitudes_by_floor, tests, means)
+        draw = partial(figures.amplitudes_by, "floor", tests, means)
         parts.append(figure_of(text, "amplitudes_by_floor", draw))
     if study.has_pairs:
         parts.append(_scatter(results))
@@ -127,7 +126,7 @@ def _comparisons(results: Results) -> Section | None:
 
 
 def _scatter(results: Results) -> FigureSpec:
-    about = sides_of(results.study)
+    about = findings.sides_of(results.study)
     ratio = findings.ratio_of(results.table("pedestal/effects"), about)("whole", "all")
     tests, _ = with_counterparts(results.tests, results.study.counterparts)
     draw = partial(figures.pedestal_scatter, tests, ratio, about)

@@ -12,20 +12,12 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from rockfrag import figure_style as style
+from rockfrag.report import page
 from rockfrag.report.figures.amplitudes import BAND, GREY
-from rockfrag.report.findings import pedestal_effect, ratio_of
-from rockfrag.report.page import (
-    MOST_TABLE_ROWS,
-    Column,
-    Row,
-    by_row,
-    estimated,
-    p_values,
-    table_html,
-)
+from rockfrag.report.findings import WITH_PEDESTAL, Sides, pedestal_effect, ratio_of, sides_of
+from rockfrag.report.page import Column, Row, by_row, estimated, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.words import says
-from rockfrag.report.sides import WITH_PEDESTAL, Sides, sides_of
 from rockfrag.report.wording import counted, has_interval, number, probability, sentence, shortened
 from rockfrag.shaketable.definitions import DEFINITION
 
@@ -91,8 +83,8 @@ def _section(results: Results) -> Section:
             Column("definition", "Definition"),
             Column("method", "Method"),
             estimated("estimate", f"{ratio} [95 % interval]", 3, limits=("lower", "upper")),
-            p_values("p", "p"),
-            p_values("smallest_p", "Smallest possible p"),
+            page.p_values("p", "p"),
+            page.p_values("smallest_p", "Smallest possible p"),
             Column("remark", "Remark"),
         ]
         caption = "All pairs, by other methods and other ways to read the amplitude."
@@ -106,7 +98,7 @@ def _section(results: Results) -> Section:
 
 def _table(effects: pd.DataFrame, ratio: str) -> Markup:
     caption = "Effect by scope, step protocol."
-    if len(effects) > MOST_TABLE_ROWS:
+    if len(effects) > page.MOST_TABLE_ROWS:
         of_earthquakes = effects["scope"] == "earthquake"
         caption += f" Each of the {of_earthquakes.sum()} earthquakes is in pedestal/effects.csv."
         effects = effects[~of_earthquakes]

@@ -1,7 +1,7 @@
 """The 58 hypotheses of the thesis, C1 to C58: what each says, what can test it, what came out.
 
 The words, source and kind of a hypothesis are a row of ``statements.csv``; its rule stands beside the function
-that tests it, named after its number (``c35`` is C35), in the file of its group, whose first line says which.
+that tests it, named after its number (``c34`` is C34), in the file of its group, whose first line says which.
 
 To add one, write its row, decide its kind (`hypothesis.Kind`), and enter a function from `Evidence` in a file:
 named differences that are all positive if it is true with ``@order_hypothesis(...)``, or else a `Result` with

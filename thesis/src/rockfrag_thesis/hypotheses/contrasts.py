@@ -5,13 +5,15 @@ import math
 import pandas as pd
 
 from rockfrag.pedestal.cluster_means import (
+    LEVEL,
+    POWER,
     Estimate,
     TooFewUnitsError,
+    detectable_ratio,
     resolution_of,
     t_estimate,
     tied_resolution,
 )
-from rockfrag.pedestal.power import LEVEL, POWER, detectable_ratio
 
 MOST_UNITS = 100_000
 

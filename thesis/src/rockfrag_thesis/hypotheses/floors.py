@@ -8,8 +8,7 @@ from dataclasses import replace
 
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import mean_effect, unit_means
-from rockfrag.pedestal.permutation import sign_flip_test
+from rockfrag.pedestal.cluster_means import mean_effect, sign_flip_test, unit_means
 from rockfrag_thesis.hypotheses.contrasts import contrast
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
@@ -20,6 +19,7 @@ from rockfrag_thesis.hypotheses.orders import (
     Part,
     Parts,
     Size,
+    effect_hypothesis,
     order,
     order_hypothesis,
 )
@@ -44,22 +44,9 @@ def c34(tests: Evidence) -> Parts:
     return parts
 
 
-@order_hypothesis(35, rule="an increase on GF")
-def c35(tests: Evidence) -> Parts:
-    """The ground floor's increase."""
-    return {"P/NP on GF": Part(tests.effect(floor=GROUND))}
-
-
-@order_hypothesis(36, rule="a decrease on F3, however slight")
-def c36(tests: Evidence) -> Parts:
-    """The 3rd floor's decrease."""
-    return {"NP/P on F3": Part(tests.effect(floor=THIRD).times(-1))}
-
-
-@order_hypothesis(37, rule="a decrease on F5, however slight")
-def c37(tests: Evidence) -> Parts:
-    """The 5th floor's decrease."""
-    return {"NP/P on F5": Part(tests.effect(floor=FIFTH).times(-1))}
+effect_hypothesis(35, "an increase on GF", "P/NP on GF", floor=GROUND)
+effect_hypothesis(36, "a decrease on F3, however slight", "NP/P on F3", -1, floor=THIRD)
+effect_hypothesis(37, "a decrease on F5, however slight", "NP/P on F5", -1, floor=FIFTH)
 
 
 SIGNS = {GROUND: (1, 1, 1), THIRD: (1, -1, -1), FIFTH: (-1, -1, -1)}

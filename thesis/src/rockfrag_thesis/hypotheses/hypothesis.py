@@ -124,23 +124,17 @@ HYPOTHESES: Mapping[int, Hypothesis] = _HYPOTHESES
 """Hypothesis by number, as far as their modules are loaded; the package loads all 58."""
 
 
-def hypothesis(number: int, *, evidence: str, rule: str, error_rate: str) -> Callable[[Test], Test]:
+def hypothesis(
+    number: int, *, evidence: str, rule: str, error_rate: str = "none: nothing is sampled"
+) -> Callable[[Test], Test]:
     """Enter the decorated function as the test of a hypothesis, see `Hypothesis`; a number is taken once."""
 
     def enter(test: Test) -> Test:
         if number in _HYPOTHESES:
             raise ValueError(f"C{number} is there already")
         stated = _STATEMENTS[number]
-        _HYPOTHESES[number] = Hypothesis(
-            number,
-            stated["statement"],
-            stated["source"],
-            Kind(stated["kind"]),
-            evidence,
-            rule,
-            error_rate,
-            test,
-        )
+        about = (stated["statement"], stated["source"], Kind(stated["kind"]))
+        _HYPOTHESES[number] = Hypothesis(number, *about, evidence, rule, error_rate, test)
         return test
 
     return enter

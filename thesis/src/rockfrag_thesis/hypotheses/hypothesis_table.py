@@ -5,8 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import TooFewUnitsError
-from rockfrag.pedestal.power import holm
+from rockfrag.pedestal.cluster_means import TooFewUnitsError, holm
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.system.blocks import Block, Stack

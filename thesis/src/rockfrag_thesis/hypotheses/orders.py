@@ -169,3 +169,9 @@ def order_hypothesis(
         return differences
 
     return enter
+
+
+def effect_hypothesis(number: int, rule: str, what: str, sign: int = 1, **levels: str) -> None:
+    """Enter a hypothesis about the sign of the effect at some levels, see `Evidence.effect`."""
+    enter = order_hypothesis(number, rule=rule)
+    enter(lambda tests: {what: Part(tests.effect(**levels).times(sign))})

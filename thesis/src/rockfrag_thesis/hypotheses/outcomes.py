@@ -25,7 +25,6 @@ restitution alone, show 10 % (power of t on four earthquake means)."""
 
 ONE_INTERVAL = "2.5 % each way"
 SEVERAL_INTERVALS = "at most 2.5 % each way (intersection-union to be true, Bonferroni to be false)"
-NO_ERROR = "none: nothing is sampled"
 
 
 def known(p: float) -> float:

@@ -5,13 +5,14 @@ import numpy as np
 from rockfrag_thesis.hypotheses.contrasts import slope_effect
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Result, hypothesis
-from rockfrag_thesis.hypotheses.orders import PAIRS, Part, Parts, order_hypothesis
+from rockfrag_thesis.hypotheses.orders import (
+    PAIRS,
+    Part,
+    Parts,
+    effect_hypothesis,
+    order_hypothesis,
+)
 from rockfrag_thesis.hypotheses.outcomes import ONE_INTERVAL, SEEN, same
-
-
-def general_increase(tests: Evidence) -> Parts:
-    """The effect over all pairs: C29 and C49 say the same and so have one rule."""
-    return {"P/NP of all pairs": Part(tests.effect())}
 
 
 def _changed(tests: Evidence) -> str:
@@ -24,16 +25,13 @@ def _changed(tests: Evidence) -> str:
     )
 
 
-@order_hypothesis(29, rule="an increase over all pairs")
-def c29(tests: Evidence) -> Parts:
-    """The effect over all pairs."""
-    return general_increase(tests)
+effect_hypothesis(29, "an increase over all pairs", "P/NP of all pairs")
 
 
 @order_hypothesis(49, rule="as C29, which says the same", more=_changed)
 def c49(tests: Evidence) -> Parts:
     """The effect over all pairs."""
-    return general_increase(tests)
+    return {"P/NP of all pairs": Part(tests.effect())}
 
 
 @hypothesis(
@@ -60,7 +58,6 @@ def c32(tests: Evidence) -> Parts:
     }
 
 
-@order_hypothesis(33, rule="an increase of T2; “nearly opposite” cannot be tested")
-def c33(tests: Evidence) -> Parts:
-    """T2's effect."""
-    return {"P/NP of T2": Part(tests.effect(object="T2"))}
+effect_hypothesis(
+    33, "an increase of T2; “nearly opposite” cannot be tested", "P/NP of T2", object="T2"
+)

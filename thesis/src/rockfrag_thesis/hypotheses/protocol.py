@@ -9,7 +9,7 @@ from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import Part, order
-from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, ONE_INTERVAL, decided, same
+from rockfrag_thesis.hypotheses.outcomes import ONE_INTERVAL, decided, same
 
 MOTIONS = 12
 UNCOUNTED = 10.0
@@ -23,7 +23,6 @@ specimens offers, and what none does (ranges of engineering handbooks)."""
     55,
     evidence="the table of tests",
     rule="twelve motions for every tower on both sides; open for a table of other tests",
-    error_rate=NO_ERROR,
 )
 def c55(tests: Evidence) -> Result:
     """Motions per specimen, and how close to overturning the figure is."""
@@ -96,7 +95,6 @@ def c56(tests: Evidence) -> Result:
     evidence="friction and contact forces that pure rocking needs in simulations of the tests",
     rule="true if contacts stay closed in every test and none needs more friction than the least that "
     "dry wood offers; false if a contact opens or needs more than rubber on concrete offers",
-    error_rate=NO_ERROR,
 )
 def c57(tests: Evidence) -> Result:
     """Whether the model may leave sliding and jumping out; it says nothing about the experiment."""

@@ -159,7 +159,6 @@ def stack_slenderness(tests: Evidence) -> pd.DataFrame:
     evidence="dimensions and masses of the specimens",
     rule="height of the common centre of gravity over half the pedestal's width against the tower's H/B: "
     "false if no stack is the more slender",
-    error_rate=outcomes.NO_ERROR,
 )
 def c30(tests: Evidence) -> Result:
     """Geometry of the stack; about its strength see C29."""

@@ -13,9 +13,7 @@ from rockfrag.pedestal.cluster_means import Estimate
 from rockfrag.rocking import overturns
 from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
-from rockfrag_thesis.hypotheses.motion_spectra import PERIODS, SIZES
 from rockfrag_thesis.hypotheses.outcomes import (
-    NO_ERROR,
     SEEN,
     decided,
     finding_of,
@@ -24,7 +22,7 @@ from rockfrag_thesis.hypotheses.outcomes import (
     most,
     ratios,
 )
-from rockfrag_thesis.hypotheses.setting import Floats, Setting
+from rockfrag_thesis.hypotheses.setting import PERIODS, SIZES, Floats, Setting
 
 DAMPINGS = (0.02, 0.10)
 LONG = 200.0
@@ -40,7 +38,6 @@ CHANGE = 0.05
     evidence=f"max |θ|/θc of {SIZES.size} blocks with 2π/p from {SIZES[0]:g} to {SIZES[-1]:g} s of each "
     "specimen's slenderness, motions as recorded",
     rule="Spearman's ρ with 2π/p is nearer to -1 than to 0 in most spectra",
-    error_rate=NO_ERROR,
 )
 def c14(setting: Setting) -> Result:
     """Rank correlation of peak rotation with 2π/p, and fraction of steps that rise."""
@@ -70,7 +67,6 @@ def c14(setting: Setting) -> Result:
     evidence=f"5 % damped Sd from {PERIODS[0]:g} to {PERIODS[-1]:g} s, and at {LONG:g} s within the record",
     rule="true if up to its maximum Sd grows in rank with the period (Spearman's ρ nearer to 1 than to 0), "
     f"and the oscillator of {LONG:g} s moves as the ground within its damping, for every motion",
-    error_rate=NO_ERROR,
 )
 def c15(setting: Setting) -> Result:
     """Displacement spectrum: the rise to its maximum, and its value at a very long period."""
@@ -117,7 +113,6 @@ def _longest_band(inside: NDArray[np.bool_]) -> tuple[float, float]:
     f"{PERIODS[-1]:g} s",
     rule=f"true if one motion has a range of a third of an octave or more in which the two are within "
     f"{100 * SEEN:.0f} %; that others have none does not make it false",
-    error_rate=NO_ERROR,
 )
 def c16(setting: Setting) -> Result:
     """Ranges of period in which Sd at 2 % and at 10 % damping are nearly the same."""
@@ -143,7 +138,6 @@ def c16(setting: Setting) -> Result:
     evidence=f"|change of ln max |θ|| when slenderness changes by ±{100 * CHANGE:.0f} %, median over the blocks "
     "of each motion; beside it that of Sd when damping changes as much",
     rule="the rotation changes by more than the slenderness does for most motions",
-    error_rate=NO_ERROR,
 )
 def c17(setting: Setting) -> Result:
     """Change of peak rotation with slenderness over the change of slenderness."""
@@ -199,7 +193,6 @@ def exchanges(values: Floats, other: Floats) -> tuple[int, int]:
     f"{100 * DAMPINGS[0]:.0f} % and {100 * DAMPINGS[1]:.0f} % damping, max |θ|/θc at the specimens' slendernesses",
     rule="true if some pairs change their order between slendernesses, and a larger fraction of them than of "
     "oscillators between dampings; false if a smaller fraction does; else open",
-    error_rate=NO_ERROR,
 )
 def c18(setting: Setting) -> Result:
     """Order of the motions' spectra at two dampings, and at two slendernesses."""

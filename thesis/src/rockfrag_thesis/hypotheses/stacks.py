@@ -12,7 +12,7 @@ from rockfrag.rocking import simulate
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
-from rockfrag_thesis.hypotheses.outcomes import NO_ERROR, most
+from rockfrag_thesis.hypotheses.outcomes import most
 from rockfrag_thesis.hypotheses.setting import (
     EXACT,
     Setting,
@@ -35,7 +35,6 @@ TABLE_4_1_ROCKING_MODE_3 = {"P&T1": 3.69, "P&T2": 3.04, "P&T3": 2.56}
     "pattern 3)",
     rule="computed figures round to the printed digits; simulated bodies start between 1 - 1e-9 and "
     "1 + 1e-9 of them",
-    error_rate=NO_ERROR,
 )
 def c2(setting: Setting) -> Result:
     """The closed forms against Table 4.1, and simulations on either side of them."""
@@ -76,7 +75,6 @@ SUDDEN = np.geomspace(1.01, 6.0, 20)
     evidence="first pattern of the stacks under the motions, and under sudden accelerations up to "
     f"{SUDDEN[-1]:g} times the one that starts rocking",
     rule="true under all motions; exceptions among sudden accelerations are said",
-    error_rate=NO_ERROR,
 )
 def c9(setting: Setting) -> Result:
     """First pattern under records and under sudden accelerations."""
@@ -117,7 +115,6 @@ def _counted(counts: Counter[str]) -> str:
     evidence="only patterns 3 and 4 have an interface in full contact that could open; openings in "
     "simulations of the stacks",
     rule="no simulated opening from pattern 1 or 2",
-    error_rate=NO_ERROR,
 )
 def c10(setting: Setting) -> Result:
     """Patterns from which interfaces open without an impact."""
@@ -186,7 +183,6 @@ def _kinds(transitions: Counter[tuple[str, str]]) -> Counter[str]:
     "is tilted and released",
     rule="after every impact under the motions both interfaces rock on, or what met stays together; "
     "exceptions among random stacks are said",
-    error_rate=NO_ERROR,
 )
 def c11(setting: Setting) -> Result:
     """Outcomes of impacts: both interfaces rocking, staying together, or another."""
@@ -291,7 +287,6 @@ def random_stacks(seed: int) -> tuple[Counter[str], Counter[tuple[str, str]]]:
     f"motions, and the first landing in free fall of {GEOMETRIES} random stacks",
     rule="true if it stands still before the statue comes down next after more than half of the landings "
     "under the motions; landings of random stacks after which it rocks on are said as exceptions",
-    error_rate=NO_ERROR,
 )
 def c12(setting: Setting) -> Result:
     """What a still pedestal does after the statue lands on it."""
@@ -324,7 +319,6 @@ def c12(setting: Setting) -> Result:
     "and input between them in simulations of the stacks",
     rule="no impact gains energy (1e-9), no opening changes a velocity, the balance closes to 1e-6 of the "
     "largest energy",
-    error_rate=NO_ERROR,
 )
 def c13(setting: Setting) -> Result:
     """Energy and velocities across contact events, and the balance between them."""
@@ -364,7 +358,6 @@ SQUAT_ON_SLENDER = Stack(Block(0.1, 1.0, 10.0), Block(0.1, 0.05, 0.5))
     21,
     evidence="eq. 2.21 to 2.25 (C2)",
     rule="true for every stack; a squat statue on a slender pedestal is the exception",
-    error_rate=NO_ERROR,
 )
 def c21(setting: Setting) -> Result:
     """Threshold of pattern 4 over that of pattern 3."""
@@ -381,7 +374,6 @@ def c21(setting: Setting) -> Result:
     22,
     evidence="eq. 2.1 and 2.24, 2.25: a still pedestal is like the ground",
     rule="the two figures are equal within 1e-9",
-    error_rate=NO_ERROR,
 )
 def c22(setting: Setting) -> Result:
     """Threshold of pattern 4 against that of the statue alone."""
@@ -400,7 +392,6 @@ def c22(setting: Setting) -> Result:
     evidence="eq. 2.21, 2.22 against 2.1 for a statue that is held, simulations of sudden accelerations "
     "for a free one",
     rule="true for every stack; a squat statue on a slender pedestal is the exception",
-    error_rate=NO_ERROR,
 )
 def c23(setting: Setting) -> Result:
     """Acceleration that moves the pedestal too, against that of the statue alone."""
@@ -422,7 +413,6 @@ def c23(setting: Setting) -> Result:
     evidence="eq. 2.1 and 2.21 to 2.25 (C2)",
     rule="the thresholds of lone towers, pattern 3 and pattern 4 fall from each tower to the next more "
     "slender",
-    error_rate=NO_ERROR,
 )
 def c24(setting: Setting) -> Result:
     """Thresholds in the order of slenderness."""

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockfrag.figure_style import BLACK, OKABE_ITO, WIDEST, one_panel
-from rockfrag.pedestal.power import benjamini_hochberg
+from rockfrag.pedestal.cluster_means import benjamini_hochberg
 from rockfrag.report.figures.amplitudes import BAND, GREY, MARKERS
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, estimated, table_html

@@ -12,8 +12,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import equivalence, mean_effects
-from rockfrag.pedestal.power import benjamini_hochberg, holm
+from rockfrag.pedestal.cluster_means import benjamini_hochberg, equivalence, holm, mean_effects
 from rockfrag.tabular import join_rows
 
 COLUMNS = ("factor", "level", "reference", "object", "earthquake", "floor", "ratio")

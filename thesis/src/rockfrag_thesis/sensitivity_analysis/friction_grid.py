@@ -5,7 +5,7 @@ coefficient of that interface too.  So the smallest coefficients are tried first
 """
 
 import math
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -32,7 +32,6 @@ def friction_ratios(
     ground: Sequence[float],
     interface: Sequence[float],
     threads: int = 1,
-    progress: Callable[[str], None] = lambda name: None,
 ) -> pd.DataFrame:
     """Ratio P/NP of every object and motion at every pair of coefficients of friction.
 
@@ -69,7 +68,6 @@ def friction_ratios(
                     }
                 )
             )
-        progress(name)
     return pd.concat(tables, ignore_index=True).assign(resolution=step)
 
 

@@ -22,7 +22,6 @@ from rockfrag.rocking.measured_restitution import MeasuredRestitution
 from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
-from rockfrag_thesis.sensitivity_analysis.mass_bias import ratio_bias
 
 Floats = NDArray[np.float64]
 
@@ -119,20 +118,6 @@ def _restitution(block: Block, factor: float) -> float:
     return value
 
 
-def _pedestal_lean(stack: Stack, degrees: float) -> Stack:
-    leaning = replace(stack.lower, lean=stack.lower.lean + radians(degrees))
-    return replace(stack, lower=leaning)
-
-
-def _statue_offset(stack: Stack, millimetres: float) -> Stack:
-    return replace(stack, offset=stack.offset + millimetres / 1000)
-
-
-def _statue_cg_offset(stack: Stack, millimetres: float) -> Stack:
-    statue = replace(stack.upper, cg_offset=stack.upper.cg_offset + millimetres / 1000)
-    return replace(stack, upper=statue)
-
-
 def _pedestal_width(stack: Stack, centimetres: float) -> Stack:
     # of the same material and depth; the inertia follows from the shape
     ideal = stack.lower
@@ -142,9 +127,13 @@ def _pedestal_width(stack: Stack, centimetres: float) -> Stack:
 
 
 _SHAPES: Mapping[str, Callable[[Stack, float], Stack]] = {
-    "pedestal_lean_deg": _pedestal_lean,
-    "statue_offset_mm": _statue_offset,
-    "statue_cg_offset_mm": _statue_cg_offset,
+    "pedestal_lean_deg": lambda stack, degrees: replace(
+        stack, lower=replace(stack.lower, lean=stack.lower.lean + radians(degrees))
+    ),
+    "statue_offset_mm": lambda stack, mm: replace(stack, offset=stack.offset + mm / 1000),
+    "statue_cg_offset_mm": lambda stack, mm: replace(
+        stack, upper=replace(stack.upper, cg_offset=stack.upper.cg_offset + mm / 1000)
+    ),
     "pedestal_width_cm": _pedestal_width,
 }
 """What a level of a factor does to the shape of a stack."""
@@ -297,9 +286,11 @@ def mass_error_rows(
 ) -> pd.DataFrame:
     """Ratios that a laboratory would report which divides the force by the wrong mass.
 
+    The force (table + blocks) a moves everything. Mass that was moved but not counted scales every acceleration;
+    if the pedestal's fraction of it differs, P/NP is biased by the same factor for every motion.
+
     Masses of the table are moved ones [kg]. Returns rows like ``ideal``, those of :func:`case_ratios` for the
-    ideal model, with the factors ``pedestal_not_counted`` and ``table_not_counted`` and the table's mass as level;
-    see :mod:`rockfrag_thesis.sensitivity_analysis.mass_bias`.
+    ideal model, with the factors ``pedestal_not_counted`` and ``table_not_counted`` and the table's mass as level.
     """
     parts = []
     for mass in table_masses:
@@ -307,14 +298,11 @@ def mass_error_rows(
             bias = {}
             for object_name, stack in stacks.items():
                 statue, pedestal = stack.upper.mass, stack.lower.mass
-                counted = (
-                    (mass + statue, mass + statue)
-                    if factor == "pedestal_not_counted"
-                    else (statue + pedestal, statue)
-                )
-                bias[object_name] = ratio_bias(
-                    statue, pedestal, mass, counted_with=counted[0], counted_without=counted[1]
-                )
+                counted = (mass + statue, mass + statue)
+                if factor == "table_not_counted":
+                    counted = (statue + pedestal, statue)
+                moved = (mass + statue + pedestal, mass + statue)
+                bias[object_name] = (moved[0] / counted[0]) / (moved[1] / counted[1])
             ratio = ideal["ratio"] * ideal["object"].map(bias)
             parts.append(ideal.assign(factor=factor, level=float(mass), ratio=ratio))
     return pd.concat(parts, ignore_index=True) if parts else ideal.iloc[:0]
