@@ -155,10 +155,7 @@ def test_a_reader_that_has_had_enough_is_no_error(record: Path):
 
 @pytest.mark.parametrize(
     ("unit", "words"),
-    [
-        ("m/s2", ["0.399 m/s²", "start rocking", "in g, multiply it by 9.81"]),
-        ("g", []),
-    ],
+    [("m/s2", ["0.399 m/s²", "start rocking", "in g, multiply it by 9.81"]), ("g", [])],
 )
 def test_a_motion_that_looks_as_if_in_another_unit_is_doubted(simulated, unit, words):
     shown = simulated("--body", "0.1", "1", "20", unit=unit).err

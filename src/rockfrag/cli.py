@@ -238,14 +238,6 @@ def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
     """Return the body and the motion that the options tell."""
     from rockfrag.system.blocks import stacked
 
-    _check_space(options)
-    below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
-    body = stacked([*below, _block("--body", options.body)])
-    return body, read_told(options.record, options, options.channel)
-
-
-def _check_space(options: argparse.Namespace) -> None:
-    """Refuse options of a body in space that do not fit together."""
     based = options.depth is not None or options.round
     if based and options.second is None:
         raise InputError("--depth and --round are of a body in space; give --second as well.")
@@ -253,6 +245,9 @@ def _check_space(options: argparse.Namespace) -> None:
         raise InputError("--second: a body in space has --depth or is --round; give either.")
     if options.second is not None and options.pedestal:
         raise InputError("--second: a body in space stands on the ground; leave out --pedestal.")
+    below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
+    body = stacked([*below, _block("--body", options.body)])
+    return body, read_told(options.record, options, options.channel)
 
 
 def _case_in_space(

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-LONGEST_MESSAGE = 500
-"""Characters of a message; what a file holds may be quoted in it and be of any length."""
+LONGEST_MESSAGE = 500  # characters: what a file holds may be quoted and be of any length
 
 
 class InputError(ValueError):

@@ -21,12 +21,8 @@ YELLOW, BLUE, RED, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 
 OKABE_ITO = (BLUE, ORANGE, GREEN, RED, SKY, PURPLE, BLACK, YELLOW)
 
-COLUMN_WIDTH, PAGE_WIDTH = 3.5, 7.0
-"""Widths of figures for one and for two columns of a journal [in]."""
-
-WIDEST = 4.4
-"""Width of figures that need more than a column and are still to be read on a phone [in]."""
-
+COLUMN_WIDTH, PAGE_WIDTH = 3.5, 7.0  # of one and of two columns of a journal [in]
+WIDEST = 4.4  # [in], of figures wider than a column that can still be read on a phone
 DOTS_PER_INCH = 200
 
 CONFIGURATION_COLOURS = (ORANGE, BLUE, *OKABE_ITO[2:])

@@ -15,8 +15,7 @@ from rockfrag.errors import InputError
 LONGEST_NAME = 80  # characters of a name, and of the file name made of it
 FORMULA = ("=", "+", "-", "@")  # characters with which a spreadsheet takes a cell for a formula
 _DEVICES = (f"{port}{n}" for port in ("com", "lpt") for n in range(10))
-_RESERVED = {"con", "prn", "aux", "nul", *_DEVICES}
-"""Names of devices, which no file may bear on Windows, whatever its ending."""
+_RESERVED = {"con", "prn", "aux", "nul", *_DEVICES}  # devices, not files, on Windows
 
 
 def is_file(path: Path) -> bool:

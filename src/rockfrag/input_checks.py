@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 
-MOST_SAMPLES = 10_000_000  # more samples of a motion than this are taken for a mistake in a unit
 _LONGEST_SHOWN = 60
 
 
@@ -55,7 +54,7 @@ def whole_number(name: str, value: object) -> int:
     return int(value)
 
 
-def whole_number_within(owner: str, name: str, value: Any, least: int, most: int) -> int:
+def whole_within(owner: str, name: str, value: Any, least: int, most: int) -> int:
     """Return ``value`` as an int if it is a whole number from ``least`` to ``most``."""
     if real_number(f"{owner}: {name}", value) != int(value) or not least <= value <= most:
         raise InputError(
@@ -82,13 +81,7 @@ def real_array(name: str, data: object, unit: str = "") -> NDArray[np.float64]:
     if values.dtype.kind == "c":
         raise InputError(f"{wanted}, got complex ones; take their real part if that is meant.")
     if values.dtype.kind not in "iuf" and values.size:
-        raise InputError(f"{wanted}, got {_kind(values)}.")
+        known = {"b": "booleans", "U": "text", "S": "text"}
+        kind = known.get(values.dtype.kind) or f"{type(values.ravel()[0]).__name__} objects"
+        raise InputError(f"{wanted}, got {kind}.")
     return np.ascontiguousarray(values, dtype=np.float64)
-
-
-def _kind(values: NDArray[Any]) -> str:
-    if values.dtype.kind == "b":
-        return "booleans"
-    if values.dtype.kind in "US":
-        return "text"
-    return f"{type(values.ravel()[0]).__name__} objects"

@@ -23,9 +23,7 @@ from rockfrag.plugins import plugins
 from rockfrag.tabular import unfit_character
 from rockfrag.units import other_names, quantity, split_name
 
-LARGEST_WHOLE = 2**53
-"""Up to here every whole number is exact as a float too, and fits into every file."""
-
+LARGEST_WHOLE = 2**53  # up to here each whole number is exact as a float, and fits into every file
 _Schema = Mapping[str, Any]
 
 
@@ -176,8 +174,7 @@ def _importance(error: ValidationError) -> tuple[int, list[str]]:
     return rank, [str(part) for part in error.absolute_path]
 
 
-_WHOLES = ("type", "const", "enum", "registered")
-"""Keywords that say of a value as a whole that it is not what was meant."""
+_WHOLES = ("type", "const", "enum", "registered")  # keywords on a value as a whole
 
 
 def _deepest(error: ValidationError) -> ValidationError:

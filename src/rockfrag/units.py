@@ -98,14 +98,11 @@ def quantity(given: object, to: str, unit: str | None) -> float:
     if found is None:
         raise InputError(f"{expected}, found {given!r:.60} without a unit.")
     if found not in units:
-        known = ", ".join(_as_written(unit) for unit in units)
+        # m_s2 is written m/s²
+        known = ", ".join(re.sub(r"_s(2?)$", r"/s\1", unit) for unit in units)
+        known = known.replace("_", " ").replace("2", "²")
         raise InputError(f"{expected} in one of the units {known}, found {given!r:.60}.")
     return convert(value, found, to)
-
-
-def _as_written(unit: str) -> str:
-    """A unit as people write it: ``m_s2`` is m/s²."""
-    return re.sub(r"_s(2?)$", r"/s\1", unit).replace("_", " ").replace("2", "²")
 
 
 def other_names(name: str) -> dict[str, str | None]:
@@ -127,9 +124,7 @@ def split_name(name: str) -> tuple[str, str]:
     raise ValueError(f"{name} names no unit")
 
 
-DENSITIES = (20.0, 22_600.0)
-"""Least and largest density of a whole object [kg/m³]: packaging foam, and osmium."""
-
+DENSITIES = (20.0, 22_600.0)  # of a whole object [kg/m³]: from packaging foam to osmium
 AIR = 1.2  # density of air [kg/m³]
 STONE = 2500.0  # density of stone [kg/m³], where nobody says how heavy an object is
 MEAN_DENSITIES = (100.0, DENSITIES[1])
@@ -139,27 +134,15 @@ DEPTHS = (0.1, 3.0)
 """Least depth of an object over its width, largest over the longer of width and height: a panel rocking in its
 strong direction, and a long shelf seen from its end."""
 
-GYRATIONS = (1e-3, 30.0)
-"""Least and largest radius of gyration of a body over the diagonal of its width and height [-]."""
-
+GYRATIONS = (1e-3, 30.0)  # radius of gyration of a body over the diagonal of width and height [-]
 LARGEST_SIZE = 20.0  # free-standing objects are hardly taller [m]
-LARGEST_PEAK = 50.0
-"""No accelerometer has recorded a larger ground acceleration [m/s²]; floors hardly feel more."""
-
+LARGEST_PEAK = 50.0  # no accelerometer has recorded more [m/s²]; floors hardly feel more
 LARGEST_IN_G = 2.0  # peaks of more than this many g are rare: a number above it is hardly one of g
-FLOOR_MASSES = (1e3, 1e9)
-"""Least and largest mass of a floor of a building [kg]: a wooden attic, and more than any palace's."""
-
-STOREY_HEIGHTS = (1.0, 30.0)
-"""Least and largest height of a storey [m]: a crawl space, and the nave of a cathedral."""
-
+FLOOR_MASSES = (1e3, 1e9)  # of a floor of a building [kg]: a wooden attic, more than any palace's
+STOREY_HEIGHTS = (1.0, 30.0)  # of a storey [m]: a crawl space, and the nave of a cathedral
 FIRST_PERIODS = (0.01, 20.0)  # shortest and longest first period of a building [s]
-SHORTEST_STEP = 1e-5
-"""Shortest sampling interval [s] of a record; recorders take at most some thousand samples a second."""
-
-LONGEST_STEP = 1.0
-"""Longest sampling interval [s] of a record; slower channels are not of strong motion."""
-
+SHORTEST_STEP = 1e-5  # sampling interval [s]; recorders take at most some thousand samples a second
+LONGEST_STEP = 1.0  # sampling interval [s] of a record; slower channels are not of strong motion
 LEAST_PEAK = 0.05  # a motion whose peak is below this [m/s²] moves nothing that stands
 
 

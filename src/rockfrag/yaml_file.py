@@ -13,8 +13,7 @@ from rockfrag.errors import InputError
 from rockfrag.tabular import read_text, unfit_character
 
 MOST_BYTES = 256 * 1024  # largest configuration; three thousand names of motions are a third of it
-MOST_VALUES, DEEPEST = 20_000, 20
-"""Values in a configuration, and mappings and lists within each other."""
+MOST_VALUES, DEEPEST = 20_000, 20  # values, and mappings and lists within each other
 
 
 class _StrictLoader(yaml.SafeLoader):
@@ -85,15 +84,12 @@ _StrictLoader.yaml_constructors = {
     None: yaml.SafeLoader.construct_undefined,
 }
 _StrictLoader.yaml_implicit_resolvers = {}
+_FLOAT = r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan|\.NaN"
 for _name, _pattern, _first in (
     ("null", r"~|null|Null|NULL|", ["~", "n", "N", ""]),
     ("bool", r"true|True|TRUE|false|False|FALSE", list("tTfF")),
     ("int", r"[-+]?[0-9]+", list("-+0123456789")),
-    (
-        "float",
-        r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan|\.NaN",
-        list("-+.0123456789"),
-    ),
+    ("float", _FLOAT, list("-+.0123456789")),
 ):
     _StrictLoader.add_implicit_resolver(f"{_TAG}{_name}", re.compile(rf"(?:{_pattern})\Z"), _first)
 

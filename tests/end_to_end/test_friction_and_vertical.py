@@ -1,26 +1,20 @@
 """Studies whose bodies slide and fly, or are shaken vertically too, from configuration to report."""
 
-import logging
-import shutil
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-import rockfrag.study.study
 from rockfrag import Block, overturns, simulate
-from rockfrag.records.motion import read_motion_set
-from rockfrag.records.read import read_motion
+from rockfrag.records.motion import Motion, read_motion_set
 from rockfrag.report.part import Results
 from rockfrag.rocking.ensemble import LIGHT, LightBodies
-from rockfrag.stages import fragility
-from rockfrag.stages.job import Job
 from rockfrag.study.loading import load_any
 from rockfrag.units import GRAVITY
 
 from .checked_report import Page, check_first_page, check_report
-from .studies import CATALOGUE, Foreign, run, run_stages, write
+from .studies import Foreign, run
 
 SLENDER = {
     "figure": (30.0, 60.0, 60.0),
@@ -46,7 +40,7 @@ def table(results: Path, name: str) -> pd.DataFrame:
     return pd.read_parquet(results / f"{name}.parquet")
 
 
-def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(tmp_path, monkeypatch):
+def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(tmp_path):
     content = {
         "friction": 0.3,
         "amplitudes": {"lowest_g": 0.2, "highest_g": 1.2, "step_percent": 20},
@@ -79,127 +73,82 @@ def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(tmp_p
     assert "neither slide nor jump" not in words
     states = table(results, "fragility_floors")
     assert set(states["state"]) == {"slides", "overturns"}
-    # outcomes that are counted give the same curves as outcomes that are rows
-    monkeypatch.setattr(rockfrag.study.study, "MOST_ROWS", 10)
-    job = Job(load_any(tmp_path / "study.yaml"), results, 1, logging.getLogger("test"))
-    counted = dict(fragility.run(job))["fragility_floors"]
-    keys = ["configuration", "floor", "measure", "state", "n_motions"]
-    pd.testing.assert_frame_equal(counted[keys], states[keys], check_dtype=False)
-    assert states["theta"].notna().any()
-    np.testing.assert_allclose(counted["theta"], states["theta"], rtol=1e-3)
+    written = (results / "exports/fragility_pga.xml").read_text()
+    assert "<limitStates>slides overturns</limitStates>" in written
+    damage = (results / "exports/fragility_pga.json").read_text()
+    assert "Slides and may be displaced" in damage
 
 
-def test_vertical_components_shake_too_and_floors_take_them_as_they_are(tmp_path: Path):
-    study = Foreign(
-        SLENDER, STANDING, RECORDS, floors={"hall": 0, "loft": 3}, content={"vertical": True}
-    )
-    results, page = run_and_check(study, tmp_path)
-    assert "vertical components" in " ".join(page.words)
-    floors, ups = (
-        read_motion_set(results / "motions" / f"{name}.parquet") for name in ("floors", "vertical")
-    )
-    assert [floor.name for floor in floors] == [item.name for item in ups]
-    by_name = {item.name: item for item in ups}
-    np.testing.assert_array_equal(by_name["a_hall"].acceleration, by_name["a_loft"].acceleration)
-    # a row of the IDA curve is what simulate says of the two components
-    ida = table(results, "ida/column")
-    row = ida[(ida["motion"] == "a_loft") & ~ida["overturned"]].iloc[-1]
-    motion = next(floor for floor in floors if floor.name == "a_loft")
-    factor = row["amplitude_g"] * GRAVITY / motion.pga
-    block = Block(0.3, 1.2, 110.0)
-    response = simulate(
-        block,
-        factor * motion.acceleration,
-        motion.dt,
-        vertical=factor * by_name["a_loft"].acceleration,
-    )
-    peak = np.abs(response.theta).max() / block.alpha
-    assert row["peak_rotation_body_1"] > 0
-    np.testing.assert_allclose(row["peak_rotation_body_1"], peak, rtol=0.02)
-    assert "peak_slip_contact_1_m" not in ida.columns
-
-
-# Coalinga, 2 May 1983 (CSMIP 36456): components 90, UP and 0, of 3251 and 3250 samples
-FILE = "ce36456p_CE36456.V2"
-BLOCK = Block(0.3, 1.2, 110.0)
+COLUMN = Block(0.3, 1.2, 110.0)
 
 
 @pytest.fixture(scope="module")
-def results(shared: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    record = shared / "records" / "formats" / "csmip_dmg" / FILE
-    if not record.is_file():
-        pytest.skip("the record is absent")
-    study = Foreign(
-        {"column": (30.0, 120.0, 110.0), "plinth": (50.0, 60.0, 350.0)},
-        {"column": ("column", None), "column on plinth": ("column", "plinth")},
-        {"across": "Coalinga", "along": "Coalinga"},
-        content={
-            "vertical": True,
-            "amplitudes": {"lowest_g": 0.2, "highest_g": 2.4, "step_percent": 20},
-        },
+def shaken(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """Results and words of a study under vertical components too."""
+    content = {
+        "vertical": True,
+        "amplitudes": {"lowest_g": 0.2, "highest_g": 2.4, "step_percent": 20},
+    }
+    study = Foreign(SLENDER, STANDING, RECORDS, floors={"hall": 0, "loft": 3}, content=content)
+    results, page = run_and_check(study, tmp_path_factory.mktemp("shaken"))
+    return results, " ".join(page.words)
+
+
+def components(results: Path, name: str) -> tuple[Motion, np.ndarray]:
+    """The motion of a floor, and the vertical acceleration beside it."""
+    of_floor, up = (
+        next(motion for motion in read_motion_set(path) if motion.name == name)
+        for path in (results / "motions/floors.parquet", results / "motions/vertical.parquet")
     )
-    folder = tmp_path_factory.mktemp("recorded")
-    path = write(study, folder)
-    shutil.copy(record, folder / FILE)
-    rows = [
-        f"{name},Coalinga,,,,,,folder,{FILE}#{angle},{FILE}#UP,,,own"
-        for name, angle in (("across", "90"), ("along", "0"))
-    ]
-    (folder / "motions.csv").write_text("\n".join([CATALOGUE.strip(), *rows]) + "\n")
-    found = run_stages(path)
-    page = check_report(found, study.names)
-    check_first_page(Results(load_any(path), found))
-    (folder / "words.txt").write_text(" ".join(page.words))
-    return found
+    return of_floor, up.acceleration
 
 
-def components(results: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Component 90 and the vertical one as the file has them, over the time both last [m/s²]."""
-    path = results.parents[1] / FILE
-    item, up = (read_motion(path, channel=name).acceleration for name in ("90", "UP"))
-    n = min(item.size, up.size)
-    return item[:n], up[:n]
+def test_floors_take_vertical_components_as_they_are(shaken):
+    hall, loft = (components(shaken[0], name)[1] for name in ("a_hall", "a_loft"))
+    np.testing.assert_array_equal(hall, loft)
 
 
-def test_each_outcome_is_that_of_both_components_scaled_together(results: Path) -> None:
-    across, up = components(results)
-    ida = pd.read_parquet(results / "ida" / "column.parquet")
-    rows = ida[ida["motion"] == "across_ground"]
+def test_each_outcome_is_that_of_both_components_scaled_together(shaken):
+    results, _ = shaken
+    motion, up = components(results, "a_hall")
+    ida = table(results, "ida/column")
+    assert "peak_slip_contact_1_m" not in ida.columns
+    rows = ida[ida["motion"] == "a_hall"]
     assert rows["overturned"].any() and not rows["overturned"].all()
-    for row in rows.to_dict("records"):
-        factor = row["amplitude_g"] * GRAVITY / np.abs(across).max()
-        response = simulate(BLOCK, factor * across, 0.02, vertical=factor * up)
+    factors = rows["amplitude_g"].to_numpy() * GRAVITY / motion.pga
+    for row, factor in zip(rows.to_dict("records"), factors, strict=True):
+        response = simulate(COLUMN, factor * motion.acceleration, motion.dt, vertical=factor * up)
         assert response.overturned == row["overturned"]
         assert row["minimum_gravity_ratio"] == pytest.approx(
             1 + min((factor * up).min(), 0) / GRAVITY, abs=1e-9
         )
-    factors = rows["amplitude_g"].to_numpy() * GRAVITY / np.abs(across).max()
+        if not row["overturned"]:
+            rotation, peak = row["peak_rotation_body_1"], np.abs(response.theta).max()
+    assert rotation == pytest.approx(peak / COLUMN.alpha, rel=0.02)
     with pytest.warns(LightBodies):
-        fell = overturns(BLOCK, across, 0.02, factors, vertical=[up])
+        fell = overturns(COLUMN, motion.acceleration, motion.dt, factors, vertical=[up])
     np.testing.assert_array_equal(fell.overturned.ravel(), rows["overturned"])
 
 
-def test_the_report_says_in_how_many_cases_bodies_may_fly(results: Path) -> None:
-    ida_curves = [pd.read_parquet(path) for path in (results / "ida").glob("*.parquet")]
-    cases = pd.concat(ida_curves)
+def test_the_report_says_in_how_many_cases_bodies_may_fly(shaken):
+    results, words = shaken
+    cases = pd.concat(pd.read_parquet(path) for path in (results / "ida").glob("*.parquet"))
     light = int((cases["minimum_gravity_ratio"] < LIGHT).sum())
     assert 0 < light < len(cases)
-    words = (results.parents[1] / "words.txt").read_text()
     assert "The vertical components of the records act too" in words
-    assert (
-        f"in {light} of {len(cases)} analyses the ground takes away more than half of all weight"
-        in words
-    )
+    said = "analyses the ground takes away more than half of all weight"
+    assert f"in {light} of {len(cases)} {said}" in words
 
 
-def test_the_report_counts_the_tests_in_which_a_block_lifts_off(results: Path) -> None:
-    across, up = components(results)
-    validity = pd.read_parquet(results / "validity.parquet")
-    row = validity.query("motion == 'across_ground' and pedestal == 'NP'").iloc[0]
-    factor = row["amplitude_g"] * GRAVITY / np.abs(across).max()
-    response = simulate(BLOCK, factor * across, 0.02, vertical=factor * up)
+def test_the_report_counts_the_tests_in_which_a_block_lifts_off(shaken):
+    results, words = shaken
+    validity = table(results, "validity")
+    row = validity.query("motion == 'a_hall' and object == 'column' and pedestal == 'NP'").iloc[0]
+    motion, up = components(results, "a_hall")
+    factor = row["amplitude_g"] * GRAVITY / motion.pga
+    response = simulate(COLUMN, factor * motion.acceleration, motion.dt, vertical=factor * up)
     assert row["least_normal_force_n"] == pytest.approx(float(response.least_normal_force.min()))
     assert row["friction_demand"] == pytest.approx(float(response.friction_demand.max()))
+    assert row["unstable_distance"] == pytest.approx(response.unstable_distance)
     lifted = int((validity["least_normal_force_n"] <= 0).sum())
-    words = (results.parents[1] / "words.txt").read_text()
     assert ("No block would have lifted off" in words) == (lifted == 0)

@@ -72,13 +72,6 @@ def test_intervals_follow_motions_and_not_the_number_of_amplitudes():
     assert fit_lognormal(often).se_log_theta < 0.4 * fit_lognormal(once).se_log_theta
 
 
-def test_one_motion_gives_no_interval_and_says_so():
-    interval = interval_over_motions(swept_motions(1))
-    assert interval.method == "none"
-    assert np.isnan(interval.theta[0])
-    assert "One motion" in interval.warnings[0]
-
-
 @pytest.mark.parametrize(
     ("capacities", "theta_known", "limits_known"),
     [

@@ -28,10 +28,7 @@ def synthetic_tests(
                 d += (floor_effect or {}).get(floor, 0.0)
                 common = np.log(amplitude) + level + rng.normal(0, 0.1)
                 about = (object_name, earthquake, floor, f"{earthquake}-{floor}")
-                rows += [
-                    (*about, "NP", np.exp(common - noise)),
-                    (*about, "P", np.exp(common + d)),
-                ]
+                rows += [(*about, "NP", np.exp(common - noise)), (*about, "P", np.exp(common + d))]
     names = ["object", "earthquake", "floor", "motion", "pedestal", "amplitude_g"]
     table = pd.DataFrame(rows, columns=names).assign(censored="none", repetition=1)
     return table.assign(lower_g=table["amplitude_g"], upper_g=table["amplitude_g"])

@@ -280,11 +280,7 @@ def test_seismic_handler_is_read_by_obspy(write):
     Stream([Trace(WAVE, {"delta": 0.05, "station": "TEST"})]).write(str(path), format="SH_ASC")
     assert path.read_text().startswith("DELTA:")
     record = read_record(path)
-    assert (record.format, record.channels[0].dt, record.channels[0].npts) == (
-        "SH_ASC",
-        0.05,
-        N,
-    )
+    assert (record.format, record.channels[0].dt, record.channels[0].npts) == ("SH_ASC", 0.05, N)
 
 
 def test_a_peak_above_3_g_by_the_users_unit_is_refused_unless_forced(write):

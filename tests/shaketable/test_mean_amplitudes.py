@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
+from rockfrag.shaketable.definitions import mean_amplitudes
 
 
 def table_of(amplitudes: dict[tuple[str, str], list[float]]) -> pd.DataFrame:

@@ -21,8 +21,7 @@ from rockfrag.stages.log import in_words, logged
 from rockfrag.stages.preflight import check_folders
 from rockfrag.stages.running import RUN, run_lock, same_numbers
 
-from .conftest import study_content, write_study
-from .running import LAUNCHER, ROOT, called, tables_of
+from .running import LAUNCHER, ROOT, called
 
 WITHOUT_FLOCK = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP)
 """What the system says of locks where there are none, as on some network drives."""
@@ -213,31 +212,3 @@ def test_libraries_take_what_every_processor_has(monkeypatch: pytest.MonkeyPatch
     asked = (sys.executable, "-W", "error", "-c", program)
     found = called(ROOT, *asked, env={**os.environ, **chosen})
     assert found.stdout.strip() == "None", found.stderr
-
-
-FOREIGN = {
-    "OPENBLAS_CORETYPE": "Haswell",
-    "NPY_DISABLE_CPU_FEATURES": "X86_V4",
-    "NUMBA_CPU_NAME": "generic",
-    "NUMBA_CPU_FEATURES": "",
-    "PYTHONHASHSEED": "77",
-    "TZ": "Asia/Tokyo",
-    "LC_ALL": "de_DE.UTF-8",
-    "OPENBLAS_NUM_THREADS": "2",
-}
-
-
-@pytest.mark.slow
-def test_the_same_bytes_on_other_processors_and_in_other_places(study_folder, monkeypatch):
-    (study_folder / "building.yaml").write_text((ROOT / "config" / "building.yaml").read_text())
-    content = {**study_content(), "building": "building.yaml"}
-    content["fragility"]["measures"] = ["pga_g", "pgv_cm_s", "sa_0_3s_g"]
-    write_study(study_folder, content)
-    command = [*LAUNCHER, "study.yaml", "--cores", "2"]
-    found = []
-    for more in ({}, FOREIGN):
-        environment = {**os.environ, **more}
-        subprocess.run(command, cwd=study_folder, env=environment, capture_output=True, check=True)
-        found.append(tables_of(study_folder))
-        subprocess.run(["rm", "-r", str(study_folder / "results")], check=True)
-    assert found[0] == found[1]

@@ -49,21 +49,6 @@ def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
     assert (results / "figures" / "two_measures_measured_pga_g_pgv_cm_s.png").stat().st_size > 1000
 
 
-@pytest.mark.slow
-def test_the_granite_rock_runs_through_the_workflow(tmp_path: Path, shared: Path):
-    table = (shared / "measured" / "granite_rock_1.csv").resolve()
-    write_example(tmp_path, str(table))
-    done = snakemake(tmp_path, "--cores", "1")
-    assert done.returncode == 0, done.stderr[-3000:]
-    results = tmp_path / "results" / "measured-example"
-    aic = pd.read_csv(results / "recommendation.csv").set_index("im")["aic"]
-    assert aic["PGA"] == pytest.approx(656.0, abs=0.1)
-    assert aic["PGV"] == pytest.approx(309.0, abs=0.1)
-    page = (results / "report.html").read_text()
-    assert "PGV predicts overturning best" in page
-    assert "Adding PGA does not improve the prediction" in page
-
-
 HEADER = "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
 
 

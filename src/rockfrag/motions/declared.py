@@ -14,9 +14,7 @@ from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
-SPECTRAL_PERIODS = (0.3, 1.0)
-"""Periods at which a table gives the 5 % damped spectrum unless others are asked for [s]."""
-
+SPECTRAL_PERIODS = (0.3, 1.0)  # of the 5 % damped spectrum in a table, unless others are asked for
 SUFFIXES = {
     "g": "g", "cm/s": "cm_s", "m/s": "m_s", "m/s²": "m_s2", "cm": "cm", "m": "m", "s": "s", "1/s": "1_s",
     "Hz": "hz",

@@ -67,24 +67,14 @@ def turned(first: Motion, second: Motion, direction: str) -> Motion:
     return rotate_to_azimuth(first, second, float(match["angle"]) + turn)
 
 
-def components_of_row(row: dict[str, Any], folder: Path, records: Path) -> dict[str, Motion]:
-    """Read the components that a row names, at common times: ``first``, ``second``, ``vertical``.
-
-    Those that the row does not name are not there; none is scaled.
-    """
-    named = {"first": row["file"], "second": row.get("second"), "vertical": row.get("vertical")}
-    files = {role: str(file) for role, file in named.items() if file}
-    motions = [load_component(row, file, folder, records) for file in files.values()]
-    verticals = [place for place, role in enumerate(files) if role == "vertical"]
-    return dict(zip(files, common_time(motions, verticals), strict=True))
-
-
 def pair_of_row(row: dict[str, Any], folder: Path, records: Path) -> tuple[Motion, Motion]:
     """Read both horizontal components that a row names, with its factor, at common times."""
     if not row.get("second"):
         raise InputError(f"{row['name']}: the catalogue names no second component of it.")
-    components = components_of_row({**row, "vertical": ""}, folder, records)
-    return scaled(components["first"], row), scaled(components["second"], row)
+    files = row["file"], row["second"]
+    motions = [load_component(row, file, folder, records) for file in files]
+    first, second = common_time(motions, verticals=())
+    return scaled(first, row), scaled(second, row)
 
 
 def measure_records(

@@ -159,8 +159,7 @@ def mean_period(motion: Motion) -> float:
     return float((power / frequency[band]).sum() / total) if total > 0 else math.nan
 
 
-PREDOMINANT_PERIODS = np.geomspace(0.02, 10.0, 541)
-"""Periods searched for the predominant one [s]: 200 in a decade, 1.2 % apart."""
+PREDOMINANT_PERIODS = np.geomspace(0.02, 10.0, 541)  # searched [s]: 200 in a decade
 
 
 @intensity_measure("s", power=0, label="predominant period")
@@ -185,8 +184,7 @@ def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) 
 
 
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)  # periods of the Housner intensity [s]
-AVERAGE_PERIODS = np.linspace(0.2, 2.0, 10)
-"""Periods over which the average spectral acceleration is taken [s]."""
+AVERAGE_PERIODS = np.linspace(0.2, 2.0, 10)  # of the average spectral acceleration [s]
 
 
 def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, float]:

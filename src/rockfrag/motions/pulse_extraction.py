@@ -27,8 +27,7 @@ SHORTEST_PERIOD, LONGEST_PERIOD, PERIOD_RATIO = 0.1, 15.0, 1.05
 """Periods that are tried [s] and the ratio of one to the next; none is shorter than 10 samples or
 longer than the record.  The best is then refined between its neighbours."""
 
-SAMPLES_PER_PERIOD = 40
-"""A wavelet needs no finer sampling; denser records are thinned while they are searched."""
+SAMPLES_PER_PERIOD = 40  # a wavelet needs no finer; denser records are thinned for the search
 
 
 _TRIED = np.array(CYCLES[::-1])
@@ -65,8 +64,7 @@ class StrongestPulse:
     __repr__ = short_repr
 
 
-NO_PULSE = StrongestPulse(*[math.nan] * 6)
-"""What a motion of zeros, or one too short to hold a pulse, gives."""
+NO_PULSE = StrongestPulse(*[math.nan] * 6)  # of a motion of zeros, or one too short
 
 
 def strongest_pulse(motion: Motion) -> StrongestPulse:

@@ -13,8 +13,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 
 _RIGHT_ANGLE = 5.0  # degrees by which two components may be off a right angle
-DIRECTIONS_DEG = range(180)
-"""Directions that are looked in [degrees]; the other half of the circle sees the same."""
+DIRECTIONS_DEG = range(180)  # directions looked in; the other half of the circle sees the same
 
 
 def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:

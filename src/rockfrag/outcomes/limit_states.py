@@ -16,14 +16,9 @@ from rockfrag.system.system import System
 
 Predicate = Callable[[Outcomes], NDArray[np.bool_]]
 
-OVERTURNS = "overturns"
-"""Name of the limit state that every IDA curve counts."""
-
-ROCKS = "rocks"
-"""Name of the limit state that begins at an exactly known acceleration."""
-
-VISIBLE = 0.001
-"""Slip above which a body counts as having slid [m]: a displacement that one sees."""
+OVERTURNS = "overturns"  # name of the limit state that every IDA curve counts
+ROCKS = "rocks"  # name of the limit state that begins at an exactly known acceleration
+VISIBLE = 0.001  # slip above which a body counts as having slid [m]: a displacement that one sees
 
 
 @dataclass(frozen=True)

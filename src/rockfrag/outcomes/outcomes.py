@@ -18,8 +18,7 @@ Whole = NDArray[np.int64]
 Small = NDArray[np.int8]
 Words = NDArray[np.object_]
 
-NOT_TOLD = math.nan
-"""Where an engine does not tell a number."""
+NOT_TOLD = math.nan  # where an engine does not tell a number
 
 Table = Literal["cases", "bodies", "contacts"]
 """The three tables of outcomes: a row per case, per body of a case, per contact of a case."""

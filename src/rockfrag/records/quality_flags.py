@@ -49,12 +49,8 @@ def foreign_kind(head: bytes) -> str:
 STRONGEST_G = 3.0  # peak [g] that hardly any record of an earthquake exceeds
 _COARSEST = 0.025  # sampling interval [s] above which 20 Hz, which rocking bodies feel, are lost
 _DRIFT = 0.5  # fraction of the peak velocity that is left at the end of a record with a drift
-_CLIPPED_RUN = 4
-"""Samples in a row at the largest value of a record that is cut off at its sensor's range."""
-
-_LATE = 0.2
-"""Fraction of the peak that a record has in its first tenth of a second if it began too late."""
-
+_CLIPPED_RUN = 4  # samples in a row at the largest value of a record cut off at its sensor's range
+_LATE = 0.2  # fraction of the peak in the first tenth of a second of a record begun too late
 _SPIKE = 0.5  # fraction of the peak by which a lone sample leaves its neighbours
 _SPIKE_RATIO = 20.0  # ratio of a spike to what nine tenths of the samples leave their neighbours by
 _DOUBLED = 0.9  # fraction of the samples that repeat the one before in a record of doubled samples

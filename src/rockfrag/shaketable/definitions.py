@@ -1,7 +1,8 @@
 """Three definitions of one incremental dynamic analysis, as tables of tests.
 
 The step protocol of the laboratory, the first overturning and the amplitude above which the
-specimen always overturns are three different figures; between the last two lie structural resurrections.
+specimen always overturns are three different figures; between the last two lie structural resurrections.  Means of
+them are compared over the same motions, all of them overturning.
 """
 
 import math
@@ -21,10 +22,8 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 DEFINITIONS = ("step_protocol", "first_overturning", "always_overturning")
-
-DEFINITION = "step_protocol"
-"""The definition that resembles a laboratory's: statistics rest on it, the others stand beside."""
-
+DEFINITION = "step_protocol"  # as in a laboratory: statistics rest on it, the others stand beside
+_LABELS = ("configuration", "object", "pedestal", "floor")
 _NEEDED = (*ABOUT, "amplitude_g", "overturned", "overturned_body")
 
 
@@ -108,12 +107,7 @@ def tests_from_ida(
             raise InputError(
                 f"protocol: definition {definition!r} is not one of {', '.join(DEFINITIONS)}."
             )
-    return tests_from_swept(
-        swept_of(ida, ["configuration", "motion"], list(ABOUT)),
-        protocol,
-        definitions=definitions,
-        limits_g=limits_g,
-    )
+    return tests_from_swept(swept_of(ida), protocol, definitions=definitions, limits_g=limits_g)
 
 
 def tests_from_swept(
@@ -185,3 +179,56 @@ def _check_amplitudes(part: Swept) -> None:
             f"{about['configuration']} {about['motion']}: amplitudes must be positive, rise, and occur once; "
             "check the IDA curve's rows."
         )
+
+
+def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
+    """Geometric means of what is compared, over the motions that overturned all that is compared, a row a mean.
+
+    ``tests`` are of one definition; ``amplitude_g`` [g] is missing where the test has none. ``by`` is what is
+    compared: all configurations over the same motions (``configuration``), the floors by side over the same
+    records and objects (``floor``), or the same for each object (``object_floor``). ``configuration``, ``object``,
+    ``pedestal`` and ``floor`` are empty where all are taken together; ``mean_g`` [g] is missing where no motion
+    overturned all; of ``of`` motions ``motions`` did. Repetitions are averaged in the logarithm, and count only if
+    each of them overturned.
+
+    A test that never overturned has no amplitude. Left out of one mean and not of another, it would make objects,
+    floors or sides look different that were merely tested by other motions.
+    """
+    known = tests.assign(
+        ln_a=np.log(tests["amplitude_g"]),
+        # the same record on another floor has another name: that of the record and the floor's
+        record=[
+            motion.removesuffix(f"_{floor}")
+            for motion, floor in tests[["motion", "floor"]].itertuples(index=False)
+        ],
+    )
+    rows = _means("configuration", known, ["configuration"], ["record", "floor"])
+    rows += _means("floor", known, ["pedestal", "floor"], ["record", "object"])
+    for _, group in known.groupby("object", sort=False):
+        rows += _means("object_floor", group, ["pedestal", "floor"], ["record"])
+    return pd.DataFrame(rows, columns=["by", *_LABELS, "mean_g", "motions", "of"])
+
+
+def _means(
+    by: str, tests: pd.DataFrame, compared: list[str], units: list[str]
+) -> list[dict[str, object]]:
+    """Means of each of ``compared`` over the ``units`` in which all of them are known."""
+    parts = [part for _, part in tests.groupby(compared, sort=False)]
+    ln_a = [
+        part.groupby(units)["ln_a"].agg(lambda values: values.mean(skipna=False)) for part in parts
+    ]
+    table = pd.concat(ln_a, axis=1)
+    complete = table.dropna()
+    return [
+        {
+            "by": by,
+            **{
+                name: str(part[name].iloc[0]) if len(set(part[name])) == 1 else ""
+                for name in _LABELS
+            },
+            "mean_g": float(np.exp(complete.iloc[:, column].mean())) if len(complete) else np.nan,
+            "motions": len(complete),
+            "of": len(table),
+        }
+        for column, part in enumerate(parts)
+    ]

@@ -13,9 +13,7 @@ from rockfrag.input_checks import positive_number
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
-
-MOST_STEPS = 100_000
-"""A series of levels with more steps than this is a slip: nobody shakes a block that often."""
+MOST_STEPS = 100_000  # more than this are a slip: nobody shakes a block that often
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,8 @@ from rockfrag.errors import InputError
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named
 from rockfrag.system.system import System
 
+# columns that are the same for all amplitudes of a motion
 ABOUT = ("configuration", "object", "pedestal", "earthquake", "floor", "motion")
-"""Columns that are the same for all amplitudes of a motion."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +32,16 @@ class Swept:
     overturned: NDArray[np.bool_]
     fallen: NDArray[np.intp]  # place in ``bodies`` of what overturned, shape (motions, n)
     bodies: Sequence[str]  # names of what overturned in any of them, empty for nothing
+
+    def rows(self, columns: Sequence[str], step: int = 1) -> pd.DataFrame:
+        """Return a row for each motion and every so many-th amplitude.
+
+        Columns: those asked for of ``about``, ``amplitude_g`` and ``overturned``.
+        """
+        amplitude, overturned = self.amplitude_g[::step], self.overturned[:, ::step].ravel()
+        motions = np.repeat(np.arange(len(self.about)), amplitude.size)
+        rows = self.about[list(columns)].iloc[motions].reset_index(drop=True)
+        return rows.assign(amplitude_g=np.tile(amplitude, len(self.about)), overturned=overturned)
 
 
 def labels_of(system: System) -> dict[str, str]:
@@ -76,14 +86,14 @@ def _swept(part: pa.Table, reached: str, path: Path) -> Swept:
     return Swept(about, grid[0].copy(), found, fallen, body.dictionary.to_pylist())
 
 
-def swept_of(ida: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:
-    """Yield each IDA curve of a table by the values of ``keys``, in the order in which they first appear."""
+def swept_of(ida: pd.DataFrame) -> Iterator[Swept]:
+    """Yield the IDA curve of each configuration and motion, in the order in which they first appear."""
     number, bodies = pd.factorize(ida["overturned_body"])
     overturned = ida["overturned"].to_numpy(dtype=bool)
     amplitude = ida["amplitude_g"].to_numpy(dtype=np.float64)
-    for rows in ida.groupby(keys, sort=False).indices.values():
+    for rows in ida.groupby(["configuration", "motion"], sort=False).indices.values():
         ordered = rows[np.argsort(amplitude[rows], kind="stable")]
-        head = ida[about].iloc[rows[:1]].reset_index(drop=True)
+        head = ida[list(ABOUT)].iloc[rows[:1]].reset_index(drop=True)
         yield Swept(
             head, amplitude[ordered], overturned[None, ordered], number[None, ordered], list(bodies)
         )

@@ -53,15 +53,9 @@ def as_tests_table(rows: list[dict[str, object]]) -> pd.DataFrame:
         {"configuration": f"P&{row['object']}" if row["pedestal"] == "P" else row["object"], **row}
         for row in rows
     ]
-    table = pd.DataFrame(named, columns=list(COLUMNS))
-    for column in COLUMNS:
-        if column.endswith("_g"):
-            table[column] = table[column].astype("float64")
-        elif column == "repetition":
-            table[column] = table[column].astype("int64")
-        else:
-            table[column] = table[column].astype("str")
-    return table
+    types = dict.fromkeys(COLUMNS, "str") | {"repetition": "int64"}
+    types |= dict.fromkeys(("lower_g", "upper_g", "amplitude_g"), "float64")
+    return pd.DataFrame(named, columns=list(COLUMNS)).astype(types)
 
 
 def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:

@@ -20,8 +20,7 @@ LIMITED = "step_protocol_shaker"
 
 def run(job: Job[Study]) -> Results:
     """Yield the tests in every definition, their means, the shaker's limits, bodies and forces."""
-    from rockfrag.shaketable.definitions import DEFINITION, tests_from_swept
-    from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
+    from rockfrag.shaketable.definitions import DEFINITION, mean_amplitudes, tests_from_swept
     from rockfrag.shaketable.shaker import shaker_table
 
     study = job.study

@@ -160,7 +160,7 @@ class Block:
             )
         if self.depth is not None:
             sides = self.width, self.depth, self.height
-            return systems.box(*sides, self.mass, self.inertia, centre, "block")
+            return systems.box(sides, self.mass, self.inertia, centre, "block")
         ends = Interval(-self.width / 2, self.width / 2)
         return RigidBody(self.mass, self.shape.inertia, centre, ends, self.height, ends, "block")
 

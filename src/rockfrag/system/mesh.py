@@ -25,13 +25,10 @@ from rockfrag.system.body import Polygon, RigidBody
 from rockfrag.units import LARGEST_SIZE, MEAN_DENSITIES
 
 MESH_ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf")
-
-Y_UP = (".glb", ".gltf")
-"""Formats whose specification says that y points up (glTF 2.0, section 3.4)."""
-
+Y_UP = (".glb", ".gltf")  # formats whose specification says so (glTF 2.0, section 3.4)
 FEWEST_CARRY = 3  # points that make a polygon to stand on
-MOST_CORNERS, FLAT = 48, 1e-3
-"""Most corners of a polygon to stand on in space, and distance over its size at which one hardly turns it."""
+MOST_CORNERS = 48  # of a polygon to stand on in space
+FLAT = 1e-3  # distance over the polygon's size at which a corner hardly turns it [-]
 
 Array = NDArray[np.float64]
 

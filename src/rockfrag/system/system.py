@@ -113,10 +113,14 @@ class System:
     @cached_property
     def shapes(self) -> tuple[geometry.Shape, ...]:
         """Each body as it stands by itself, of a planar system, as the kernels know it."""
-        return tuple(
-            planar_shape(body, contact.tilt)
-            for body, contact in zip(self.in_plane().bodies, self.contacts, strict=True)
-        )
+        found = []
+        for body, contact in zip(self.in_plane().bodies, self.contacts, strict=True):
+            base, inertia = body.ends[0], body.inertia
+            assert isinstance(inertia, float | int)
+            x, y = geometry.turned(body.centre[0] - base.middle, body.centre[2], contact.tilt)
+            half = (base.right - base.left) / 2
+            found.append(geometry.Shape(half, body.mass, inertia, x, y))
+        return tuple(found)
 
     @cached_property
     def pile(self) -> geometry.Pile:
@@ -143,14 +147,6 @@ class System:
             low, high = max(face.left, middle - shape.b), min(face.right, middle + shape.b)
             found.append(shape._replace(b=(high - low) / 2, x=shape.x + middle - (low + high) / 2))
         return tuple(found)
-
-
-def planar_shape(body: RigidBody, tilt: float) -> geometry.Shape:
-    """Return a planar body as it stands with a tilt [rad], from the middle of its base."""
-    base, _ = body.ends
-    assert isinstance(body.inertia, float | int)
-    x, y = geometry.turned(body.centre[0] - base.middle, body.centre[2], tilt)
-    return geometry.Shape((base.right - base.left) / 2, body.mass, body.inertia, x, y)
 
 
 def uplift_ratios(system: System) -> tuple[float, ...]:
@@ -199,16 +195,9 @@ def each_contact(name: str, given: Any, count: int, wanted: str = "") -> tuple[A
     return (given.get("ground"), *each)
 
 
-def box(
-    width: float,
-    depth: float,
-    height: float,
-    mass: float,
-    inertia: Any,
-    centre: Vector3,
-    name: str = "",
-) -> RigidBody:
-    """Return a body in space with a rectangular base and face [m], of uniform mass where inertia is None."""
+def box(sides: Vector3, mass: float, inertia: Any, centre: Vector3, name: str = "") -> RigidBody:
+    """Return a body in space of width, depth and height [m], of uniform mass where inertia is None."""
+    width, depth, height = sides
     x, y = width / 2, depth / 2
     outline = Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
     if inertia is None:

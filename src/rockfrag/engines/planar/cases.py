@@ -21,9 +21,7 @@ from rockfrag.system.system import System
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-CLOSING = 1e-4
-"""Parting speed over √(g b) below which a contact stays closed after an impact [-]."""
-
+CLOSING = 1e-4  # parting speed over √(g b) below which a contact stays closed after an impact [-]
 CHUNK = 4  # cases that a thread takes at once
 
 _KINDS = {

@@ -13,19 +13,15 @@ from rockfrag.engines.planar.modes import approach, kinetic_energy, project, set
 from rockfrag.engines.planar.search import mode_number
 from rockfrag.engines.planar.solve import end_of, look_at, solve
 
+# contact events within a sample after which accumulating ones are ended ten times as coarsely, and again
 MOST_CONTACT_EVENTS = 300
-"""Contact events within a sample after which accumulating ones are ended ten times as coarsely, and again."""
-
 MOST_IDLE = 30  # contact events on the spot after which a step is taken without looking for more
+# impulses on the spot after which a step is taken in any case, so that time goes on; fewer lose energy where ever
+# coarser impacts end what repeats
 MOST_JOLTS = 60
-"""Impulses on the spot after which a step is taken in any case, so that time goes on; fewer lose energy where
-ever coarser impacts (``MOST_CONTACT_EVENTS``) end what repeats."""
-
-LARGEST_FAILURE = 1e-3
-"""Margin of a step after contact events on the spot beyond which it is no small one [-]."""
-
-BURST, LEAST_STEP = 100.0, 1e-9
-"""Margin at the end of a step beyond which a shorter one is taken [-], down to this part of a sample."""
+LARGEST_FAILURE = 1e-3  # margin of a step after contact events on the spot that is no small one [-]
+BURST = 100.0  # margin at the end of a step beyond which a shorter one is taken [-] ...
+LEAST_STEP = 1e-9  # ... down to this part of a sample
 
 
 def history_columns(count: int) -> int:

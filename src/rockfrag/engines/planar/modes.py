@@ -3,19 +3,9 @@
 from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.planar.search import mode_number, search, take_number, try_mode
-from rockfrag.engines.planar.solve import end_of, look_at, rate, solve
+from rockfrag.engines.planar.solve import end_of, look_at, rate, solve, standing_bodies
 
 STILL = 1e-11  # fraction of √(g b) below which a speed is rounding
-
-
-@kernel
-def is_full_stick(p, w):
-    """Whether all interfaces are closed at both ends and stick."""
-    stuck = 0
-    for k in range(p.count):
-        if w.closed[k, 0] == 1 and w.closed[k, 1] == 1 and w.slides[k] == 0:
-            stuck += 1
-    return stuck == p.count
 
 
 @kernel
@@ -42,7 +32,7 @@ def project(p, w):
             v[3 * body] -= along * tx - normal * ty
             v[3 * body + 1] -= along * ty + normal * tx
     w.resting = 0
-    if is_full_stick(p, w):
+    if standing_bodies(p, w) == p.count:
         moving = 0.0
         for d in range(3 * p.count):
             moving = max(moving, abs(v[d]))
@@ -73,28 +63,20 @@ def approach(p, w, k, end):
 
 
 @kernel
-def _all_touch(p, w, closed):
-    """Whether all of some closed ends still touch."""
-    for k in range(p.count):
-        for end in range(2):
-            if closed[k, end] == 1 and w.touching[k, end] == 0:
-                return False
-    return True
-
-
-@kernel
 def settle(p, w, ah, av, exclude):
     """Find the mode in which touching ends go on, not the old one on ``exclude``; False if there is none."""
+    all_touch = True
     for k in range(p.count):
         w.limit[k] = p.static[k]
         for end in range(2):
             if w.touching[k, end] == 1 and approach(p, w, k, end) >= STILL * p.speed:
                 w.touching[k, end] = 0
+            all_touch = all_touch and w.old_closed[k, end] <= w.touching[k, end]
         speed = slip_speed(p, w, w.v, k, True)
         w.moves[k] = 1 if speed > 0.0 else (-1 if speed < 0.0 else 0)
     old = mode_number(p, w.old_closed, w.old_slides)
     wrong = search(p, w, ah, av, False, p.weight, p.g, old if exclude else -1)
-    if exclude and wrong > 1e-7 and _all_touch(p, w, w.old_closed):
+    if exclude and wrong > 1e-7 and all_touch:
         # nothing else is better: the old mode failed by rounding only
         found = mode_number(p, w.closed, w.slides)
         take_number(p, w, old)

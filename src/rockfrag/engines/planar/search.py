@@ -10,14 +10,12 @@ import math
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.planar.solve import bias, eliminate, end_of, fill_row
 
+# violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
+# slack of contact events, so that a mode that has just failed is not
 CONSISTENT = 2e-13
-"""Violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
-slack of contact events, so that a mode that has just failed is not."""
-UNSOLVED = 1e-6
-"""Relative motion of a closed end beyond which the equations of a mode were singular but for rounding."""
+UNSOLVED = 1e-6  # relative motion of a closed end where a mode was singular but for rounding [-]
 ROUNDING = 1e-10  # violation up to which a mode is taken where none is consistent
-LEFT, RIGHT, SLIP = 0, 1, 2
-"""What changes between modes: whether an end is closed, or how an interface slides."""
+SLIP = 2  # what changes between modes: whether the end 0 or 1 is closed, or how an interface slides
 
 
 @kernel
@@ -125,17 +123,14 @@ def _list_unknowns(p, w):
 
 
 @kernel
-def _row_of(w, i):
-    """Row of the condition that an unknown force keeps."""
-    return w.along[i] if w.along[i] >= 0 else 4 * (-1 - w.along[i]) + 2 * w.drive[-1 - w.along[i]]
-
-
-@kernel
 def _solve_mode(p, w):
     """Solve for the forces of the mode in ``w``, into ``w.right``; their number, -1 if there are none."""
     m = _list_unknowns(p, w)
     for i in range(m):
-        row = _row_of(w, i)
+        # row of the condition that the force keeps
+        row = w.along[i]
+        if row < 0:
+            row = 4 * (-1 - w.along[i]) + 2 * w.drive[-1 - w.along[i]]
         k = row // 4
         high = w.upto[k + 2] if k + 2 < p.count else m
         begin = w.upto[k - 2] if k > 1 else 0

@@ -18,16 +18,6 @@ def look_at(p, w, q):
 
 
 @inlined_kernel
-def face_axis(p, w, k):
-    """Tangent of the face below interface k (its normal is (-ty, tx))."""
-    if k == 0:
-        return 1.0, 0.0
-    c = w.cos[k - 1] * p.tilt_cos[k] - w.sin[k - 1] * p.tilt_sin[k]
-    s = w.sin[k - 1] * p.tilt_cos[k] + w.cos[k - 1] * p.tilt_sin[k]
-    return c, -s
-
-
-@inlined_kernel
 def corner_of(p, w, q, k, end):
     """Corner (x, y) of the base of body k."""
     cx, cy = p.corner[k, end, 0], p.corner[k, end, 1]
@@ -45,7 +35,9 @@ def end_of(p, w, q, k, end, kind):
     x, y = corner_of(p, w, q, k, end)
     if k == 0:
         return x, y, 1.0, 0.0, y, -math.inf, 1
-    tx, ty = face_axis(p, w, k)
+    # tangent of the face below, whose normal is (-ty, tx)
+    tx = w.cos[k - 1] * p.tilt_cos[k] - w.sin[k - 1] * p.tilt_sin[k]
+    ty = -(w.sin[k - 1] * p.tilt_cos[k] + w.cos[k - 1] * p.tilt_sin[k])
     fx, fy = p.face[k, 0], p.face[k, 1]
     ox = q[3 * k - 3] + fx * w.cos[k - 1] + fy * w.sin[k - 1]
     oy = q[3 * k - 2] - fx * w.sin[k - 1] + fy * w.cos[k - 1]
@@ -119,7 +111,7 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     """
     if p.count == 1 and not impact:
         return _solve_lone(p, w, q, v, ah, av)
-    standing = 0 if impact else _standing(p, w)
+    standing = 0 if impact else standing_bodies(p, w)
     if p.count == 2:
         flat = w.closed[1, 0] == 1 and w.closed[1, 1] == 1
         if standing > 0 and not (flat and w.slides[1] == 0):
@@ -142,7 +134,7 @@ def accelerate(p, w, q, v, ah, av):
 
 
 @kernel
-def _standing(p, w):
+def standing_bodies(p, w):
     """Number of bodies, from the ground up, that stand on what stands."""
     for k in range(p.count):
         if w.closed[k, 0] == 0 or w.closed[k, 1] == 0 or w.slides[k] != 0:

@@ -7,19 +7,16 @@ from rockfrag.engines.kernels.dormand_prince import INSTANTS, WEIGHTS
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.planar.solve import AT_EDGE, accelerate, end_of, look_at, rate, solve
 
+# slack before a contact event is seen, so that what has just begun is not taken for its end [-]: forces over
+# weight; speeds over √(g b) and lengths over b
 SLACK, TOUCH = 1e-12, 1e-13
-"""Slack before a contact event is seen, so that what has just begun is not taken for its end: forces over weight;
-speeds over √(g b) and lengths over b [-]."""
-
 ERROR = 1e-7  # error of a step above which it is taken again, half as long [-]
 SHORTEST = 1e-7  # fraction of a sampling interval below which a step is not made shorter
+# fraction of the half width by which a corner that comes in under an edge hangs beside the face and not over it:
+# its base is at a right angle to the face, and the body has fallen
 HANGING = 1e-6
-"""Fraction of the half width by which a corner that comes in under an edge hangs beside the face and not over it:
-its base is at a right angle to the face, and the body has fallen."""
-
 WIDTH = 1e-12  # fraction of a step to which the time of a contact event is found
-GAP, EDGE = 0, 2
-"""Channels of an interface: its two ends (gap, or pressure of a closed end), their edges, ..."""
+GAP, EDGE = 0, 2  # channels of an interface: its two ends (gap or pressure), their edges, ...
 FRICTION, FALL = 4, 5  # ... stick or slip, and the fall of the body above it
 
 

@@ -68,24 +68,16 @@ def arm(body, up, i):
 
 
 @kernel
-def rim_drift(body, up, omega):
-    """Velocity of the lowest point along the rim, in the body."""
-    u, sine = rim_direction(up)
-    turn = cross(up, omega)  # rate of change of ``up`` in the body
-    along = turn[0] * u[0] + turn[1] * u[1]
-    return (
-        -body.rim * (turn[0] - along * u[0]) / sine,
-        -body.rim * (turn[1] - along * u[1]) / sine,
-        0.0,
-    )
-
-
-@kernel
 def bias(body, up, omega, p, i):
     """Acceleration of contact i that does not come from accelerations, ω × dρ/dt, in the body."""
     moved = cross(omega, p)
     if i == rim_contact(body):
-        moved = plus(moved, rim_drift(body, up, omega))
+        # velocity of the lowest point along the rim, by the rate of change of ``up`` in the body
+        u, sine = rim_direction(up)
+        turn = cross(up, omega)
+        along = turn[0] * u[0] + turn[1] * u[1]
+        x, z = turn[0] - along * u[0], turn[1] - along * u[1]
+        moved = plus(moved, (-body.rim * x / sine, -body.rim * z / sine, 0.0))
     return cross(omega, moved)
 
 

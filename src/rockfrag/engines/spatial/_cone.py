@@ -19,19 +19,11 @@ from rockfrag.engines.spatial._forces import MOST, in_set, largest_compliance, s
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
 """Sets of four contacts as bits, the smallest first."""
 
-SOFT = 1e-8
-"""Part of the largest compliance added while solving, and removed by repetition [-]."""
-
-CLOSE_ENOUGH = 1e-13
-"""Residual, relative to what is to be stopped, at which Newton's method ends [-]."""
-
+SOFT = 1e-8  # part of the largest compliance added while solving, and removed by repetition [-]
+CLOSE_ENOUGH = 1e-13  # residual over what is to be stopped at which Newton's method ends [-]
 NEWTON_STEPS = 60
-
-HALVINGS = 12
-"""Times that a step of Newton's method is halved at most."""
-
-MOST_STUCK = 4
-"""Steps of Newton's method that may leave the residual as large as it was; then there is no solution nearby."""
+HALVINGS = 12  # times that a step of Newton's method is halved at most
+MOST_STUCK = 4  # steps that may leave the residual as it was; then there is no solution nearby
 
 RAYS = np.array(
     [(4.0, y) for y in range(-4, 4)]
@@ -51,25 +43,6 @@ def product(s, n, x, out):
         for j in range(3 * n):
             value += s.delassus[i, j] * x[j]
         out[i] = value
-
-
-@kernel
-def fraction_between(s, first, second, edge):
-    """Share the impulse along the edge between two sticking contacts so that both cones hold, if they can."""
-    p, along = s.impulse, 0.0
-    room_for = (0.0, 0.0)
-    for i in (first, second):
-        part = p[3 * i] * edge[0] + p[3 * i + 1] * edge[1]
-        along += part
-        p[3 * i] -= part * edge[0]
-        p[3 * i + 1] -= part * edge[1]
-        free = (s.friction[i] * p[3 * i + 2]) ** 2 - p[3 * i] ** 2 - p[3 * i + 1] ** 2
-        room_for = (room_for[1], math.sqrt(max(free, 0.0)))
-    whole = room_for[0] + room_for[1]
-    part = 0.5 if whole == 0.0 else room_for[0] / whole
-    for k in range(2):
-        p[3 * first + k] += part * along * edge[k]
-        p[3 * second + k] += (1.0 - part) * along * edge[k]
 
 
 @kernel
@@ -249,19 +222,6 @@ def others_open(s, n, mask, small):
 
 
 @kernel
-def clip_to_cones(s, n, mask):
-    """Shorten shears to the cones, from which Newton's method then begins."""
-    for i in range(n):
-        if in_set(mask, i) and not s.given[i]:
-            a = 3 * i
-            limit = s.friction[i] * max(s.impulse[a + 2], 0.0)
-            size = norm(s.impulse[a], s.impulse[a + 1])
-            if size > limit:
-                s.impulse[a] *= limit / size
-                s.impulse[a + 1] *= limit / size
-
-
-@kernel
 def bits(mask):
     """Return the number of contacts in a set."""
     return (mask & 1) + ((mask >> 1) & 1) + ((mask >> 2) & 1) + ((mask >> 3) & 1)
@@ -315,7 +275,15 @@ def slide_set(s, n, mask, scale, largest):
         )
     if mask == 0 or not stick_together(s, n, mask, SOFT * largest):
         return False
-    clip_to_cones(s, n, mask)
+    # shears are shortened to the cones, from which Newton's method then begins
+    for i in range(n):
+        if in_set(mask, i) and not s.given[i]:
+            a = 3 * i
+            limit = s.friction[i] * max(s.impulse[a + 2], 0.0)
+            size = norm(s.impulse[a], s.impulse[a + 1])
+            if size > limit:
+                s.impulse[a] *= limit / size
+                s.impulse[a + 1] *= limit / size
     found = newton(s, n, mask, pace, CLOSE_ENOUGH * scale)
     for k in range(4):
         if found and cones_hold(s, n, mask, small / largest):
@@ -400,7 +368,7 @@ def direction_between(s, i, p, q, u, v, before, after):
 
 @kernel
 def fraction_in_set(s, n, mask):
-    """Share along the edge between the two contacts of a set, if both may stick."""
+    """Share along the edge between the two contacts of a set so that both cones hold, if they can and may."""
     first, second = -1, -1
     for i in range(n):
         if in_set(mask, i):
@@ -410,7 +378,21 @@ def fraction_in_set(s, n, mask):
                 first = i
             else:
                 second = i
-    fraction_between(s, first, second, (s.edge[first, second, 0], s.edge[first, second, 1]))
+    edge = (s.edge[first, second, 0], s.edge[first, second, 1])
+    p, along = s.impulse, 0.0
+    room_for = (0.0, 0.0)
+    for i in (first, second):
+        part = p[3 * i] * edge[0] + p[3 * i + 1] * edge[1]
+        along += part
+        p[3 * i] -= part * edge[0]
+        p[3 * i + 1] -= part * edge[1]
+        free = (s.friction[i] * p[3 * i + 2]) ** 2 - p[3 * i] ** 2 - p[3 * i + 1] ** 2
+        room_for = (room_for[1], math.sqrt(max(free, 0.0)))
+    whole = room_for[0] + room_for[1]
+    part = 0.5 if whole == 0.0 else room_for[0] / whole
+    for k in range(2):
+        p[3 * first + k] += part * along * edge[k]
+        p[3 * second + k] += (1.0 - part) * along * edge[k]
 
 
 @kernel

@@ -8,8 +8,7 @@ from typing import Any
 
 from rockfrag.elementary import hypot, sin_cos
 
-FEET = 32
-"""Points of a rim of which four carry a round body that slides flat."""
+FEET = 32  # points of a rim of which four carry a round body that slides flat
 
 
 def fill_body(body: Any, g: float) -> bool:

@@ -22,19 +22,14 @@ from rockfrag.engines.spatial._algebra import (
     to_world,
 )
 
-MOST = 4
-"""Most contacts that carry at once."""
-
+MOST = 4  # contacts that carry at once
 STICKS, SLIDES = 0, 1
 FLIGHT, PIVOT, HINGE, GENERAL, REST, SLIDER = 0, 1, 2, 3, 4, 5
-
-SLIP_FLOOR = 1e-4
-"""Slip velocity below which a point does not slip yet, or no longer, and its direction is the one noted [m/s]."""
-
+SLIP_FLOOR = (
+    1e-4  # slip velocity below which a point slips, if at all, in the direction noted [m/s]
+)
+# part of the largest compliance that is added to all, so that redundant forces are the least ones [-]
 SOFTNESS = 1e-9
-"""Part of the largest compliance that is added to all, so that redundant forces are the least ones [-]."""
-
-
 STAGES = 7
 
 CASE = np.dtype(

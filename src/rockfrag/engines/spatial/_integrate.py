@@ -11,37 +11,19 @@ from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _step as step
 
-RIM_START = 1e-7
-"""Tilt with which a round base begins to roll: at none its contact has no direction [rad]."""
-
-FLAT_PASS = 1e-8
-"""Tilt below which a round base passes through flat in closed form [rad]."""
-
-SHORTEST = 1e-11
-"""Shortest step [s]."""
-
-BRIEF = 1e-7
-"""Time within which rates do not change: its square times an acceleration is less than TOUCH [s]."""
-
-MANY = 40
-"""Contact events in one interval after which the velocity below which contacts stay closed is doubled [-]."""
-
-HURRY = 1000
-"""Steps in one interval after which errors of COARSE are allowed to what slides: slip that hardly begins is
-stiff.  What rolls keeps its tolerance, as it may pass near flat, where such errors feed energy [-]."""
-
+RIM_START = 1e-7  # tilt with which a round base begins to roll: at none it has no direction [rad]
+FLAT_PASS = 1e-8  # tilt below which a round base passes through flat in closed form [rad]
+SHORTEST = 1e-11  # step [s]
+BRIEF = 1e-7  # time in which rates stay: its square times an acceleration is less than TOUCH [s]
+MANY = 40  # contact events in one interval after which the velocity that closes contacts is doubled
+# steps in one interval after which errors of COARSE [m, m/s, rad/s] are allowed to what slides: slip that hardly
+# begins is stiff.  What rolls keeps its tolerance, as it may pass near flat, where such errors feed energy
+HURRY, COARSE = 1000, 1e-6
+# steps in one interval after which a body that is next to flat is laid flat; after twice as many more the interval
+# ends.  Both are counted as paradoxes
 GIVE_UP = 2000
-"""Steps in one interval after which a body that is next to flat is laid flat; after twice as many more the
-interval ends.  Both are counted as paradoxes [-]."""
-
-PATIENCE = 30
-"""Times that this may happen before an analysis ends as one that stood [-]."""
-
-MOST_STEPS = 400_000
-"""Steps after which an analysis ends as one that stood, which is counted as a paradox [-]."""
-
-COARSE = 1e-6
-"""Error of a step that is allowed then [m, m/s, rad/s]."""
+PATIENCE = 30  # times that this may happen before an analysis ends as one that stood
+MOST_STEPS = 400_000  # after which an analysis ends as one that stood, counted as a paradox
 
 OUTCOME = 16
 (
@@ -256,13 +238,6 @@ def guess_landing(body, h, y, below, s):
 
 
 @kernel
-def go_on(s, h):
-    """Let the state at the end of a step go on for a moment."""
-    for i in range(solid.SIZE):
-        s.new[i] += h * s.slopes[forces.STAGES - 1, i]
-
-
-@kernel
 def locate(body, tau, h, y, s):
     """Find the first instant in a step at which a margin vanishes, with its state in s.new, and what happens."""
     below, what = step.margin(body, s.new, s)
@@ -288,7 +263,8 @@ def locate(body, tau, h, y, s):
             # a last step of Newton's, so short that the rates at its beginning suffice
             rest = -value / rate
             if abs(rest) < BRIEF and low < at + rest < high:
-                go_on(s, rest)
+                for i in range(solid.SIZE):
+                    s.new[i] += rest * s.slopes[forces.STAGES - 1, i]
                 return at + rest, what
         bracket = narrowed(bracket, at, value)
         if abs(value) < 1e-12:
@@ -395,26 +371,21 @@ def happen(body, what, tau, y, cut, stuck, s):
 
 
 @kernel
-def critical_tangent(body, up):
-    """Tangent of the tilt at which the centre of mass is over the base's outline in the direction of the tilt."""
-    u, _ = solid.rim_direction(up)
-    if body.rim > 0:
-        reach = body.rim + body.centre[0] * u[0] + body.centre[1] * u[1]
-    else:
-        reach = 0.0
-        for i in range(body.count):
-            reach = max(reach, body.points[i, 0] * u[0] + body.points[i, 1] * u[1])
-    return reach / body.height
-
-
-@kernel
 def note_peaks(body, y, start, out):
     """Keep the largest tilt, speed and walk; return the cosine of the tilt."""
     rows = algebra.rotation(y)
     up = rows[2]
     sine = algebra.norm(up[0], up[1])
     if sine > 1e-9:
-        critical = critical_tangent(body, up)
+        # tangent of the tilt at which the centre of mass is over the base's outline in the direction of the tilt
+        u, _ = solid.rim_direction(up)
+        if body.rim > 0:
+            reach = body.rim + body.centre[0] * u[0] + body.centre[1] * u[1]
+        else:
+            reach = 0.0
+            for i in range(body.count):
+                reach = max(reach, body.points[i, 0] * u[0] + body.points[i, 1] * u[1])
+        critical = reach / body.height
         # x / (1 + x²) < arc tangent of x < x, so most states need no arc tangent
         if sine * (1 + critical * critical) > out[PEAK_RATIO] * critical * up[2]:
             tilt = atan2(sine, up[2])
@@ -486,12 +457,6 @@ def record(history, k, y, out, s):
 
 
 @kernel
-def cannot_fall(body, y, s, g):
-    """Whether, on a ground at rest, the body stands or has too little energy left to fall."""
-    return s.rests == 1 or solid.energy(body, y, g) < body.barrier
-
-
-@kernel
 def small_rim(body, y, tau, cut, s):
     """Let a round body lie flat whose wobble is below the cut-off while the ground would carry it flat."""
     pull = forces.pull_at(s.field, tau)
@@ -499,7 +464,10 @@ def small_rim(body, y, tau, cut, s):
     if s.count != 1:
         return
     small = cut * body.barrier
-    if wobble_energy(body, y, rows, s.field[6]) >= small:
+    # of the motion that tilts the body, what it would lose by lying down [J/kg]
+    tilting = 0.5 * (body.inertia[0, 0] * y[10] ** 2 + body.inertia[1, 1] * y[11] ** 2)
+    lift = s.field[6] * body.rim * algebra.norm(rows[2][0], rows[2][1])
+    if tilting + 0.5 * y[9] ** 2 + lift >= small:
         return
     if modes.rest_margin(body, y, rows, pull) >= 0 and solid.energy(body, y, s.field[6]) < small:
         modes.come_to_rest(body, y, s)
@@ -508,13 +476,6 @@ def small_rim(body, y, tau, cut, s):
         modes.lay_flat(body, y)
         if not modes.choose_mode(body, tau, y, s):
             modes.jam(body, y, s)
-
-
-@kernel
-def wobble_energy(body, y, rows, g):
-    """Energy of the motion that tilts a body, which is what it would lose by lying down [J/kg]."""
-    tilting = 0.5 * (body.inertia[0, 0] * y[10] ** 2 + body.inertia[1, 1] * y[11] ** 2)
-    return tilting + 0.5 * y[9] ** 2 + g * body.rim * algebra.norm(rows[2][0], rows[2][1])
 
 
 @kernel
@@ -622,7 +583,8 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     while k <= last + extra:
         set_field(s.field, acceleration, k, scale, dt, g)
         record(history, k, y, out, s)
-        if k > last and cannot_fall(body, y, s, g):
+        if k > last and (s.rests == 1 or solid.energy(body, y, g) < body.barrier):
+            # on a ground at rest it stands, or has too little energy left to fall
             break
         tau = 0.0
         many, seen = 0, out[CONTACT_EVENTS]

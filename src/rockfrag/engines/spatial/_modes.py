@@ -9,22 +9,13 @@ from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial._cone import solve_cones
 
-TOUCH = 1e-10
-"""Gap below which a point touches [m]."""
-
-CLOSE = 1e-6
-"""Velocity after an impact below which a point that touches stays closed, unless
-there are too many [m/s]."""
-
-AT_REST = forces.SLIP_FLOOR
-"""Velocity below which points that touch do not slip when the mode is chosen [m/s]."""
-
-SLOW_SLIP = 30 * AT_REST
-"""The same where no mode was found otherwise: of two points one may slip hardly and the other hardly not [m/s]."""
-
-LEAVES = 1e-8
-"""Velocity above which points that touch leave when the mode is chosen [m/s]."""
-
+TOUCH = 1e-10  # gap below which a point touches [m]
+CLOSE = (
+    1e-6  # velocity after an impact below which a point that touches stays closed at first [m/s]
+)
+AT_REST = forces.SLIP_FLOOR  # the velocity that points slip above when the mode is chosen [m/s]
+SLOW_SLIP = 30 * AT_REST  # the same where no mode was found otherwise: one may hardly slip [m/s]
+LEAVES = 1e-8  # velocity above which points that touch leave when the mode is chosen [m/s]
 LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, NOTHING = 1, 2, 3, 4, 0
 
 COUNTERS = 8
@@ -239,18 +230,12 @@ def slide_flat(body, y, rows, pull, s):
 @kernel
 def edge_margin(body, y, rows, pull, i, j):
     """Margin of rest against tipping over the edge from point i to the next point j that touches."""
-    normal, reach = edge_normal(body, y, rows, i, j)
-    return -(y[2] * (normal[0] * pull[0] + normal[1] * pull[1]) + reach * pull[2]) / y[2]
-
-
-@kernel
-def edge_normal(body, y, rows, i, j):
-    """Outward normal of an edge in the plan, and its distance from the centre of mass."""
     p = solid.position_of_base(y, rows, solid.arm(body, rows[2], i))
     q = solid.position_of_base(y, rows, solid.arm(body, rows[2], j))
     length = algebra.norm(q[0] - p[0], q[1] - p[1])
     normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
-    return normal, normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
+    reach = normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
+    return -(y[2] * (normal[0] * pull[0] + normal[1] * pull[1]) + reach * pull[2]) / y[2]
 
 
 @kernel

@@ -7,14 +7,9 @@ from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._algebra import norm, normalise, rotation
 from rockfrag.engines.spatial._forces import SLIDES, STAGES, rates
 
-BACKWARD = 1e-8
-"""Slip against its own direction that is rounding [m/s]."""
-
-NEAR_FLAT = 1e-6
-"""Tilt below which a rim that rolls goes on to roll [rad]."""
-
-LEAST_FORCE = 1e-9
-"""Force a contact may pull, or shear beyond its cone, before that is seen, over the weight [-]."""
+BACKWARD = 1e-8  # slip against its own direction that is rounding [m/s]
+NEAR_FLAT = 1e-6  # tilt below which a rim that rolls goes on to roll [rad]
+LEAST_FORCE = 1e-9  # over the weight that a contact may pull, or shear beyond its cone, unseen [-]
 
 
 @kernel
@@ -42,7 +37,11 @@ def attempt(body, tau, h, y, s):
 def error_of(body, h, y, s):
     """Largest component of the difference to the step of order 4, over its size."""
     k = s.slopes
-    worst, weight = 0.0, attitude_weight(body, y)
+    worst, weight = 0.0, 1.0
+    if body.rim != 0.0:
+        # errors of the attitude turn the contact of a rim by one over the tilt
+        up = rotation(y)[2]
+        weight = min(1.0, 1e3 * norm(up[0], up[1]) + 1e-4)
     for i in range(13):
         total = (
             71 / 57600 * k[0, i] - 71 / 16695 * k[2, i] + 71 / 1920 * k[3, i]
@@ -51,15 +50,6 @@ def error_of(body, h, y, s):
         scale = weight if 3 <= i < 7 else 1.0 + abs(y[i])
         worst = max(worst, abs(h * total) / scale)
     return worst
-
-
-@kernel
-def attitude_weight(body, y):
-    """Return what errors of the attitude count over: they turn the contact of a rim by one over the tilt."""
-    if body.rim == 0.0:
-        return 1.0
-    up = rotation(y)[2]
-    return min(1.0, 1e3 * norm(up[0], up[1]) + 1e-4)
 
 
 @kernel

@@ -16,13 +16,12 @@ from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 
+# size of the perturbation that tells how robust an outcome is: of vertices over the width of the base, of the
+# direction in radians [-].  Two vertices that land at once and two that land one after the other go on
+# differently, however close in time: an ideal box has outcomes that no real one has
 PERTURBATION = 1e-6
-"""Size of the perturbation that tells how robust an outcome is: of vertices over the width of the base, of the
-direction in radians [-].  Two vertices that land at once and two that land one after the other go on differently,
-however close in time: an ideal box has outcomes that no real one has."""
-
+# coefficient of friction of a contact without any: a body in space that only sticks is no closed model [-]
 NEVER_SLIDES = 20.0
-"""Coefficient of friction of a contact without any: a body in space that only sticks is no closed model [-]."""
 
 
 def kernel_body(system: System, g: float = GRAVITY) -> np.void:

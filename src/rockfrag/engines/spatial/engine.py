@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
-from rockfrag.engines.spatial.body import kernel_body, later_peaks, perturbed
+from rockfrag.engines.spatial.body import kernel_body, later_peaks, perturbed, standing
 from rockfrag.engines.spatial.outcome import AFTER, SpatialOutcome, history_table, run_case
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
@@ -83,13 +83,11 @@ class SpatialEngine:
                 rng = np.random.default_rng([seed, i, j])
                 system, turned = perturbed(cases.systems[i], spread, rng)
                 body = kernel_body(system, g)
-            ground = motion.accelerations
+            ground, start = motion.accelerations, standing(body, turned)
             later = later_peaks(ground)
-            for k, scale in enumerate(cases.scales[j]):
-                found, _ = run_case(
-                    body, ground, motion.dt, float(scale), g=g, turned=turned, peaks=later
-                )
-                least_gravity_ratio = 1.0 + float(scale) * float(ground[:, 2].min()) / g
+            for k, scale in enumerate(cases.scales[j].tolist()):
+                found, _ = run_case(body, ground, motion.dt, scale, g=g, peaks=later, start=start)
+                least_gravity_ratio = 1.0 + scale * float(ground[:, 2].min()) / g
                 _write(result, (i, j, k), found, least_gravity_ratio)
 
         with ThreadPoolExecutor(cases.threads) as pool:

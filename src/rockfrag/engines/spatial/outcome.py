@@ -17,15 +17,9 @@ from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 1e-9
-"""Largest error of a step, in position [m], attitude [-] and velocities [m/s, rad/s]."""
-
-CUT_OFF = 1e-6
-"""Energy over rest, as a part of what an overturning takes, below which a body comes to rest [-]."""
-
-AFTER = 30.0
-"""Time after the motion at which an analysis ends at the latest [s]."""
-
+TOLERANCE = 1e-9  # largest error of a step: position [m], attitude [-], velocities [m/s, rad/s]
+CUT_OFF = 1e-6  # energy over rest, as a part of what a fall takes, at which a body rests [-]
+AFTER = 30.0  # time after the motion at which an analysis ends at the latest [s]
 RESTS = 99
 
 
@@ -61,7 +55,6 @@ def run_case(
     scale: float = 1.0,
     *,
     g: float = GRAVITY,
-    turned: float = 0.0,
     peaks: Array | None = None,
     samples: int = 0,
     tolerance: float = TOLERANCE,
@@ -69,12 +62,11 @@ def run_case(
 ) -> tuple[SpatialOutcome, Array]:
     """Integrate one analysis; the outcome, and the history, shape (m, COLUMNS), of at most so many samples.
 
-    ``acceleration`` is the ground's (x, y, up), shape (n, 3) [m/s²], ``turned`` the turn about the vertical in
-    which the body stands [rad], ``peaks`` those of :func:`later_peaks`, and ``start`` a state to begin with
-    instead, shape (SIZE,).
+    ``acceleration`` is the ground's (x, y, up), shape (n, 3) [m/s²], ``peaks`` those of :func:`later_peaks`, and
+    ``start`` a state to begin with, shape (SIZE,).
     """
     acceleration = np.ascontiguousarray(acceleration)
-    y = standing(body, turned) if start is None else start.copy()
+    y = standing(body) if start is None else start.copy()
     history = np.full((samples, kernel.COLUMNS), math.nan)
     out = np.zeros(kernel.OUTCOME)
     case: Any = np.zeros(1, CASE)[0]

@@ -19,10 +19,6 @@ _DISTANT = re.compile(r"(?P<north>-?\d+\.\d+)\s*N\s*-?\s*(?P<east>-?\d+\.\d+)\s*
 _MAX_HEADER = 40
 
 
-def _recognise(lines: list[str], name: str) -> bool:
-    return bool(_FIRST.match(lines[0])) and any(_TITLES.match(line) for line in lines[1:40])
-
-
 def _parse(text: TextFile) -> list[form.Channel]:
     header = text.lines(0, _MAX_HEADER)
     titles = next((i for i, line in enumerate(header) if _TITLES.match(line)), -1)
@@ -34,10 +30,10 @@ def _parse(text: TextFile) -> list[form.Channel]:
     components = re.findall(r"[NSEWUD]\s*-?\s*[NSEWUD]", header[titles])
     values = text.counted(titles + 1, None, count * len(components))
     table = values[: values.size // len(components) * len(components)].reshape(-1, len(components))
-    time = facts.get("record time", "")
+    time = facts["record time"]
     # only times in GMT are known to be UTC
     known = re.search(r"\((?:GMT|UTC)\)", time, re.I)
-    place = _DISTANT.search(facts.get("station coordinates", ""))
+    place = _DISTANT.search(facts["station coordinates"])
     shared = form.Channel(
         npts=count,
         dt=dt,
@@ -45,14 +41,14 @@ def _parse(text: TextFile) -> list[form.Channel]:
         unit=canonical_unit(form.stated(_UNIT, header)),
         start_time=time_of(time.split("(")[0].strip()) if known else None,
         network="TK",
-        station=facts.get("station id", ""),
+        station=facts["station id"],
         details={
-            "station_name": facts.get("place", ""),
-            "earthquake": facts.get("earthquake date", ""),
-            "magnitude": form.leading_number(facts.get("earthquake magnitude", "")),
+            "station_name": facts["place"],
+            "earthquake": facts["earthquake date"],
+            "magnitude": form.leading_number(facts["earthquake magnitude"]),
             "latitude": float(place["north"]) if place else None,
             "longitude": float(place["east"]) if place else None,
-            "instrument": facts.get("recorder type", ""),
+            "instrument": facts["recorder type"],
         },
     )
     return form.in_columns(shared, table, [name.replace(" ", "") for name in components])
@@ -60,7 +56,7 @@ def _parse(text: TextFile) -> list[form.Channel]:
 
 def _number_of(text: TextFile, facts: dict[str, str], key: str) -> float:
     """Return the number of a header's key, a positive one."""
-    words = facts.get(key, "")
+    words = facts[key]
     match = re.match(r"\d+(?:\.\d*)?(?:[Ee][+-]?\d{1,3})?|\.\d+", words)
     value = float(match[0]) if match else 0.0
     if not 0 < value < 1e12:
@@ -69,4 +65,6 @@ def _number_of(text: TextFile, facts: dict[str, str], key: str) -> float:
     return value
 
 
-FORMAT = form.Format("AFAD", _recognise, _parse, encoding="iso8859-9")
+FORMAT = form.Format(
+    "AFAD", form.headed(_FIRST, _TITLES, within=_MAX_HEADER), _parse, encoding="iso8859-9"
+)

@@ -39,8 +39,20 @@ def _recognise(lines: list[str], name: str) -> bool:
 def _parse(text: TextFile) -> Iterator[Channel]:
     for line, following in text.parts(_RATE_LINE):
         stop = following if following == len(text) else following - _ABOVE
-        values = _section(text, line, stop)
-        yield _described(values, text.lines(max(0, line - _ABOVE), line))
+        values, words = _section(text, line, stop), text.lines(max(0, line - _ABOVE), line)
+        start, component = None, ""
+        for match in filter(None, map(_TIME.search, words)):
+            year, day, hour, minute = (int(part) for part in match.groups()[:4])
+            component = f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
+            start = time_at(float(match[5]), year=year, julday=day, hour=hour, minute=minute)
+        earthquake = next((line.strip() for line in words if "EARTHQUAKE" in line.upper()), "")
+        yield replace(
+            values,
+            start_time=start,
+            station=words[0].strip() if words else "",
+            component=component,
+            details={"earthquake": earthquake},
+        )
 
 
 def _section(text: TextFile, line: int, stop: int) -> Channel:
@@ -58,17 +70,6 @@ def _section(text: TextFile, line: int, stop: int) -> Channel:
     quantity = _TYPES[rate["type"].upper()]
     dt = text.interval(1 / float(rate["rate"]) if float(rate["rate"]) else 0.0, line)
     return section(text, line + 1, stop, int(size["count"]), dt, unit, _WIDTH, quantity)
-
-
-def _described(values: Channel, words: list[str]) -> Channel:
-    start, component = None, ""
-    for match in filter(None, map(_TIME.search, words)):
-        year, day, hour, minute = (int(part) for part in match.groups()[:4])
-        component = f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
-        start = time_at(float(match[5]), year=year, julday=day, hour=hour, minute=minute)
-    earthquake = next((line.strip() for line in words if "EARTHQUAKE" in line.upper()), "")
-    station, details = words[0].strip() if words else "", {"earthquake": earthquake}
-    return replace(values, start_time=start, station=station, component=component, details=details)
 
 
 FORMAT = Format("AGRAM", _recognise, _parse)

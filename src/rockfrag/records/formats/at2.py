@@ -49,10 +49,22 @@ _COMPONENT = re.compile(
 )
 
 
+def _size(line: str) -> tuple[str, str, float] | None:
+    """Return the words for number of samples and interval and the seconds of its unit, if a line has both."""
+    pair = _TRAILING.match(line) or _LEADING.search(line)
+    if pair:
+        step_first = pair["names"].upper().startswith("DT")
+        names = ("second", "first") if step_first else ("first", "second")
+        return pair[names[0]], pair[names[1]], 1.0
+    count, step = _COUNT.search(line), _STEP.search(line)
+    if count is None or step is None:
+        return None
+    return count["npts"], step["dt"], 1e-3 if step["milliseconds"] else 1.0
+
+
 def _size_line(lines: list[str]) -> int:
     """Return the line that has the number of points and the interval, or -1."""
-    sizes = (_named_pair(x) or (_COUNT.search(x) and _STEP.search(x)) for x in lines[:_MAX_HEADER])
-    return next((number for number, size in enumerate(sizes) if size), -1)
+    return next((i for i, line in enumerate(lines[:_MAX_HEADER]) if _size(line)), -1)
 
 
 def _recognise(lines: list[str], name: str) -> bool:
@@ -65,31 +77,6 @@ def _recognise(lines: list[str], name: str) -> bool:
         or _quantity_and_unit(lines[: size + 1]) != ("", "")
         or name.upper().removesuffix(".GZ").endswith((".AT2", ".VT2", ".DT2"))
     )
-
-
-def _named_pair(line: str) -> re.Match[str] | None:
-    """Match two numbers named together, before or after them: ``4000 .01 NPTS, DT``."""
-    return _TRAILING.match(line) or _LEADING.search(line)
-
-
-def _size(line: str) -> tuple[int, float]:
-    """Return the number of samples and the interval [s] that the size line states."""
-    pair = _named_pair(line)
-    factor = 1.0
-    if pair:
-        values = [pair["first"], pair["second"]]
-        if pair["names"].upper().startswith("DT"):
-            values.reverse()
-        npts, dt = values
-    else:
-        count, step = _COUNT.search(line), _STEP.search(line)
-        assert count is not None and step is not None
-        npts, dt = count["npts"], step["dt"]
-        factor = 1e-3 if step["milliseconds"] else 1.0
-    points, interval = (float(word.upper().replace("D", "E")) for word in (npts, dt))
-    if points != int(points) or points < 1:
-        raise ValueError(f"NPTS must be a whole number of samples, not {npts}")
-    return int(points), interval * factor if factor != 1 else interval
 
 
 def _quantity_and_unit(header: list[str]) -> tuple[str, str]:
@@ -117,11 +104,15 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     if size < 0:
         text.fail("no line with NPTS and DT above the data")
     header = header[: size + 1]
+    words, step, factor = _size(header[-1]) or ("", "", 1.0)
     try:
-        npts, dt = _size(header[-1])
+        points, dt = (float(word.upper().replace("D", "E")) for word in (words, step))
+        npts = int(points)
     except (ValueError, OverflowError) as error:
         text.fail(str(error), size)
-    dt = text.interval(dt, size)
+    if points != npts or points < 1:
+        text.fail(f"NPTS must be a whole number of samples, not {words}", size)
+    dt = text.interval(dt * factor if factor != 1 else dt, size)
     quantity, unit = _quantity_and_unit(header)
     quantity = quantity or _ENDINGS.get(text.name.upper().removesuffix(".GZ")[-4:], "")
     if quantity not in ("", "acceleration"):

@@ -10,7 +10,14 @@ real number, and must agree with the duration.
 import re
 from collections.abc import Iterator
 
-from rockfrag.records.parsing.format import CHANNEL_END, Channel, Format, leading_number, stated
+from rockfrag.records.parsing.format import (
+    CHANNEL_END,
+    Channel,
+    Format,
+    headed,
+    leading_number,
+    stated,
+)
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
@@ -28,10 +35,6 @@ _STATION = re.compile(
 )
 _INTEGER_LINES, _REAL_LINES, _WIDTH = 7, 7, 13
 _MAX_HEADER = 30
-
-
-def _recognise(lines: list[str], name: str) -> bool:
-    return bool(_FIRST.match(lines[0])) and any(_UNIT.search(line) for line in lines[:_MAX_HEADER])
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
@@ -93,4 +96,4 @@ def _details(lines: list[str], station: re.Match[str] | None, component: str) ->
     return details
 
 
-FORMAT = Format("BHRC", _recognise, _parse)
+FORMAT = Format("BHRC", headed(_FIRST, _UNIT, within=_MAX_HEADER), _parse)

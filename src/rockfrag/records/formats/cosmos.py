@@ -19,6 +19,7 @@ _FIRST = re.compile(
     r"^\s*(?:un)?(?:raw|processed|corrected)?\s*\w+.*\(\s*Format\s+v\s*0?1\.\d+", re.I
 )
 _BLOCK = rb"^[ \t]*(\d+)[ \t]+%b-header values follow on[ \t]+(\d+)[ \t]+lines"
+_INTEGERS = re.compile("integer-header values", re.I)
 _COMMENTS = re.compile(rb"^[ \t]*(\d+)[ \t]+Comment line", re.I | re.M)
 _VALUES = re.compile(rb"^[ \t]*\d+[ \t]+\w[\w. ]*?[ \t]+p(?:oin)?ts\b", re.I | re.M)
 _VALUES_LINE = re.compile(
@@ -46,12 +47,6 @@ _RECORDER_STEP = 33
 _PLACE = (0, 1)
 _NAMED_AZIMUTHS = {400: "UP", 401: "DOWN", 402: "VERT", 500: "RADL", 501: "TRAN", 600: "LONG"}
 _NAMED_AZIMUTHS |= {601: "TRAN", 700: "H1", 701: "H2", 800: "OTHER"}
-
-
-def _recognise(lines: list[str], name: str) -> bool:
-    return bool(_FIRST.match(lines[0])) and any(
-        "integer-header values" in line.lower() for line in lines[1:60]
-    )
 
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:
@@ -155,4 +150,4 @@ def _facts(words: list[str], azimuth: int) -> dict[str, Any]:
     return {**seed, "component": component, "details": details}
 
 
-FORMAT = form.Format("COSMOS", _recognise, _parse)
+FORMAT = form.Format("COSMOS", form.headed(_FIRST, _INTEGERS, within=60), _parse)

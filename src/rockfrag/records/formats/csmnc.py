@@ -8,7 +8,7 @@ first sample, and is kept as a fact but not taken for the start.
 import re
 from collections.abc import Iterator
 
-from rockfrag.records.parsing.format import Channel, Format, leading_number, stated
+from rockfrag.records.parsing.format import Channel, Format, headed, leading_number, stated
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
 
@@ -25,15 +25,6 @@ _STATION = re.compile(
 )
 _HEADER = 16
 _MAX_HEADER = 30
-
-
-def _recognise(lines: list[str], name: str) -> bool:
-    header = lines[:_MAX_HEADER]
-    return (
-        any(_SIZE.search(line) for line in header)
-        and any(_QUANTITY.search(line) for line in header)
-        and bool(_STATION.search("\n".join(header)))
-    )
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
@@ -68,4 +59,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     )
 
 
-FORMAT = Format("CSMNC", _recognise, _parse, encoding="gb18030")
+FORMAT = Format(
+    "CSMNC",
+    headed(None, _SIZE, _QUANTITY, _STATION, within=_MAX_HEADER),
+    _parse,
+    encoding="gb18030",
+)

@@ -7,14 +7,21 @@ local (UTC+8) where the key says ``GMT+08``.
 
 import re
 
-from obspy import UTCDateTime
-
-from rockfrag.records.parsing.format import Channel, Format, field_width, in_columns
+from rockfrag.records.parsing.format import (
+    Channel,
+    Format,
+    field_width,
+    headed,
+    header_keys,
+    in_columns,
+    stated,
+)
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import clock_time, step_of_times
 
-_KEY = re.compile(r"^\s*#\s*(?P<key>[^:(]+?)\s*(?:\((?P<note>[^)]*)\))?\s*:\s*(?P<value>.*)$")
+_FIRST = re.compile(r"^\s*#\s*(?:Earthquake Information|StationCode)", re.I)
+_NEEDED = [re.compile(rf"^\s*#\s*{key}\s*[:(]", re.I) for key in ("stationcode", "samplerate")]
 _TIME = re.compile(
     r"(?P<y>\d{4})/(?P<m>\d\d?)/(?P<d>\d\d?)[- T]+(?P<h>\d\d?):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)"
 )
@@ -22,36 +29,16 @@ _MAX_HEADER = 60
 _ORDER = ("U", "N", "E")
 
 
-def _header(lines: list[str]) -> tuple[dict[str, tuple[str, str]], int]:
-    """Return value and note of each key, and the number of lines above the samples."""
-    facts: dict[str, tuple[str, str]] = {}
-    for number, line in enumerate(lines[:_MAX_HEADER]):
-        if line.strip() and not line.lstrip().startswith("#"):
-            return facts, number
-        match = _KEY.match(line)
-        if match:
-            facts.setdefault(match["key"].lower(), (match["value"].strip(), match["note"] or ""))
-    return facts, min(len(lines), _MAX_HEADER)
-
-
-def _recognise(lines: list[str], name: str) -> bool:
-    if not re.match(r"^\s*#\s*(?:Earthquake Information|StationCode)", lines[0], re.I):
-        return False
-    facts, _ = _header(lines)
-    return "stationcode" in facts and "samplerate" in facts
-
-
 def _parse(text: TextFile) -> list[Channel]:
-    facts, start = _header(text.lines(0, _MAX_HEADER))
-
-    def value(key: str) -> str:
-        return facts.get(key, ("", ""))[0]
-
-    order = re.findall(r"\b([UNEZ])\s*\(", value("datasequence")) or list(_ORDER)
-    values = text.numbers(start, None, field_width(f"({value('data')})") or 10)
+    header = text.lines(0, _MAX_HEADER)
+    below = (i for i, x in enumerate(header) if x.strip() and not x.lstrip().startswith("#"))
+    start = next(below, len(header))
+    facts = header_keys(line.lstrip(" \t#") for line in header[:start])
+    order = re.findall(r"\b([UNEZ])\s*\(", facts["datasequence"]) or list(_ORDER)
+    values = text.numbers(start, None, field_width(f"({facts['data']})") or 10)
     table = text.in_rows(values, len(order) + 1, start)
     try:
-        rate = float(value("samplerate"))
+        rate = float(facts["samplerate"])
     except ValueError:
         text.fail("#SampleRate is not a number")
     dt = text.interval(1 / rate if rate > 0 else 0.0, 0)
@@ -59,19 +46,22 @@ def _parse(text: TextFile) -> list[Channel]:
         measured = step_of_times(table[:, 0], text, start)
         if abs(measured - dt) > 1e-6:
             text.fail(f"times step by {measured:g} s, but #SampleRate gives {dt:g} s", start)
-    _check_length(text, value("recordlength"), table.shape[0] * dt, start)
+    _check_length(text, facts["recordlength"], table.shape[0] * dt, start)
+    match = _TIME.search(facts["starttime"])
+    began = clock_time(*match.groups()) if match else None
+    zone = stated(r"^\s*#\s*starttime\s*\(.*(?:GMT|UTC)\s*([+-]\d+)[^)]*\)\s*:", header)
     shared = Channel(
         npts=table.shape[0],
         dt=dt,
         samples=table.copy,
-        unit=canonical_unit(value("amplitudeunit").split(".")[0]),
-        start_time=_time(*facts.get("starttime", ("", ""))),
+        unit=canonical_unit(facts["amplitudeunit"].split(".")[0]),
+        start_time=began and began - 3600.0 * int(zone or 0),
         network="TW",
-        station=value("stationcode"),
+        station=facts["stationcode"],
         details={
-            "station_name": value("stationname"),
-            "earthquake": f"{value('origin time')} M {value('magnitude')}".strip(" M"),
-            "instrument": value("instrumentkind"),
+            "station_name": facts["stationname"],
+            "earthquake": f"{facts['origin time']} M {facts['magnitude']}".strip(" M"),
+            "instrument": facts["instrumentkind"],
         },
     )
     return in_columns(shared, table[:, 1:], order)
@@ -92,11 +82,4 @@ def _check_length(text: TextFile, stated: str, length: float, line: int) -> None
         )
 
 
-def _time(stated: str, note: str) -> UTCDateTime | None:
-    match = _TIME.search(stated)
-    start = clock_time(*match.groups()) if match else None
-    zone = re.search(r"(?:GMT|UTC)\s*([+-]\d+)", note)
-    return None if start is None else start - 3600.0 * (int(zone[1]) if zone else 0)
-
-
-FORMAT = Format("CWA", _recognise, _parse)
+FORMAT = Format("CWA", headed(_FIRST, *_NEEDED, within=_MAX_HEADER), _parse)

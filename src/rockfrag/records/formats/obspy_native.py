@@ -20,31 +20,22 @@ from obspy.core.inventory import Response
 from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
 from rockfrag.errors import InputError
+from rockfrag.records.parsing import text_file
 from rockfrag.records.parsing.format import Channel, cut_short_step, head_lines
 from rockfrag.records.parsing.number_fields import first_odd_row
 from rockfrag.records.parsing.quantities import canonical_unit
-from rockfrag.records.parsing.text_file import (
-    HEAD_BYTES,
-    MAX_BYTES,
-    MAX_LINE,
-    NotAcceleration,
-    read_head,
-)
+from rockfrag.records.parsing.text_file import MAX_BYTES, MAX_LINE, NotAcceleration
 from rockfrag.records.quality_flags import foreign_kind
 
 _READ_BY_OBSPY = ("MSEED", "SAC", "KNET", "KINEMETRICS_EVT", "SLIST", "TSPAIR", "SH_ASC")
 """Formats left to ObsPy. Of its others PICKLE would run what a file says, GSE ends the process on a
 damaged file, and the rest are of other fields."""
 
-_SCALED_FORMATS = frozenset({"KNET", "KINEMETRICS_EVT"})
-"""Formats whose ``calib`` turns counts into m/s²."""
-
+_SCALED_FORMATS = frozenset({"KNET", "KINEMETRICS_EVT"})  # whose ``calib`` turns counts into m/s²
 _SAC_QUANTITIES = {6: "displacement", 7: "velocity"}
 _WATER_LEVEL = 60.0
 
-MOST_SAMPLES = 20_000_000
-"""Samples of a file, all channels together: a day at 200 Hz has 17 million."""
-
+MOST_SAMPLES = 20_000_000  # of all channels of a file: a day at 200 Hz has 17 million
 _SMALL = 2**20  # bytes of a file that cannot have so many
 _SHOWN = 60
 
@@ -55,7 +46,7 @@ def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Chann
     MiniSEED needs a StationXML file (``.xml``) in the same folder that describes its channels;
     without one the samples have no unit.
     """
-    head = read_head(path, HEAD_BYTES)
+    head = text_file.read_head(path)
     kind = foreign_kind(head)
     if kind:
         problem = NotAcceleration if "spectra" in kind else InputError

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from obspy import Trace
 
 from rockfrag.errors import InputError
-from rockfrag.records.parsing.format import Channel, Format, text_writer
+from rockfrag.records.parsing.format import Channel, Format, headed, text_writer
 from rockfrag.records.parsing.number_fields import NumberError, parse_separated
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
 from rockfrag.records.parsing.text_file import TextFile, read_text
@@ -28,10 +28,6 @@ _UNIT = re.compile(
 )
 _OPTION = r"-{name}\s+(?:\{{(?P<list>[^{{}}]*)\}}|\"(?P<quoted>[^\"]*)\"|(?P<word>[^\s{{}}\"]+))"
 _PER_LINE = 5
-
-
-def _recognise(lines: list[str], name: str) -> bool:
-    return any(_SERIES.search(line) for line in lines[:200])
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
@@ -126,7 +122,7 @@ def _number(text: TextFile, line: int, name: str, words: str) -> float:
     return value
 
 
-FORMAT = Format("OPENSEES", _recognise, _parse)
+FORMAT = Format("OPENSEES", headed(None, _SERIES, within=200), _parse)
 
 
 def _written(trace: Trace, samples: list[float], unit: str, dt: float) -> list[str]:

@@ -9,18 +9,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import PurePath
 
-from rockfrag.records.parsing.format import CHANNEL_END, Channel, Format, stated
+from rockfrag.records.parsing.format import CHANNEL_END, Channel, Format, headed, stated
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import american_time, read_pairs
 
 _FIRST = re.compile(r"^\s*UNCORRECTED\s+ACCELEROGRAM\s+DATA\b", re.I)
 _HEAD = re.compile(rb"^[ \t]*UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA\b", re.I | re.M)
 _HEADER = 13
-
-
-def _recognise(lines: list[str], name: str) -> bool:
-    header = "\n".join(lines[:_HEADER]).upper()
-    return bool(_FIRST.match(lines[0])) and "RENADIC" in header
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
@@ -39,4 +34,4 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         )
 
 
-FORMAT = Format("RENADIC", _recognise, _parse)
+FORMAT = Format("RENADIC", headed(_FIRST, re.compile("RENADIC", re.I), within=_HEADER), _parse)

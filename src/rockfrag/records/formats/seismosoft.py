@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from obspy import Trace
 
-from rockfrag.records.parsing.format import Channel, Format, text_writer
+from rockfrag.records.parsing.format import Channel, Format, header_keys, text_writer
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import step_of_times
@@ -43,13 +43,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         text.refuse(
             f"the file holds {titles['quantity']}[{titles['unit']}], not acceleration", columns
         )
-    header = {"earthquake": text.line(0)}
-    for line in text.lines(0, columns):
-        key, colon, value = line.partition(":")
-        if colon:
-            header[key.strip().lower()] = value.strip()
+    header = header_keys(text.lines(0, columns))
     table = text.table(columns + 1, 2)
-    place = header.get("recording station", "")
+    place = header["recording station"]
     # TOLMEZZO(000) or 090 CDMG STATION 47381
     found = _BEFORE_COMPONENT.match(place) or _BEHIND_COMPONENT.match(place)
     station, component = found.group("station", "component") if found else (place, "")
@@ -61,9 +57,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         station=station.strip(),
         component=component.strip(),
         details={
-            "earthquake": header["earthquake"].rstrip("."),
-            "source": header.get("source", ""),
-            "frequency_range": header.get("frequency range", ""),
+            "earthquake": text.line(0).rstrip("."),
+            "source": header["source"],
+            "frequency_range": header["frequency range"],
             "recording_station": place,
         },
     )

@@ -9,6 +9,7 @@ Where the header has no sampling rate, the values are pairs of time [s] and acce
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import accumulate, takewhile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,19 +98,11 @@ def _without_surplus_lines(
     """
     values = text.numbers(start, None, width)
     surplus = values.size - count
-    if 0 < surplus <= _SURPLUS_LINES * _PER_LINE and _ends_a_line(text, start, count, width):
+    widths = (len(text.raw(line).rstrip()) for line in range(start, len(text)))
+    ends = accumulate(-(-each // width) for each in widths)
+    if 0 < surplus <= _SURPLUS_LINES * _PER_LINE and count in takewhile(lambda n: n <= count, ends):
         return values[:count], surplus
     return text.counted(start, None, count, width), 0
-
-
-def _ends_a_line(text: TextFile, start: int, count: int, width: int) -> bool:
-    """Tell whether the last value that the header counts is the last one of its line."""
-    found = 0
-    for line in range(start, len(text)):
-        found += -(-len(text.raw(line).rstrip()) // width)
-        if found >= count:
-            break
-    return found == count
 
 
 def _width(text: TextFile, start: int, whole: list[int]) -> int:

@@ -22,10 +22,6 @@ _MAX_HEADER = 200
 _HALF_A_DAY = 12 * 3600
 
 
-def _recognise(lines: list[str], name: str) -> bool:
-    return any(_TITLE.match(line) for line in lines[:30])
-
-
 def _parse(text: TextFile) -> list[form.Channel]:
     at_data = text.find(_DATA, 0, _MAX_HEADER)
     if at_data < 0:
@@ -57,9 +53,9 @@ def _parse(text: TextFile) -> list[form.Channel]:
         npts=max(table.shape[0], promised),
         dt=dt,
         samples=table.copy,
-        unit=canonical_unit(facts.get("unidades de los datos", "").split("(")[0]),
+        unit=canonical_unit(facts["unidades de los datos"].split("(")[0]),
         start_time=_start(facts),
-        station=facts.get("clave de la estacion", ""),
+        station=facts["clave de la estacion"],
         details={**_details(facts), "steps": (step,) if extra > 0 else ()},
     )
     # "rumbo;orientacion": the sense of a vertical stands behind it
@@ -78,8 +74,8 @@ def _list(facts: dict[str, str], key: str) -> list[str]:
 
 def _start(facts: dict[str, str]) -> UTCDateTime | None:
     """Return the time of the first sample, on the day of the earthquake or the one beside it."""
-    day, origin = facts.get("fecha del sismo", ""), facts.get("hora epicentro", "")
-    first = facts.get("hora de la primera muestra", "")
+    day, origin = facts["fecha del sismo"], facts["hora epicentro"]
+    first = facts["hora de la primera muestra"]
     try:
         start = UTCDateTime(f"{day} {first}")
         late = start - UTCDateTime(f"{day} {origin}")
@@ -91,19 +87,19 @@ def _start(facts: dict[str, str]) -> UTCDateTime | None:
 
 def _details(facts: dict[str, str]) -> dict[str, object]:
     coordinates = re.findall(r"(\d+(?:\.\d+)?)\s*(LAT|LONG)\.?\s*([NSEW])",
-                             facts.get("coordenadas de la estacion", ""))  # fmt: skip
+                             facts["coordenadas de la estacion"])  # fmt: skip
     place = {
         "latitude" if axis == "LAT" else "longitude": float(value) * (-1 if side in "SW" else 1)
         for value, axis, side in coordinates
     }
     magnitudes = re.findall(r"M\w*\s*=\s*(\d+(?:\.\d+)?)", facts.get("magnitud(es)", ""))
-    magnitudes = magnitudes or re.findall(r"=\s*(\d\.\d)", facts.get("magnitud", ""))
+    magnitudes = magnitudes or re.findall(r"=\s*(\d\.\d)", facts["magnitud"])
     return {
-        "station_name": facts.get("nombre de la estacion", ""),
-        "earthquake": f"{facts.get('fecha del sismo', '')} {facts.get('hora epicentro', '')}".strip(),
+        "station_name": facts["nombre de la estacion"],
+        "earthquake": f"{facts['fecha del sismo']} {facts['hora epicentro']}".strip(),
         "magnitude": max(map(float, magnitudes), default=None),
         **place,
     }
 
 
-FORMAT = form.Format("UNAM", _recognise, _parse, encoding="latin-1")
+FORMAT = form.Format("UNAM", form.headed(None, _TITLE, within=30), _parse, encoding="latin-1")

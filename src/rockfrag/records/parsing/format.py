@@ -2,6 +2,7 @@
 
 import os
 import re
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -152,7 +153,10 @@ class Format:
         except InputError:
             if not cut_short:
                 raise
-        return [_shortened(channel) for channel in self._parsed(text.up_to_last_line_end())]
+        # without a last line that does not end
+        whole = text.data[: text.data.rfind(b"\n") + 1]
+        text = replace(text, data=whole, cut_short=True)
+        return [_shortened(channel) for channel in self._parsed(text)]
 
     def _parsed(self, text: text_file.TextFile) -> list[Channel]:
         try:
@@ -187,6 +191,18 @@ class Format:
         if not headonly and (starttime is not None or endtime is not None):
             stream.trim(starttime, endtime, nearest_sample=nearest_sample)
         return stream
+
+
+def headed(
+    first: re.Pattern[str] | None, *others: re.Pattern[str], within: int
+) -> Callable[[list[str], str], bool]:
+    """Return what recognises a format by how a file begins and by what some of its first lines hold."""
+
+    def recognise(lines: list[str], name: str) -> bool:
+        begins = first is None or first.match(lines[0]) is not None
+        return begins and all(any(map(each.search, lines[:within])) for each in others)
+
+    return recognise
 
 
 def _shortened(channel: Channel) -> Channel:
@@ -265,13 +281,13 @@ _NOTE = re.compile(r"\s*[(\[][^)\]]*[)\]]")
 
 
 def header_keys(lines: Iterable[str]) -> dict[str, str]:
-    """Return the values of a header by their keys.
+    """Return the values of a header by their keys; of one that it has not, nothing.
 
     Keys are in lower case, without notes in brackets, with single blanks: ``SAMPLING INTERVAL
     (sec)`` becomes ``sampling interval``. The first of two equal keys counts; a line with a colon
     but no key goes on with the value above it.
     """
-    facts: dict[str, str] = {}
+    facts: dict[str, str] = defaultdict(str)
     key = ""
     for line in lines:
         match = _LINE.match(line)

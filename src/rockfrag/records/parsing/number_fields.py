@@ -16,8 +16,7 @@ _D_EXPONENT = bytes.maketrans(b"Dd", b"Ee")
 _EXPONENT_WITHOUT_LETTER = re.compile(rb"^([+-]?(?:\d+\.?\d*|\.\d+))([+-]\d{1,3})$")
 _NUMBER = re.compile(rb"^[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?$")
 _SHOWN = 24
-_LONGEST = 400
-"""Digits that a number may have: float64 needs no more than 350 even written out in full."""
+_LONGEST = 400  # digits of a number: float64 needs no more than 350 even written out in full
 
 
 class NumberError(ValueError):

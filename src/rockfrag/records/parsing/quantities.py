@@ -9,9 +9,7 @@ TO_SI = {"g": GRAVITY, "g/10": GRAVITY / 10, "%g": GRAVITY / 100, "mg": GRAVITY 
 TO_SI |= {"ug": GRAVITY / 1e6, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "in/s2": 0.0254}
 """Factor from each unit of acceleration to m/s²."""
 
-ASKED_UNITS = ("g", "m/s2", "cm/s2", "gal", "mm/s2")
-"""Units that a user may name for a file that does not state its own."""
-
+ASKED_UNITS = ("g", "m/s2", "cm/s2", "gal", "mm/s2")  # that a user may name
 _SYNONYMS = {"gal": "cm/s2", "gals": "cm/s2", "inch/s2": "in/s2", "inches/s2": "in/s2"}
 _SYNONYMS |= {"g's": "g", "gs": "g", "microg": "ug", "milli-g": "mg", "micro-g": "ug"}
 _SYNONYMS |= {"%ofg": "%g", "percentg": "%g", "count": "counts"}

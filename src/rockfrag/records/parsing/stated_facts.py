@@ -89,19 +89,21 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
     units = list(dict.fromkeys(u for found in behind for u in [u for u in found if u in TO_SI][:1]))
     contradiction = next(
         (
-            f"the header states {what} {_both(found)}"
+            f"the header states {what} "
+            + " and ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in found[:2])
             for what, found in (("intervals of", steps), ("counts of", counts), ("units of", units))
             if len(found) > 1 and not _close(found)
         ),
         "",
     )
+    listed = next(filter(None, map(_LIST.match, lines)), None)
     quantity, unit = _quantity_and_unit(lines)
     return StatedFacts(
         npts=counts[0] if counts else None,
         dt=steps[0] if steps else None,
         unit=units[0] if units else unit,
         quantity="acceleration" if units else quantity,
-        components=next((tuple(names) for line in lines if (names := _components(line))), ()),
+        components=tuple(re.findall(r"[^\s,;]+", listed["names"])) if listed else (),
         factor=next(
             (x for x in lines if (m := _FACTOR.search(x)) and number_in(m["value"]) != 1), ""
         ),
@@ -189,16 +191,7 @@ def _sure_unit(line: str) -> str:
     )
 
 
-def _components(line: str) -> list[str]:
-    match = _LIST.match(line)
-    return [word for word in re.split(r"[\s,;]+", match["names"].strip()) if word] if match else []
-
-
 def _close(found: Sequence[float | int | str]) -> bool:
     """Tell whether statements of one fact are numbers that differ by rounding only, to a ten-thousandth."""
     numbers = [value for value in found if isinstance(value, float)]
     return len(numbers) == len(found) and max(numbers) - min(numbers) <= 1e-4 * max(numbers)
-
-
-def _both(found: Sequence[float | int | str]) -> str:
-    return " and ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in found[:2])

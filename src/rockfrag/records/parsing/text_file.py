@@ -6,7 +6,7 @@ import re
 import zlib
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import IO, Any, NoReturn
@@ -19,9 +19,7 @@ from rockfrag.records.parsing.number_fields import NumberError, parse_columns, p
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 HEAD_BYTES = 16_384  # how much of a file is looked at to recognise its format
-MAX_BYTES = 256 * 2**20
-"""No record is larger: three components of a day at 200 Hz are a third of it."""
-
+MAX_BYTES = 256 * 2**20  # three components of a day at 200 Hz are a third of it
 MAX_TEXT = 96 * 2**20  # bytes of a text file: three components of a day at 200 Hz have as many
 MOST_NUMBERS = 20_000_000  # numbers of a table: more than memory should hold beside the text
 MAX_LINE = 8_192  # no line of a known format is longer, comments and citations included
@@ -154,9 +152,12 @@ class TextFile:
             yield first, after
             first = self.find(head, after, last)
 
-    def fail(self, what: str, line: int | None = None) -> NoReturn:
+    def fail(
+        self, what: str, line: int | None = None, problem: type[InputError] = InputError
+    ) -> NoReturn:
         """Raise an :class:`InputError` about a line (from zero) or the whole file."""
-        raise InputError(self._sentence(what, line))
+        where = self.name if line is None else f"{self.name}, line {line + 1}"
+        raise problem(f"{where}: {what.rstrip('.')}.")
 
     def check_count(
         self, promised: int, found: int, line: int, noun: str = "samples", each: int = 1
@@ -171,11 +172,7 @@ class TextFile:
 
     def refuse(self, what: str, line: int | None = None) -> NoReturn:
         """Raise :class:`NotAcceleration`: the file is in order, but holds something else."""
-        raise NotAcceleration(self._sentence(what, line))
-
-    def _sentence(self, what: str, line: int | None) -> str:
-        where = self.name if line is None else f"{self.name}, line {line + 1}"
-        return f"{where}: {what.rstrip('.')}."
+        self.fail(what, line, NotAcceleration)
 
     def numbers(
         self, start: int, stop: int | None = None, width: int | None = None
@@ -248,16 +245,9 @@ class TextFile:
         self.check_count(count, values.size, start)
         return values
 
-    def up_to_last_line_end(self) -> "TextFile":
-        """Return the text without a last line that does not end, to be read as it is."""
-        whole = self.data[: self.data.rfind(b"\n") + 1]
-        return replace(self, data=whole, cut_short=True)
-
-    def table(
-        self, start: int, columns: int, stop: int | None = None, decimal_comma: bool = False
-    ) -> NDArray[np.float64]:
+    def table(self, start: int, columns: int) -> NDArray[np.float64]:
         """Parse lines as rows of numbers, shape (rows, columns), separated as in :meth:`rows`."""
-        values, widths = self.rows(start, stop, decimal_comma, columns)
+        values, widths = self.rows(start, columns=columns)
         wrong = np.flatnonzero(widths != columns)
         if wrong.size:
             first = int(wrong[0])

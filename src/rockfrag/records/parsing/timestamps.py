@@ -7,20 +7,16 @@ from numpy.typing import NDArray
 from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
-from rockfrag.records.parsing.format import Channel, cut_short_step
+from rockfrag.records.parsing.format import Channel, cut_short_step, first_match
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.units import LONGEST_STEP
 
-_FRACTION_OF_STEP = 1e-4
-"""Fraction of a step by which a time may be off beyond the rounding of its print."""
-
+_FRACTION_OF_STEP = 1e-4  # of which a time may be off beyond the rounding of its print
 _FINEST_DIGITS = 9
 
-_EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)
-"""Sampling intervals [s] that unevenly digitised film records are interpolated to."""
-
+_EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)  # [s], to which unevenly digitised film is interpolated
 _COARSEST = 1.25  # largest ratio of that interval to the mean distance of the digitised points
 
 _HOURS_BEHIND = {"UTC": 0, "UT": 0, "GMT": 0, "Z": 0, "EST": 5, "EDT": 4, "CST": 6, "CDT": 5}
@@ -67,12 +63,6 @@ def step_of_times(
             first_line,
         )
     return dt if seconds == 1 else float(f"{dt * seconds:.12g}")
-
-
-def even_step(times: NDArray[np.float64]) -> float:
-    """Return the interval [s] to interpolate unevenly digitised points to: about as many samples as points."""
-    mean = float(times[-1] - times[0]) / max(times.size - 1, 1)
-    return next((step for step in _EVEN_STEPS if step <= _COARSEST * mean), _EVEN_STEPS[-1])
 
 
 def check_rising(times: NDArray[np.float64], text: TextFile, first_line: int) -> None:
@@ -169,17 +159,12 @@ def read_pairs(text: TextFile, first: int, stop: int) -> Channel:
     digitised at uneven intervals; they are interpolated linearly to even ones.
     """
     header = text.lines(first, first + _MAX_HEADER)
-    count = unit = None
-    at_numbers = 0
-    for number, line in enumerate(header):
-        points, units = _POINTS.search(line), _UNITS.search(line)
-        count = int(points["count"]) if points and count is None else count
-        unit = canonical_unit(units["unit"]) if units and unit is None else unit
-        if number > 8 and line.strip() and _NUMBERS_ONLY.match(line):
-            at_numbers = first + number
-            break
-    if count is None or unit is None or not at_numbers:
+    points, units = first_match(_POINTS, header), first_match(_UNITS, header)
+    numbers = (i for i, x in enumerate(header) if i > 8 and x.strip() and _NUMBERS_ONLY.match(x))
+    at_numbers = first + next(numbers, -first)
+    if points is None or units is None or not at_numbers:
         text.fail("no number of points, unit or numeric header below this line", first)
+    count, unit = int(points["count"]), canonical_unit(units["unit"])
     # 100 integers (16I5) and 50 reals (8F10) are seven lines each
     text.reals(at_numbers + 7, at_numbers + 14, 10, 50)
     values = _flat(text, at_numbers + 14, stop, 2 * count)
@@ -208,7 +193,8 @@ def pairs_of(
                 f"times lie {mean:.3g} s apart on average, those of a record at most {LONGEST_STEP:g} s",
                 line,
             )
-        dt = even_step(times)
+        # about as many samples as points
+        dt = next((step for step in _EVEN_STEPS if step <= _COARSEST * mean), _EVEN_STEPS[-1])
         count = int(np.floor((times[-1] - times[0]) / dt * (1 + 1e-12))) + 1
         accelerations = np.interp(times[0] + np.arange(count) * dt, times, accelerations)
         found = {"dt_s": dt, "digitised_points": int(times.size)}

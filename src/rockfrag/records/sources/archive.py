@@ -62,7 +62,9 @@ class _Room:
     def __init__(self, folder: Path) -> None:
         self.folder, self.size, self.count = folder, MAX_TOTAL, 0
 
-    def put(self, name: str, file: IO[bytes], archive: str | os.PathLike[str]) -> Member:
+    def put(
+        self, name: str, file: IO[bytes], archive: str | os.PathLike[str], prefix: str
+    ) -> Member:
         """Write one member, in a folder like that of the archive, whatever its name says."""
         parts = [
             part for part in PurePosixPath(name.replace("\\", "/")).parts if part not in ("/", "..")
@@ -84,7 +86,7 @@ class _Room:
                         f"{archive}: it unpacks to more than {MAX_TOTAL // 2**20} MiB."
                     )
                 out.write(block)
-        return Member(printable(name), target)
+        return Member(prefix + printable(name), target)
 
 
 def _kind(path: str | os.PathLike[str]) -> str:
@@ -99,18 +101,17 @@ def _kind(path: str | os.PathLike[str]) -> str:
 
 
 def _take_out(path: str | os.PathLike[str], room: _Room, prefix: str) -> list[Member]:
+    members = _from_zip(path) if _kind(path) == "zip" else _from_tar(path)
     try:
-        members = _from_zip(path, room) if _kind(path) == "zip" else _from_tar(path, room)
+        return [room.put(name, file, path, prefix) for name, file in members]
     except _UNREADABLE as error:
         if isinstance(error, InputError):
             raise
         words = " ".join(str(error).split()) or type(error).__name__
         raise InputError(f"{path}: the archive cannot be unpacked ({words}).") from None
-    return [Member(prefix + member.name, member.path) for member in members]
 
 
-def _from_zip(path: str | os.PathLike[str], room: _Room) -> list[Member]:
-    members = []
+def _from_zip(path: str | os.PathLike[str]) -> Iterator[tuple[str, IO[bytes]]]:
     with zipfile.ZipFile(path) as archive:
         if "[Content_Types].xml" in archive.namelist():
             raise InputError(f"{path}: this is an Excel workbook or a document; save it as CSV.")
@@ -120,21 +121,16 @@ def _from_zip(path: str | os.PathLike[str], room: _Room) -> list[Member]:
             if info.flag_bits & 1:
                 raise InputError(f"{path}: the archive is locked by a password; unpack it first.")
             with archive.open(info) as file:
-                members.append(room.put(info.filename, file, path))
-    return members
+                yield info.filename, file
 
 
-def _from_tar(path: str | os.PathLike[str], room: _Room) -> list[Member]:
-    members = []
+def _from_tar(path: str | os.PathLike[str]) -> Iterator[tuple[str, IO[bytes]]]:
     with tarfile.open(path) as archive:
         for info in archive:
             # links and devices are nothing that a record can be
-            if not info.isfile() or _hidden(info.name):
-                continue
-            file = archive.extractfile(info)
+            file = archive.extractfile(info) if info.isfile() and not _hidden(info.name) else None
             if file is not None:
-                members.append(room.put(info.name, file, path))
-    return members
+                yield info.name, file
 
 
 def _hidden(name: str) -> bool:

@@ -11,8 +11,7 @@ from rockfrag_thesis.settings import settings_of
 
 def run(job: Job[Study]) -> Results:
     """Yield the tests on the floors of every building, and their means."""
-    from rockfrag.shaketable.definitions import DEFINITION
-    from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
+    from rockfrag.shaketable.definitions import DEFINITION, mean_amplitudes
     from rockfrag_thesis.building_sensitivity import building_sensitivity, building_variants
 
     study = job.study
