@@ -251,9 +251,8 @@ def _warn_of_weight(ratio: Array) -> None:
 
 def _warn_of_lifting(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]) -> None:
     """Warn of bodies whose own rocking may take the weight off a contact: squat ones in strong motions."""
-    peaks = np.array([motion.x.pga for motion in cases.motions])[:, np.newaxis] * np.abs(
-        cases.scales
-    )
+    unscaled = np.array([motion.x.pga for motion in cases.motions])
+    peaks = unscaled[:, np.newaxis] * np.abs(cases.scales)
     # a body that rocks at less is too slender or too squat to lift itself
     if not (peaks > LEAST_LIFTING * cases.request.g).any():
         return

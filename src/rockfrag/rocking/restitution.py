@@ -163,9 +163,8 @@ def restitution_from_impacts(
             speed *= e
         return np.array(found)
 
-    largest = min(speed_before(block, block.critical_angle(pivot), pivot) for pivot in (+1, -1)) * (
-        1 - 1e-12
-    )
+    over = min(speed_before(block, block.critical_angle(pivot), pivot) for pivot in (+1, -1))
+    largest = over * (1 - 1e-12)
 
     def speed_of(interval: float, pivot: int) -> float:
         if flight(largest, pivot) <= interval:
