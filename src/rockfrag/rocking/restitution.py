@@ -75,10 +75,7 @@ def quarter_period(block: Block, peak: float, pivot: int = 1, *, linear: bool = 
 
 
 def restitution_from_peaks(
-    block: Block,
-    peaks: ArrayLike,
-    *,
-    confidence: float = 0.95,
+    block: Block, peaks: ArrayLike, *, confidence: float = 0.95
 ) -> RestitutionFit:
     """Fit e to successive peak rotations, by least squares on the rotations.
 
@@ -119,11 +116,7 @@ def restitution_from_peaks(
 
 
 def restitution_from_impacts(
-    block: Block,
-    times: ArrayLike,
-    *,
-    first_pivot: int = 1,
-    confidence: float = 0.95,
+    block: Block, times: ArrayLike, *, first_pivot: int = 1, confidence: float = 0.95
 ) -> RestitutionFit:
     """Fit e to the times of successive impacts, by least squares on the times.
 
