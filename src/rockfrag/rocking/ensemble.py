@@ -117,11 +117,6 @@ def overturns(
     Outcomes
         Arrays of shape (bodies, motions, scales), and three tidy tables; who answered stands in ``engine``.
 
-    Raises
-    ------
-    InputError
-        If an argument cannot be used, or two wishes cannot be met together; the message says which and why.
-
     Warns
     -----
     LightBodies
