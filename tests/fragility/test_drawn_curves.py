@@ -8,7 +8,7 @@ from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.ida_curves import tables_of_ida_curves
 from rockfrag.fragility.observations import observations_from_table
-from rockfrag.report.figures.fragility import calibration_figure, measures_figure
+from rockfrag.report.measured_page import calibration_figure, measures_figure
 
 from .made import ida_of, reading
 

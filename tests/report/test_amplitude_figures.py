@@ -13,13 +13,13 @@ from rockfrag.figure_style import figure_style, new_figure, save_figure
 from rockfrag.report.figures.amplitudes import (
     amplitudes_by,
     pedestal_scatter,
-    slenderness_figure,
 )
-from rockfrag.report.figures.fragility import fragility_figure
 from rockfrag.report.sections.amplitudes import outcome_map
+from rockfrag.report.sections.curves import fragility_figure
 from rockfrag.report.sections.pedestal import forest_figure, ratio_axis
 from rockfrag.report.sections.tested import shaker_limits
 from rockfrag.shaketable.definitions import mean_amplitudes
+from rockfrag_thesis.sections.counterparts import slenderness_figure
 
 OBJECTS = ("vase", "column & capital")
 SLENDERNESS = dict(zip(OBJECTS, (3.0, 4.0), strict=True))

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy import special
 
-from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
-from rockfrag.assess.hazard.measure import PGA, PGV
+from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve, rate_weights
 from rockfrag.errors import InputError
 from rockfrag.survival.branches import Branch
 from rockfrag.survival.evidence import Age, StandingObject, lognormal_coefficients

@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
+from rockfrag.assess.assumed import Moved
 from rockfrag.assess.conversion import Conversion, find_conversion
-from rockfrag.assess.direction import Directions, find_directions
-from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.hazard.measure import PGA, PGV
+from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
 from rockfrag.assess.mitigations import Mitigation, compare, mitigations_of
 from rockfrag.assess.motions import MotionSet, motion_set
-from rockfrag.assess.moved import Moved
 from rockfrag.assess.outcomes import (
     FEW_LEVELS,
     FEWEST_LEVELS,
     LEVELS,
+    Directions,
     IntensityLevels,
     ObjectOutcomes,
+    find_directions,
     flip_rate,
     fraction_with_sliding,
     make_intensity_levels,

@@ -8,8 +8,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.hazard.curve import HIGHEST, HazardCurve, curve_of_one_level
-from rockfrag.assess.hazard.measure import PGA, PGV, read_measure
+from rockfrag.assess.hazard.curve import (
+    HIGHEST,
+    PGA,
+    PGV,
+    HazardCurve,
+    curve_of_one_level,
+    read_measure,
+)
 from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place

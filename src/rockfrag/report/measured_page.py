@@ -6,14 +6,26 @@ from functools import partial
 import numpy as np
 import pandas as pd
 from markupsafe import Markup
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import PercentFormatter
 
-from rockfrag.figure_style import note_figure
+from rockfrag import figure_style as style
+from rockfrag.errors import InputError
+from rockfrag.fragility.checks import GoodnessOfFit
+from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
+from rockfrag.fragility.estimators import Fragility
+from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
-from rockfrag.report.figures.fragility import calibration_figure, measures_figure
+from rockfrag.report.figures.amplitudes import GREY
 from rockfrag.report.page import Column, estimated, p_values, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, finding_of, section_of
-from rockfrag.report.sections.curves import two_measures_section
+from rockfrag.report.sections.curves import (
+    axis_label,
+    draw_fractions,
+    probability_axis,
+    two_measures_section,
+)
 from rockfrag.report.study_report import write_page
 from rockfrag.report.wording import Macros, estimates, one_line, said
 from rockfrag.stages.job import Job, Results
@@ -86,7 +98,7 @@ def figure_specs(found: UserFragility) -> dict[str, FigureSpec]:
     if found.goodness:
         drawings["calibration"] = lambda: calibration_figure(found.goodness)
     words = "No curve: the tests show no measure with which overturning becomes more frequent."
-    nothing = partial(note_figure, words)
+    nothing = partial(style.note_figure, words)
     return {
         name: FigureSpec(name, f"{text} {found.choice.words}", text, drawings.get(name, nothing))
         for name, text in _CAPTIONS.items()
@@ -167,3 +179,76 @@ def _curves(
         figures["calibration"],
     ]
     return section_of(says.curves(len(goodness), level, notes), "fragility", parts)
+
+
+def measures_figure(
+    curves: Mapping[str, Fragility], outcomes: Mapping[str, Observations]
+) -> Figure:
+    """Draw the curve of each measure in a panel of its own, with AIC and β, to compare measures."""
+    labels = [label for label, curve in curves.items() if np.isfinite(curve.fit.theta)]
+    if not labels:
+        raise InputError("measures figure: none of the measures has a curve.")
+    columns = min(len(labels), 2)
+    rows = -(-len(labels) // columns)
+    with style.figure_style():
+        figure = style.new_figure(style.COLUMN_WIDTH if columns == 1 else style.WIDEST, 2.4 * rows)
+        grid_of_axes = figure.subplots(rows, columns, squeeze=False, sharey=True)
+        for axes in grid_of_axes.flat[len(labels) :]:
+            axes.set_visible(False)
+        for axes, label in zip(grid_of_axes.flat, labels, strict=False):
+            curve, data = curves[label], outcomes[label]
+            grid = _grid(curve, data)
+            _outcomes(axes, data, grid)
+            lower, upper = curve.interval.band(grid)
+            if np.isfinite(lower).any():
+                axes.fill_between(grid, lower, upper, color=style.BLUE, alpha=0.18, linewidth=0)
+            axes.plot(grid, curve.fit.probability(grid), color=style.BLUE)
+            probability_axis(axes, grid)
+            axes.set_title(
+                f"{curve.fit.im}: AIC {curve.fit.aic:.1f}, β = {curve.fit.beta:.2f}", loc="left"
+            )
+            axes.set_xlabel(axis_label(curve.fit.im, curve.fit.unit))
+        for axes in grid_of_axes[:, 0]:
+            axes.set_ylabel("Probability of overturning")
+        style.letter_panels(grid_of_axes.flat[: len(labels)])
+        return figure
+
+
+def calibration_figure(judged: Mapping[str, GoodnessOfFit]) -> Figure:
+    """Draw observed against fitted fractions in bins; points on the diagonal are well calibrated."""
+    with style.one_panel(style.COLUMN_WIDTH, 3.0) as (figure, axes):
+        axes.plot([0, 1], [0, 1], color=GREY, linewidth=0.8)
+        for k, (label, fit) in enumerate(judged.items()):
+            names = ("predicted", "observed", "observed_lower", "observed_upper")
+            x, y, lower, upper = (fit.calibration[name].to_numpy() for name in names)
+            axes.errorbar(
+                x,
+                y,
+                yerr=[np.maximum(y - lower, 0.0), np.maximum(upper - y, 0.0)],
+                fmt="os^Dv"[k % 5],
+                color=style.OKABE_ITO[k % len(style.OKABE_ITO)],
+                markersize=3.5,
+                elinewidth=0.8,
+                label=f"{label} (p = {fit.p_value:.2g})",
+            )
+        axes.set(aspect="equal", xlim=(-0.02, 1.02), ylim=(-0.02, 1.02))
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(PercentFormatter(1.0, decimals=0, symbol=" %"))
+        axes.set(xlabel="Fitted probability", ylabel="Fraction overturned")
+        axes.legend(loc="upper left", handletextpad=0.3)
+        return figure
+
+
+def _outcomes(axes: Axes, data: Observations, grid: Floats) -> None:
+    draw_fractions(axes, fraction_in_bins(data).rename(columns={"im": "x"}), style.BLACK)
+    inside = grid[(grid >= data.im.min()) & (grid <= data.im.max())]
+    if inside.size and np.ptp(data.log_im) > 0:
+        axes.plot(inside, local_fraction(data, inside), "--", color=style.BLACK, linewidth=0.8)
+
+
+def _grid(curve: Fragility, data: Observations) -> Floats:
+    """Values from where a curve leaves zero to where it reaches one."""
+    low, high = (curve.fit.theta * np.exp(sign * 2.6 * curve.fit.beta) for sign in (-1, 1))
+    # neither a nearly flat curve nor amplitudes far above it may stretch the axis
+    low, high = max(low, 0.8 * float(data.im.min())), min(high, 1.25 * float(data.im.max()))
+    return np.asarray(np.geomspace(low, high, 400))

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import pyarrow.parquet as pq
 from markupsafe import Markup
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -142,21 +141,12 @@ class Results:
     @cached_property
     def outcomes(self) -> pd.DataFrame:
         """Outcomes of every configuration at every amplitude, under no more motions than a page shows."""
-        parts = []
+        parts, jobs = [], range(self.study.ida_jobs)
         for configuration in self.study.configurations:
-            jobs = range(self.study.ida_jobs)
+            files = (self.folder / self.study.ida_file(configuration, job) for job in jobs)
             shown = 0
-            for part in read_swept(
-                self.folder / self.study.ida_file(configuration, job) for job in jobs
-            ):
-                rows = part.about.index.repeat(part.amplitude_g.size)
-                table = part.about.loc[rows, ["configuration", "object", "motion"]]
-                parts.append(
-                    table.assign(
-                        amplitude_g=np.tile(part.amplitude_g, len(part.about)),
-                        overturned=part.overturned.ravel(),
-                    )
-                )
+            for part in read_swept(files):
+                parts.append(part.rows(["configuration", "object", "motion"]))
                 shown += len(part.about)
                 if shown >= MOST_MOTIONS:
                     break
@@ -165,14 +155,8 @@ class Results:
     @cached_property
     def least_gravity_ratio(self) -> NDArray[np.float64]:
         """Least weight over that on a ground at rest, of every history of a study with vertical motion."""
-        paths = [self.folder / path for path in self.study.ida_files]
-        parts = [
-            pq.read_table(path, columns=["minimum_gravity_ratio"])[
-                "minimum_gravity_ratio"
-            ].to_numpy()
-            for path in paths
-        ]
-        return np.concatenate(parts)
+        name, paths = "minimum_gravity_ratio", (self.folder / path for path in self.study.ida_files)
+        return np.concatenate([pd.read_parquet(path, columns=[name])[name] for path in paths])
 
     @property
     def objects(self) -> list[str]:

@@ -33,6 +33,16 @@ class Swept:
     fallen: NDArray[np.intp]  # place in ``bodies`` of what overturned, shape (motions, n)
     bodies: Sequence[str]  # names of what overturned in any of them, empty for nothing
 
+    def rows(self, columns: Sequence[str], step: int = 1) -> pd.DataFrame:
+        """Return a row for each motion and every so many-th amplitude.
+
+        Columns: those asked for of ``about``, ``amplitude_g`` and ``overturned``.
+        """
+        amplitude, overturned = self.amplitude_g[::step], self.overturned[:, ::step].ravel()
+        motions = np.repeat(np.arange(len(self.about)), amplitude.size)
+        rows = self.about[list(columns)].iloc[motions].reset_index(drop=True)
+        return rows.assign(amplitude_g=np.tile(amplitude, len(self.about)), overturned=overturned)
+
 
 def labels_of(system: System) -> dict[str, str]:
     """Return what tables of a study call a system: its configuration, its object, with or without a pedestal."""

@@ -103,7 +103,7 @@ def measure_selection(
     :class:`rockfrag.fragility.measure_selection.MeasureSelection`, ``recommended`` (True for one row each) and
     ``words``, the recommendation with its reasons.
     """
-    from rockfrag.fragility.measure_selection_ida import recommend_ida_measure
+    from rockfrag.fragility.measure_selection import recommend_ida_measure
 
     parts = []
     for name, ida in ida_curves.items():
@@ -126,17 +126,9 @@ def rows_of(parts: Iterable[Swept]) -> pd.DataFrame:
 
     Columns: ``earthquake``, ``floor``, ``motion``, ``amplitude_g`` and ``overturned`` (0 or 1).
     """
-    tables = []
-    for part in parts:
-        chosen = slice(None, None, -(-part.amplitude_g.size // MOST_LEVELS))
-        amplitude = part.amplitude_g[chosen]
-        about = part.about[["earthquake", "floor", "motion"]]
-        rows = about.loc[about.index.repeat(amplitude.size)].reset_index(drop=True)
-        overturned = part.overturned[:, chosen].ravel().astype(np.int64)
-        tables.append(
-            rows.assign(amplitude_g=np.tile(amplitude, len(about)), overturned=overturned)
-        )
-    return pd.concat(tables, ignore_index=True)
+    about = ("earthquake", "floor", "motion")
+    tables = [part.rows(about, -(-part.amplitude_g.size // MOST_LEVELS)) for part in parts]
+    return pd.concat(tables, ignore_index=True).astype({"overturned": np.int64})
 
 
 BY = ["configuration", "earthquake", "floor", "motion"]

@@ -18,16 +18,9 @@ from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import own_records, read_catalogue, repeated_motions
 from rockfrag.schema import checked
 from rockfrag.shaketable.shaker import read_shaker
+from rockfrag.study import configurations as arrangements
 from rockfrag.study import measured_table
 from rockfrag.study.campaign import CAMPAIGN_KEY, CampaignStudy, campaign_from
-from rockfrag.study.configurations import (
-    each_alone,
-    read_configurations,
-    read_counterparts,
-    read_specimens,
-    with_friction,
-    with_restitution,
-)
 from rockfrag.study.heading import check_file, checked_steps, existing_file, heading_of
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
@@ -66,14 +59,14 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
     bodies, motions = content["bodies"], content["motions"]
     measures = content["fragility"]["measures"]
     specimens_file = existing_file(source, "bodies.specimens", bodies["specimens"])
-    specimens = read_specimens(specimens_file)
-    configurations_file, known = None, each_alone(specimens)
+    specimens = arrangements.read_specimens(specimens_file)
+    configurations_file, known = None, arrangements.each_alone(specimens)
     counterparts: dict[str, str] = {}
     if "configurations" in bodies:
         name = bodies["configurations"]
         configurations_file = existing_file(source, "bodies.configurations", name)
-        known = read_configurations(configurations_file, specimens)
-        counterparts = read_counterparts(configurations_file)
+        known = arrangements.read_configurations(configurations_file, specimens)
+        counterparts = arrangements.read_counterparts(configurations_file)
     building_file = _optional_file(source, "building", content)
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
     by_name = {configuration.name: configuration for configuration in known}
@@ -84,7 +77,9 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         amplitudes = Amplitudes(**content["amplitudes"])
     if content.get("friction") is not None:
         with errors_of(f"{source}: key friction"):
-            configurations = tuple(with_friction(c, content["friction"]) for c in configurations)
+            configurations = tuple(
+                arrangements.with_friction(c, content["friction"]) for c in configurations
+            )
     catalogue = read_catalogue(catalogue_file).set_index("name", drop=False)
     shaken = _used(source, "motions", motions.get("use"), list(catalogue.index), "motions")
     shaker_file = _optional_file(source, "shaker", content)
@@ -168,7 +163,9 @@ def _measured(
         measured[name] = tuple(value) if isinstance(value, list) else value
     law = content.get("law", law_names()[0])
     with errors_of(key):
-        return tuple(with_restitution(configuration, measured, law) for configuration in chosen)
+        return tuple(
+            arrangements.with_restitution(configuration, measured, law) for configuration in chosen
+        )
 
 
 def _check_names(study: Study) -> None:

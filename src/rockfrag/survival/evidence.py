@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special, stats
 
-from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
+from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.survival.rates import ShakingRates
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
-from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
+from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G, HazardCurve, rate_weights
 from rockfrag.errors import InputError
 from rockfrag.motions.declared import IntensityMeasure
 

@@ -52,7 +52,13 @@ def standing_definitions(
     rng = np.random.default_rng(seed)
     rows = []
     for configuration in configurations:
-        copies = [[_copy(configuration, size, rng) for _ in range(COPIES)] for size in SIZES]
+        copies = [
+            [
+                (perturbed(configuration, size, rng), 1 + size * float(rng.uniform(-1, 1)))
+                for _ in range(COPIES)
+            ]
+            for size in SIZES
+        ]
         fell = overturns(configuration, motions, scales=scales, threads=threads).overturned[0]
         found = [_definitions(amplitudes_g, flags, protocol) for flags in fell]
         stands = {
@@ -69,7 +75,8 @@ def standing_definitions(
                 # where a copy was not shaken its outcome changes no reading that is still in question
                 flags = np.where(wanted[k, i], ends[k, i], fell[i])
                 for name, bounds in _definitions(amplitudes_g, flags, protocol).items():
-                    stands[k, i, name] &= _same(bounds, found[i][name])
+                    same = np.array_equal(bounds, found[i][name], equal_nan=True)
+                    stands[k, i, name] &= same
         for i, motion in enumerate(motions):
             rows += [
                 {
@@ -84,11 +91,6 @@ def standing_definitions(
                 for name, bounds in found[i].items()
             ]
     return pd.DataFrame(rows)
-
-
-def _copy(system: System, size: float, rng: np.random.Generator) -> Copy:
-    near = perturbed(system, size, rng)
-    return near, 1 + size * float(rng.uniform(-1, 1))
 
 
 def _definitions(amplitudes_g: Floats, flags: Flags, protocol: Protocol) -> dict[str, Bounds]:
@@ -134,7 +136,3 @@ def _outcomes(
     cases = prepared(systems, motions, None, (1.0,), threads=threads)
     ends[wanted] = overturned_cases(cases, copy, motion, scales[motion, amplitude] * factors[copy])
     return ends
-
-
-def _same(bounds: Bounds, other: Bounds) -> bool:
-    return np.array_equal(bounds, other, equal_nan=True)

@@ -8,9 +8,14 @@ Levels are in g.
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
 
-from rockfrag.assess.hazard.curve import make_curve, rates_of
-from rockfrag.assess.hazard.found import Found, read_numbers, read_statistic
-from rockfrag.assess.hazard.measure import read_measure
+from rockfrag.assess.hazard.curve import (
+    Found,
+    make_curve,
+    rates_of,
+    read_measure,
+    read_numbers,
+    read_statistic,
+)
 from rockfrag.errors import InputError
 
 

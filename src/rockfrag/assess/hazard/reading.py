@@ -6,8 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rockfrag.assess.hazard import nrml, openquake_csv, table, usgs
-from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.hazard.found import Found
+from rockfrag.assess.hazard.curve import Found, HazardCurve
 from rockfrag.errors import InputError
 from rockfrag.tabular import read_text
 

@@ -5,7 +5,7 @@ one that overturned at the first step has an arrow down. Neither is in a mean: m
 :func:`rockfrag.shaketable.definitions.mean_amplitudes`, over motions that overturned all.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -89,7 +89,7 @@ def amplitudes_by(by: str, tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     width = style.PAGE_WIDTH if by == "object" and len(levels) > 5 else style.COLUMN_WIDTH
     with style.one_panel(width, 2.8) as (figure, axes):
         _sides_panel(axes, rows, by, levels, means)
-        axes.set_ylim(0, _highest_box(rows, by) if len(rows) > MOST_MARKS else top(rows))
+        axes.set_ylim(0, highest_box(rows, by) if len(rows) > MOST_MARKS else top(rows))
         _finish_sides(figure, axes, tests, bool(means["mean_g"].notna().any()))
     return figure
 
@@ -109,7 +109,7 @@ def _sides_panel(
         own = rows["pedestal"] == side
         if crowded and own.any():
             part = rows[own].assign(x=x[own])
-            _box_at(axes, part, "x", sorted(part["x"].unique()), 0.18, SIDE_COLOUR[side])
+            box_at(axes, part, "x", sorted(part["x"].unique()), 0.18, SIDE_COLOUR[side])
         elif own.any():
             where = x[own].to_numpy(dtype=float)
             plot_tests(axes, where, rows[own], SIDE_MARKER[side], SIDE_COLOUR[side])
@@ -162,21 +162,21 @@ def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDEST
         axes.set_title(title, loc="left", pad=4)
         axes.set_xlabel(f"Overturning amplitude {sides.second} [g]")
         axes.set_ylabel(f"Overturning amplitude {sides.first} [g]")
-        if len(objects) > 1 and (handles := _handles(objects)):
+        if len(objects) > 1 and (handles := handles_of(objects)):
             axes.legend(handles=handles, loc="lower right", handletextpad=0.2)
     return figure
 
 
-def _handles(names: Sequence[str]) -> list[Line2D]:
+def handles_of(names: Sequence[str]) -> list[Line2D]:
     """Entries of a legend for names that differ in marker and colour."""
     return [
         Line2D([], [], ls="", marker=marker, mfc="none", mec=colour, label=shortened(name))
-        for name, (marker, colour) in _styles(names).items()
+        for name, (marker, colour) in styles_of(names).items()
         if len(names) <= len(MARKERS)
     ]
 
 
-def _styles(names: Sequence[str]) -> dict[str, tuple[str, str]]:
+def styles_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Marker and colour of each name; of many all are alike."""
     if len(names) > len(MARKERS):
         return dict.fromkeys(names, ("o", style.BLUE))
@@ -188,7 +188,7 @@ def _scatter_panel(axes: Axes, part: pd.DataFrame, objects: Sequence[str], upper
     line = np.array([0.0, upper])
     axes.fill_between(line, line / 1.1, line * 1.1, color=BAND, lw=0)
     axes.plot(line, line, color=GREY, lw=0.8)
-    for name, (marker, colour) in _styles(objects).items():
+    for name, (marker, colour) in styles_of(objects).items():
         own = part[part["object"] == name]
         x, y = own["a_np"].to_numpy(dtype=float), own["a_p"].to_numpy(dtype=float)
         axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, mew=1.0, ms=4.5)
@@ -198,53 +198,15 @@ def _scatter_panel(axes: Axes, part: pd.DataFrame, objects: Sequence[str], upper
     axes.locator_params(nbins=5)
 
 
-def slenderness_figure(
-    tests: pd.DataFrame, means: pd.DataFrame, slenderness: Mapping[str, float]
-) -> Figure:
-    """Amplitude against slenderness, a panel without and one with the pedestal."""
-    rows = drawn_tests(tests)
-    rows = rows.assign(x=rows["object"].map(slenderness))
-    known = means[(means["by"] == "configuration") & means["mean_g"].notna()]
-    earthquakes = list(dict.fromkeys(tests["earthquake"]))
-    crowded = len(tests) > MOST_MARKS
-    with style.figure_style():
-        figure = style.new_figure(style.COLUMN_WIDTH, 3.0)
-        grid = figure.subplots(1, 2, sharex=True, sharey=True)
-        for axes, side in zip(grid, SIDES, strict=True):
-            part = rows[rows["pedestal"] == side]
-            if crowded:
-                _box_at(axes, part, "x", sorted(part["x"].unique()), 0.3, style.BLUE)
-            # by earthquake with a little sideways shift
-            shifts = np.linspace(-0.14, 0.14, max(len(earthquakes), 2))
-            styles = {} if crowded else _styles(earthquakes)
-            for shift, (name, marks) in zip(shifts, styles.items(), strict=False):
-                marked = part[part["earthquake"] == name]
-                plot_tests(axes, marked["x"].to_numpy(dtype=float) + shift, marked, *marks)
-            own = known[known["pedestal"] == side]
-            x = own["object"].map(slenderness).to_numpy(dtype=float)
-            axes.plot(x, own["mean_g"], color=style.BLACK, lw=1.0, marker="_", ms=10, mew=1.8)
-            axes.set_title(SIDE_NAME[side], loc="left")
-            axes.set_ylim(0, _highest_box(rows, "x") if crowded else top(rows))
-            axes.set_xticks(sorted(rows["x"].unique()))
-        figure.supxlabel("Slenderness H/B", fontsize=8)
-        style.letter_panels(grid)
-        figure.supylabel(AMPLITUDE, fontsize=8)
-        handles = [Line2D([], [], color=style.BLUE, label=BOX)]
-        if not crowded:
-            handles = _handles(earthquakes) + bound_handle(tests)
-        handles.append(Line2D([], [], color=style.BLACK, marker="_", ms=10, label="geometric mean"))
-        figure.legend(handles=handles, loc="outside upper center", ncols=3, handletextpad=0.3)
-    return figure
-
-
-def _highest_box(rows: pd.DataFrame, by: str) -> float:
+def highest_box(rows: pd.DataFrame, by: str) -> float:
     """Upper end of an axis of distributions [g]."""
     return 1.15 * float(rows.groupby([by, "pedestal"])["a"].quantile(0.95).max())
 
 
-def _box_at(
+def box_at(
     axes: Axes, part: pd.DataFrame, by: str, levels: Sequence[Any], width: float, colour: str
 ) -> None:
+    """Draw the distribution of amplitudes at each level of a column."""
     axes.boxplot(
         [part.loc[part[by] == level, "a"].to_numpy(dtype=float) for level in levels],
         positions=levels,

@@ -6,24 +6,26 @@ from functools import partial
 import numpy as np
 import pandas as pd
 from markupsafe import Markup
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
 from rockfrag import figure_style as style
 from rockfrag.files import file_name
 from rockfrag.fragility.checks import REJECTION, TAILS
 from rockfrag.fragility.curve_facts import REJECTED, compared_curves
-from rockfrag.fragility.observations import name_and_unit
+from rockfrag.fragility.observations import Floats, name_and_unit
 from rockfrag.fragility.vector import INTERACTION_LEVEL
 from rockfrag.fragility.vector_tables import VectorTables, describe_pair
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.report.answer import has_one_record
-from rockfrag.report.figures.fragility import fragility_figure
+from rockfrag.report.figures.amplitudes import GREY
 from rockfrag.report.findings import ONE_MOTION, strength_found
 from rockfrag.report.page import Column, Row, estimated, p_values, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
 from rockfrag.report.sections.words import says
-from rockfrag.report.wording import decimals_of, estimates, number, sentence
+from rockfrag.report.wording import decimals_of, estimates, number, sentence, shortened
 from rockfrag.stages.fragility import best_of
 
 _TWO_MEASURES = (
@@ -209,6 +211,72 @@ def _measures(results: Results) -> Section:
     text = says.measures(best_of(choice, asked), better, compared, none)
     caption = "Recommended measure of each configuration, with reasons."
     return section_of(text, "measures", [table_html(best, _MEASURES, caption)])
+
+
+def fragility_figure(
+    curves: pd.DataFrame, bands: pd.DataFrame, bins: pd.DataFrame, nonparametric: bool | None = None
+) -> Figure:
+    """Draw fragility curves of one measure, a panel per configuration, with bands and the outcomes behind them.
+
+    ``curves`` are rows of :func:`rockfrag.fragility.fragility_table`; theta is missing where there is no curve.
+    For bands and bins see :mod:`rockfrag.fragility.ida_curves`. By default all panels have the nonparametric
+    curve, with the lognormal one dotted, where the lognormal curve of one of them is rejected; figures that are
+    compared with each other need the same.
+    """
+    rows, nonparametric, _ = compared_curves(curves, nonparametric)
+    used, other = ("fraction", "probability") if nonparametric else ("probability", None)
+    lower, upper = ("fraction_lower", "fraction_upper") if nonparametric else ("lower", "upper")
+    first = curves.iloc[0]
+    with style.figure_style():
+        figure = style.new_figure(style.COLUMN_WIDTH, 0.75 + 1.65 * len(curves))
+        panels = figure.subplots(len(curves), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+        for k, (panel, curve) in enumerate(zip(panels, rows.to_dict("records"), strict=True)):
+            colour = style.CONFIGURATION_COLOURS[k % len(style.CONFIGURATION_COLOURS)]
+            own = str(curve["configuration"])
+            draw_fractions(panel, bins[bins["configuration"] == own], colour)
+            points = bands[bands["configuration"] == own]
+            x, low, high = points["x"], points[lower], points[upper]
+            panel.fill_between(x, low, high, color=colour, alpha=0.18, linewidth=0)
+            if other:
+                panel.plot(x, points[other], ":", color=style.BLACK, linewidth=0.9)
+            panel.plot(x, points[used], color=colour)
+            probability_axis(panel, np.array([bands["x"].min(), bands["x"].max()]))
+            words = "no median"
+            if np.isfinite(curve["theta"]):
+                words = f"θ = {curve['theta']:.3g} {curve['unit']}"
+                words += f", β = {curve['beta']:.2f}" if np.isfinite(curve["beta"]) else ""
+            panel.set_title(f"{shortened(own)}: {words}", loc="left")
+        style.letter_panels(panels)
+        panels[-1].set_xlabel(axis_label(first["im"], first["unit"]))
+        figure.supylabel("Probability of overturning", fontsize=8)
+        names = ["nonparametric", "lognormal (rejected)"] if nonparametric else ["lognormal"]
+        handles = [Line2D([], [], color=GREY), Line2D([], [], color=style.BLACK, ls=":", lw=0.9)]
+        handles = [*handles[: len(names)], Line2D([], [], color=GREY, marker="o", ls="", ms=3.2)]
+        names.append("analyses in bins")
+        figure.legend(handles, names, loc="outside upper center", ncols=2)
+        return figure
+
+
+def draw_fractions(axes: Axes, bins: pd.DataFrame, colour: str) -> None:
+    """Fractions of overturned tests in bins with their binomial limits."""
+    fraction = bins["fraction"].to_numpy(dtype=float)
+    lower, upper = (bins[f"fraction_{end}"].to_numpy(dtype=float) for end in ("lower", "upper"))
+    reach = [np.maximum(fraction - lower, 0.0), np.maximum(upper - fraction, 0.0)]
+    x = bins["x"].to_numpy(dtype=float)
+    axes.errorbar(x, fraction, yerr=reach, fmt="o", color=colour, elinewidth=0.7, ms=3.2, mew=0)
+
+
+def probability_axis(axes: Axes, grid: Floats) -> None:
+    """Draw probabilities over a logarithmic measure, from the first to the last value of a grid."""
+    axes.set(xlim=(grid[0], grid[-1]), ylim=(-0.02, 1.02))
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0, symbol=" %"))
+    style.plain_log(axes, "x")
+
+
+def axis_label(name: str, unit: str) -> str:
+    """Return the label of an axis of a measure."""
+    name = name[:1].upper() + name[1:]
+    return f"{name} [{unit}]" if unit else name
 
 
 LINES = {0.1: "dotted", 0.5: "solid", 0.9: "dashed"}

@@ -1,7 +1,14 @@
 """Counterparts of the thesis's figures 4.1 to 4.7, each question drawn once."""
 
+from collections.abc import Mapping
 from functools import partial
 
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from rockfrag import figure_style as style
 from rockfrag.report.figures import amplitudes
 from rockfrag.report.findings import mean_sentence, objects_compared, ratio_of
 from rockfrag.report.part import Part, Results, Section, figure_of, section_of
@@ -22,7 +29,7 @@ def _section(results: Results) -> Section | None:
     ]
     whole = ratio("whole", "all")
     slenderness = says.slenderness_figure(found[0].said if found else words)
-    draw = partial(amplitudes.slenderness_figure, tests, means, results.slenderness)
+    draw = partial(slenderness_figure, tests, means, results.slenderness)
     scatter = partial(amplitudes.pedestal_scatter, tests, whole)
     by_floor = partial(amplitudes.amplitudes_by, "floor", tests, means)
     parts = [
@@ -31,6 +38,47 @@ def _section(results: Results) -> Section | None:
         figure_of(says.floors_figure(words), "figure_4_6", by_floor),
     ]
     return section_of(says.counterparts(found, words), "counterparts", parts)
+
+
+def slenderness_figure(
+    tests: pd.DataFrame, means: pd.DataFrame, slenderness: Mapping[str, float]
+) -> Figure:
+    """Amplitude against slenderness, a panel without and one with the pedestal."""
+    rows = amplitudes.drawn_tests(tests)
+    rows = rows.assign(x=rows["object"].map(slenderness))
+    known = means[(means["by"] == "configuration") & means["mean_g"].notna()]
+    earthquakes = list(dict.fromkeys(tests["earthquake"]))
+    crowded = len(tests) > amplitudes.MOST_MARKS
+    with style.figure_style():
+        figure = style.new_figure(style.COLUMN_WIDTH, 3.0)
+        grid = figure.subplots(1, 2, sharex=True, sharey=True)
+        for axes, side in zip(grid, amplitudes.SIDES, strict=True):
+            part = rows[rows["pedestal"] == side]
+            if crowded:
+                amplitudes.box_at(axes, part, "x", sorted(part["x"].unique()), 0.3, style.BLUE)
+            # by earthquake with a little sideways shift
+            shifts = np.linspace(-0.14, 0.14, max(len(earthquakes), 2))
+            styles = {} if crowded else amplitudes.styles_of(earthquakes)
+            for shift, (name, marks) in zip(shifts, styles.items(), strict=False):
+                marked = part[part["earthquake"] == name]
+                amplitudes.plot_tests(
+                    axes, marked["x"].to_numpy(dtype=float) + shift, marked, *marks
+                )
+            own = known[known["pedestal"] == side]
+            x = own["object"].map(slenderness).to_numpy(dtype=float)
+            axes.plot(x, own["mean_g"], color=style.BLACK, lw=1.0, marker="_", ms=10, mew=1.8)
+            axes.set_title(amplitudes.SIDE_NAME[side], loc="left")
+            axes.set_ylim(0, amplitudes.highest_box(rows, "x") if crowded else amplitudes.top(rows))
+            axes.set_xticks(sorted(rows["x"].unique()))
+        figure.supxlabel("Slenderness H/B", fontsize=8)
+        style.letter_panels(grid)
+        figure.supylabel(amplitudes.AMPLITUDE, fontsize=8)
+        handles = [Line2D([], [], color=style.BLUE, label=amplitudes.BOX)]
+        if not crowded:
+            handles = amplitudes.handles_of(earthquakes) + amplitudes.bound_handle(tests)
+        handles.append(Line2D([], [], color=style.BLACK, marker="_", ms=10, label="geometric mean"))
+        figure.legend(handles=handles, loc="outside upper center", ncols=3, handletextpad=0.3)
+    return figure
 
 
 COUNTERPARTS = Part(_section)
