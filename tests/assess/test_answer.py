@@ -237,15 +237,6 @@ def test_estimates_have_as_many_digits_as_they_deserve(found, words):
 DRAWS = 24
 
 
-@pytest.fixture(scope="module")
-def few_records(own_records):
-    """Catalogue of four records of as many earthquakes, which are soon simulated."""
-    rows = (own_records / "catalogue.csv").read_text().splitlines()
-    path = own_records / "few.csv"
-    path.write_text("\n".join([rows[0], *rows[1:7]]) + "\n")
-    return path
-
-
 @pytest.mark.parametrize("part", range(3))
 def test_random_requests_are_answered_without_contradiction_or_refused_in_a_sentence(
     part, few_records, tmp_path

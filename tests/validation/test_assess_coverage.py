@@ -23,8 +23,7 @@ from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import amplitude_target, fraction_target
 from rockfrag.assess.scan import make_scan
 from rockfrag.assess.sources import SPACE
-from rockfrag.campaign.standing import Unknown, unknowns_of, ways_to_stand
-from rockfrag.campaign.trials import body_of
+from rockfrag.campaign.standing import Unknown, body_of, unknowns_of, ways_to_stand
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions import scale_to_pga
 from rockfrag.motions.filtering import bandpass
