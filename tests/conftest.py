@@ -66,19 +66,20 @@ def four_records(record_folder: Path) -> dict[str, Motion]:
     return {name: read_motion(record_folder / f"{name}.dat", unit="g") for name in names}
 
 
+def white_noise(
+    seed: int = 0, count: int = 500, dt: float = 0.01, *, tapered: bool = False, **about: Any
+) -> Motion:
+    """A motion of white noise [m/s²], the same for the same seed."""
+    samples = np.random.default_rng(seed).standard_normal(count)
+    if tapered:
+        samples *= np.hanning(count)
+    return Motion(samples, dt, **{"name": f"noise {seed}", **about})
+
+
 @pytest.fixture(scope="session")
 def noise() -> Callable[..., Motion]:
-    """Maker of motions of white noise [m/s²], the same for the same seed."""
-
-    def make(
-        seed: int = 0, count: int = 500, dt: float = 0.01, *, tapered: bool = False, **about: Any
-    ) -> Motion:
-        samples = np.random.default_rng(seed).standard_normal(count)
-        if tapered:
-            samples *= np.hanning(count)
-        return Motion(samples, dt, **{"name": f"noise {seed}", **about})
-
-    return make
+    """Maker of motions of white noise."""
+    return white_noise
 
 
 @pytest.fixture(scope="session")
@@ -100,38 +101,37 @@ MADE_EARTHQUAKES = 6
 """Earthquakes of which made motions are."""
 
 
-@pytest.fixture(scope="session")
-def made_motions(noise) -> Callable[[int], tuple[Motion, ...]]:
+def motions_of_noise(count: int) -> tuple[Motion, ...]:
     """Motions of several earthquakes, each with its own frequencies."""
-
-    def make(count: int) -> tuple[Motion, ...]:
-        found = []
-        for i in range(count):
-            about = {
-                "earthquake": f"earthquake {i % MADE_EARTHQUAKES}",
-                "station": f"station {i // 2}",
-            }
-            raw = noise(i, 1500, tapered=True, name=f"motion {i}", metadata=about)
-            filtered = bandpass(raw, 0.2, 1.0 + 0.5 * (i % MADE_EARTHQUAKES))
-            found.append(scale_to_pga(filtered, 0.2 + 0.01 * i))
-        return tuple(found)
-
-    return make
+    found = []
+    for i in range(count):
+        earthquake = i % MADE_EARTHQUAKES
+        about = {"earthquake": f"earthquake {earthquake}", "station": f"station {i // 2}"}
+        raw = white_noise(i, 1500, tapered=True, name=f"motion {i}", metadata=about)
+        found.append(scale_to_pga(bandpass(raw, 0.2, 1.0 + 0.5 * earthquake), 0.2 + 0.01 * i))
+    return tuple(found)
 
 
 @pytest.fixture(scope="session")
-def own_records(made_motions, tmp_path_factory) -> Path:
-    """A folder of records that are texts of seconds and g, with a catalogue."""
-    folder = tmp_path_factory.mktemp("records")
+def made_motions() -> Callable[[int], tuple[Motion, ...]]:
+    """Maker of motions of several earthquakes."""
+    return motions_of_noise
+
+
+def write_records(folder: Path, count: int) -> Path:
+    """Write made motions as texts of seconds and g, with their catalogue, whose path comes back."""
     rows = ["name,earthquake,station,file,unit"]
-    for motion in made_motions(12):
+    for motion in motions_of_noise(count):
         file = f"{motion.name.replace(' ', '')}.txt"
-        lines = [
-            f"{t:.2f} {a:.7f}" for t, a in zip(motion.time, motion.acceleration / 9.81, strict=True)
-        ]
-        (folder / file).write_text("\n".join(lines) + "\n")
-        rows.append(
-            f"{motion.name},{motion.metadata['earthquake']},{motion.metadata['station']},{file},g"
-        )
+        values = zip(motion.time, motion.acceleration / 9.81, strict=True)
+        (folder / file).write_text("".join(f"{t:.2f} {a:.7f}\n" for t, a in values))
+        about = motion.metadata
+        rows.append(f"{motion.name},{about['earthquake']},{about['station']},{file},g")
     (folder / "catalogue.csv").write_text("\n".join(rows) + "\n")
-    return folder
+    return folder / "catalogue.csv"
+
+
+@pytest.fixture(scope="session")
+def own_records(tmp_path_factory) -> Path:
+    """A folder of records that are texts of seconds and g, with a catalogue."""
+    return write_records(tmp_path_factory.mktemp("records"), 12).parent

@@ -34,15 +34,20 @@ def sources(subpackage: str) -> list[Path]:
     return sorted((SOURCE / subpackage).rglob("*.py"))
 
 
-def imported_subpackages(path: Path) -> set[str]:
-    """Rooms that a file imports from, at its top or in a function."""
+def imported(path: Path) -> set[str]:
+    """Modules that a file imports, at its top or in a function; relative ones begin with dots."""
     names = set()
     for node in nodes(path):
-        if isinstance(node, ast.ImportFrom) and node.module:
-            names.add(node.module)
+        if isinstance(node, ast.ImportFrom):
+            names.add("." * node.level + (node.module or ""))
         elif isinstance(node, ast.Import):
             names.update(alias.name for alias in node.names)
-    split = (name.split(".") for name in names)
+    return names
+
+
+def imported_subpackages(path: Path) -> set[str]:
+    """Rooms that a file imports from."""
+    split = (name.split(".") for name in imported(path))
     return {parts[1] for parts in split if parts[0] == "rockfrag" and len(parts) > 1}
 
 
@@ -83,21 +88,14 @@ def test_tests_import_neither_tests_nor_benchmarks():
     tests = Path(__file__).parent
     benchmarks = {path.stem for path in (tests.parent / "benchmarks").glob("*.py")} | {"benchmarks"}
     for path in tests.rglob("*.py"):
-        for node in nodes(path):
-            if isinstance(node, ast.ImportFrom):
-                home = (node.module or "").split(".")
-                assert not home[-1].startswith("test_"), path
-                assert node.level or home[0] not in benchmarks, path
-            elif isinstance(node, ast.Import):
-                assert not {alias.name for alias in node.names} & benchmarks, path
+        homes = [name.split(".") for name in imported(path)]
+        assert not [home for home in homes if home[-1].startswith("test_")], path
+        assert not {home[0] for home in homes} & benchmarks, path
 
 
 def test_nothing_imports_snakemake():
     for path in SOURCE.rglob("*.py"):
-        for node in nodes(path):
-            names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
-            names += [a.name for a in node.names] if isinstance(node, ast.Import) else []
-            assert not [name for name in names if name.split(".")[0] == "snakemake"], path
+        assert "snakemake" not in {name.split(".")[0] for name in imported(path)}, path
 
 
 ASKS = re.compile(r"isinstance\([^)]*\b(Block|Stack|Column)\b")

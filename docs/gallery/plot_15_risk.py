@@ -12,7 +12,7 @@ from scipy.stats import norm
 
 from rockfrag import fit_lognormal
 from rockfrag.assess import HazardCurve
-from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.risk import probability_in, toppling_rate
 from rockfrag.fragility import Observations
 

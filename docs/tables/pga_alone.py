@@ -14,7 +14,7 @@ import numpy as np
 from two_measures import HAZARDS, PAGE, ROOT, curve, objects
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import make_request
 

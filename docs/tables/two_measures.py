@@ -11,8 +11,7 @@ import numpy as np
 import yaml
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.hazard.curve import HazardCurve, make_curve
-from rockfrag.assess.hazard.measure import PGA, PGV
+from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve, make_curve
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import make_request
 from rockfrag.assess.risk import Estimate

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 
-MOST_SAMPLES = 10_000_000  # more samples of a motion than this are taken for a mistake in a unit
 _LONGEST_SHOWN = 60
 
 
@@ -55,7 +54,7 @@ def whole_number(name: str, value: object) -> int:
     return int(value)
 
 
-def whole_number_within(owner: str, name: str, value: Any, least: int, most: int) -> int:
+def whole_within(owner: str, name: str, value: Any, least: int, most: int) -> int:
     """Return ``value`` as an int if it is a whole number from ``least`` to ``most``."""
     if real_number(f"{owner}: {name}", value) != int(value) or not least <= value <= most:
         raise InputError(

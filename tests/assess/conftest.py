@@ -1,12 +1,17 @@
 """Motions of assessments: made ones, which need no network, and the default set."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.request import Request, make_request
+
+from ..conftest import write_records
 
 
 @pytest.fixture(scope="session")
@@ -21,6 +26,20 @@ def few(motions) -> MotionSet:
     """Four records of two components."""
     ground, base = motions.ground[:8], motions.base[:8]
     return replace(motions, ground=ground, base=base, pairs=motions.pairs[:4])
+
+
+@pytest.fixture(scope="session")
+def few_records(tmp_path_factory) -> Path:
+    """Catalogue of six records of as many earthquakes, which are soon simulated."""
+    return write_records(tmp_path_factory.mktemp("few"), 6)
+
+
+def outcomes_of(fell, levels, earthquakes, *, all_rock=False) -> ObjectOutcomes:
+    """Outcomes of motions at levels of PGA, a row a motion; what falls rocks, and the others if all do."""
+    scales, allowed = np.broadcast_to(levels, fell.shape), np.ones(fell.shape, dtype=bool)
+    rocked = allowed if all_rock else fell
+    names = np.array(earthquakes, dtype=object)
+    return ObjectOutcomes(IntensityLevels(PGA, levels, scales, allowed), fell, rocked, names)
 
 
 def asked(**settings) -> Request:

@@ -9,7 +9,7 @@ import pytest
 
 from rockfrag import Block
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.as_json import as_json
+from rockfrag.assess.export import as_json
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.request import make_request, read_request
 from rockfrag.assess.risk import Estimate
@@ -235,15 +235,6 @@ def test_estimates_have_as_many_digits_as_they_deserve(found, words):
 
 
 DRAWS = 24
-
-
-@pytest.fixture(scope="module")
-def few_records(own_records):
-    """Catalogue of four records of as many earthquakes, which are soon simulated."""
-    rows = (own_records / "catalogue.csv").read_text().splitlines()
-    path = own_records / "few.csv"
-    path.write_text("\n".join([rows[0], *rows[1:7]]) + "\n")
-    return path
 
 
 @pytest.mark.parametrize("part", range(3))

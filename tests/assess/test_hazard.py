@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from rockfrag.assess import read_hazard
-from rockfrag.assess.hazard.curve import curve_of_one_level
-from rockfrag.assess.hazard.measure import PGA, PGV, read_measure
+from rockfrag.assess.hazard.curve import PGA, PGV, curve_of_one_level, read_measure
 from rockfrag.errors import InputError
 from rockfrag.motions.declared import intensity_measures
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.as_json import as_json
+from rockfrag.assess.export import as_json
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.request import make_request
 from rockfrag.assess.words import five_lines

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.inventory import assess_inventory, inventory_table, joint_lines
 from rockfrag.assess.mitigations import mitigations_of, on_plate, with_ballast
 from rockfrag.assess.motions import motion_set

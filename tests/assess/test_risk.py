@@ -10,9 +10,8 @@ import pytest
 from scipy import integrate, stats
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.hazard.curve import HazardCurve, curve_of_one_level
-from rockfrag.assess.hazard.measure import PGA
-from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
+from rockfrag.assess.hazard.curve import PGA, HazardCurve, curve_of_one_level
+from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.request import make_request
 from rockfrag.assess.risk import (
@@ -24,6 +23,8 @@ from rockfrag.assess.risk import (
     toppling_rate,
 )
 
+from .conftest import outcomes_of
+
 LEVELS = np.geomspace(0.02, 3.0, 80)
 BENT = HazardCurve(
     PGA,
@@ -33,17 +34,9 @@ BENT = HazardCurve(
 )
 
 
-def outcomes_from(capacities, earthquakes) -> ObjectOutcomes:
+def outcomes_from(capacities, earthquakes, **more) -> ObjectOutcomes:
     """Outcomes of motions that topple from a level on."""
-    fell = np.asarray(capacities)[:, None] <= LEVELS
-    allowed = np.ones(fell.shape, dtype=bool)
-    scales = np.broadcast_to(LEVELS, fell.shape)
-    return ObjectOutcomes(
-        IntensityLevels(PGA, LEVELS, scales, allowed),
-        fell,
-        fell,
-        np.array(earthquakes, dtype=object),
-    )
+    return outcomes_of(np.asarray(capacities)[:, None] <= LEVELS, LEVELS, earthquakes, **more)
 
 
 @pytest.mark.parametrize("hazard", [BENT, curve_of_one_level(PGA, 0.25, 475)])
@@ -92,13 +85,7 @@ def test_an_object_that_bears_more_topples_less_often():
 
 
 def test_where_nothing_topples_there_is_a_bound_and_no_zero():
-    outcomes = outcomes_from(np.full(20, 100.0), range(20))
-    rocks = ObjectOutcomes(
-        outcomes.intensity_levels,
-        outcomes.overturned,
-        outcomes.overturned | True,
-        outcomes.earthquakes,
-    )
+    rocks = outcomes_from(np.full(20, 100.0), range(20), all_rock=True)
     found = estimate(risk_target(BENT, 50), rocks, {}, {}, {"model": 0.2})
     assert found.value == 0
     # 19 of 20 chances that fewer than 1 - 0.1^(1/20) of all earthquakes topple it
@@ -109,10 +96,7 @@ def test_one_earthquake_that_topples_leaves_more_open_than_none():
     limits = []
     for toppling in range(4):
         capacities = np.where(np.arange(20) < toppling, 0.3, 100.0)
-        fell = outcomes_from(capacities, range(20))
-        outcomes = ObjectOutcomes(
-            fell.intensity_levels, fell.overturned, fell.overturned | True, fell.earthquakes
-        )
+        outcomes = outcomes_from(capacities, range(20), all_rock=True)
         found = estimate(fraction_target(0.5), outcomes, {}, {}, {"model": 0.2})
         assert found.lower <= found.value <= found.upper
         # the exact binomial limit of 5 % on that side (Clopper and Pearson 1934)

@@ -11,7 +11,6 @@ import pytest
 from scipy import stats
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.as_nrml import as_nrml
 from rockfrag.assess.conversion import (
     OF_THE_SITE,
     UNKNOWN,
@@ -20,10 +19,10 @@ from rockfrag.assess.conversion import (
     SiteVelocity,
     VelocityRelation,
 )
-from rockfrag.assess.hazard.curve import make_curve
-from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
+from rockfrag.assess.export import as_nrml
+from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G, make_curve
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
+from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.page import page_of
 from rockfrag.assess.request import Records, make_request
 from rockfrag.assess.risk import toppling_rate
@@ -32,7 +31,7 @@ from rockfrag.assess.words import assumptions, five_lines, quality_flags
 from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 
-from .conftest import asked
+from .conftest import asked, outcomes_of
 
 
 def set_of(records: int, rng: np.random.Generator, noise) -> tuple[MotionSet, np.ndarray]:
@@ -167,11 +166,7 @@ def topples_from(pgv: float, logs: np.ndarray) -> ObjectOutcomes:
     """An object that topples exactly from a PGV on, under motions with these ln PGV/PGA."""
     levels = np.geomspace(0.02, 8.0, 400)
     fell = levels * np.exp(logs)[:, np.newaxis] * VELOCITY_PER_G >= pgv
-    intensity_levels = IntensityLevels(
-        PGA, levels, np.ones(fell.shape), np.ones(fell.shape, dtype=bool)
-    )
-    earthquakes = np.array([f"e{i}" for i in range(logs.size)], dtype=object)
-    return ObjectOutcomes(intensity_levels, fell, np.ones(fell.shape, dtype=bool), earthquakes)
+    return outcomes_of(fell, levels, [f"e{i}" for i in range(logs.size)], all_rock=True)
 
 
 def conversion_of(logs, known, weight=1.0):

@@ -8,25 +8,21 @@ import numpy as np
 import pytest
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.as_json import as_json
-from rockfrag.assess.as_nrml import as_nrml
-from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.export import as_json, as_nrml
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.mitigations import compare
-from rockfrag.assess.narrowing import is_wide, narrowed
-from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.page import page_of
 from rockfrag.assess.place import PERIOD_FACTORS
 from rockfrag.assess.request import read_request
-from rockfrag.assess.risk import Estimate, estimate, fraction_target
-from rockfrag.assess.scale import step_of
+from rockfrag.assess.risk import Estimate, estimate, fraction_target, step_of
+from rockfrag.assess.sources import is_wide, narrowed
 from rockfrag.assess.words import assumptions, five_lines, range_words
 from rockfrag.building.floors import floor_motions
 from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.outcomes.limit_states import forget_limit_state, limit_state
 
-from .conftest import asked
+from .conftest import asked, outcomes_of
 
 STATUE = {"width": "42 cm", "height": "1.65 m", "mass": "410 kg", "cg_height": "0.75 m"}
 
@@ -50,19 +46,12 @@ def on_pedestal(motions):
     return assess_with(request, motions.at(request.place))
 
 
-def only_one_earthquake_topples() -> ObjectOutcomes:
-    """Six motions of as many earthquakes, all of which rock and one of which topples."""
-    levels = np.geomspace(0.1, 1.0, 10)
-    rocked = np.ones((6, 10), dtype=bool)
+def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
     fell = np.zeros((6, 10), dtype=bool)
     fell[0, 4:] = True
-    intensity_levels = IntensityLevels(PGA, levels, np.broadcast_to(levels, (6, 10)), rocked)
-    return ObjectOutcomes(intensity_levels, fell, rocked, np.arange(6).astype(object))
-
-
-def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
-    outcomes = only_one_earthquake_topples()
-    target = fraction_target(float(outcomes.intensity_levels.levels[5]))
+    levels = np.geomspace(0.1, 1.0, 10)
+    outcomes = outcomes_of(fell, levels, range(6), all_rock=True)
+    target = fraction_target(float(levels[5]))
     (change,) = compare(target, outcomes, {"a change": outcomes})
     assert change.factor == 1 and not change.helps
     found = estimate(target, outcomes, {}, {}, {})
@@ -165,15 +154,13 @@ def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(on
     assert "the ground velocity (PGV) of the site and the building's first period to 5 %" in line
 
 
-def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(own_records, tmp_path, capsys):
+def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(few_records, tmp_path, capsys):
     path = tmp_path / "gallery.csv"
     path.write_text(
         "name;width;height;floor\nsaint;35 cm;1,6 m;\nvase;abc;70 cm;\nbust;30 cm;70;\n"
         "torso;30 cm;70 cm;7/3\nhead;20 cm\namphora;18 cm;60,5 cm;\nsaint;30 cm;1 m;\n"
     )
-    options = ["--pga", "0.5g", "--record", str(own_records / "few.csv"), "--output", str(tmp_path)]
-    rows = (own_records / "catalogue.csv").read_text().splitlines()
-    (own_records / "few.csv").write_text("\n".join(rows[:7]) + "\n")
+    options = ["--pga", "0.5g", "--record", str(few_records), "--output", str(tmp_path)]
     assert main(["assess", str(path), *options]) == 2
     said = capsys.readouterr().err
     for line, what in ((3, "abc"), (4, "without a unit"), (5, "7/3"), (6, "cells"), (8, "twice")):

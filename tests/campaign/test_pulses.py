@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.campaign.comparison import REPEATS, majority_of_repeats
-from rockfrag.campaign.tests import read_campaign
+from rockfrag.campaign.laboratory import read_campaign
 from rockfrag.errors import InputError
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.report.campaign_page import _against_rivals

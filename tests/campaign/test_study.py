@@ -9,9 +9,10 @@ import pytest
 import yaml
 
 from rockfrag.campaign.comparison import MeasuredTests
-from rockfrag.campaign.trials import sample_trials, simulate_tests
+from rockfrag.campaign.standing import sample_trials, simulate_tests
 from rockfrag.errors import InputError
-from rockfrag.report.campaign_page import _beside_plane
+from rockfrag.report.campaign_page import says
+from rockfrag.report.wording import one_line
 from rockfrag.rocking import overturns
 from rockfrag.stages import model_error
 from rockfrag.stages.campaign import campaign_with_motions, standing_object
@@ -20,7 +21,7 @@ from rockfrag.study.loading import load_any
 from rockfrag.system.blocks import Block, Column
 
 from ..stages_in_process import run_stages
-from .conftest import BLOCK, BY_HAND, DT, PEDESTAL, configured, granite
+from .conftest import BLOCK, DT, PEDESTAL, configured, granite
 
 NOTED = {name: name for name in ("test", "motion", "overturned", "rocked")} | {"group": "input"}
 """Columns of a laboratory that noted what rocked."""
@@ -91,6 +92,12 @@ def test_the_headline_of_the_fragility_has_median_and_dispersion_by_majority_and
     assert "simulated, votes" in page
 
 
+SLIDING = {"unknowns": {"edge_retreat_mm": [0, 2], "friction": [0.1, 0.2]}}
+"""What is not known of a column."""
+
+ON_A_MESH = {"mesh": "rock.ply", "mass_kg": 9.0, "pedestal": PEDESTAL}
+
+
 def of_a_column(folder, laboratory, every=3, **changes):
     """Write a study of the block on a base on a plinth, of every so many-th synthetic test; and its tests."""
     column = Column((Block(0.2, 0.6, 100.0), Block(0.12, 0.3, 40.0), BLOCK))
@@ -104,25 +111,17 @@ def of_a_column(folder, laboratory, every=3, **changes):
     changed = {
         "campaign__columns": NOTED,
         "object__pedestal": PEDESTAL,
-        "unknowns": {"edge_retreat_mm": [0, 2], "friction": [0.1, 0.2]},
         "trials": 16,
-    }
+    } | SLIDING
     return with_table(folder, laboratory, table, **(changed | changes)), table
 
 
-@pytest.mark.parametrize("every", [8, pytest.param(3, marks=pytest.mark.slow)])
-def test_a_column_of_three_bodies_is_reproduced_from_configuration_to_page(
-    tmp_path, laboratory, every
-):
-    path, table = of_a_column(tmp_path, laboratory, every)
+def test_a_column_of_three_bodies_is_reproduced_from_configuration_to_page(tmp_path, laboratory):
+    path, table = of_a_column(tmp_path, laboratory, 8)
     assert 0.2 < table["overturned"].mean() < 0.8
     tables = run(path, tmp_path)
     agreement = tables["agreement"].set_index("who")
     assert agreement.loc["rockfrag", "right"] > 0.8
-    if every == 3:
-        # a few tests do not tell the column from the block alone
-        alone = laboratory.table["overturned"].loc[table.index]
-        assert agreement.loc["rockfrag", "right"] > (alone == table["overturned"]).mean() + 0.05
     assert tables["rocking"]["right"].iloc[0] > 0.9
     page = (tmp_path / "report.html").read_text()
     assert "Coefficient of friction" in page
@@ -140,22 +139,6 @@ def test_a_column_of_which_all_is_known_is_simulated_as_it_was(tmp_path, laborat
     assert (overturned[0] == table["overturned"]).all()
     assert (rocked[0] == table["rocked"]).all()
     assert (table["overturned"] != laboratory.table["overturned"].loc[table.index]).mean() > 0.1
-
-
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"unknowns": {"edge_retreat_mm": [0, 10], "restitution": [0.8, 1.0]}}, "key unknowns"),
-        ({"object": {"mesh": "rock.ply", "mass_kg": 9.0, "pedestal": PEDESTAL}}, "beside a mesh"),
-        ({"object": {"pedestal": PEDESTAL}}, "left_m is missing"),
-        ({"object": {**BY_HAND, "pedestal": [{}]}}, "pedestal"),
-    ],
-)
-def test_a_pedestal_that_does_not_fit_ends_in_one_sentence(tmp_path, laboratory, changes, said):
-    path, _ = of_a_column(tmp_path, laboratory, **changes)
-    with pytest.raises(InputError, match=said) as raised:
-        load_any(path)
-    assert "\n" not in str(raised.value)
 
 
 def test_the_model_error_is_of_an_object_alone(tmp_path, laboratory, capsys):
@@ -194,6 +177,10 @@ def test_amplitudes_of_overturning_are_simulated_on_both_sides(tmp_path, laborat
         ({"conditioning": [{"step": "lowpas"}]}, "there is no step 'lowpas'"),
         ({"campaign__columns": {"test": "a", "motion": "b"}}, "give either overturned"),
         ({"trials": 3}, "a number of guesses"),
+        ({"object__pedestal": PEDESTAL}, "key unknowns"),
+        (SLIDING | {"object": ON_A_MESH}, "beside a mesh"),
+        (SLIDING | {"object": {"pedestal": PEDESTAL}}, "left_m is missing"),
+        (SLIDING | {"object__pedestal": [{}]}, "pedestal"),
     ],
 )
 def test_a_bad_campaign_ends_in_one_sentence_before_anything_runs(
@@ -249,7 +236,7 @@ def test_a_mesh_is_simulated_in_space_and_in_one_plane_side_by_side(tmp_path, la
 def test_space_is_called_better_or_worse_only_where_the_numbers_say_so(better, p, said):
     row = {"right": 0.9, "lower": 0.8, "upper": 0.95, "missed": 3.0, "false_alarms": 1.0, "p": p}
     row |= dict(zip(("better", "better_lower", "better_upper"), better, strict=True))
-    assert said in _beside_plane(row, row).headline
+    assert said in one_line(says.beside_plane(row, row))
 
 
 @pytest.mark.slow
@@ -286,7 +273,7 @@ def test_the_granite_rock_is_simulated_better_than_by_any_rival(tmp_path, shared
 
 
 def test_the_laboratory_s_own_files_are_read_as_the_archive_holds_them(shared):
-    from rockfrag.campaign.table_motions import table_motions
+    from rockfrag.campaign.laboratory import table_motions
 
     folder = shared / "measured" / "granite"
     (text,) = table_motions(

@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockfrag.campaign.table_motions import table_motions
-from rockfrag.campaign.tests import read_campaign
+from rockfrag.campaign.laboratory import read_campaign, table_motions
 from rockfrag.errors import InputError
 from rockfrag.units import GRAVITY
 

@@ -11,8 +11,8 @@ from rockfrag.campaign.comparison import (
     clustered_error,
     plausible_trials,
 )
-from rockfrag.campaign.table_motions import check_peaks, measured_peaks
-from rockfrag.campaign.trials import preferred_edges
+from rockfrag.campaign.laboratory import check_peaks, measured_peaks
+from rockfrag.campaign.standing import preferred_edges
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 

@@ -12,8 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-import yaml
+from ..workflow.conftest import study_content, write_record, write_study
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMAND = (sys.executable, str(ROOT / "workflow" / "run.py"), "study.yaml", "--cores", "2")
@@ -155,17 +154,7 @@ def write_small(folder: Path, names: tuple[str, ...] = ("T1", "T2", "P")) -> str
     """Write a study of two objects and more under synthetic motions on floors of a building; return its name."""
     rows = ["name,earthquake,source,file,unit"]
     for number, earthquake in enumerate(("First", "Second", "Third")):
-        rng = np.random.default_rng(number)
-        time_s = np.arange(600) * 0.01
-        waves = np.sin(
-            2 * np.pi * np.outer(time_s, rng.uniform(0.5, 5, 30)) + rng.uniform(0, 6, 30)
-        )
-        values = np.exp(-(((time_s - 2.5) / 1.2) ** 2)) * waves.sum(axis=1)
-        lines = [
-            f"{t:.2f} {a:.6f}"
-            for t, a in zip(time_s, 0.3 * values / abs(values).max(), strict=True)
-        ]
-        (folder / f"record{number}.txt").write_text("\n".join(lines) + "\n")
+        write_record(folder / f"record{number}.txt", number)
         rows.append(f"motion {number},{earthquake},folder,record{number}.txt,g")
     (folder / "motions.csv").write_text("\n".join(rows) + "\n")
     blocks = ["name,width_cm,height_cm,mass_g"]
@@ -178,18 +167,13 @@ def write_small(folder: Path, names: tuple[str, ...] = ("T1", "T2", "P")) -> str
         "storey_heights_m: [3, 3]\nmasses_kg: [20000, 20000]\nfirst_period_s: 0.2\n"
         "floors: {ground: 0, top: 2}\n"
     )
-    content = {
-        "study": "tiny",
-        "title": "A study that is tortured",
-        "seed": 3,
-        "motions": {"catalogue": "motions.csv"},
+    content = study_content() | {
         "building": "building.yaml",
         "bodies": {"specimens": "specimens.csv"},
         "amplitudes": {"lowest_g": 0.2, "highest_g": 1.6, "step_percent": 16},
-        "protocol": {"step_percent": 16},
         "fragility": {"measures": ["pga_g", "pgv_cm_s"], "confidence": 0.9},
     }
-    (folder / "study.yaml").write_text(yaml.safe_dump(content, sort_keys=False))
+    write_study(folder, content)
     return "tiny"
 
 

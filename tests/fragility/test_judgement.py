@@ -12,8 +12,11 @@ from rockfrag.fragility.checks import goodness_of_fit
 from rockfrag.fragility.estimators import fit_cloud, fit_step_tests
 from rockfrag.fragility.ida_curves import fragility_table
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.measure_selection import area_under_curve, recommend_measure
-from rockfrag.fragility.measure_selection_ida import recommend_ida_measure
+from rockfrag.fragility.measure_selection import (
+    area_under_curve,
+    recommend_ida_measure,
+    recommend_measure,
+)
 from rockfrag.fragility.observations import observations_from_table
 from rockfrag.fragility.vector import fit_vector
 

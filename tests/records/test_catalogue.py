@@ -23,8 +23,6 @@ from rockfrag.records.sources.wheel import (
 )
 from rockfrag.units import GRAVITY
 
-ROOT = Path(__file__).resolve().parents[2]
-
 
 def write_catalogue(folder, *rows, columns=COLUMNS):
     lines = [",".join(columns)]

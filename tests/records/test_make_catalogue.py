@@ -9,9 +9,8 @@ import pytest
 from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import load_motions, read_catalogue, repeated_motions
-from rockfrag.records.make_catalogue import make_catalogue
+from rockfrag.records.make_catalogue import make_catalogue, read_search_results
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
-from rockfrag.records.peer_search import read_search_results
 
 from .built_records import pack, peer_download, wave
 
@@ -75,6 +74,12 @@ def test_a_packed_download_of_peer_is_read(tmp_path):
     table = read_catalogue(catalogue)
     assert len(table) == 10
     assert table["magnitude"].tolist() == [6.93] * 10
+    first = table.iloc[2]
+    assert first["name"] == "RSN701_LOMAP_S01000"
+    assert first["second"].endswith("PEER/RSN701_LOMAP_S01090.AT2")
+    assert first["vertical"].endswith("PEER/RSN701_LOMAP_S01-UP.AT2")
+    assert (first["earthquake"], first["distance_km"]) == ("Loma Prieta 1989", 5.0)
+    assert (table["vertical"] == "").sum() == 4
     motions = load_motions(catalogue)
     np.testing.assert_allclose(motions[3].acceleration, 1.1 * wave(101, 0.3, 5) * 9.81, atol=1e-6)
     assert motions[3].metadata["station"] == "Station 1"

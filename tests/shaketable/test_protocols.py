@@ -135,7 +135,7 @@ def test_no_protocol_overturns_below_the_first_overturning_which_fine_steps_find
         step_protocol(amplitudes, outcomes, Protocol(LinearSteps(0.05, size)))
         for size in (0.002, step)
     )
-    assert fine == first
+    assert repr(fine) == repr(first)  # as text: an upper bracket that is NaN is not equal to itself
     assert outcome.censored or outcome.upper_g >= first.upper_g
 
 

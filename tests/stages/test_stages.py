@@ -11,7 +11,7 @@ from rockfrag.fragility.ida_curves import with_measures
 from rockfrag.records.motion import Motion
 from rockfrag.stages import validity
 from rockfrag.stages.floor_curves import export_curves, floor_curves
-from rockfrag.stages.ida import as_recorded, ida_table
+from rockfrag.stages.ida import as_recorded
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag.study.study import Amplitudes
 from rockfrag.system.blocks import Block, Stack
@@ -80,62 +80,30 @@ def test_files_are_one_per_floor_and_measure(curves, tmp_path):
     assert "Peak Floor Acceleration" in (tmp_path / "fragility_pfa_loft.csv").read_text()
 
 
-BODY = Block(0.2, 0.8, 50.0)
-
-
-def motions(count: int) -> dict[str, Motion]:
-    rng = np.random.default_rng(3)
-    window = np.hanning(300)
-    return {f"m{k}": Motion(window * rng.normal(size=300), 0.02, f"m{k}") for k in range(count)}
-
-
-def readings_of(names: list[str]) -> pd.DataFrame:
-    about = {"configuration": "T", "object": "T", "pedestal": "NP", "earthquake": "e", "floor": "g"}
-    table = pd.DataFrame({"motion": names, **about, "amplitude_g": 0.4})
-    return table.assign(test=table["motion"])
-
-
-def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch: pytest.MonkeyPatch):
+def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch, noise):
     monkeypatch.setattr(validity, "MOST_TESTED", 4)
-    known = motions(10)
-    configuration = replace(BODY.system(), name="T")
-    table = validity.validity_table(readings_of([*known]), [configuration], known)
+    known = {f"m{k}": noise(k, 300, 0.02, tapered=True) for k in range(10)}
+    about = {"configuration": "T", "object": "T", "pedestal": "NP", "earthquake": "e", "floor": "g"}
+    tests = pd.DataFrame({"motion": [*known], "test": [*known], **about, "amplitude_g": 0.4})
+    table = validity.validity_table(tests, [replace(STATUE.system(), name="T")], known)
     assert list(table["motion"]) == ["m0", "m2", "m5", "m7"]
-
-
-TOWER = Block(0.124, 0.372, 2.172)
-STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
-PILLAR, SQUAT = Block(0.2725, 0.9899, 62.6), Block(0.6, 1.2, 372.0)
-AMPLITUDES = Amplitudes(0.2, 1.0, 10)
-
-
-def ida(*about, **options) -> pd.DataFrame:
-    """Return the table of an IDA curve as its file has it: texts as texts."""
-    table = ida_table(*about, **options).to_pandas()
-    texts = [name for name in table if isinstance(table[name].dtype, pd.CategoricalDtype)]
-    return table.astype(dict.fromkeys(texts, "str"))
-
-
-def waves() -> list[Motion]:
-    time, about = np.arange(300) * 0.01, {"earthquake": "E", "floor": "ground"}
-    return [
-        Motion(np.sin(2 * np.pi * f * time) * (time < 1.5), 0.01, f"{f} Hz", about)
-        for f in (1.0, 2.0)
-    ]
 
 
 def test_amplitudes_grow_by_the_step_up_to_the_highest():
     values = Amplitudes(0.5, 2.0, 100).values_g
     assert values == pytest.approx([0.5, 1.0, 2.0])
-    ratios = AMPLITUDES.values_g[1:] / AMPLITUDES.values_g[:-1]
-    assert ratios == pytest.approx(1.1)
+    values = Amplitudes(0.2, 1.0, 10).values_g
+    assert values[1:] / values[:-1] == pytest.approx(1.1)
 
 
 def test_a_statue_that_its_pedestal_carries_along_rocks_and_does_not_stay():
-    table = as_recorded(
-        Stack(PILLAR, SQUAT).system(),
-        [replace(motion, acceleration=6 * motion.acceleration) for motion in waves()],
-    )
+    time, about = np.arange(300) * 0.01, {"earthquake": "E", "floor": "ground"}
+    waves = [
+        Motion(6 * np.sin(2 * np.pi * f * time) * (time < 1.5), 0.01, f"{f} Hz", about)
+        for f in (1.0, 2.0)
+    ]
+    stack = Stack(Block(0.2725, 0.9899, 62.6), Block(0.6, 1.2, 372.0))
+    table = as_recorded(stack.system(), waves)
     assert set(table["overturned_body"]) == {"pedestal"}
     assert (table["peak_rotation"] == 0).all()
     assert table["rocked"].all()

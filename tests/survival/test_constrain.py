@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.assess.hazard.measure import PGA, PGV
+from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.survival.answer import constrain

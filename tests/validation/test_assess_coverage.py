@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G
+from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import ON_POINTS, Objects, higher, wider
 from rockfrag.assess.outcomes import make_intensity_levels, outcomes_of_all
@@ -23,8 +23,7 @@ from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import amplitude_target, fraction_target
 from rockfrag.assess.scan import make_scan
 from rockfrag.assess.sources import SPACE
-from rockfrag.campaign.standing import Unknown, unknowns_of, ways_to_stand
-from rockfrag.campaign.trials import body_of
+from rockfrag.campaign.standing import Unknown, body_of, unknowns_of, ways_to_stand
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions import scale_to_pga
 from rockfrag.motions.filtering import bandpass

@@ -3,7 +3,6 @@
 import copy
 import re
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -25,8 +24,6 @@ from rockfrag.yaml_file import read_yaml
 
 from .conftest import CATALOGUE, SPECIMENS, study_content, write_record, write_study
 from .running import ROOT, snakemake
-
-Change = Callable[[dict], object]
 
 
 def refusal(folder: Path, content: dict) -> str:

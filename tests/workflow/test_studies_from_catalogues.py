@@ -60,25 +60,6 @@ def test_44_text_files_become_a_study(study_folder, monkeypatch, capsys):
     assert measures.groupby("earthquake")["rotd50_pga_g"].nunique().eq(1).all()
 
 
-def test_a_download_of_20_pairs_becomes_a_study(study_folder, monkeypatch):
-    folder = peer_download(study_folder / "PEERNGARecords_Unscaled", 20)
-    catalogue = str(study_folder / "motions.csv")
-    assert main(["catalogue", str(folder), "--output", catalogue]) == 0
-    table = pd.read_csv(catalogue, dtype=str, keep_default_na=False)
-    assert len(table) == 40
-    first = table.iloc[2]
-    assert first["name"] == "RSN701_LOMAP_S01000"
-    assert first["second"] == "PEERNGARecords_Unscaled/RSN701_LOMAP_S01090.AT2"
-    assert first["vertical"] == "PEERNGARecords_Unscaled/RSN701_LOMAP_S01-UP.AT2"
-    assert (first["earthquake"], first["station"]) == ("Loma Prieta 1989", "Station 1")
-    assert (first["magnitude"], first["distance_km"]) == ("6.93", "5.0")
-    assert first["scale_factor"] == "1.1"
-    assert (table["vertical"] == "").sum() == 10
-    measures = run_motions(study_folder, monkeypatch)
-    assert len(measures) == 40
-    assert measures["rotd50_sa_0_3s_g"].notna().all()
-
-
 def test_a_row_may_ask_for_a_direction_of_both_components(study_folder, monkeypatch):
     folder = peer_download(study_folder / "download", 2)
     catalogue = study_folder / "motions.csv"

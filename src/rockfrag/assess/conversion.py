@@ -15,8 +15,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import special
 
-from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.hazard.measure import PGV, VELOCITY_PER_G
+from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G, HazardCurve
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.request import Level, Records

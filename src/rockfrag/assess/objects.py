@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.assess.assumed import Assumption, assume
-from rockfrag.assess.moved import Moved, moved_to_both_sides
+from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides
 from rockfrag.assess.scan import Scan, make_scan
 from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, SCAN

@@ -1,6 +1,7 @@
 """The page of one object, and the files that are written beside it."""
 
 import os
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -9,11 +10,10 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.assess.answer import Assessment
-from rockfrag.assess.as_json import as_json
-from rockfrag.assess.as_nrml import as_nrml
+from rockfrag.assess.export import as_json, as_nrml
 from rockfrag.assess.figures import fractions_figure, sources_figure
-from rockfrag.assess.glossary import words_used
-from rockfrag.assess.live import live_of
+from rockfrag.assess.motions import MotionSet, common_pair
+from rockfrag.assess.objects import Objects
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.words import (
     NAMES,
@@ -25,10 +25,13 @@ from rockfrag.assess.words import (
 )
 from rockfrag.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
+from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.report.live import carried, live_kernel
+from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Column, by_row, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Section, figure_of, finding_of, section_of
 from rockfrag.report.study_report import page_text
-from rockfrag.report.wording import one_line, said, sentence
+from rockfrag.report.wording import PART, one_line, said, sentence
 
 MOTIONS_SHOWN = 15
 """Rows of the table of motions that topple the object first."""
@@ -225,7 +228,8 @@ def _years(period: float) -> str:
 
 
 def _glossary(found: Assessment) -> Section:
-    words, meanings = zip(*words_used(found), strict=True)
+    pairs = [line.split(PART) for line in said(page_says.words_used(found))]
+    words, meanings = zip(*sorted(pairs, key=lambda pair: pair[0].lower()), strict=True)
     table = text_table(
         {"Word": words, "What it means here": meanings}, "Words and abbreviations of this page."
     )
@@ -254,3 +258,47 @@ def _motions(found: Assessment) -> Section:
     )
     caption = "The motions that need the least shaking."
     return section_of(page_says.motions(found), "motions", [table_html(table, columns, caption)])
+
+
+LIVE = (0.0, 0.1, 0.25, 0.5, 0.75)
+"""Motions that may be chosen in the live part, by how many topple the object at less shaking [-]."""
+
+
+def live_of(found: Assessment) -> Markup:
+    """The object under some motions, live: that which topples it first, and others by how soon they do."""
+    objects, motions = found.request.objects, found.motions
+    order = np.argsort(found.counted.first_levels(), kind="stable")
+    places = dict.fromkeys(int(order[int(part * (order.size - 1))]) for part in LIVE)
+    chosen = [i for i in places if motions.base[i].pga > 0]
+    if not chosen:
+        return Markup("")
+    if motions.both and objects.solid(objects.body) is not None:
+        return _in_space(objects, motions, chosen)
+    bodies = {name: objects.system_of(body) for name, body in objects.arrangements.items()}
+    return live_kernel(bodies, carried([_named(motions, motions.base[i], i) for i in chosen]))
+
+
+def _in_space(objects: Objects, motions: MotionSet, chosen: list[int]) -> Markup:
+    """The ways to stand that are known in space, on pedestals that stay where they are, under both components."""
+    bodies, left_out = {}, []
+    for name, body in objects.arrangements.items():
+        solid, pedestals = objects.solid(body), body.blocks[:-1]
+        if solid is None:
+            left_out.append(name)
+            continue
+        tall = sum(block.height for block in pedestals)
+        bodies[name] = Standing(solid, replace(pedestals[-1], height=tall) if pedestals else None)
+    records = dict.fromkeys(next((p for p in motions.pairs if i in p), (i,)) for i in chosen)
+    shaking = []
+    for record in records:
+        x, *others = common_pair(motions, record) if len(record) > 1 else [motions.base[record[0]]]
+        shaking.append(GroundMotion(_named(motions, x, record[0]), *others))
+    return live_in_space(bodies, shaking, left_out)
+
+
+def _named(motions: MotionSet, motion: Motion, i: int) -> Motion:
+    """A motion with the name by which a reader knows it: earthquake, station and component."""
+    about = motions.ground[i]
+    earthquake, station = (str(about.metadata.get(key, "")) for key in ("earthquake", "station"))
+    known = f"{earthquake}, {station} ({about.name})" if earthquake and station else about.name
+    return replace(motion, name=known)

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.assumed import Assumption, assume
-from rockfrag.assess.moved import Moved, moved_to_both_sides
+from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
 from rockfrag.building.settings import make_building, read_building

@@ -65,22 +65,12 @@ def probability_in(rate: float, years: float) -> float:
 
 @dataclass(frozen=True)
 class Estimate:
-    """A probability with its interval, or a bound where no motion toppled the object.
+    """A probability with its interval, or a bound where no motion toppled the object."""
 
-    Attributes
-    ----------
-    value
-        Probability [-].
-    lower, upper
-        Limits of the interval [-].
-    sources
-        Standard deviation on the scale of the interval of each source of uncertainty [-].
-    """
-
-    value: float
-    lower: float
-    upper: float
-    sources: Mapping[str, float]
+    value: float  #: Probability [-]
+    lower: float  #: Lower limit of the interval [-]
+    upper: float  #: Upper limit [-]
+    sources: Mapping[str, float]  #: Standard deviation on the scale of the interval by source [-]
 
 
 @dataclass(frozen=True)
@@ -266,50 +256,37 @@ def _bounded(
     """Where every motion agrees: as many others could disagree as this number of earthquakes cannot exclude."""
     hidden = 1 - (1 - LEVEL) ** (1 / len(set(outcomes.earthquakes)))
     shift = _Z * math.sqrt(sum(spread**2 for spread in shifts.values()))
+    happens = middle > 0 and not math.isinf(target.certain)
+    sign = -1 if happens else 1
 
-    def most(changed: ObjectOutcomes, shift: float = 0.0) -> float:
-        fractions = np.maximum(changed.fractions(state=target.state), hidden)
-        could = np.where(changed.fractions(state=ROCKS) > 0, fractions, 0.0)
-        return target.of(changed.intensity_levels.levels, could, -shift)
-
-    def least(changed: ObjectOutcomes, shift: float = 0.0) -> float:
-        fractions = np.minimum(changed.fractions(state=target.state), 1 - hidden)
-        return target.of(changed.intensity_levels.levels, fractions, shift)
+    def bound(changed: ObjectOutcomes, shift: float = 0.0) -> float:
+        fractions = changed.fractions(state=target.state)
+        if happens:
+            fractions = np.minimum(fractions, 1 - hidden)
+        else:
+            could = changed.fractions(state=ROCKS) > 0
+            fractions = np.where(could, np.maximum(fractions, hidden), 0.0)
+        return target.of(changed.intensity_levels.levels, fractions, -sign * shift)
 
     if math.isinf(target.certain):
         # never reached: hidden motions could be enough at some level, or it lies above the last one
-        reached = min(most(outcomes, shift), float(outcomes.intensity_levels.levels[-1]))
+        reached = min(bound(outcomes, shift), float(outcomes.intensity_levels.levels[-1]))
         return Estimate(math.inf, reached, math.inf, {})
-    if middle > 0:
-        limit = target.back(_limit(target, least, outcomes, moved, shift, -1))
-        return Estimate(1.0, limit, 1.0, {})
-    return Estimate(0.0, 0.0, target.back(_limit(target, most, outcomes, moved, shift, 1)), {})
-
-
-def _limit(
-    target: Target,
-    of: Callable[..., float],
-    outcomes: ObjectOutcomes,
-    moved: Sides,
-    shift: float,
-    sign: int,
-) -> float:
-    """Limit on the scale, above (1) or below (-1): the bound, with what is not known of the properties."""
-    bound, plain = (target.forward(of(outcomes, by)) for by in (shift, 0.0))
-    ends = [max(sign * target.forward(of(side)) for side in both) for both in moved.values()]
-    if not math.isfinite(plain):
+    limit, plain = (target.forward(bound(outcomes, by)) for by in (shift, 0.0))
+    ends = [max(sign * target.forward(bound(side)) for side in both) for both in moved.values()]
+    if math.isfinite(plain):
+        further = [max(0.0, end - sign * plain) for end in ends]
+        limit += sign * _Z * math.sqrt(sum(term**2 for term in further))
+    else:
         # at rest as it is: what could move it decides
-        return sign * max([sign * bound, *ends])
-    further = [max(0.0, end - sign * plain) for end in ends]
-    return bound + sign * _Z * math.sqrt(sum(term**2 for term in further))
+        limit = sign * max([sign * limit, *ends])
+    if happens:
+        return Estimate(1.0, target.back(limit), 1.0, {})
+    return Estimate(0.0, 0.0, target.back(limit), {})
 
 
 def estimate_rocking(
-    level: float,
-    outcomes: ObjectOutcomes,
-    moved: Sides,
-    *,
-    exact: bool,
+    level: float, outcomes: ObjectOutcomes, moved: Sides, *, exact: bool
 ) -> Estimate:
     """Estimate the fraction of motions at a level that make the object rock.
 
@@ -325,3 +302,53 @@ def estimate_rocking(
     if found.value == 0:
         return Estimate(0.0, 0.0, max([hidden, *sides]), {})
     return Estimate(1.0, min([1 - hidden, *sides]), 1.0, {})
+
+
+REFERENCE_YEARS = 50.0
+"""Time for which the steps hold [year]."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of the scale."""
+
+    name: str  # What it is called
+    below: float  # Probability in 50 years below which it holds [-]
+    advice: str  # What to do, in a sentence
+
+
+STEPS = (
+    Step("low", 1e-3, "Nothing is urgent; keep it as it is."),
+    Step("moderate", 1e-2, "Have it looked at when it is next moved, and plan what helps."),
+    Step("high", 1e-1, "Have it measured, and secure it."),
+    Step("very high", math.inf, "Secure it now."),
+)
+"""Steps of the scale, rising."""
+
+SCALE_WORDS = (
+    "low below 0.1 % in 50 years, moderate to 1 %, high to 10 %, then very high; ASCE 7 accepts 1 % for the "
+    "collapse of a new building"
+)
+"""The scale in words."""
+
+
+def step_of(probability: float, years: float) -> Step:
+    """Step of a probability in some years, by the rate that it stands for."""
+    rate = -math.log1p(-min(probability, 1 - 1e-15)) / years
+    in_fifty = probability_in(rate, REFERENCE_YEARS)
+    return next(step for step in STEPS if in_fifty < step.below)
+
+
+def classes(probability: Estimate, years: float) -> Step:
+    """Step of a probability, named with those that its interval reaches; the advice is that of the estimate."""
+    worst = step_of(probability.upper, years)
+    if probability.value == 0:
+        return Step(f"at most {worst.name}", worst.below, worst.advice)
+    middle, best = step_of(probability.value, years), step_of(probability.lower, years)
+    if best == worst:
+        return middle
+    return Step(
+        f"{middle.name} (the interval reaches from {best.name} to {worst.name})",
+        middle.below,
+        middle.advice,
+    )

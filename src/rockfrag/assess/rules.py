@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.outcomes import ObjectOutcomes, make_intensity_levels, outcomes_of

@@ -20,11 +20,11 @@ from rockfrag.assess.assumed import Assumption, assume
 from rockfrag.campaign.standing import (
     LEAST_ANGLE_DEG,
     Unknown,
+    body_of,
     lognormal,
     unknowns_of,
     ways_to_stand,
 )
-from rockfrag.campaign.trials import body_of
 from rockfrag.fragility.model_error import SCAN
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import RigidBody

@@ -7,11 +7,9 @@ from typing import Any
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.mitigations import Mitigation
-from rockfrag.assess.narrowing import MEASUREMENTS, is_wide, narrowed
 from rockfrag.assess.outcomes import LARGEST_FACTOR
-from rockfrag.assess.risk import LEVEL, Estimate
-from rockfrag.assess.scale import SCALE_WORDS, classes, step_of
-from rockfrag.assess.sources import SOURCES, parts_of
+from rockfrag.assess.risk import LEVEL, SCALE_WORDS, Estimate, classes, step_of
+from rockfrag.assess.sources import MEASUREMENTS, SOURCES, is_wide, narrowed, parts_of
 from rockfrag.report.wording import Macros, one_line, said
 
 NAMES: Mapping[str, str] = {name: source.words for name, source in SOURCES.items()}

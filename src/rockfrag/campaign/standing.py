@@ -1,30 +1,193 @@
-"""How an object stands, which nobody measured: a distribution for each unknown, with its source.
+"""How an object stands, which nobody measured: guesses of all of it, from distributions with their sources.
 
 A scan says where the surface is, not which of its points carry; nor is it known where the object faces and what
-its impacts take.  A cut block stands on the edges that were measured, so that little is open.  Whoever measures
-one of the unknowns puts its value in the place of the distribution.
+its impacts take.  A cut block stands on the edges that were measured, so that little is open.  A campaign study
+gives a range for each unknown, and its tests judge the trials that fill the ranges; where there are no tests, each
+has a distribution.  Whoever measures one of the unknowns puts its value in the place of the distribution.
 """
 
 import math
-from collections.abc import Callable, Mapping
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any, overload
 
+import numpy as np
 import pandas as pd
-from scipy.stats import norm
+from numpy.typing import NDArray
+from scipy.stats import norm, qmc
 
-from rockfrag.campaign.trials import (
-    Trials,
-    body_of,
-    even_guesses,
-    possible_restitution,
-    uniform,
-)
+from rockfrag.engines.spatial import run_in_space
 from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, SCAN
+from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.rocking.ensemble import LightBodies, overturns
+from rockfrag.rocking.inputs import checked_threads
+from rockfrag.rocking.measured_restitution import largest_restitution
 from rockfrag.rocking.options import system_of
-from rockfrag.system.blocks import Block
+from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Block, Column
+from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.mesh import Shape
+from rockfrag.system.system import System
+
+UNKNOWNS = ("direction_deg", "contact_tolerance_mm", "edge_retreat_mm", "restitution", "friction")
+"""What may be given as a range: direction of shaking from the mesh's x axis, height above the lowest point up
+to which points carry, distance by which edges lie further in, and in the plane the ratio of angular velocities in
+an impact (values above the one that conserves momentum stand for that); in space, and of blocks on each other, the
+coefficient of friction."""
+
+BATCH = 50  # motions whose outcomes are in memory at a time
+
+
+@dataclass(frozen=True)
+class Trials:
+    """Guesses of what was not measured."""
+
+    # one row a trial: the unknowns, ``left_m`` and ``right_m`` (edge distances from the centre of gravity) and
+    # ``alpha_deg`` (the smaller critical angle); of blocks on each other those of the uppermost
+    table: pd.DataFrame
+    systems: tuple[System, ...]  # what stood on the table in each trial
+    # the planar block of each, where both friction and restitution are unknown
+    planar: tuple[System, ...] = ()
+
+    __repr__ = short_repr
+
+
+def uniform(low: float, high: float, fraction: float) -> float:
+    """Quantile of a uniform distribution."""
+    return low + (high - low) * fraction
+
+
+def even_guesses(
+    quantiles: Mapping[str, Callable[[float], float]], count: int, seed: int
+) -> Iterator[dict[str, float]]:
+    """Yield guesses that fill distributions evenly (scrambled Sobol points), most evenly by a power of two."""
+    sobol = qmc.Sobol(len(quantiles), scramble=True, rng=np.random.default_rng(seed))
+    for point in sobol.random(count):
+        fractions = zip(quantiles.items(), point, strict=True)
+        yield {name: float(quantile(fraction)) for (name, quantile), fraction in fractions}
+
+
+def sample_trials(
+    thing: Shape | Block | Column, ranges: Mapping[str, tuple[float, float]], count: int, seed: int
+) -> Trials:
+    """Fill the ranges of the unknowns evenly with trials.
+
+    A shape with ``friction`` is a body in space, beside the planar block if it has ``restitution`` as well; a
+    block whose edges were measured has no direction and tolerance; blocks on each other have ``friction`` too.
+    """
+    quantiles: dict[str, Callable[[float], float]] = {
+        name: partial(uniform, *ranges[name]) for name in UNKNOWNS if name in ranges
+    }
+    if "contact_tolerance_mm" in ranges:
+        low, high = ranges["contact_tolerance_mm"]
+        quantiles["contact_tolerance_mm"] = lambda fraction: low * (high / low) ** fraction
+    rows, systems, planar = [], [], []
+    for guess in even_guesses(quantiles, count, seed):
+        try:
+            body = body_of(thing, guess)
+            systems.append(_standing(thing, body, guess))
+        except InputError:
+            continue
+        if "friction" in guess and "restitution" in guess:
+            planar.append(_in_plane(body, guess))
+        block = body.blocks[-1]
+        left, right = block.b + block.cg_offset, block.b - block.cg_offset
+        angle = math.degrees(block.alpha)
+        rows.append({**guess, "left_m": left, "right_m": right, "alpha_deg": angle})
+    if not rows:
+        raise InputError(
+            f"unknowns: under none of {count} guesses could the object have stood; widen contact_tolerance_mm "
+            "or lower edge_retreat_mm."
+        )
+    return Trials(pd.DataFrame(rows), tuple(systems), tuple(planar))
+
+
+def simulate_tests(
+    systems: Sequence[System], motions: Sequence[Motion], threads: int | None = None
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Whether a body overturns, and whether any rocks, shape (trials, tests)."""
+    overturned, rocked = np.zeros((2, len(systems), len(motions)), dtype=bool)
+    for first in range(0, len(motions), BATCH):
+        batch = motions[first : first + BATCH]
+        with warnings.catch_warnings():
+            # a guess may be squat where the object is not
+            warnings.simplefilter("ignore", LightBodies)
+            if systems[0].planar:
+                result = overturns(systems, batch, threads=threads)
+            else:
+                shaking = [GroundMotion(motion) for motion in batch]
+                result = run_in_space(systems, shaking, threads=checked_threads(threads))
+        overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
+        rocked[:, first : first + len(batch)] = (result.peak_rotation[:, :, 0] > 0).any(axis=-1)
+    return overturned, rocked
+
+
+def _in_plane(planar: Block | Column, guess: Mapping[str, float]) -> System:
+    """A planar block with the restitution of a guess, as far as it gains no energy."""
+    restitution = possible_restitution(planar.blocks[-1], guess["restitution"])
+    return system_of(planar, restitution=restitution)
+
+
+def _standing(
+    thing: Shape | Block | Column, planar: Block | Column, guess: Mapping[str, float]
+) -> System:
+    """What stands on the table: planar blocks, or the shape in space on the points that carry."""
+    if "friction" not in guess:
+        return _in_plane(planar, guess)
+    if isinstance(thing, Shape):
+        tolerance, retreat = guess["contact_tolerance_mm"] / 1e3, guess["edge_retreat_mm"] / 1e3
+        body = thing.body(guess["direction_deg"], tolerance, retreat)
+        return System((body,), (Contact(friction=Friction(guess["friction"], guess["friction"])),))
+    return system_of(planar, friction=guess["friction"])
+
+
+OUTER, CROWDED = 0.1, 0.25
+"""An end of a range is preferred if its outer tenth holds more than a quarter of the plausible trials: ours."""
+
+
+_NOTHING_BEYOND = (("edge_retreat_mm", 0.0), ("restitution", 1.0))
+
+
+def preferred_edges(
+    trials: pd.DataFrame, plausible: Any, ranges: Mapping[str, tuple[float, float]]
+) -> dict[str, str]:
+    """Say at which ends of their ranges plausible trials crowd: ``low end`` or ``high end`` by unknown."""
+    found = {}
+    for name, limits in ranges.items():
+        if name == "direction_deg" and limits[1] - limits[0] >= 360:
+            continue
+        # by rank, so that where few trials can stand few are expected
+        rank = trials[name].rank(pct=True)[plausible]
+        ends = ((limits[0], "low end", rank <= OUTER), (limits[1], "high end", rank > 1 - OUTER))
+        for limit, edge, at in ends:
+            if at.mean() > CROWDED and (name, limit) not in _NOTHING_BEYOND:
+                found[name] = edge
+    return found
+
+
+@overload
+def body_of(thing: Shape | Block, guess: Mapping[str, float]) -> Block: ...
+
+
+@overload
+def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block | Column: ...
+
+
+def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block | Column:
+    """The planar block of a guess at the unknowns of a shape or block, or blocks on each other."""
+    retreat = guess["edge_retreat_mm"] / 1e3
+    if isinstance(thing, Shape):
+        return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
+    return thing.narrowed(retreat)
+
+
+def possible_restitution(block: Block, restitution: float) -> float | None:
+    """Return a restitution that gains no energy: as given, or None, which conserves momentum, where it would."""
+    return restitution if restitution < largest_restitution(block) else None
+
 
 SCAN_ACCURACY_MM = 0.5
 """Standard deviation of the height of a scanned point where none is stated [mm], of ours."""

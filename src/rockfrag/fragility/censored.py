@@ -113,7 +113,8 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
         else:
             curve = lognormal.curve_parameters(coefficients, covariance)
             method = "lognormal, interval- and right-censored maximum likelihood"
-            if _fraction_a_point(low, high, weights)[0]:
+            left, right = _shared(low, high, weights)
+            if left[0] <= right[0]:
                 method, case = "interval estimate (brackets overlap)", "overlap"
                 curve, log_likelihood = (*curve[:2], lognormal.NO_COVARIANCE), float("nan")
     return lognormal.FragilityFit(
@@ -178,7 +179,8 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
     What the step neglects is of second order in a block's fraction of all, a hundredth.
     """
     whole = np.ones((1, low.size))
-    if _fraction_a_point(low, high, weights).any():
+    left, right = _shared(low, high, weights)
+    if (left <= right).any():
         return _fit_weighted(low, high, weights)[0]
     coefficients, _, value = _newton(low, high, whole)
     if not (np.isfinite(value).all() and coefficients[0, 1] >= lognormal.LEAST_SLOPE):
@@ -189,11 +191,10 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
     return np.asarray(coefficients - step / (h00 * h11 - h01**2)[:, None])
 
 
-def _fraction_a_point(low: Floats, high: Floats, weights: Floats) -> NDArray[np.bool_]:
+def _shared(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    """Ends of what all brackets with a weight share, for each row of weights; the wrong way round for nothing."""
     used = weights > 0
-    largest = np.where(used, low, -np.inf).max(axis=1)
-    smallest = np.where(used, high, np.inf).min(axis=1)
-    return np.asarray(largest <= smallest)
+    return np.where(used, low, -np.inf).max(axis=1), np.where(used, high, np.inf).min(axis=1)
 
 
 def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats, Floats]:
@@ -202,9 +203,11 @@ def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, F
     coefficients = np.full((batch, 2), np.nan)
     information = np.full((batch, 2, 2), np.nan)
     log_likelihood = np.full(batch, np.nan)
-    overlap = _fraction_a_point(low, high, weights)
+    left, right = _shared(low, high, weights)
+    overlap = left <= right
     if overlap.any():
-        coefficients[overlap] = _common_bracket(low, high, weights[overlap])
+        closed = np.asarray(((weights[overlap] > 0) & np.isfinite(high - low)).any(axis=1))
+        coefficients[overlap] = _common_bracket(left[overlap], right[overlap], closed)
     rest = np.flatnonzero(~overlap)
     if rest.size:
         found = _newton(low, high, weights[rest])
@@ -212,20 +215,17 @@ def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, F
     return coefficients, information, log_likelihood
 
 
-def _common_bracket(low: Floats, high: Floats, weights: Floats) -> Floats:
-    """Return middle and width / √12 of the amplitudes that all brackets share.
+def _common_bracket(left: Floats, right: Floats, any_closed: NDArray[np.bool_]) -> Floats:
+    """Return middle and width / √12 of the amplitudes that all brackets share, as intercept and slope.
 
     There is no curve where all are open and end at one amplitude: some are below, some above, and any β will do.
     """
-    used = weights > 0
-    left = np.where(used, low, -np.inf).max(axis=1)
-    right = np.where(used, high, np.inf).min(axis=1)
     closed = np.isfinite(left) & np.isfinite(right)
     # equal amplitudes share a bracket of no width; 1e-6 keeps 1/β a number
     with np.errstate(invalid="ignore"):
         beta = np.maximum((right - left) / np.sqrt(12.0), 1e-6)
         result = np.column_stack([-0.5 * (left + right) / beta, 1.0 / beta])
-    one_level = (right - left < lognormal.ROUNDING) & ~(used & np.isfinite(high - low)).any(axis=1)
+        one_level = (right - left < lognormal.ROUNDING) & ~any_closed
     result[~closed | one_level] = np.nan
     result[np.isinf(right), 0] = -np.inf
     result[np.isinf(left), 0] = np.inf
@@ -276,20 +276,13 @@ def _likelihood(
 ) -> tuple[Floats, Floats, Floats]:
     """Return log-likelihood, score and Hessian in (intercept, slope), for each row of weights."""
     rows = max(1, _AT_ONCE // low.size)
-    parts = [
-        _weighted(weights[i : i + rows], _pulls(low, high, coefficients[i : i + rows]))
-        for i in range(0, len(weights), rows)
-    ]
-    value, score, hessian = zip(*parts, strict=True)
-    return np.concatenate(value), np.concatenate(score), np.concatenate(hessian)
-
-
-def _weighted(weights: Floats, pulls: tuple[Floats, ...]) -> tuple[Floats, Floats, Floats]:
-    """Sum what each bracket adds to log-likelihood, score and Hessian."""
-    value, score0, score1, h00, h01, h11 = ((weights * pull).sum(axis=1) for pull in pulls)
-    score = np.stack([score0, score1], axis=1)
-    hessian = np.stack([np.stack([h00, h01], axis=1), np.stack([h01, h11], axis=1)], axis=1)
-    return value, score, hessian
+    parts = []
+    for i in range(0, len(weights), rows):
+        pulls = _pulls(low, high, coefficients[i : i + rows])
+        parts.append([(weights[i : i + rows] * pull).sum(axis=1) for pull in pulls])
+    value, score0, score1, h00, h01, h11 = np.concatenate(parts, axis=1)
+    hessian = np.stack([h00, h01, h01, h11], axis=1).reshape(-1, 2, 2)
+    return value, np.stack([score0, score1], axis=1), hessian
 
 
 def _pulls(low: Floats, high: Floats, coefficients: Floats) -> tuple[Floats, ...]:

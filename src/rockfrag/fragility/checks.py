@@ -32,32 +32,17 @@ CELLS = 60
 
 @dataclass(frozen=True)
 class GoodnessOfFit:
-    """How well a curve describes the outcomes it was fitted to.
+    """How well a curve describes the outcomes it was fitted to."""
 
-    Attributes
-    ----------
-    deviance
-        Binomial deviance of bins of the measure against the curve.
-    p_value
-        Fraction of data sets simulated from the curve (and refitted) whose deviance is at least as
-        large.
-    dependence
-        What was simulated, see :func:`goodness_of_fit`.
-    brier
-        Mean squared difference of outcome and fitted probability.
-    calibration
-        One row per bin: ``im``, ``tests``, ``predicted`` (mean fitted probability), ``observed``,
-        ``observed_lower``, ``observed_upper`` (90 % binomial limits).
-    words
-        The finding in one sentence.
-    """
-
-    deviance: float
+    deviance: float  # binomial deviance of bins of the measure against the curve
+    # fraction of data sets simulated from the curve (and refitted) whose deviance is at least as large
     p_value: float
-    dependence: str
-    brier: float
+    dependence: str  # what was simulated, see :func:`goodness_of_fit`
+    brier: float  # mean squared difference of outcome and fitted probability
+    # one row per bin: ``im``, ``tests``, ``predicted`` (mean fitted probability), ``observed``,
+    # ``observed_lower``, ``observed_upper`` (90 % binomial limits)
     calibration: pd.DataFrame
-    words: str
+    words: str  # the finding in one sentence
 
     __repr__ = short_repr
 

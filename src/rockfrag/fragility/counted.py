@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.fragility.empirical import resurrections_of
 from rockfrag.fragility.ida_curves import scale_power
@@ -20,22 +20,20 @@ from rockfrag.machine_code import cached_njit
 from rockfrag.shaketable.swept import Swept
 
 CELLS = 2000  # cells of equal width in the logarithm of a measure
-MOTION = ("configuration", "earthquake", "floor", "motion")
-"""Columns that tell motions apart."""
+MOTION = ("configuration", "earthquake", "floor", "motion")  # columns that tell motions apart
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class CountedObservations(Observations):
     """Outcomes whose rows are the cells of each block of motions (earthquakes), see :class:`Observations`."""
 
     # motions, earthquakes: how many there are
-    motions: int = 0
-    earthquakes: int = 0
-    # block of each motion or earthquake, whichever is resampled, shape (groups,)
-    block: NDArray[np.intp] | None = None
-    edges: Floats | None = None  # ends of the cells in ln IM, shape (cells + 1,)
-    scale: Floats | None = None  # ln IM of each motion at an amplitude of 1 g, shape (motions,)
-    rise: Floats | None = None  # what each amplitude adds to it, rising, shape (n,)
+    motions: int
+    earthquakes: int
+    block: NDArray[np.intp]  # of each motion or earthquake, whichever is resampled, shape (groups,)
+    edges: Floats  # ends of the cells in ln IM, shape (cells + 1,)
+    scale: Floats  # ln IM of each motion at an amplitude of 1 g, shape (motions,)
+    rise: Floats  # what each amplitude adds to it, rising, shape (n,)
 
     @property
     def n_motions(self) -> int:
@@ -74,7 +72,6 @@ class CountedObservations(Observations):
 
     def group_weights(self, weights: Floats) -> Floats:
         """Weights of the blocks of motions, all of whose motions or earthquakes must weigh the same."""
-        assert self.block is not None
         first = np.unique(self.block, return_index=True)[1]
         found = weights[:, first]
         if not np.array_equal(found[:, self.block], weights):
@@ -83,13 +80,14 @@ class CountedObservations(Observations):
 
     def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:
         """Motions with a test in the rows ``inside``, which are neighbours."""
-        low, high = self._steps(np.array([self.im[inside].min(), self.im[inside].max()])).T
-        count = int((high > low).sum())
+        low = self._edge_below(self.im[inside].min())
+        high = self.edges[np.searchsorted(self.edges, np.log(self.im[inside].max()), side="right")]
+        first, after = (np.searchsorted(self.rise, end - self.scale) for end in (low, high))
+        count = int((after > first).sum())
         return count, float(count)
 
     def drawn(self, capacity: Floats, cell: NDArray[np.intp]) -> Floats:
         """See :class:`Observations`; ``cell`` rises with the measure."""
-        assert self.scale is not None and self.rise is not None and self.edges is not None
         values, first = np.unique(self.im, return_index=True)
         starts = np.flatnonzero(np.diff(cell[first], prepend=-1))
         ends = np.append(self._edge_below(values[starts[1:]]), np.inf)
@@ -101,19 +99,9 @@ class CountedObservations(Observations):
         )
         return np.asarray(_fallen(capacity - self.scale, self.rise, below))
 
-    def _edge_below(self, im: Floats) -> Floats:
+    def _edge_below(self, im: ArrayLike) -> Floats:
         """Lower end of the cell that holds each value [ln IM]."""
-        assert self.edges is not None
         return np.asarray(self.edges[np.searchsorted(self.edges, np.log(im), side="right") - 1])
-
-    def _steps(self, im: Floats) -> NDArray[np.intp]:
-        """First amplitude of each motion from the cell of one value and after that of the other, (motions, 2)."""
-        assert self.scale is not None and self.rise is not None and self.edges is not None
-        low = self._edge_below(im[:1])[0]
-        high = self.edges[np.searchsorted(self.edges, np.log(im[1]), side="right")]
-        return np.column_stack(
-            [np.searchsorted(self.rise, bound - self.scale) for bound in (low, high)]
-        )
 
 
 @cached_njit(error_model="numpy")

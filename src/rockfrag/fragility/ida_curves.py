@@ -79,42 +79,28 @@ def fragility_row(
     """Return one row of the fragility table, see :func:`fragility_table`."""
     fit, interval, checks = fragility.fit, fragility.interval, fragility.checks
     fractions = checks.fractions
+    of_fit = ("se_log_theta", "se_beta", "log_likelihood", "aic", "link", "method")
+    counted = ("n", "n_overturned", "n_motions")
     return {
         **labels,
         "im": fit.im,
         "unit": fit.unit,
         "estimator": estimator,
-        "theta": fit.theta,
-        "theta_lower": interval.theta[0],
-        "theta_upper": interval.theta[1],
-        "beta": fit.beta,
-        "beta_lower": interval.beta[0],
-        "beta_upper": interval.beta[1],
+        **_limited("theta", fit.theta, interval.theta),
+        **_limited("beta", fit.beta, interval.beta),
         "level": interval.level,
         "interval_method": interval.method,
         "resampled": interval.over,
         "groups": interval.groups,
-        "se_log_theta": fit.se_log_theta,
-        "se_beta": fit.se_beta,
-        "log_likelihood": fit.log_likelihood,
-        "aic": fit.aic,
-        "link": fit.link,
-        "method": fit.method,
-        "n": fit.n,
-        "n_overturned": fit.n_overturned,
-        "n_motions": fit.n_motions,
+        **{name: getattr(fit, name) for name in (*of_fit, *counted)},
         "n_earthquakes": interval.groups if interval.over == "earthquake" else fit.n_motions,
         "p_fit": checks.p_fit,
         "fit_test": checks.test,
-        "largest_residual": checks.largest_residual,
-        "influential": checks.influential,
-        "influence": checks.influence,
-        "theta_isotonic": fractions.theta,
-        "theta_isotonic_lower": fractions.theta_limits[0],
-        "theta_isotonic_upper": fractions.theta_limits[1],
-        "beta_isotonic": fractions.beta,
-        "beta_isotonic_lower": fractions.beta_limits[0],
-        "beta_isotonic_upper": fractions.beta_limits[1],
+        **{
+            name: getattr(checks, name) for name in ("largest_residual", "influential", "influence")
+        },
+        **_limited("theta_isotonic", fractions.theta, fractions.theta_limits),
+        **_limited("beta_isotonic", fractions.beta, fractions.beta_limits),
         "beta_statistical": fragility.beta_statistical,
         "beta_total": total_beta(fit.beta, fragility.beta_statistical),
         "record_set_sha256": record_set,
@@ -122,18 +108,19 @@ def fragility_row(
     }
 
 
+def _limited(name: str, value: float, limits: tuple[float, float]) -> dict[str, float]:
+    return {name: value, f"{name}_lower": limits[0], f"{name}_upper": limits[1]}
+
+
 @dataclass(frozen=True)
 class FragilityTables:
     """Fragility of every configuration, as tables."""
 
     curves: pd.DataFrame  # see :func:`fragility_table`
-    # bands, bins: what figures draw of the curves of mean probability, see
-    # :mod:`rockfrag.fragility.ida_curves`
+    # bands, bins: what figures draw of the curves of mean probability
     bands: pd.DataFrame
     bins: pd.DataFrame
-    # points of the non-parametric fragility function of those that are rejected, see
-    # :func:`rockfrag.fragility.ida_curves.fraction_points`
-    fractions: pd.DataFrame
+    fractions: pd.DataFrame  # see :func:`fraction_points`
 
 
 def fragility_table(
@@ -235,14 +222,12 @@ def curve_points(
     ``probability`` is missing.
     """
     fit = curve.fit
-    low, high = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
+    low, high = widest = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
     if np.isfinite(fit.theta):
         # a nearly flat curve may not stretch the range, nor amplitudes far above it
         low = max(low, fit.theta * np.exp(-_TAIL * fit.beta))
         high = min(high, fit.theta * np.exp(_TAIL * fit.beta))
-    if not low < high:
-        low, high = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
-    x = np.geomspace(low, high, POINTS)
+    x = np.geomspace(*((low, high) if low < high else widest), POINTS)
     nothing = np.full(POINTS, np.nan)
     lower, upper = curve.interval.band(x) if np.isfinite(fit.theta) else (nothing, nothing)
     inside = (x >= outcomes.im.min()) & (x <= outcomes.im.max()) & (np.ptp(outcomes.log_im) > 0)
@@ -250,20 +235,15 @@ def curve_points(
     if inside.any():
         local[inside] = local_fraction(outcomes, x[inside])
     fraction, fraction_lower, fraction_upper = curve.checks.fractions.at(x)
-    return pd.DataFrame(
-        {
-            **labels,
-            "im": fit.im,
-            "unit": fit.unit,
-            "x": x,
-            "probability": fit.probability(x) if np.isfinite(fit.theta) else nothing,
-            "lower": lower,
-            "upper": upper,
-            "local": local,
-            "fraction": fraction,
-            "fraction_lower": fraction_lower,
-            "fraction_upper": fraction_upper,
-        }
+    return _about(labels, curve, POINTS).assign(
+        x=x,
+        probability=fit.probability(x) if np.isfinite(fit.theta) else nothing,
+        lower=lower,
+        upper=upper,
+        local=local,
+        fraction=fraction,
+        fraction_lower=fraction_lower,
+        fraction_upper=fraction_upper,
     )
 
 
@@ -275,10 +255,7 @@ def fraction_points(labels: Mapping[str, Any], curve: Fragility) -> pd.DataFrame
     fractions = curve.checks.fractions
     x = fractions.knots()[0] if curve.checks.rejected else np.empty(0)
     fraction, lower, upper = fractions.at(x) if x.size else (x, x, x)
-    about = pd.DataFrame(
-        {**labels, "im": curve.fit.im, "unit": curve.fit.unit}, index=pd.RangeIndex(x.size)
-    )
-    return about.assign(x=x, fraction=fraction, lower=lower, upper=upper)
+    return _about(labels, curve, x.size).assign(x=x, fraction=fraction, lower=lower, upper=upper)
 
 
 def outcome_bins(
@@ -287,5 +264,10 @@ def outcome_bins(
     """Fractions of overturned tests in bins under the labels of their curve, where the measure is called ``x``."""
     names = {"im": "x", "im_lower": "x_lower", "im_upper": "x_upper"}
     table = fraction_in_bins(outcomes).rename(columns=names)
-    about = pd.DataFrame({**labels, "im": curve.fit.im, "unit": curve.fit.unit}, index=table.index)
-    return pd.concat([about, table], axis=1)
+    return pd.concat([_about(labels, curve, len(table)), table], axis=1)
+
+
+def _about(labels: Mapping[str, Any], curve: Fragility, rows: int) -> pd.DataFrame:
+    """Labels and measure of a curve, in every row."""
+    columns = {**labels, "im": curve.fit.im, "unit": curve.fit.unit}
+    return pd.DataFrame(columns, index=pd.RangeIndex(rows))

@@ -11,10 +11,12 @@ from statsmodels.regression.linear_model import OLS
 from statsmodels.tools.tools import add_constant
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.held_out import fraction_best, outcome_scores, paired_p
+from rockfrag.fragility import censored, held_out, observations
+from rockfrag.fragility.empirical import IdaData, TableIda
+from rockfrag.fragility.ida_curves import scale_power, with_measures
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
-from rockfrag.fragility.observations import Floats, Observations, numbers, observations_from_table
+from rockfrag.fragility.observations import Floats, Observations, numbers
 from rockfrag.sentences import sayer
 from rockfrag.short_repr import short_repr
 
@@ -140,7 +142,7 @@ def recommend_measure(
     rows, data = [], {}
     extra = {column: numbers(table, column, source) for column in given}
     for column in measures:
-        outcomes = observations_from_table(
+        outcomes = observations.observations_from_table(
             table,
             column,
             overturned=overturned,
@@ -159,7 +161,7 @@ def recommend_measure(
     group = pd.factorize(pd.Series(first.earthquake))[0]
     scores = np.array(
         [
-            outcome_scores(tests.log_im[:, None], tests.overturned, tests.trials, group)
+            held_out.outcome_scores(tests.log_im[:, None], tests.overturned, tests.trials, group)
             for tests in data.values()
         ]
     )
@@ -192,11 +194,11 @@ def ranked(
     total = np.where(known, scores.sum(axis=1), -np.inf)
     best = int(total.argmax())
     p_worse = np.array(
-        [paired_p(scores[best], score) if known[best] else np.nan for score in scores]
+        [held_out.paired_p(scores[best], score) if known[best] else np.nan for score in scores]
     )
     fraction = np.zeros(len(scores))
     if known.any():
-        fraction[known] = fraction_best(scores[known], replicates, seed)
+        fraction[known] = held_out.fraction_best(scores[known], replicates, seed)
     near = known & ~(p_worse < DIFFERENCE_P)
     order = compared.assign(
         score=np.where(known, total / tests, np.nan),
@@ -239,10 +241,13 @@ def _best_pair(
         if name == best or proportional:
             continue
         outcomes = (other.overturned, other.trials, group)
-        both, alone = outcome_scores(logs, *outcomes), outcome_scores(logs, *outcomes, fitted=1)
+        both, alone = (
+            held_out.outcome_scores(logs, *outcomes),
+            held_out.outcome_scores(logs, *outcomes, fitted=1),
+        )
         gain = float((both - alone).sum() / other.n)
         if gain > found[2]:
-            found = (name, paired_p(both, alone), gain)
+            found = (name, held_out.paired_p(both, alone), gain)
     return found
 
 
@@ -265,3 +270,86 @@ def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> st
     worse = scored[differs].sort_values("score", ascending=False).to_dict("records")
     best = table.to_dict("records")[0]
     return " ".join(_say("choice", best, len(table) > 1, equal, worse, groups, given))
+
+
+def recommend_ida_measure(
+    ida: pd.DataFrame | IdaData,
+    measures: pd.DataFrame,
+    columns: Sequence[str],
+    *,
+    given: Sequence[str] = (),
+    earthquake: str | None = "earthquake",
+    level: float = 0.90,
+    replicates: int = 200,
+    seed: int = 0,
+) -> MeasureSelection:
+    """Compare measures on the IDA curves of one body and recommend one, in words.
+
+    A motion scaled up and down gives many outcomes but one capacity, so the measures are compared by how well
+    they predict the bracket of the first overturning of earthquakes that were held out: one observation a motion.
+    ``ida`` has one row per motion and amplitude of one body, with ``motion``, ``amplitude_g``, ``overturned``,
+    or is IDA curves in another form that know the measures; ``measures`` one row per motion as recorded, with
+    ``name`` and ``pga_g``. ``columns`` are compared, and must grow with the amplitude; sufficiency is tested
+    against ``given`` ones, such as ``d5_95_s`` or magnitude. The table has also ``beta_amplitude``: β over the
+    power with which the measure grows with the amplitude, which compares Arias intensity fairly with peaks.
+    """
+    if not columns:
+        raise InputError("columns: name at least one intensity measure.")
+    powers = {column: scale_power(column) for column in columns}
+    fixed = [column for column, power in powers.items() if power == 0]
+    if fixed:
+        raise InputError(
+            f"measure {fixed[0]!r} does not grow with the amplitude, so no amplitude overturns by "
+            "it; name it among the given columns instead."
+        )
+    if isinstance(ida, pd.DataFrame):
+        ida = TableIda(with_measures(ida, measures, columns), earthquake)
+    resurrections = ida.resurrections(
+        "amplitude_g", ["motion"] if earthquake is None else ["motion", earthquake]
+    )
+    amplitude = censored.brackets_from_table(
+        resurrections,
+        lower="first_lower",
+        upper="first_upper",
+        earthquake=earthquake,
+        measure="amplitude_g",
+    )
+    known = measures.set_index("name")
+    place = known.index.get_indexer(pd.Index(resurrections["motion"]))
+    extra = {column: numbers(measures, column, "measures")[place] for column in given}
+    pga = observations.positive(known.loc[resurrections["motion"]], "pga_g", "measures")
+    rows, brackets = [], []
+    for column, power in powers.items():
+        unit_value = (
+            observations.positive(known.loc[resurrections["motion"]], column, "measures")
+            / pga**power
+        )
+        outcomes = ida.outcomes(column)
+        scaled = censored.Brackets(
+            unit_value * amplitude.lower**power,
+            unit_value * amplitude.upper**power,
+            amplitude.motion,
+            amplitude.earthquake,
+            outcomes.name,
+            outcomes.unit,
+        )
+        fit = censored.fit_brackets(scaled)
+        interval = censored.bracket_interval(scaled, level=level)
+        # residual of ln capacity of the motions that overturned above a survived step
+        seen = np.isfinite(scaled.upper) & (scaled.lower > 0)
+        middle = 0.5 * np.log(scaled.lower[seen] * scaled.upper[seen])
+        residual = middle - np.log(fit.theta)
+        row = measure_row(column, fit, interval, outcomes, beta_amplitude=fit.beta / power)
+        for name, values in extra.items():
+            row[f"p_{name}"] = dependence_p_value(residual, values[seen], scaled.earthquake[seen])
+        rows.append(row)
+        brackets.append(scaled)
+    group = pd.factorize(pd.Series(amplitude.earthquake))[0]
+    scores = np.array([held_out.capacity_scores(bracket, group) for bracket in brackets])
+    tests = len(amplitude.lower)
+    table = ranked(pd.DataFrame(rows), scores, tests, replicates, seed, "beta_amplitude")
+    words = recommendation(table, scores.shape[1], given)
+    if table["score"].isna().all():
+        return MeasureSelection("", "", table, words)
+    best = table.iloc[0]
+    return MeasureSelection(str(best["measure"]), str(best["im"]), table, words)

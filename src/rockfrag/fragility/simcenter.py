@@ -88,16 +88,11 @@ def _component(
             )
         demand, units = known[im]
         demands.add((demand, units[unit]))
-        family: str = "lognormal"
-        parameters: tuple[float | str, float | str] = (curve.theta, curve.beta)
+        parameters: tuple[object, ...] = "lognormal", curve.theta, curve.beta, ""
         if levels.size:
-            family, parameters = "multilinear_CDF", (_multilinear(levels, fraction), "")
-        line |= {
-            f"LS{number}-Family": family,
-            f"LS{number}-Theta_0": parameters[0],
-            f"LS{number}-Theta_1": parameters[1],
-            f"LS{number}-DamageStateWeights": "",
-        }
+            parameters = "multilinear_CDF", _multilinear(levels, fraction), "", ""
+        keys = ("Family", "Theta_0", "Theta_1", "DamageStateWeights")
+        line |= {f"LS{number}-{key}": x for key, x in zip(keys, parameters, strict=True)}
         reached = limit_state_named(state)
         words = reached.damage or reached.label
         damage = {"Description": words, "RepairAction": reached.repair}

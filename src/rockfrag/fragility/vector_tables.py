@@ -225,19 +225,13 @@ def _joined(parts: list[pd.DataFrame], columns: list[str]) -> pd.DataFrame:
 
 
 def _fit_row(fit: VectorFragility, checks: VectorChecks) -> dict[str, object]:
-    coefficients = (*fit.coefficients, 0.0)[:4]
-    return {
-        **dict(zip(("c0", "c1", "c2", "c12"), coefficients, strict=True)),
-        "aic": fit.aic,
-        "tests": fit.n,
-        "overturned": fit.n_overturned,
-        "earthquakes": fit.n_earthquakes,
-        "p_interaction": fit.interaction.p,
-        "likelihood_ratio": fit.interaction.likelihood_ratio,
-        "p_fit": checks.p_fit,
-        "method": fit.method,
-        "warnings": " ".join(fit.warnings),
-    }
+    values = (
+        *(*fit.coefficients, 0.0)[:4],
+        *(fit.aic, fit.n, fit.n_overturned, fit.n_earthquakes),
+        *(fit.interaction.p, fit.interaction.likelihood_ratio, checks.p_fit, fit.method),
+        " ".join(fit.warnings),
+    )
+    return dict(zip(FITS[2:], values, strict=True))
 
 
 def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:

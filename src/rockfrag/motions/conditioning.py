@@ -12,15 +12,9 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from rockfrag.errors import InputError
-from rockfrag.input_checks import (
-    MOST_SAMPLES,
-    number_from_zero,
-    positive_number,
-    real_number,
-    whole_number_within,
-)
+from rockfrag.input_checks import number_from_zero, positive_number, real_number, whole_within
 from rockfrag.motions.intensity import arias_times, bracketed_times
-from rockfrag.records.motion import Motion, integrate
+from rockfrag.records.motion import MOST_SAMPLES, Motion, integrate
 from rockfrag.units import GRAVITY
 
 
@@ -57,7 +51,7 @@ def despike(motion: Motion, times: float = 50.0) -> Motion:
 
 def baseline(motion: Motion, order: int = 1) -> Motion:
     """Subtract the polynomial in time that fits the acceleration best (least squares)."""
-    order = whole_number_within("step baseline", "order", order, 0, 10)
+    order = whole_within("step baseline", "order", order, 0, 10)
     _enough_samples("baseline", motion, order + 2)
     fit = Polynomial.fit(motion.time, motion.acceleration, order)
     return motion.after("baseline", motion.acceleration - fit(motion.time), order=order)
@@ -70,7 +64,7 @@ def displacement_baseline(motion: Motion, order: int = 6) -> Motion:
     from zero; order 6 is the rule of the PEER ground motion database (Ancheta et al. 2013, PEER
     Report 2013/03).
     """
-    order = whole_number_within("step displacement_baseline", "order", order, 2, 10)
+    order = whole_within("step displacement_baseline", "order", order, 2, 10)
     _enough_samples("displacement_baseline", motion, order + 2)
     _, displacement = integrate(motion.acceleration, motion.dt)
     # in units of the length of the record, so that high powers stay near one

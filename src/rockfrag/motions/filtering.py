@@ -15,7 +15,7 @@ from fractions import Fraction
 import numpy as np
 
 from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number, whole_number_within
+from rockfrag.input_checks import positive_number, whole_within
 from rockfrag.records.motion import Motion
 
 
@@ -46,7 +46,7 @@ def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz:
                 f"step {kind}: {name} {corner} is not below the Nyquist frequency {nyquist:g} Hz of "
                 f"motion {motion.name!r} (dt {motion.dt:g} s)."
             )
-    order = whole_number_within(f"step {kind}", "order", order, 1, 10)
+    order = whole_within(f"step {kind}", "order", order, 1, 10)
     if not isinstance(causal, bool):
         raise InputError(f"step {kind}: causal must be true or false, got {causal!r}.")
     if kind == "bandpass" and corners["low_hz"] >= corners["high_hz"]:

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.input_checks import MOST_SAMPLES, positive_number, real_number, whole_number_within
-from rockfrag.records.motion import Motion
+from rockfrag.input_checks import positive_number, real_number, whole_within
+from rockfrag.records.motion import MOST_SAMPLES, Motion
 
 Floats = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
     -------
     The :class:`Motion` [m/s²].
     """
-    cycles = whole_number_within("sine", "cycles", cycles, 1, 1000)
+    cycles = whole_within("sine", "cycles", cycles, 1, 1000)
     length = cycles * _seconds("sine: period", period)
     given = {"amplitude": amplitude, "period": period, "cycles": cycles}
     source = "steady harmonic motion from rest"
@@ -95,7 +95,7 @@ def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion
     name = "commanded_cosine"
     positive_number(f"{name}: pga", pga, "m/s²")
     period = 2 * np.pi * _seconds(f"{name}: pgv_over_pga", pgv_over_pga)
-    cycles = whole_number_within(name, "cycles", cycles, 1, 1000)
+    cycles = whole_within(name, "cycles", cycles, 1, 1000)
     source = "motion of a shake table commanded by PGA and PGV/PGA"
     length, step = cycles * period, min(DT, period / 400)
     given = {"amplitude": pga, "period": period, "cycles": cycles}

@@ -17,7 +17,7 @@ from scipy.signal.windows import tukey
 from scipy.stats import gamma
 
 from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number, real_number, whole_number_within
+from rockfrag.input_checks import positive_number, real_number, whole_within
 from rockfrag.motions.pulses import plain
 from rockfrag.motions.spectra import oscillator_response, response_spectrum
 from rockfrag.records.motion import Motion, integrate
@@ -57,14 +57,10 @@ def evolutionary(
         Seed of the white noise, a whole number from zero.
     arias_m_s
         Arias intensity expected before the high-pass [m/s]; one motion scatters about it.
-    d5_95_s
-        Expected significant duration [s], less than 4.9 × ``mid_s``.
-    mid_s
-        Time at which 45 % of the Arias intensity is expected [s].
-    mid_hz
-        Filter frequency at that time [Hz].
-    slope_hz_s
-        Rate of change of the filter frequency [Hz/s], mostly negative.
+    d5_95_s, mid_s
+        Expected significant duration, less than 4.9 × ``mid_s``, and time of 45 % of the Arias intensity [s].
+    mid_hz, slope_hz_s
+        Filter frequency at that time [Hz] and its rate of change [Hz/s], mostly negative.
     filter_damping
         Damping of the filter [-], between 0.02 and 1: its bandwidth.
     corner_hz
@@ -77,7 +73,7 @@ def evolutionary(
     The :class:`Motion` [m/s²].
     """
     who = "evolutionary"
-    seed = whole_number_within(who, "seed", seed, 0, 2**63 - 1)
+    seed = whole_within(who, "seed", seed, 0, 2**63 - 1)
     for name, value in (("arias_m_s", arias_m_s), ("mid_hz", mid_hz), ("corner_hz", corner_hz)):
         positive_number(f"{who}: {name}", value)
     positive_number(f"{who}: dt", dt, "seconds")
@@ -86,7 +82,7 @@ def evolutionary(
         raise InputError(f"{who}: filter_damping must lie in 0.02 … 1, got {filter_damping}.")
     shape, spread = _envelope(who, d5_95_s, mid_s)
     end = float(gamma.ppf(1 - 1e-4, shape, scale=spread))
-    count = whole_number_within(who, "number of samples", math.ceil(end / dt) + 1, 10, 200_000)
+    count = whole_within(who, "number of samples", math.ceil(end / dt) + 1, 10, 200_000)
     time = np.arange(count) * dt
     frequency = np.maximum(mid_hz + slope_hz_s * (time - mid_s), LOWEST_FREQUENCY)
     if frequency.max() > 0.25 / dt:
@@ -149,7 +145,7 @@ def spectrum_compatible(
     a decade.
     """
     who = "spectrum_compatible"
-    seed = whole_number_within(who, "seed", seed, 0, 2**63 - 1)
+    seed = whole_within(who, "seed", seed, 0, 2**63 - 1)
     positive_number(f"{who}: dt", dt, "seconds")
     given, wanted = _target(who, periods, target_g, dt)
     shape, spread = _envelope(who, d5_95_s, mid_s)
@@ -159,7 +155,7 @@ def spectrum_compatible(
 
     quiet = float(given[-1])
     strong = float(gamma.ppf(1 - 1e-3, shape, scale=spread))
-    count = whole_number_within(
+    count = whole_within(
         who, "number of samples", math.ceil((strong + 2 * quiet) / dt) + 1, 10, 1_000_000
     )
     noise = np.random.default_rng(seed).standard_normal(count)

@@ -25,6 +25,7 @@ from rockfrag.units import GRAVITY
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+MOST_SAMPLES = 10_000_000  # more than this are taken for a mistake in a unit
 MOTIONS_AT_ONCE = 64  # motions of a row group of a file, which can be read by themselves
 
 

@@ -163,21 +163,17 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
             f"{record.name}: the file has several channels, {_listed(record)}; choose one with channel=."
         )
     azimuth, letter = quantities.azimuth_of(wanted), len(wanted) == 1 and wanted.isalpha()
-    for answers in (
-        lambda channel: quantities.plain_name(wanted) in _names_of(channel),
-        # a SEED code names its sensor, not always its direction
-        lambda channel: (
-            azimuth is not None
-            and channel.component != channel.code
-            and quantities.azimuth_of(channel.component) == azimuth
-        ),
-        lambda channel: letter and channel.code.upper().endswith(wanted.upper()),
-    ):
-        found = [channel for channel in channels if answers(channel)]
-        if len(found) == 1:
-            return found[0]
-        if len(found) > 1:
-            break
+    names, ending = quantities.plain_name(wanted), wanted.upper()
+    # a SEED code names its sensor, not always its direction
+    turned = [c for c in channels if azimuth is not None and c.component != c.code]
+    ways = (
+        [c for c in channels if names in _names_of(c)],
+        [c for c in turned if quantities.azimuth_of(c.component) == azimuth],
+        [c for c in channels if letter and c.code.upper().endswith(ending)],
+    )
+    found = next(filter(None, ways), [])
+    if len(found) == 1:
+        return found[0]
     if wanted.isdigit() and not found and 1 <= int(wanted) <= len(channels):
         return channels[int(wanted) - 1]
     problem = "several channels answer" if found else "no channel answers"

@@ -8,7 +8,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.campaign.comparison import FEWEST_VOTERS, REPEATS
-from rockfrag.campaign.trials import preferred_edges
+from rockfrag.campaign.standing import preferred_edges
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector_tables import VectorTables
 from rockfrag.report.figures import campaign as figures
@@ -42,17 +42,22 @@ from rockfrag.study.campaign import CampaignStudy
 def run(job: Job[CampaignStudy]) -> Results:
     """Draw the figures of a campaign and write its page, ``report.html``, beside the tables of its stages."""
     study, tables = job.study, {name: job.table(name) for name in TABLES}
+    pair = VectorTables(tables["two_measures"], tables["contours"], tables["cells"])
+    both = two_measures_section(pair, study.confidence)
+    # whether the motions were measured on the table, or follow from what it was told
+    motion = "commanded of" if study.pulse_cycles else "measured on"
+    found, level = _findings(tables), f"{100 * study.confidence:g} %"
     sections = [
-        _agreement(study, tables),
-        _fragility(study, tables),
-        *_two_measures(study, tables),
+        _agreement(tables, found[0], level),
+        _fragility(tables, level),
+        *([both] if both else []),
         _tests(study, tables),
         _object(study, tables),
         _conditioning(study, tables),
     ]
     tests = tables["tests"]
-    lead, about = one_line(says.lead(tests, _motion(study))), {"Tests": study.tests.name}
-    answer = _answer(study, tables, sections)
+    lead, about = one_line(says.lead(tests, motion)), {"Tests": study.tests.name}
+    answer = _answer(found, tests, motion, sections)
     write_page(job, answer, sections, about, lead=lead, basis="measured")
     yield from ()
 
@@ -62,15 +67,16 @@ def _percent(row: Row) -> str:
 
 
 def _better(row: Row) -> str:
-    """By how many percentage points the simulation is better, with limits."""
+    """By how many percentage points the simulation is better, with limits; a dash for itself."""
+    if math.isnan(row["better"]):
+        return "–"
     middle, low, high = (
         number(100 * row[name], 1) for name in ("better", "better_lower", "better_upper")
     )
     return f"{middle} [{low}, {high}]"
 
 
-LEVEL = 0.05
-"""A difference between programs is stated below this adjusted p value [-]."""
+LEVEL = 0.05  # a difference between programs is stated below this adjusted p value [-]
 
 
 def _p(value: float) -> str:
@@ -98,17 +104,16 @@ def _who(name: str) -> str:
 
 
 def _answer(
-    study: CampaignStudy, tables: dict[str, pd.DataFrame], sections: Sequence[Section]
+    found: Sequence[Finding], tests: pd.DataFrame, motion: str, sections: Sequence[Section]
 ) -> Answer:
     """What stands first: how often the simulation is right, beside whom, and in which fragility."""
-    found, tests = _findings(tables), tables["tests"]
     near = int(tests["near_critical"].sum())
     specs = [part for section in sections for part in section.parts if isinstance(part, FigureSpec)]
     return Answer(
         asked="How often does the simulation predict what happened on the shaking table?",
         sentences=found[:3],
         figure=next((spec for spec in specs if spec.name == "tests"), specs[0]),
-        rests_on=said(says.rests_on(tests, _motion(study))),
+        rests_on=said(says.rests_on(tests, motion)),
         could_change=[
             *said(says.near_critical(near, len(tests))),
             *(finding.headline + "." for finding in found[3:]),
@@ -116,20 +121,12 @@ def _answer(
     )
 
 
-def _motion(study: CampaignStudy) -> str:
-    """Say whether the motions were measured on the table, or follow from what it was told."""
-    return "commanded of" if study.pulse_cycles else "measured on"
-
-
 def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
     ours, *others = tables["agreement"].to_dict("records")
-    rivals = [row for row in others if row["who"] != IN_PLANE]
-    found = [
-        finding_of(says.predicted(ours)),
-        *(_beside_plane(ours, row) for row in others if row["who"] == IN_PLANE),
-        *_against_rivals(rivals),
-        *_fragility_found(tables["fragility"]),
-    ]
+    found = [finding_of(says.predicted(ours))]
+    # whether three dimensions predict better than one plane
+    found += [finding_of(says.beside_plane(ours, row)) for row in others if row["who"] == IN_PLANE]
+    found += _against_rivals(others) + _fragility_found(tables["fragility"])
     tests = tables["tests"]
     near, wrong = tests["near_critical"], ~tests["right"]
     if wrong.any():
@@ -138,24 +135,13 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
     return found
 
 
-def _beside_plane(ours: Row, plane: Row) -> Finding:
-    """Whether three dimensions predict better than one plane."""
-    return finding_of(says.beside_plane(ours, plane))
-
-
 def _against_rivals(others: Sequence[Row]) -> list[Finding]:
     # what is read off the tests themselves is the ceiling of all models, not one of them
-    rivals = [row for row in others if row["who"] != REPEATS]
+    rivals = [row for row in others if row["who"] not in (REPEATS, IN_PLANE)]
     if not rivals:
         return []
     best = max(rivals, key=lambda row: float(row["right"]))
     return [finding_of(says.beside_rivals(best, _who(best["who"]), len(rivals)))]
-
-
-def _two_measures(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> list[Section]:
-    found = VectorTables(tables["two_measures"], tables["contours"], tables["cells"])
-    section = two_measures_section(found, study.confidence)
-    return [section] if section else []
 
 
 def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
@@ -175,18 +161,14 @@ def _ordering(fragility: pd.DataFrame) -> str:
     return str(measured.set_index("measure")["beta"].fillna(math.inf).idxmin())
 
 
-def _difference(row: Row) -> str:
-    return _better(row) if pd.notna(row["better"]) else "–"
-
-
 _RIGHT = Column("right", "Right", by_row(_percent))
+_ERRORS = (Column("false_alarms", "False alarms", 1), Column("missed", "Missed", 1))
 _AGREEMENT = (
     Column("who", "Predicted by"),
     Column("tests", "Tests", 0),
     _RIGHT,
-    Column("false_alarms", "False alarms", 1),
-    Column("missed", "Missed", 1),
-    Column("better", "Simulation better by [percentage points]", by_row(_difference)),
+    *_ERRORS,
+    Column("better", "Simulation better by [percentage points]", by_row(_better)),
     p_values("p", "p"),
     Column("judged", "Judged"),
 )
@@ -199,27 +181,22 @@ _CONDITIONING = (
     Column("conditioning", "Conditioning"),
     Column("trials", "Trials", 0),
     _RIGHT,
-    Column("false_alarms", "False alarms", 1),
-    Column("missed", "Missed", 1),
+    *_ERRORS,
 )
 
 
-def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
+def _agreement(tables: dict[str, pd.DataFrame], found: Finding, level: str) -> Section:
     agreement, rocking = tables["agreement"], tables["rocking"]
     named = agreement.assign(who=[_who(name) for name in agreement["who"]])
     best = max(named.to_dict("records"), key=lambda row: float(row["right"]))
-    text = says.agreement_figure(best, best["who"], _level(study))
+    text = says.agreement_figure(best, best["who"], level)
     parts: list[Markup | FigureSpec] = [
         figure_of(text, "agreement", lambda: figures.agreement_figure(named)),
         table_html(named, _AGREEMENT, "Outcomes predicted, and the difference on the same tests."),
         # empty where the laboratory noted nothing of it
         table_html(rocking, _ROCKING, "Whether the object rocked at all, simulated and noted."),
     ]
-    return section_of(says.agreement(_findings(tables)[0]), "agreement", parts)
-
-
-def _level(study: CampaignStudy) -> str:
-    return f"{100 * study.confidence:g} %"
+    return section_of(says.agreement(found), "agreement", parts)
 
 
 _OUTCOMES = {
@@ -227,8 +204,6 @@ _OUTCOMES = {
     OURS: "simulated, majority of votes",
     VOTES: "simulated, votes",
 }
-
-
 _FRAGILITY = (
     Column("measure", "Measure"),
     Column("who", "Outcomes"),
@@ -239,7 +214,7 @@ _FRAGILITY = (
 )
 
 
-def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
+def _fragility(tables: dict[str, pd.DataFrame], level: str) -> Section:
     fragility, tests = tables["fragility"], tables["tests"]
     shown = fragility.assign(
         measure=["{} [{}]".format(*name_and_unit(name)) for name in fragility["measure"]],
@@ -252,7 +227,7 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
     draw = partial(figures.beside_figure, tests, own, measure, f"{name} [{unit}]")
     figure = figure_of(says.beside_figure(found, name), "fragility_beside", draw)
     table = table_html(shown, _FRAGILITY, "Curves of measured and of simulated outcomes.")
-    return section_of(says.curves(found, _level(study)), "fragility", [figure, table])
+    return section_of(says.curves(found, level), "fragility", [figure, table])
 
 
 def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.campaign import comparison
-from rockfrag.campaign import table_motions as table
+from rockfrag.campaign import comparison, laboratory
 from rockfrag.campaign.comparison import Bools, Floats, MeasuredTests, Validated
-from rockfrag.campaign.tests import MEASURED, Campaign, read_campaign
-from rockfrag.campaign.trials import Trials, sample_trials, simulate_tests
+from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
+from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.fragility.vector_tables import VectorTables, vector_tables
 from rockfrag.motions.processing import process
@@ -81,7 +80,7 @@ def campaign_with_motions(
         fetch_url(public.url, public.sha256, public.path)
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
     if study.leave_out:
-        absent = table.missing_motions(study.motions, list(campaign.tests["motion"]))
+        absent = laboratory.missing_motions(study.motions, list(campaign.tests["motion"]))
         campaign = campaign.only(~campaign.tests["motion"].isin(absent))
         log.info("%d tests without a motion are left out", len(absent))
         if campaign.tests.empty:
@@ -94,12 +93,12 @@ def campaign_with_motions(
     motions = _motions(study, campaign, study.conditioning)
     if not campaign.measures:
         campaign = Campaign(
-            campaign.tests.join(table.measured_peaks(motions)),
+            campaign.tests.join(laboratory.measured_peaks(motions)),
             ("pga_g", "pgv_cm_s"),
             campaign.codes,
         )
     elif not study.pulse_cycles and campaign.tests["amplitude_g"].isna().all():
-        table.check_peaks(campaign.tests, motions, study.motions)
+        laboratory.check_peaks(campaign.tests, motions, study.motions)
     return campaign, motions
 
 
@@ -110,7 +109,7 @@ def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> lis
             process(commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles), conditioning)
             for a, ratio in settings
         ]
-    motions = table.table_motions(
+    motions = laboratory.table_motions(
         study.motions,
         list(campaign.tests["motion"]),
         unit=study.unit,

@@ -103,7 +103,7 @@ def measure_selection(
     :class:`rockfrag.fragility.measure_selection.MeasureSelection`, ``recommended`` (True for one row each) and
     ``words``, the recommendation with its reasons.
     """
-    from rockfrag.fragility.measure_selection_ida import recommend_ida_measure
+    from rockfrag.fragility.measure_selection import recommend_ida_measure
 
     parts = []
     for name, ida in ida_curves.items():

@@ -7,46 +7,35 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.hazard.measure import PGA, read_measure
+from rockfrag.assess.hazard.curve import PGA, read_measure
 from rockfrag.errors import InputError
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.schema import checked
 from rockfrag.survival.branches import Branch, read_branches
-from rockfrag.survival.evidence import Age, StandingObject, lognormal_coefficients
-from rockfrag.survival.rates import VelocityRelation
+from rockfrag.survival.evidence import Age, StandingObject, VelocityRelation, lognormal_coefficients
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.yaml_file import read_yaml
 
 RECORDS = "resources/records"
 """Folder of fetched records."""
 
+ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}
+"""A level in each measure: only fractions over all levels are used."""
+
+SHAKING = ("pga", "pgv", "sa", "hazard", "return_period", "return_period_years", "years")
+"""Keys of ``statue.yaml`` that say what shakes the site, which the branches of the hazard do here."""
+
 
 @dataclass(frozen=True)
 class Site:
-    """What is known of a site.
+    """What is known of a site."""
 
-    Attributes
-    ----------
-    name
-        What the site is called.
-    branches
-        Branches of its hazard.
-    objects
-        What stands there.
-    shared_error
-        Correlation of the errors of the objects' fragilities [-].
-    same_earthquakes
-        Whether the objects feel the same earthquakes.
-    velocity
-        PGV that comes with a PGA; None if not stated.
-    """
-
-    name: str
-    branches: tuple[Branch, ...]
-    objects: tuple[StandingObject, ...]
-    shared_error: float
-    same_earthquakes: bool
-    velocity: VelocityRelation | None
+    name: str  #: What the site is called
+    branches: tuple[Branch, ...]  #: Branches of its hazard
+    objects: tuple[StandingObject, ...]  #: What stands there
+    shared_error: float  #: Correlation of the errors of the objects' fragilities [-]
+    same_earthquakes: bool  #: Whether the objects feel the same earthquakes
+    velocity: VelocityRelation | None  #: PGV that comes with a PGA; None if not stated
 
     @property
     def measure(self) -> IntensityMeasure:
@@ -56,24 +45,9 @@ class Site:
 
 
 def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Site:
-    """Read a site from a YAML file such as ``site.yaml``.
+    """Read a site from a YAML file such as ``site.yaml``: branches, objects and how these depend on each other.
 
-    Parameters
-    ----------
-    path
-        The file; paths in it are relative to it.
-    records
-        Folder of fetched records, for objects that are simulated.
-
-    Returns
-    -------
-    Site
-        Branches, objects and how these depend on each other.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read, or does not describe a site with branches and objects.
+    Paths in it are relative to it; ``records`` is the folder of fetched records, for objects that are simulated.
     """
     known = checked(read_yaml(path), "site", str(path))
     try:
@@ -137,14 +111,65 @@ def _simulated(
     if "measure" in settings:
         measure = read_measure(settings["measure"], "measure")
     with_velocity = measure == PGA and site.velocity is not None
-    # imported when an object is simulated: others should not wait for numba
-    from rockfrag.survival.simulated import simulate_object
-
-    found = simulate_object(
+    coefficients, sd_ln = _fragility_of(
         settings["statue"], folder, measure, records, with_velocity=with_velocity
     )
-    spread = float(settings.get("median_sd_ln", found.sd_ln))
-    return StandingObject(name, measure, found.coefficients, spread, _age(settings))
+    spread = float(settings.get("median_sd_ln", sd_ln))
+    return StandingObject(name, measure, coefficients, spread, _age(settings))
+
+
+def _fragility_of(
+    given: str | Mapping[str, Any],
+    folder: Path,
+    measure: IntensityMeasure,
+    records: Path,
+    *,
+    with_velocity: bool,
+) -> tuple[tuple[float, ...], float]:
+    """Coefficients of the fragility, and the spread of what is not known of its median in ln level [-].
+
+    The object is the path of a ``statue.yaml``, or what would stand in it, simulated as ``rockfrag assess`` does.
+    With the velocity of the site known the fragility is one in PGA and PGV/PGA. An object that no motion, or every
+    one, topples at all levels that were tried is refused.
+    """
+    # imported when an object is simulated: others should not wait for numba
+    from rockfrag.assess.answer import assess_with
+    from rockfrag.assess.motions import motion_set
+    from rockfrag.assess.request import Level, make_request
+    from rockfrag.fragility.estimators import fragility_of
+
+    settings, where = given, "statue"
+    if isinstance(given, str):
+        settings, where = read_yaml(folder / given), given
+        folder = (folder / given).parent
+    assert isinstance(settings, Mapping)
+    unused = [key for key in SHAKING if key in settings]
+    if unused:
+        raise InputError(
+            f"{where}: key {unused[0]} has no effect, as the branches of the hazard say how it is shaken; "
+            "leave it out."
+        )
+    request = make_request(settings, where, folder)
+    request = replace(request, level=Level(measure, ANY_LEVEL[measure.openquake]))
+    motions = motion_set(request.records, request.place, records)
+    found = assess_with(request, motions, brief=True)
+    coefficients: tuple[float, ...] | None = None
+    if not with_velocity:
+        curve = fragility_of(found.counted.outcomes()).fit
+        if math.isfinite(curve.theta) and curve.beta > 0:
+            coefficients = lognormal_coefficients(curve.theta, curve.beta)
+    elif found.conversion:
+        coefficients = found.conversion.fragility.coefficients
+    sources = dict(found.amplitudes[0.5].sources)
+    if with_velocity:
+        sources.pop("conversion", None)
+    spread = math.sqrt(sum(size**2 for size in sources.values()))
+    if coefficients is None or not sources or not math.isfinite(spread):
+        raise InputError(
+            f"{where}: the motions do not say from which shaking it topples; too few topple it, or all do at "
+            "every level."
+        )
+    return coefficients, spread
 
 
 def _object(name: str, settings: Mapping[str, Any]) -> StandingObject:

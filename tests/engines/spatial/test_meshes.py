@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from rockfrag.campaign.trials import sample_trials, simulate_tests
+from rockfrag.campaign.standing import sample_trials, simulate_tests
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion

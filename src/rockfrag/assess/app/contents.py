@@ -1,20 +1,20 @@
 """The whole assessment as one page, ``rockfrag app``: what it computes with, and what it is made of."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 from scipy import special, stats
 
 from rockfrag import units
 from rockfrag.assess import (
     conversion,
     mitigations,
-    narrowing,
     objects,
     outcomes,
     place,
@@ -23,19 +23,19 @@ from rockfrag.assess import (
     sources,
     words,
 )
-from rockfrag.assess.app.space import in_space, ratios_of
+from rockfrag.assess.conversion import VelocityRelation
 from rockfrag.assess.hazard import curve
-from rockfrag.assess.hazard.measure import PGA, PGV
-from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.hazard.curve import PGA, PGV
+from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.place import Place
-from rockfrag.assess.request import Request
-from rockfrag.assess.scale import STEPS
+from rockfrag.assess.request import Records, Request
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
 from rockfrag.fragility import held_out, vector
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.motions.spectra import oscillator_matrix
+from rockfrag.records.motion import Motion
 from rockfrag.rocking.browser import driver_text
 
 SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
@@ -67,7 +67,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
     measures = dict.fromkeys((PGA, PGV, *level, *(each.measure for each in hazard)))
     intervals = sorted({motion.dt for motion in motions.ground})
     names = list(dict.fromkeys(motions.earthquakes))
-    left = {name: measurement.left for name, measurement in narrowing.MEASUREMENTS.items()}
+    left = {name: measurement.left for name, measurement in sources.MEASUREMENTS.items()}
     # modes of buildings of which only the storeys are known, as they are and with each property moved
     storeys = range(1, TABLED_STOREYS + 1)
     usual = {n: place.make_place({"floor": f"1/{n}"}, Path()) for n in storeys}
@@ -90,7 +90,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
         "own": asked and _own(asked.place, intervals),
         "steps": [
             {"name": step.name, "below": step.below if math.isfinite(step.below) else None}
-            for step in STEPS
+            for step in risk.STEPS
         ],
         "limits": {"storey": units.STOREY_HEIGHTS, "period": units.FIRST_PERIODS},
         "units": {
@@ -177,7 +177,7 @@ def _constants() -> dict[str, Any]:
         "Z": float(stats.norm.ppf(0.5 + risk.LEVEL / 2)),
         "FLANK_Z": float(special.ndtri(curve.FLANKS[1])),
         **_of(curve, "EC8_SLOPE", "EC8_SLOPE_SD"),
-        **_of(narrowing, "LIKELY", "UNLIKELY", "LEAST_GAIN", "MOST_NAMED"),
+        **_of(sources, "LIKELY", "UNLIKELY", "LEAST_GAIN", "MOST_NAMED"),
         "MODEL": MODEL_ERRORS[CUT].beyond,
         **_of(sources, "SPACE"),
         **_of(conversion, "MOST_LEVELS", "OF_DISPLACEMENT"),
@@ -193,4 +193,69 @@ def _constants() -> dict[str, Any]:
         "PLACE_TOLERANCES": place.TOLERANCES,
         "KNOWN_PERIOD": place.TOLERANCE_OF_KNOWN_PERIOD,
         **_of(request, "LONGEST_PERIOD"),
+    }
+
+
+def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[str, Any]:
+    """Return records, levels and constants of bodies in space, of motions one component at a time."""
+    both = motions.with_both_components()
+    fewer = both.thinned()
+    names = [motion.name for motion in both.ground]
+    turns = [math.radians(angle) for angle in range(0, 180, outcomes.WORST_STEP_DEG)]
+    return {
+        "records": [
+            {"first": pair[0], "second": pair[1], "times": _times(both, pair)}
+            for pair in both.pairs
+        ],
+        "fewer": [names.index(motion.name) for motion in fewer.ground],
+        "measures": {measure.imt: _measure_in_space(both, fewer, measure) for measure in measures},
+        "turns": [[math.cos(angle), math.sin(angle)] for angle in turns],
+        "aside": objects.ASIDE,
+        "higher": objects.HIGHER,
+        "rolling": objects.ROLLING,
+    }
+
+
+def _times(motions: MotionSet, pair: tuple[int, int]) -> list[dict[str, Any] | None]:
+    """Which times of each component are common to both; None where it is all of them."""
+    found = []
+    for own, common in zip(pair, common_pair(motions, pair), strict=True):
+        found.append(None if common is motions.base[own] else _part(motions.base[own], common))
+    return found
+
+
+def _part(own: Motion, common: Motion) -> dict[str, Any]:
+    step = common.provenance[-1]
+    begin = float(step["left_out_at_beginning_s"])
+    return {
+        "begin": begin,
+        "skip": None if step["interpolated"] else round(begin / own.dt),
+        "count": common.acceleration.size,
+        "dt": common.dt,
+    }
+
+
+def _measure_in_space(
+    both: MotionSet, fewer: MotionSet, measure: IntensityMeasure
+) -> dict[str, Any]:
+    few, fewest = (
+        outcomes.make_intensity_levels(each, measure, (), outcomes.FEW_LEVELS).levels.tolist()
+        for each in (both, fewer)
+    )
+    return {
+        "levels": few, "fewer": fewest, "values": both.values(measure).tolist(),
+        "ratios": ratios_of(both, measure),
+    }  # fmt: skip
+
+
+def ratios_of(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any] | None:
+    """Return what is known of PGV over a measure in the motions; None of PGV itself."""
+    if measure == PGV:
+        return None
+    logs = motions.log_ratios(measure)
+    relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
+    return {
+        "logs": logs.tolist(),
+        "median": float(np.median(logs)),
+        "spread": relation.unknown(Records()),
     }

@@ -12,7 +12,7 @@ from markupsafe import Markup
 from rockfrag.assess.app.contents import computing, data_of, script
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Request
-from rockfrag.assess.scale import SCALE_WORDS, STEPS
+from rockfrag.assess.risk import SCALE_WORDS, STEPS
 from rockfrag.assess.sources import SOURCES
 from rockfrag.errors import InputError
 from rockfrag.files import write_text

@@ -1,6 +1,7 @@
 """A hazard curve: how often each level of shaking is exceeded at a site."""
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -8,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.declared import IntensityMeasure, declared
 from rockfrag.short_repr import short_repr
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -34,29 +36,15 @@ FLANKS = (0.16, 0.84)
 
 @dataclass(frozen=True, eq=False)
 class HazardCurve:
-    """Annual rates with which levels of a measure are exceeded; a power law between the points.
+    """Annual rates with which levels of a measure are exceeded; a power law between the points."""
 
-    Attributes
-    ----------
-    measure
-        The intensity measure.
-    levels
-        Levels in the measure's unit, rising, shape (n,), n ≥ 2.
-    rates
-        Annual rates of exceedance [1/year], falling, shape (n,).
-    source
-        Where it comes from, in a few words.
-    quantiles
-        Curves of the same measure by their quantile, such as 0.16 and 0.84; empty where none are known.
-    is_read
-        Whether it was read; False where one level was continued with an assumed slope.
-    """
-
-    measure: IntensityMeasure
-    levels: Floats
-    rates: Floats
-    source: str
+    measure: IntensityMeasure  #: The intensity measure
+    levels: Floats  #: Levels in the measure's unit, rising, shape (n,), n ≥ 2
+    rates: Floats  #: Annual rates of exceedance [1/year], falling, shape (n,)
+    source: str  #: Where it comes from, in a few words
+    #: Curves of the same measure by their quantile, such as 0.16 and 0.84
     quantiles: dict[float, "HazardCurve"] = field(default_factory=dict)
+    #: Whether it was read; False where one level was continued with an assumed slope
     is_read: bool = True
 
     __repr__ = short_repr
@@ -167,3 +155,63 @@ def curve_of_one_level(measure: IntensityMeasure, level: float, years: float) ->
     main = curve(EC8_SLOPE, source)
     main.quantiles.update({q: curve(k, source) for q, k in flanks.items()})
     return main
+
+
+@dataclass(frozen=True)
+class Found:
+    """A curve of a file and which statistic of the hazard model it is."""
+
+    curve: HazardCurve  # The curve
+    statistic: str  # ``mean`` or such as ``quantile-0.16``
+
+
+def read_statistic(text: str, where: str) -> str:
+    """Return the name of a statistic as ``mean`` or ``quantile-0.16``; refuse a single branch of a logic tree.
+
+    It may stand there as ``quantile_curve-0.5``, or be empty for the only curve of a file.
+    """
+    if text in ("", "mean"):
+        return "mean"
+    quantile = re.fullmatch(r"quantile\D*?(0?\.\d+)", text)
+    if quantile:
+        return f"quantile-{float(quantile[1]):g}"
+    raise InputError(
+        f"{where}: the curve is of the kind {text[:40]!r}; give the mean and the quantiles of the hazard model, "
+        "not single branches or deviations."
+    )
+
+
+def read_numbers(text: str, where: str) -> list[float]:
+    """Return numbers that are separated by blanks."""
+    try:
+        return [float(word) for word in text.split()]
+    except ValueError as error:
+        raise InputError(f"{where}: a level or probability is no number ({error}).") from None
+
+
+PERIODS = (0.01, 10.0)
+"""Periods of Sa that hazard models cover [s]."""
+
+VELOCITY_PER_G = GRAVITY * CENTIMETRES_PER_METRE
+"""PGV over (a measure in g times PGV over it): cm/s for g and s."""
+
+_SA = re.compile(r"(?:P?SA)\s*[(\[_]?\s*T?=?\s*(\d*[.P]?\d+)\s*S?\s*[)\]]?", re.IGNORECASE)
+
+
+_KNOWN = {measure.openquake: measure for measure in declared()}
+PGA, PGV, SA = (_KNOWN[kind] for kind in ("PGA", "PGV", "SA"))
+
+
+def read_measure(text: str, where: str) -> IntensityMeasure:
+    """Read the name of a measure as hazard models write it: ``PGA``, ``SA(0.3)``, ``SA0P2``, ``PSA-1.0s``."""
+    plain = re.sub(r"[\s\-]", "", text).upper()
+    if plain in ("PGA", "PGV"):
+        return _KNOWN[plain]
+    found = _SA.fullmatch(plain)
+    period = float(found[1].replace("P", ".")) if found else math.nan
+    if not PERIODS[0] <= period <= PERIODS[1]:
+        raise InputError(
+            f"{where}: the measure {text[:40]!r} is not known; expected PGA, PGV or SA(T) with a period of "
+            f"{PERIODS[0]:g} to {PERIODS[1]:g} s."
+        )
+    return SA.at(period)

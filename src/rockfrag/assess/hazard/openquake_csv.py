@@ -8,9 +8,14 @@ import csv
 import io
 import re
 
-from rockfrag.assess.hazard.curve import HazardCurve, make_curve, rates_of
-from rockfrag.assess.hazard.found import Found, read_statistic
-from rockfrag.assess.hazard.measure import read_measure
+from rockfrag.assess.hazard.curve import (
+    Found,
+    HazardCurve,
+    make_curve,
+    rates_of,
+    read_measure,
+    read_statistic,
+)
 from rockfrag.errors import InputError
 
 _POE = re.compile(r"poe-([0-9.eE+-]+)")

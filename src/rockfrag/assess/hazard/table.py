@@ -6,9 +6,7 @@ Two columns: levels, as ``pga_g``, ``pgv_cm_s`` or ``sa_0_3s_g``, and how often 
 
 import re
 
-from rockfrag.assess.hazard.curve import make_curve, rates_of
-from rockfrag.assess.hazard.found import Found
-from rockfrag.assess.hazard.measure import PGA, PGV, read_measure
+from rockfrag.assess.hazard.curve import PGA, PGV, Found, make_curve, rates_of, read_measure
 from rockfrag.errors import InputError
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.tabular import cells_of

@@ -8,9 +8,7 @@
 import json
 from typing import Any
 
-from rockfrag.assess.hazard.curve import make_curve
-from rockfrag.assess.hazard.found import Found
-from rockfrag.assess.hazard.measure import read_measure
+from rockfrag.assess.hazard.curve import Found, make_curve, read_measure
 from rockfrag.errors import InputError
 
 TOTAL = "Total"

@@ -19,19 +19,12 @@ _KEY = re.compile(r"^(?P<key>[A-Z][A-Z0-9_/^ ]*?)\s*:(?P<value>.*)$")
 _NEEDED = ("SAMPLING_INTERVAL_S", "NDATA", "UNITS")
 _MAX_HEADER = 120
 _SAMPLE_TIME = "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"
-_TIMES = (
-    re.compile(
-        r"^(?P<y>\d{4})(?P<m>\d\d)(?P<d>\d\d)[_ T](?P<h>\d\d)(?P<min>\d\d)(?P<s>\d\d(?:\.\d*)?)$"
-    ),
-    re.compile(
-        r"^(?P<d>\d{1,2})[/.-](?P<m>\d{1,2})[/.-](?P<y>\d{4})[ T_]+"
-        r"(?P<h>\d{1,2}):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)$"
-    ),
-    re.compile(
-        r"^(?P<y>\d{4})[/.-](?P<m>\d{1,2})[/.-](?P<d>\d{1,2})[ T_]+"
-        r"(?P<h>\d{1,2}):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)$"
-    ),
+_CLOCK = r"[ T_]+(?P<h>\d{1,2}):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)$"
+_DATES = (
+    r"^(?P<d>\d{1,2})[/.-](?P<m>\d{1,2})[/.-](?P<y>\d{4})",
+    r"^(?P<y>\d{4})[/.-](?P<m>\d{1,2})[/.-](?P<d>\d{1,2})",
 )
+_DIGITS = r"^(?P<y>\d{4})(?P<m>\d\d)(?P<d>\d\d)[_ T](?P<h>\d\d)(?P<min>\d\d)(?P<s>\d\d(?:\.\d*)?)$"
 
 
 def _header(lines: list[str]) -> tuple[dict[str, str], int]:
@@ -87,11 +80,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
 
 def time_of(words: str) -> UTCDateTime | None:
     """Return the time in words such as ``20190728_160905.700`` or ``14/11/2010 23:09:19.3``."""
-    for pattern in _TIMES:
-        match = pattern.match(words)
-        if match:
-            return clock_time(*match.group("y", "m", "d", "h", "min", "s"))
-    return None
+    patterns = (_DIGITS, *(date + _CLOCK for date in _DATES))
+    match = next(filter(None, (re.match(pattern, words) for pattern in patterns)), None)
+    return clock_time(*match.group("y", "m", "d", "h", "min", "s")) if match else None
 
 
 def _details(facts: dict[str, str]) -> dict[str, object]:

@@ -39,7 +39,7 @@ _SHOWN = 60
 _LONGEST_ROUND = 3  # significant digits of an interval that stands above samples of more digits
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Layout:
     """All that a file says of its samples, and its rows of numbers."""
 
@@ -61,6 +61,15 @@ class _Layout:
     def interval(self) -> float | None:
         """Interval that the file states, else the user's [s]."""
         return self.text.asked_dt if self.dt is None else self.dt
+
+    def agree(self, npts: int | None, dt: float | None, line: int) -> None:
+        """Take count and interval of numbers above the samples, which must agree with the words there."""
+        for what, stated, own in (("samples", self.npts, npts), ("s as interval", self.dt, dt)):
+            if stated is not None and own is not None and abs(stated - own) > 1e-6 * own:
+                self.text.fail(
+                    f"{own:g} {what} here, but {stated:g} in the words of the header; mend it", line
+                )
+        self.npts, self.dt = (self.npts if npts is None else npts), (self.dt if dt is None else dt)
 
     def channel(
         self, samples: NDArray[np.float64], step: float, column: Column, component: str, title: str
@@ -116,7 +125,7 @@ def _parse(text: TextFile) -> list[Channel]:
     # only the last row of a series is shorter
     _check_widths(layout, widths, None if columns == 1 else widths.size - 1)
     if columns == 1:
-        return [_series(*_without_leading(layout, values))]
+        return [_series(layout, _without_leading(layout, values))]
     filled = widths[widths > 0]
     if layout.titles or _is_timed(values, columns) or _are_channels(layout, values, filled):
         _check_widths(layout, widths)
@@ -150,15 +159,15 @@ def _layout(text: TextFile) -> _Layout:
     titles = column_titles(table, lines[table.start])
     stop = last_row(text, table.start)
     layout = _Layout(text, table, stop, facts, titles, facts.npts, facts.dt)
-    layout = _with_numbers_above(layout, lines)
+    _take_numbers_above(layout, lines)
     dt = text.asked_dt
     if dt is not None and layout.dt is not None and abs(dt - layout.dt) > 1e-6 * dt:
         text.fail(f"the file states an interval of {layout.dt:g} s, not {dt:g} s; leave dt= out")
     return layout
 
 
-def _with_numbers_above(layout: _Layout, lines: list[str]) -> _Layout:
-    """Return the layout with the count and the interval that rows of numbers above the samples state.
+def _take_numbers_above(layout: _Layout, lines: list[str]) -> None:
+    """Take the count and the interval that rows of numbers above the samples state.
 
     They are the first two numbers there, or the only one. A first row of samples that cannot be one, as
     it begins with a count and its time does not come before the next, is such a row too.
@@ -170,9 +179,9 @@ def _with_numbers_above(layout: _Layout, lines: list[str]) -> _Layout:
         below = next((x for x in lines[table.start + 1 :] if not number_fields.is_blank(x)), "")
         if _is_count_row(row, number_fields.numbers_of(below, table.decimal_comma), table.columns):
             above = [(table.start, word) for word in row]
-            table = replace(table, start=table.start + 1)
+            layout.table = replace(table, start=table.start + 1)
     if not above:
-        return layout
+        return
     # a row that begins with anything else than a count may have one number of columns before it
     numbers = [word for _, word in above]
     if len(numbers) == 3 and numbers[0] == "1":
@@ -185,18 +194,7 @@ def _with_numbers_above(layout: _Layout, lines: list[str]) -> _Layout:
             "their interval; take the line out, or write # before it",
             above[0][0],
         )
-    return _agreeing(replace(layout, table=table), npts, dt, above[0][0])
-
-
-def _agreeing(layout: _Layout, npts: int | None, dt: float | None, line: int) -> _Layout:
-    """Return the layout with count and interval of numbers above, which must agree with its words."""
-    for what, stated, own in (("samples", layout.npts, npts), ("s as interval", layout.dt, dt)):
-        if stated is not None and own is not None and abs(stated - own) > 1e-6 * own:
-            layout.text.fail(
-                f"{own:g} {what} here, but {stated:g} in the words of the header; mend it", line
-            )
-    npts, dt = (layout.npts if npts is None else npts), (layout.dt if dt is None else dt)
-    return replace(layout, npts=npts, dt=dt)
+    layout.agree(npts, dt, above[0][0])
 
 
 def _is_count_row(row: list[str], below: list[str], columns: int) -> bool:
@@ -290,9 +288,7 @@ def _series(layout: _Layout, values: NDArray[np.float64]) -> Channel:
     return layout.channel(values, layout.interval, stated, component, layout.table.title)
 
 
-def _without_leading(
-    layout: _Layout, values: NDArray[np.float64]
-) -> tuple[_Layout, NDArray[np.float64]]:
+def _without_leading(layout: _Layout, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Take count and interval, a line each, from the top of one column of numbers.
 
     They are told by the count, which is that of the numbers below, and by a notation that no sample has.
@@ -300,7 +296,7 @@ def _without_leading(
     """
     text, dt = layout.text, layout.text.asked_dt
     if layout.table.numbers:
-        return layout, values
+        return values
     words = [
         word
         for line in text.lines(layout.line, layout.line + number_fields.LOOKED_AT)
@@ -329,12 +325,12 @@ def _without_leading(
         if len(first) == 2 and whole[1] and odd[1] and values[1] > 1:
             skip, count = 2, int(values[1])
     if not skip:
-        return layout, values
-    layout = _agreeing(layout, count, step, layout.line)
+        return values
+    layout.agree(count, step, layout.line)
     if dt is not None and step is not None and abs(dt - step) > 1e-6 * dt:
         text.fail(f"states an interval of {step:g} s, not {dt:g} s; leave dt= out", layout.line)
     layout.steps.append({"step": "take first lines as header", "lines": " ".join(words[:skip])})
-    return layout, values[skip:]
+    return values[skip:]
 
 
 def _is_interval(word: str, odd: bool, body: list[str]) -> bool:

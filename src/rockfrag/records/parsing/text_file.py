@@ -245,11 +245,9 @@ class TextFile:
         self.check_count(count, values.size, start)
         return values
 
-    def table(
-        self, start: int, columns: int, stop: int | None = None, decimal_comma: bool = False
-    ) -> NDArray[np.float64]:
+    def table(self, start: int, columns: int) -> NDArray[np.float64]:
         """Parse lines as rows of numbers, shape (rows, columns), separated as in :meth:`rows`."""
-        values, widths = self.rows(start, stop, decimal_comma, columns)
+        values, widths = self.rows(start, columns=columns)
         wrong = np.flatnonzero(widths != columns)
         if wrong.size:
             first = int(wrong[0])

@@ -53,16 +53,10 @@ def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
                     "vs30_m_s": float(counts[2]),
                     "set": file.stem,
                 }
+                labels = [f"RSN{counts[0]} {name.replace('/', ' ')}" for name in names[5:7]]
                 first, other = (
-                    _component(
-                        stored,
-                        file,
-                        f"{row['index']}/{part}",
-                        digest,
-                        f"RSN{counts[0]} {name.replace('/', ' ')}",
-                        facts,
-                    )
-                    for part, name in zip("ab", names[5:7], strict=True)
+                    _component(stored, file, f"{row['index']}/{part}", digest, label, facts)
+                    for part, label in zip("ab", labels, strict=True)
                 )
                 pairs.append((first, other))
     except (OSError, KeyError, ValueError, IndexError) as error:

@@ -1,0 +1,279 @@
+"""What a laboratory hands over: the table of tests, and the motion of the table in each, checked against it.
+
+A row of the table is a test, what the table was told to do and what the object did.
+"""
+
+import os
+import zipfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.files import is_file
+from rockfrag.fragility.tests_file import product_of, read_columns, read_titles
+from rockfrag.motions.filtering import highpass
+from rockfrag.motions.intensity import pga, pgv
+from rockfrag.motions.processing import process
+from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.quantities import TO_SI, asked_unit
+from rockfrag.records.read import read_motion
+from rockfrag.short_repr import short_repr
+from rockfrag.units import GRAVITY
+
+MEASURED = "overturned"  # column of what the laboratory saw
+
+NOTED = ("rocked", "slid")  # columns of what a laboratory may have noted besides
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Tests of one object on a shake table."""
+
+    # one row a test: ``test`` (its name), ``motion`` (key or file of the table's motion), ``group`` (tests of one
+    # input motion share it), ``overturned`` (bool), ``amplitude_g`` (peak to which the motion is scaled, NaN for
+    # as recorded) and a column per intensity measure
+    tests: pd.DataFrame
+    measures: tuple[str, ...]  # names of the columns with intensity measures
+    # outcomes of other programs, a bool column each, a row per row of ``tests``
+    codes: pd.DataFrame
+
+    __repr__ = short_repr
+
+    def only(self, keep: "pd.Series[bool]") -> "Campaign":
+        """Return the campaign with some of its tests."""
+        chosen = keep.to_numpy()
+        return Campaign(
+            self.tests[chosen].reset_index(drop=True),
+            self.measures,
+            self.codes[chosen].reset_index(drop=True),
+        )
+
+
+def read_campaign(
+    path: str | os.PathLike[str],
+    columns: Mapping[str, str],
+    measures: Mapping[str, Sequence[str | float]],
+    other_codes: str | os.PathLike[str] | None = None,
+) -> Campaign:
+    """Read a table of tests, one row a test, and, if there is one, a table of other programs' outcomes by test.
+
+    ``columns`` are ``test`` and ``motion`` (without it the measures of a test name its motion); either
+    ``overturned`` (yes or no) or ``lower_g`` and ``upper_g``, the largest peak survived and the one that
+    overturned, which make two tests; ``group`` where tests of one input motion share a name, else the motion;
+    ``amplitude_g`` where motions are scaled to a peak; ``rocked``, ``slid`` (yes or no) and ``which_way`` (text)
+    where the laboratory noted them. ``measures`` has for each intensity measure the columns and numbers whose
+    product it is.
+    """
+    source = Path(path).name
+    factors = [part for recipe in measures.values() for part in recipe if isinstance(part, str)]
+    keys = {
+        "label": ("test", "motion", "group", "which_way"),
+        "positive": ("amplitude_g", "lower_g", "upper_g"),
+        "outcome": (MEASURED, *NOTED),
+    }
+    kinds = {columns[key]: kind for kind, some in keys.items() for key in some if key in columns}
+    raw = read_columns(path, dict.fromkeys(factors, "positive") | kinds)
+    tests = pd.DataFrame(
+        {
+            "test": raw[columns["test"]],
+            "motion": raw[columns["motion"]] if "motion" in columns else "",
+        }
+    )
+    tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
+    doubled = tests["test"][tests["test"].duplicated()]
+    if len(doubled):
+        raise InputError(f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test.")
+    for name, recipe in measures.items():
+        tests[name] = product_of(raw, recipe)
+    if "motion" not in columns:
+        # tests that repeat a setting share its name, the measures in words
+        rows = tests[list(measures)].to_numpy().tolist()
+        tests["motion"] = [
+            ", ".join(f"{m} {v:g}" for m, v in zip(measures, row, strict=True)) for row in rows
+        ]
+        tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
+    for key in NOTED:
+        if key in columns:
+            tests[key] = raw[columns[key]].astype(bool)
+    if "which_way" in columns:
+        tests["which_way"] = raw[columns["which_way"]]
+    tests = _with_outcomes(tests, raw, columns, source)
+    return Campaign(tests, tuple(measures), _codes(other_codes, columns["test"], tests["test"]))
+
+
+def _with_outcomes(
+    tests: pd.DataFrame, raw: pd.DataFrame, columns: Mapping[str, str], source: str
+) -> pd.DataFrame:
+    """Add outcome and amplitude; an amplitude of overturning makes one test survived and one overturned."""
+    if "overturned" in columns:
+        tests[MEASURED] = raw[columns["overturned"]].astype(bool)
+        tests["amplitude_g"] = raw[columns["amplitude_g"]] if "amplitude_g" in columns else np.nan
+        return tests
+    parts = []
+    for key, fell in (("lower_g", False), ("upper_g", True)):
+        amplitude = raw[columns[key]]
+        names = [f"{test} at {a:g} g" for test, a in zip(tests["test"], amplitude, strict=True)]
+        part = tests.assign(test=names, amplitude_g=amplitude)
+        part[MEASURED] = fell
+        parts.append(part)
+    wrong = np.flatnonzero(parts[0]["amplitude_g"] >= parts[1]["amplitude_g"])
+    if wrong.size:
+        raise InputError(
+            f"{source}, row {wrong[0] + 2}: lower_g is not below upper_g; the object overturned between them."
+        )
+    return pd.concat(parts, ignore_index=True)
+
+
+def _codes(
+    path: str | os.PathLike[str] | None, column: str, tests: "pd.Series[str]"
+) -> pd.DataFrame:
+    """Outcomes by other programs in the order of the tests, as far as they are given: 1, 0, or NaN for none."""
+    if path is None:
+        return pd.DataFrame(index=range(len(tests)))
+    source = Path(path).name
+    names = [name for name in read_titles(path) if name != column]
+    table = read_columns(path, {column: "label"} | dict.fromkeys(names, "outcome")).set_index(
+        column
+    )
+    if not set(tests) & set(table.index):
+        raise InputError(
+            f"{source}: has none of the {len(tests)} tests; check that the column {column!r} has their names."
+        )
+    return table.astype(float).reindex(list(tests)).reset_index(drop=True)
+
+
+LARGEST_PEAK = 10 * GRAVITY
+"""Largest acceleration that a shake table is believed to make [m/s²]; volts and counts look larger."""
+
+KEY = "{motion}"  # stands for the test's motion in a pattern of file names
+
+DRIFT_CORNER_HZ = 0.1  # high-pass before a measured motion is integrated: its noise would drift
+
+LARGEST_FACTOR = 1.5
+"""Factor between the middle listed and measured peak beyond which they are not of one motion: of ours.  On a table
+that followed its commands it is 1.00 in PGA and 1.12 in PGV (490 tests)."""
+
+_CAUSES = {
+    "pga_g": "check the unit of the motions (unit) and of the column",
+    "pgv_cm_s": "check the time step of the motions (dt_s) and the unit of the column",
+}
+
+
+def table_motions(
+    source: str | os.PathLike[str],
+    names: Sequence[str],
+    *,
+    unit: str | None = None,
+    dt: float | None = None,
+    channel: str | None = None,
+    conditioning: Sequence[Mapping[str, Any]] = (),
+) -> list[Motion]:
+    """Read and condition the measured motion of the table in each test, in the order of the tests [m/s²].
+
+    ``source`` is an ``.npz`` archive with one array per motion, or a pattern of file names such as
+    ``motions/Test{motion}.txt``; ``names`` are keys of the archive, or what to put for ``{motion}``. ``unit``,
+    ``dt`` [s] and ``channel`` are for files that do not state them; ``conditioning`` has steps as in
+    :func:`rockfrag.motions.process`.
+    """
+    found = []
+    for motion in _read(str(source), list(names), unit, dt, channel):
+        if motion.pga > LARGEST_PEAK:
+            raise InputError(
+                f"{source}: motion {motion.name} peaks at {motion.pga / GRAVITY:.3g} g, which no shake "
+                "table reaches; it may be in volts or counts, or another column: check unit and channel."
+            )
+        found.append(process(motion, conditioning))
+    return found
+
+
+def missing_motions(source: str | os.PathLike[str], names: Sequence[str]) -> list[str]:
+    """Return the names of which there is no motion."""
+    if not str(source).endswith(".npz"):
+        return [name for name in names if not is_file(Path(_path(str(source), name)))]
+    with _archive(str(source)) as content:
+        return [name for name in names if name not in content.files]
+
+
+def _path(pattern: str, name: str) -> str:
+    if KEY not in pattern:
+        raise InputError(
+            f"{pattern}: expected an .npz archive, or file names with {KEY} where the test's motion is named."
+        )
+    return pattern.replace(KEY, name)
+
+
+def _archive(source: str) -> Any:
+    if not is_file(Path(source)):
+        raise InputError(f"{source}: there is no such file; correct the path.")
+    try:
+        # looked at first: numpy leaves a file open that turns out to be no archive
+        zipfile.ZipFile(source).close()
+        # arrays only: an archive with Python objects could run code
+        return np.load(source, allow_pickle=False)
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise InputError(f"{source}: cannot be read as an .npz archive ({error}).") from error
+
+
+def _read(
+    source: str, names: list[str], unit: str | None, dt: float | None, channel: str | None
+) -> Iterator[Motion]:
+    absent = missing_motions(source, names)
+    if absent:
+        raise InputError(
+            f"{source}: has no motion for {len(absent)} of {len(names)} tests, {', '.join(absent[:3])} first; "
+            "add them, or set without_motion: leave_out."
+        )
+    if not source.endswith(".npz"):
+        for name in names:
+            motion = read_motion(_path(source, name), unit, channel, dt)
+            yield Motion(motion.acceleration, motion.dt, name, motion.metadata, motion.provenance)
+        return
+    if unit is None or dt is None:
+        raise InputError(
+            f"{source}: an .npz archive states neither unit nor interval; give unit and dt."
+        )
+    factor = TO_SI[asked_unit(unit)]
+    with _archive(source) as content:
+        for name in names:
+            try:
+                values = np.asarray(content[name], dtype=np.float64)
+            except (ValueError, OSError, EOFError, zipfile.BadZipFile) as error:
+                raise InputError(f"{source}: motion {name} cannot be read ({error}).") from error
+            yield Motion(
+                values * factor,
+                dt,
+                name,
+                provenance=({"step": "read", "file": Path(source).name, "unit": unit},),
+            )
+
+
+def measured_peaks(motions: Sequence[Motion]) -> pd.DataFrame:
+    """Peak acceleration and velocity of motions, ``pga_g`` and ``pgv_cm_s``."""
+    return pd.DataFrame(
+        {
+            "pga_g": [pga(motion) / GRAVITY for motion in motions],
+            "pgv_cm_s": [100 * pgv(highpass(motion, DRIFT_CORNER_HZ)) for motion in motions],
+        }
+    )
+
+
+def check_peaks(tests: pd.DataFrame, motions: Sequence[Motion], source: str) -> None:
+    """Refuse motions whose peaks are not those that the tests list, if they do; say the factor between."""
+    listed = tests.filter(items=list(_CAUSES))
+    if "pgv_cm_s" not in listed and {"pga_g", "pgv_over_pga_s"} <= set(tests):
+        listed = listed.assign(pgv_cm_s=100 * GRAVITY * tests["pga_g"] * tests["pgv_over_pga_s"])
+    if listed.empty:
+        return
+    found = measured_peaks(motions)
+    for name in map(str, listed):
+        factor = float(np.median(found[name].to_numpy() / listed[name].to_numpy()))
+        if not 1 / LARGEST_FACTOR <= factor <= LARGEST_FACTOR:
+            raise InputError(
+                f"{source}: the peaks of its motions are {factor:.3g} times the {name} that the tests list "
+                f"(median of {len(tests)} tests); {_CAUSES[name]}."
+            )
