@@ -159,7 +159,7 @@ def _response(
     system: System, record: np.void, shaking: Any, history: Records, found: Records, summary: Any
 ) -> Response:
     """Put the response of a system together, of whose contact events so many were found."""
-    from rockfrag.engines.forces import centres, contact_forces
+    from rockfrag.engines.forces import Turned
 
     n, contact_events = len(history), found[: int(summary["contact_events"])]
     count, demand = system.count, summary["demand"]
@@ -171,7 +171,8 @@ def _response(
     ground[: min(n, samples.size)] = samples[:n]
     up = shaking.scale * shaking.vertical[:n]
     gravity[: up.size] += gravity[: up.size] * up
-    normal, friction = contact_forces(system, ground, state, theta, omega, alpha, gravity)
+    turned = Turned(system, state, theta)
+    normal, friction = turned.forces(ground, gravity, omega, alpha)
     time = np.arange(n, dtype=np.float64) * dt
     fallen = int(summary["fallen"])
     which = fallen - (2 - system.count) if fallen else 0
@@ -179,7 +180,7 @@ def _response(
         system=system,
         time=time,
         ground_acceleration=ground,
-        position=centres(system, state, theta),
+        position=turned.centres(),
         theta=theta,
         omega=omega,
         alpha=alpha,

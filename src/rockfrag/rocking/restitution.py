@@ -94,12 +94,6 @@ def restitution_from_peaks(
     -------
     The :class:`RestitutionFit`: ``restitution`` with ``lower`` and ``upper``, ``impacts``, ``scatter``,
     ``computed``.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two peaks, one is not between zero and the critical angle, or the
-        signs neither alternate nor agree.
     """
     values, pivots = _checked_peaks(block, peaks)
 

@@ -90,11 +90,6 @@ def rocking_spectrum(
     The :class:`RockingSpectrum`: peak ``rotation`` over the critical angle and ``velocity`` over p, infinite where
     the block overturns, and ``overturned``, of shape (j, k), angles × periods.
 
-    Raises
-    ------
-    InputError
-        If a period or an angle cannot be used.
-
     Examples
     --------
     Of blocks of one slenderness the larger ones stand longer:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy import cos, sign, sin
 
-from .single_block import standing_pivot
+from . import single_block as upper
 from .systems import Equation, Quantity, System, by_sign, misprinted, random_systems
 
 Array = np.ndarray
@@ -35,6 +35,11 @@ def positions(i: int, s1: int, s2: int):
         ) * np.array([[0.0], [1.0]])
 
     return truth
+
+
+def centre_1(s: System, side: int) -> Array:  # 2.29, 2.38
+    x = s.xg + side * (s.b1 - s.r1 * sin(s.tc1 - side * s.th1))
+    return np.array([x, s.r1 * cos(s.tc1 - side * s.th1) - s.h1])
 
 
 def centre_2(s: System, s1: int, s2: int, turn: Array | None = None) -> Array:
@@ -86,14 +91,6 @@ def rocking_mode_2(
     return np.array([first(s, side, s.length_, s.beta_, swirl), second])
 
 
-def lone(s: System, side: Array | int) -> Array:  # 2.58; 2.56 and 2.57
-    return (
-        s.io2 * s.q2
-        + side * s.m2 * s.g * s.r2 * sin(s.tc2 - side * s.th2)
-        + s.m2 * s.r2 * s.a * cos(s.tc2 - side * s.th2)
-    )
-
-
 def whole(s: System, side: Array | int) -> Array:  # 2.55; 2.53 and 2.54
     radius, critical = np.hypot(s.b1, s.h), np.arctan2(s.b1, s.h)
     return (
@@ -105,10 +102,6 @@ def whole(s: System, side: Array | int) -> Array:  # 2.55; 2.53 and 2.54
 
 def glued(s: System, side: int) -> Array:
     return s.rigidly_joined().moments(side, 1).sum(axis=0)
-
-
-def upper_alone(s: System, side: int) -> Array:
-    return s.standing().moments(1, side)[1]
 
 
 def speed_squared(s: System, cross: float) -> Array:  # 2.33
@@ -170,10 +163,6 @@ def linear_glued(s: System, side: int) -> Array:
     return s.rigidly_joined().get("linear_motion", side, 1).sum(0)
 
 
-def linear_upper(s: System, side: int) -> Array:
-    return s.standing().get("linear_motion", 1, side)[1]
-
-
 def lagrange_by_newton(s: System) -> Array:
     """Moments of inertial and gravity forces about the pivots: Newton and Euler, no Lagrange."""
     force = [
@@ -232,13 +221,7 @@ EQUATIONS = [
         lambda s: s.g * (s.m1 * s.get("centre1", 1, 1)[1] + s.m2 * s.get("centre2", 1, 1)[1]),
         lambda s: s.get("potential", 1, 1),
     ),
-    Equation(
-        "2.29",
-        lambda s: np.array(
-            [s.xg + s.b1 - s.r1 * sin(s.tc1 - s.th1), s.r1 * cos(s.tc1 - s.th1) - s.h1]
-        ),
-        positions(1, 1, 1),
-    ),
+    Equation("2.29", lambda s: centre_1(s, 1), positions(1, 1, 1)),
     Equation("2.30", lambda s: centre_2(s, 1, 1), positions(2, 1, 1)),
     Equation(
         "2.31",
@@ -281,13 +264,7 @@ EQUATIONS = [
     # γ is what turns M12 = m2 R2 l cos γ: read off ∂²T/∂ω1∂ω2
     Equation("2.36", lambda s: cos(gamma_1(s, 1)), lambda s: _cosine(s, 1, 1)),
     Equation("2.37", lambda s: rocking_mode_1(s, 1), lambda s: s.moments(1, 1)),
-    Equation(
-        "2.38",
-        lambda s: np.array(
-            [s.xg - s.b1 + s.r1 * sin(s.tc1 + s.th1), s.r1 * cos(s.tc1 + s.th1) - s.h1]
-        ),
-        positions(1, -1, -1),
-    ),
+    Equation("2.38", lambda s: centre_1(s, -1), positions(1, -1, -1)),
     Equation(
         "2.39",
         lambda s: centre_2(s, -1, -1, turn=-s.th2),
@@ -296,7 +273,7 @@ EQUATIONS = [
     ),
     Equation("2.40", lambda s: rocking_mode_1(s, -1), lambda s: s.moments(-1, -1)),
     Equation("2.41", lambda s: cos(gamma_1(s, -1)), lambda s: _cosine(s, -1, -1)),
-    Equation("2.42", lambda s: sign(s.th1), lambda s: standing_pivot(s.th1, s.b1)),
+    Equation("2.42", lambda s: sign(s.th1), lambda s: upper.standing_pivot(s.th1, s.b1)),
     Equation("2.43", lambda s: rocking_mode_1(s, sign(s.th1)), rocking_mode(1)),
     Equation(
         "2.44",
@@ -334,10 +311,10 @@ EQUATIONS = [
     Equation("2.53", lambda s: whole(s, 1), lambda s: glued(s, 1)),
     Equation("2.54", lambda s: whole(s, -1), lambda s: glued(s, -1)),
     Equation("2.55", lambda s: whole(s, sign(s.th1)), by_sign(glued)),
-    Equation("2.56", lambda s: lone(s, 1), lambda s: upper_alone(s, 1)),
-    Equation("2.57", lambda s: lone(s, -1), lambda s: upper_alone(s, -1)),
-    Equation("2.58", lambda s: lone(s, sign(s.th2)), by_sign(upper_alone, "th2")),
-    Equation("2.59", lambda s: sign(s.th2), lambda s: standing_pivot(s.th2, s.b2)),
+    Equation("2.56", lambda s: upper.rocking(s, 1), lambda s: upper.about(s, 1)),
+    Equation("2.57", lambda s: upper.rocking(s, -1), lambda s: upper.about(s, -1)),
+    Equation("2.58", lambda s: upper.rocking(s, sign(s.th2)), upper.lone),
+    Equation("2.59", lambda s: sign(s.th2), lambda s: upper.standing_pivot(s.th2, s.b2)),
     Equation(
         "2.60",
         lambda s: linear_1(s, s.length, 1.0),
@@ -366,7 +343,7 @@ EQUATIONS = [
             + sign(s.th2) * s.m2 * s.b2 * s.g
             + s.m2 * s.h2 * s.a
         ),
-        by_sign(linear_upper, "th2"),
+        upper.lone_linear,
     ),
 ]
 
