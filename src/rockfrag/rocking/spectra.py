@@ -116,7 +116,6 @@ def rocking_spectrum(
     shape = (angle.size, period.size)
     rotation = found.of_top("peak_rotation").reshape(shape)
     p = np.array([fastest_frequency(block, GRAVITY) for block in blocks]).reshape(shape)
-    velocity = np.where(
-        np.isinf(rotation), np.inf, found.of_top("peak_velocity").reshape(shape) / p
-    )
+    fastest = found.of_top("peak_velocity").reshape(shape)
+    velocity = np.where(np.isinf(rotation), np.inf, fastest / p)
     return RockingSpectrum(period, angle, rotation, velocity)
