@@ -21,8 +21,9 @@ from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import AnyStudy
 from rockfrag.study.space import SpaceStudy
 from rockfrag.study.study import Study
+from rockfrag_thesis import building_sensitivity
 from rockfrag_thesis.settings import settings_of
-from rockfrag_thesis.stages import hypotheses, sensitivity, sensitivity_analysis
+from rockfrag_thesis.stages import hypotheses, sensitivity_analysis
 
 Stage = Callable[[Job], Results]
 
@@ -38,7 +39,7 @@ def stages_of(study: AnyStudy) -> list[Stage]:
     optional = (
         (pedestal.run, study.has_pairs),
         (sensitivity_analysis.run, settings_of(study).sensitivity_analysis),
-        (sensitivity.run, settings_of(study).sensitivity),
+        (building_sensitivity.run, settings_of(study).sensitivity),
         (measured_tests.run, study.measured_tests),
         (hypotheses.run, settings_of(study).compares),
         (study_report.run, True),

@@ -4,7 +4,7 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -114,11 +114,10 @@ def csv_text(table: pd.DataFrame) -> str:
 def _as_text(value: Any) -> Any:
     if not isinstance(value, str) or len(value) < 2 or not value.startswith((*FORMULA, "\t", "\r")):
         return value
-    try:
+    with suppress(ValueError):
         float(value)
-    except ValueError:
-        return f"'{value}"
-    return value
+        return value
+    return f"'{value}"
 
 
 def write_table(table: pd.DataFrame, *paths: str | os.PathLike[str]) -> None:

@@ -6,6 +6,7 @@ import math
 import os
 import re
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -140,10 +141,9 @@ class Row:
     def number(self, column: str) -> float:
         """Return a cell that must be a finite number."""
         text = self.cells.get(column, "")
-        try:
+        value = math.nan
+        with suppress(ValueError):
             value = float(text)
-        except ValueError:
-            value = math.nan
         if not math.isfinite(value):
             raise self.error(column, f"expected a number, found {text or 'nothing'}")
         return value

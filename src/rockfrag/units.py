@@ -148,13 +148,10 @@ LEAST_PEAK = 0.05  # a motion whose peak is below this [m/s²] moves nothing tha
 
 def check_density(width: float, height: float, mass: float) -> None:
     """Refuse a block [m, m, kg] that no solid can have at any depth within ``DEPTHS``, which is not known."""
-    thin = DEPTHS[0] * width
-    thick = DEPTHS[1] * max(width, height)
+    thin, thick = DEPTHS[0] * width, DEPTHS[1] * max(width, height)
     # the volume of a size of 1e-300 m is 0 in numbers
-    thinnest = width * height * thin
-    most = mass / thinnest if thinnest else math.inf
-    thickest = width * height * thick
-    least = mass / thickest if thickest else math.inf
+    volumes = (width * height * depth for depth in (thin, thick))
+    most, least = (mass / volume if volume else math.inf for volume in volumes)
     if most < DENSITIES[0]:
         wrong = f"at most {most:.3g} kg/m³ at a depth of {thin:.3g} m, less than any solid"
     elif least > DENSITIES[1]:

@@ -45,14 +45,6 @@ def test_who_fell_first_and_where_the_column_parted() -> None:
     assert outcomes.parted_contact.ravel().tolist() == [0, 3]
 
 
-def test_restitution_and_friction_go_together() -> None:
-    held = overturns(COLUMN, [MOTION], DT, [1.0], friction=[0.6])
-    bounced = overturns(
-        COLUMN, [MOTION], DT, [1.0], friction=[0.6], restitution=[(None, 0.9, 0.97)]
-    )
-    assert held.impacts[0, 0, 0] != bounced.impacts[0, 0, 0] or held.overturned[0, 0, 0]
-
-
 def test_only_bodies_that_pure_rocking_holds_are_said_to_leave_the_ground() -> None:
     upwards = 12 * np.sin(2 * np.pi * 3 * TIME)
     with pytest.warns(LightBodies):

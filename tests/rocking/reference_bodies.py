@@ -29,3 +29,9 @@ def random_motion(rng: np.random.Generator, samples: int = 300, dt: float = 0.01
     )
     motion = waves * np.sin(math.pi * t / t[-1])
     return 9.81 * rng.uniform(0.2, 1.0) * motion / np.abs(motion).max()
+
+
+def polyline(seed: int, samples: int) -> np.ndarray:
+    """Straight lines between normal draws eight samples apart [m/s²]."""
+    coarse = np.random.default_rng(seed).normal(size=samples // 8 + 1)
+    return np.interp(np.arange(samples) / 8, np.arange(coarse.size), coarse)

@@ -33,6 +33,7 @@ IMPACTS = [  # old contacts, and which of them close
     ((1, -1), (False, True)),
     ((1, -1), (True, False)),
 ]
+EVERY_IMPACT = [*IMPACTS, ((1, 1), (True, True)), ((1, -1), (True, True))]
 
 
 @entry_kernel
@@ -57,7 +58,7 @@ def random_stack(rng):
 
 def random_impact(rng, kind):
     """Contacts, closing ones, rotations and velocities before an impact of a stack."""
-    (c1, c2), closes = IMPACTS[kind]
+    (c1, c2), closes = EVERY_IMPACT[kind]
     side = int(rng.choice([1, -1]))
     c1, c2 = side * c1, side * c2
     omega1 = c1 * abs(rng.normal()) * (-1 if closes[0] else rng.choice([1, -1]))
@@ -105,10 +106,12 @@ def test_kernels_and_reference_agree_on_every_impact(law):
     for number in range(300):
         stack = random_stack(rng)
         restitution = measured(stack, rng.uniform(0.5, 1.4), law)
-        case = random_impact(rng, number % len(IMPACTS))
+        old, _, theta, omega = case = random_impact(rng, number % len(EVERY_IMPACT))
         fast, slow = compiled(stack, restitution, *case), plain(stack, restitution, *case)
         assert fast[0] == slow[0] and fast[2] == slow[2]
         assert fast[1] == pytest.approx(slow[1], abs=1e-9)
+        energy = Model(stack, 9.81).kinetic_energy
+        assert energy(fast[0], theta, fast[1]) <= energy(old, theta, omega) * (1 + 1e-8)
 
 
 def test_without_a_measured_value_momentum_is_conserved_and_nothing_gives_way():
@@ -175,20 +178,6 @@ def test_a_lone_block_has_a_value_for_each_direction():
     assert named.theta == pytest.approx(free.theta, abs=1e-12)
     with pytest.raises(InputError, match="would gain energy"):
         simulate(crooked, STILL, 0.002, restitution=max(values))
-
-
-@pytest.mark.parametrize("e", [0.848, 0.87, 0.895, 0.92])
-def test_a_statue_does_not_stop_dead_below_what_conserves_momentum(e):
-    stack = Stack(Block(0.184, 0.208, 2.3), Block(0.124, 0.62, 3.456))
-    for law in law_names():
-        response = simulate(
-            stack, STILL, 0.002, theta0=(0, 0.099), restitution=MeasuredRestitution((None, e), law)
-        )
-        impacts = response.contact_events.query("kind == 'impact'")
-        assert len(impacts) > 3
-        assert np.abs(response.theta[-20:]).max() < 0.05 < np.abs(response.theta[:, 1]).max()
-        first = impacts.iloc[0]
-        assert abs(first["omega_after"][1]) > 0.5 * abs(first["omega_before"][1])
 
 
 @pytest.mark.parametrize("law", law_names())

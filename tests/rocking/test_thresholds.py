@@ -12,7 +12,7 @@ from rockfrag.rocking.thresholds import find_thresholds
 from rockfrag.system.blocks import Block, Stack
 
 from ..oracle import cases as benchmark_cases
-from .reference_bodies import uniform
+from .reference_bodies import T1, polyline, uniform
 
 G = 9.81
 
@@ -171,14 +171,9 @@ def test_the_sample_follows_from_its_seed(ensemble):
     np.testing.assert_array_equal(item.cases, again.cases)
 
 
-T1 = Block(0.124, 0.372, 2.172)
 STACK = Stack(Block(0.184, 0.208, 2.3), T1)
 DT = 0.01
-
-
-def motion(seed, samples=2000):
-    coarse = np.random.default_rng(seed).normal(size=samples // 8 + 1)
-    return np.interp(np.arange(samples) / 8, np.arange(coarse.size), coarse)
+MOTION = polyline(0, 2000)
 
 
 SCALES = np.linspace(1.5, 5.0, 250)
@@ -186,7 +181,7 @@ SCALES = np.linspace(1.5, 5.0, 250)
 
 def test_what_is_sure_does_not_flip_and_what_is_not_does():
     """Predict, with one set of copies, the flips of another."""
-    motions = [motion(seed) for seed in range(4)]
+    motions = [polyline(seed, 2000) for seed in range(4)]
     bodies = [T1, STACK]
     sure = outcome_robustness(bodies, motions, DT, SCALES, perturbation=0.01, copies=12, seed=1)
     other = outcome_robustness(bodies, motions, DT, SCALES, perturbation=0.01, copies=4, seed=2)
@@ -197,7 +192,7 @@ def test_what_is_sure_does_not_flip_and_what_is_not_does():
 
 def test_a_smaller_perturbation_leaves_more_outcomes_as_they_are():
     fractions = [
-        outcome_robustness(STACK, motion(0), DT, SCALES, perturbation=size, copies=6).mean()
+        outcome_robustness(STACK, MOTION, DT, SCALES, perturbation=size, copies=6).mean()
         for size in (1e-9, 1e-5, 1e-2)
     ]
     assert fractions[0] >= fractions[1] >= fractions[2]
@@ -205,8 +200,8 @@ def test_a_smaller_perturbation_leaves_more_outcomes_as_they_are():
 
 
 def test_the_unstable_distance_does_not_tell_what_flips():
-    found = overturns(STACK, motion(0), DT, SCALES)
-    sure = outcome_robustness(STACK, motion(0), DT, SCALES, perturbation=0.01, copies=12)
+    found = overturns(STACK, MOTION, DT, SCALES)
+    sure = outcome_robustness(STACK, MOTION, DT, SCALES, perturbation=0.01, copies=12)
     unsure = sure < 1
     assert unsure.sum() > 3
     # most outcomes that do flip have kept away from every unstable equilibrium
@@ -223,4 +218,4 @@ def test_the_unstable_distance_does_not_tell_what_flips():
 )
 def test_unusable_perturbations_are_refused(changed, message):
     with pytest.raises(InputError, match=message):
-        outcome_robustness(T1, motion(0), DT, [1.0], **changed)
+        outcome_robustness(T1, MOTION, DT, [1.0], **changed)

@@ -8,23 +8,18 @@ import pytest
 from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.rocking.ensemble import LightBodies
 
-from .reference_bodies import T2, P
+from .reference_bodies import T2, P, polyline
 
 G = 9.81
-
-
-def shaking(seed, peak, dt=0.01, samples=3000):
-    coarse = np.random.default_rng(seed).normal(size=samples // 8 + 1)
-    fine = np.arange(int(samples * 0.01 / dt)) * dt
-    return peak * np.interp(fine, np.arange(coarse.size) * 0.08, coarse)
+SHAKING = polyline(0, 3000)
 
 
 @pytest.mark.parametrize("body", [T2, Stack(P, T2)])
 @pytest.mark.parametrize("peak", [2.0, 3.0])
 def test_what_is_asked_does_not_hang_on_the_samples(body, peak):
-    coarse = simulate(body, shaking(0, peak), 0.01)
+    coarse = simulate(body, peak * SHAKING, 0.01)
     # the same straight lines, looked at twenty times as often
-    fine_motion = np.interp(np.arange(60_000) * 0.0005, np.arange(3000) * 0.01, shaking(0, peak))
+    fine_motion = np.interp(np.arange(60_000) * 0.0005, np.arange(3000) * 0.01, peak * SHAKING)
     fine = simulate(body, fine_motion, 0.0005)
     assert coarse.impacts > 0 and coarse.overturned
     assert coarse.friction_demand == pytest.approx(fine.friction_demand, rel=2e-3)
@@ -87,7 +82,7 @@ def test_losing_contact_is_an_contact_event():
 
 
 def test_an_ensemble_asks_what_its_histories_do():
-    motion, bodies = shaking(0, 2.0), [T2, Stack(P, T2)]
+    motion, bodies = 2.0 * SHAKING, [T2, Stack(P, T2)]
     found = overturns(bodies, motion, 0.01, [0.5, 1.0, 1.4], forces=True)
     for i, body in enumerate(bodies):
         for k, scale in enumerate(found.scales[0]):

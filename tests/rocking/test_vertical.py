@@ -44,19 +44,6 @@ def test_a_constant_vertical_acceleration_is_another_gravity(body, upward, linea
     assert with_it.overturned == other.overturned
 
 
-@pytest.mark.parametrize("body", [TOWER, STACK, CROOKED])
-def test_an_ensemble_under_constant_vertical_acceleration_is_one_under_another_gravity(body):
-    motion = shaking(np.random.default_rng(2), 1.0)
-    scales = np.linspace(0.5, 9.0, 60)
-    upward = 1.5
-    vertical = [np.full(motion.size, upward)]
-    each = [overturns(body, scale * motion, DT, vertical=vertical) for scale in scales]
-    fell = [found.overturned.item() for found in each]
-    other = overturns(body, motion, DT, scales, g=9.81 + upward).overturned[0, 0]
-    assert 5 < other.sum() < 55
-    assert (fell == other).mean() >= 0.98
-
-
 def cases(count):
     """Bodies, motions and vertical ones, every third strong enough to nearly take weight away."""
     rng = np.random.default_rng(3)

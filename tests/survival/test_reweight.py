@@ -9,8 +9,13 @@ from scipy import special
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve, rate_weights
 from rockfrag.errors import InputError
 from rockfrag.survival.branches import Branch
-from rockfrag.survival.evidence import Age, StandingObject, lognormal_coefficients
-from rockfrag.survival.rates import VelocityRelation, shaking_rates
+from rockfrag.survival.evidence import (
+    Age,
+    StandingObject,
+    VelocityRelation,
+    lognormal_coefficients,
+    shaking_rates,
+)
 from rockfrag.survival.reweight import reweight, scaled
 
 SLOPE = 2.5

@@ -18,6 +18,7 @@ from rockfrag_thesis.sensitivity_analysis.friction_grid import (
 from rockfrag_thesis.sensitivity_analysis.simulated import level_amplitudes
 from rockfrag_thesis.standing import SIZES, standing_definitions
 
+from ..rocking.reference_bodies import polyline
 from .conftest import bursts
 
 TOWER = Block(0.124, 0.372, 2.172)
@@ -70,15 +71,9 @@ FINE_LEVELS = 0.2 * 1.01 ** np.arange(180)
 PROTOCOL = Protocol(GeometricSteps(0.2, 0.05), 1.1)
 
 
-def shaking(seed):
-    coarse = np.random.default_rng(seed).normal(size=201)
-    values = np.interp(np.arange(1600) / 8, np.arange(201), coarse)
-    return Motion(values, 0.01, f"M{seed}")
-
-
 def test_readings_of_a_ida_stand_or_fall_with_small_differences():
     chosen = [replace(TOWER.system(), name="T1"), replace(STACK.system(), name="P&T1")]
-    motions = [shaking(seed) for seed in range(4)]
+    motions = [Motion(polyline(seed, 1600), 0.01, f"M{seed}") for seed in range(4)]
     table = standing_definitions(chosen, motions, FINE_LEVELS, PROTOCOL, seed=1)
     assert len(table) == 2 * 4 * 3
     columns = [f"stands_{size:.0e}" for size in SIZES]

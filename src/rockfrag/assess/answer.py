@@ -9,37 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
+from rockfrag.assess import outcomes, risk
 from rockfrag.assess.assumed import Moved
 from rockfrag.assess.conversion import Conversion, find_conversion
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
 from rockfrag.assess.mitigations import Mitigation, compare, mitigations_of
 from rockfrag.assess.motions import MotionSet, motion_set
-from rockfrag.assess.outcomes import (
-    FEW_LEVELS,
-    FEWEST_LEVELS,
-    LEVELS,
-    Directions,
-    IntensityLevels,
-    ObjectOutcomes,
-    find_directions,
-    flip_rate,
-    fraction_with_sliding,
-    make_intensity_levels,
-    on_pad,
-    outcomes_of,
-    outcomes_of_all,
-    outcomes_of_each,
-)
+from rockfrag.assess.outcomes import Directions, IntensityLevels, ObjectOutcomes
 from rockfrag.assess.request import Level, Request
-from rockfrag.assess.risk import (
-    Estimate,
-    Target,
-    amplitude_target,
-    estimate,
-    estimate_rocking,
-    fraction_target,
-    risk_target,
-)
+from rockfrag.assess.risk import Estimate
 from rockfrag.assess.rules import RuleCheck, check_rules
 from rockfrag.assess.sources import SPACE
 from rockfrag.errors import InputError
@@ -55,81 +33,41 @@ RECORDS = "resources/records"
 
 @dataclass(frozen=True, eq=False)
 class Assessment:
-    """All that is known of one object at one place.
+    """All that is known of one object at one place."""
 
-    Attributes
-    ----------
-    request
-        What was asked.
-    motions
-        The motions.
-    level
-        Level of shaking at the site; None if neither level nor hazard was given.
-    hazard
-        The hazard curve that was used; None if none was given.
-    counted
-        What each motion as recorded does to the object as it stands.
-    arrangements
-        Outcomes of each way in which the object can stand, as it stands first, under motions with the velocity of
-        the site.
-    rocking
-        Fraction of the motions at the level that make it rock; None without a level.
-    rocks_from
-        Least level at which any motion makes it rock, in the measure's unit; infinite where none does.
-    fraction
-        Fraction of the motions at the level that topple it; None without a level.
-    probability
-        Probability of toppling in the years asked for; None without a hazard.
-    counts
-        Number of motions that reach the level, and of those that make it rock and topple it there; None without a
-        level, and where the level is beyond what any motion may be scaled to.
-    amplitudes
-        Levels at which a tenth and half of the motions topple it, by fraction.
-    by_arrangement
-        What is estimated of each arrangement.
-    curve
-        Lognormal fragility curve of the motions as recorded, with parameters that are NaN where the outcomes give
-        none; None if none was fitted, or the velocity of the site is known.
-    conversion
-        What hazard in another measure than PGV leaves open; None in PGV.
-    planar
-        What is estimated of the object in one plane, along one component at a time, beside the answer in space,
-        which counts; None where there is none in space.
-    directions
-        The worst direction; None where no record has two components.
-    mitigations
-        What helps, most helpful first.
-    effects
-        What each assumption does to the answer: what is estimated with it smaller and larger.
-    rules
-        Engineers' rules held against the outcomes.
-    sliding_fraction
-        Fraction of the motions at the level that topple it if it may slide [-]; NaN without friction or level.
-    flip_rate
-        Fraction of the outcomes in space at the level that differ if the base does by a millionth [-]; or NaN.
-    """
-
-    request: Request
-    motions: MotionSet
-    level: Level | None
-    hazard: HazardCurve | None
-    counted: ObjectOutcomes
+    request: Request  #: What was asked
+    motions: MotionSet  #: The motions
+    level: Level | None  #: Level of shaking at the site; None if neither level nor hazard was given
+    hazard: HazardCurve | None  #: The hazard curve that was used; None if none was given
+    counted: ObjectOutcomes  #: What each motion as recorded does to the object as it stands
+    #: Outcomes of each way to stand, its own first, under motions with the velocity of the site
     arrangements: Mapping[str, ObjectOutcomes]
+    #: Fraction of the motions at the level that make it rock; None without a level
     rocking: Estimate | None
+    #: Least level at which any motion makes it rock, in the measure's unit; infinite where none does
     rocks_from: float
+    #: Fraction of the motions at the level that topple it; None without a level
     fraction: Estimate | None
+    #: Probability of toppling in the years asked for; None without a hazard
     probability: Estimate | None
+    #: Motions that reach the level, that rock and that topple it there; None where none can be scaled to it
     counts: tuple[int, int, int] | None
+    #: Levels at which a tenth and half of the motions topple it, by fraction
     amplitudes: Mapping[float, Estimate]
-    by_arrangement: Mapping[str, float]
+    by_arrangement: Mapping[str, float]  #: What is estimated of each arrangement
+    #: Lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
     curve: Fragility | None
+    #: What hazard in another measure than PGV leaves open; None in PGV
     conversion: Conversion | None
+    #: What is estimated in one plane, beside the answer in space, which counts; None where there is none
     planar: float | None
-    directions: Directions | None
-    mitigations: tuple[Mitigation, ...]
-    effects: tuple[Moved[float], ...]
-    rules: tuple[RuleCheck, ...]
+    directions: Directions | None  #: The worst direction; None where no record has two components
+    mitigations: tuple[Mitigation, ...]  #: What helps, most helpful first
+    effects: tuple[Moved[float], ...]  #: What is estimated with each property smaller and larger
+    rules: tuple[RuleCheck, ...]  #: Engineers' rules held against the outcomes
+    #: Fraction of the motions at the level that topple it if it may slide [-]; NaN without friction or level
     sliding_fraction: float
+    #: Fraction of outcomes in space at the level that differ if the base does by a millionth [-]; or NaN
     flip_rate: float = math.nan
 
     __repr__ = short_repr
@@ -166,11 +104,6 @@ class Plan:
     # Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space
     compares_few: bool
 
-    @property
-    def asked(self) -> list[float]:
-        """Levels that are wanted exactly."""
-        return [self.level.value] if self.level else []
-
 
 @dataclass(frozen=True, eq=False)
 class Shaken:
@@ -184,31 +117,14 @@ class Shaken:
     # Outcomes as it stands in one plane, along one component at a time; None where that is the answer
     planar: ObjectOutcomes | None
     changed: Mapping[str, ObjectOutcomes]
-    alike: Mapping[
-        str, str
-    ]  # Mitigations that leave it in one of the arrangements, and the name of that
+    # Mitigations that leave it in one of the arrangements, and the name of that
+    alike: Mapping[str, str]
 
 
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
-    """Assess one object at one place.
+    """Assess one object at one place; ``records`` is the folder of fetched records.
 
-    Parameters
-    ----------
-    request
-        What is asked.
-    records
-        Folder of fetched records.
-    brief
-        Leave out directions and mitigation measures, as for one line of an inventory.
-
-    Returns
-    -------
-    The :class:`Assessment`.
-
-    Raises
-    ------
-    InputError
-        If there are no motions.
+    With ``brief`` directions and mitigation measures are left out, as for one line of an inventory.
     """
     return assess_with(
         request, motion_set(request.records, request.place, Path(records)), brief=brief
@@ -235,55 +151,46 @@ def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
     few = coarse or motions.both
     fewer = motions.thinned() if few else motions
     fewer = fewer.thinned() if coarse else fewer
-    return Plan(
-        motions,
-        fewer,
-        curves,
-        level,
-        make_intensity_levels(motions, measure, asked, FEW_LEVELS if few else LEVELS),
-        make_intensity_levels(fewer, measure, asked, FEWEST_LEVELS if coarse else FEW_LEVELS),
-        brief,
-        compares_few=few,
-    )
+    count = outcomes.FEW_LEVELS if few else outcomes.LEVELS
+    least = outcomes.FEWEST_LEVELS if coarse else outcomes.FEW_LEVELS
+    levels = outcomes.make_intensity_levels(motions, measure, asked, count)
+    fewer_levels = outcomes.make_intensity_levels(fewer, measure, asked, least)
+    return Plan(motions, fewer, curves, level, levels, fewer_levels, brief, compares_few=few)
 
 
 def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     """Shake objects in one place at once; of each the same results as alone, to the bit."""
     objects = [request.objects for request in requests]
-    ways = [dict(object_.arrangements) for object_ in objects]
-    if plan.brief:
-        ways = [dict(list(bodies.items())[:1]) for bodies in ways]
-    arrangements = outcomes_of_each(objects, ways, plan.motions, plan.intensity_levels)
+    ways = [
+        dict(list(object_.arrangements.items())[: 1 if plan.brief else None]) for object_ in objects
+    ]
     under = (plan.motions, plan.intensity_levels)
-    changes = [mitigations_of(object_) for object_ in objects]
-    alike = [
-        {name: way for name, body in change.items() for way in bodies if bodies[way] == body}
-        for change, bodies in zip(changes, ways, strict=True)
-    ]
-    changes = [
-        {name: body for name, body in change.items() if name not in known}
-        for change, known in zip(changes, alike, strict=True)
-    ]
+    arrangements = outcomes.outcomes_of_each(objects, ways, *under)
     if plan.compares_few:
-        # of few motions the object as it stands comes first, then with each mitigation
         under = (plan.fewer, plan.fewer_intensity_levels)
-        changes = [
-            {"": object_.body, **each} for object_, each in zip(objects, changes, strict=True)
-        ]
-    compared = outcomes_of_each(objects, changes, *under)
+    changes, alike = [], []
+    for object_, bodies in zip(objects, ways, strict=True):
+        tried = mitigations_of(object_)
+        known = {name: way for name in tried for way in bodies if bodies[way] == tried[name]}
+        # of few motions the object as it stands comes first, then with each mitigation
+        first = {"": object_.body} if plan.compares_few else {}
+        changes.append(first | {name: tried[name] for name in tried if name not in known})
+        alike.append(known)
+    compared = outcomes.outcomes_of_each(objects, changes, *under)
     moved = _moved(requests, plan)
     found = []
-    for object_, way, change, sides, known in zip(
-        objects, arrangements, compared, moved, alike, strict=True
-    ):
+    each = zip(objects, arrangements, compared, moved, alike, strict=True)
+    for object_, way, change, sides, known in each:
         before = change.pop("") if plan.compares_few else next(iter(way.values()))
         if object_.pad_friction is not None:
-            outcomes, slip = on_pad(object_, object_.pad_friction, *under)
-            change[_pad_words(object_.pad_friction, slip, plan, under[1])] = outcomes
+            on_it, slip = outcomes.on_pad(object_, object_.pad_friction, *under)
+            change[_pad_words(object_.pad_friction, slip, plan, under[1])] = on_it
         planar = None
         if plan.motions.both and not plan.brief:
             flat = object_.in_plane()
-            planar = outcomes_of(flat, {"": object_.body}, plan.motions, plan.intensity_levels)[""]
+            planar = outcomes.outcomes_of(
+                flat, {"": object_.body}, plan.motions, plan.intensity_levels
+            )[""]
         found.append(Shaken(way, sides, before, planar, change, known))
     return found
 
@@ -336,18 +243,18 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
             both_sides["together"] = together
     now = next(iter(arrangements.values()))
 
-    def estimated(target: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
-        return estimate(target, now, both_sides, fixed or {}, shifts)
+    def estimated(target: risk.Target, fixed: Mapping[str, float] | None = None) -> Estimate:
+        return risk.estimate(target, now, both_sides, fixed or {}, shifts)
 
     probability = None
     if hazard:
         fixed = _of_quantiles(now, hazard)
-        probability = estimated(risk_target(hazard, request.years), fixed)
+        probability = estimated(risk.risk_target(hazard, request.years), fixed)
     rocking, fraction = None, None
     rocks_from = _rocks_from(request, counted, exact=exact)
     if level:
-        rocking = estimate_rocking(level.value, now, both_sides, exact=exact)
-        fraction = _no_more_than(estimated(fraction_target(level.value)), rocking)
+        rocking = risk.estimate_rocking(level.value, now, both_sides, exact=exact)
+        fraction = _no_more_than(estimated(risk.fraction_target(level.value)), rocking)
         rocking = _no_less_than(rocking, fraction)
     at = level.value if level else None
     brief = plan.brief
@@ -363,7 +270,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         fraction=fraction,
         probability=probability,
         counts=_counts(counted, level) if now is counted else None,
-        amplitudes={p: estimated(amplitude_target(p)) for p in (0.1, 0.5)},
+        amplitudes={p: estimated(risk.amplitude_target(p)) for p in (0.1, 0.5)},
         by_arrangement={
             name: target.value(arrangement) for name, arrangement in arrangements.items()
         },
@@ -371,19 +278,17 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         conversion=conversion,
         directions=None
         if brief or motions.both or objects.many
-        else find_directions(
-            objects, motions, make_intensity_levels(motions, measure, plan.asked, FEW_LEVELS), at
-        ),
+        else outcomes.find_directions(objects, motions, measure, at),
         planar=None if shaken.planar is None else target.value(shaken.planar),
         mitigations=_mitigations(request, target, shaken),
         effects=tuple(change.turned(target.value) for change in moved),
         rules=() if brief or motions.both else tuple(check_rules(objects, motions, counted)),
         sliding_fraction=math.nan
         if brief or at is None or objects.friction is None
-        else fraction_with_sliding(objects, motions, measure, at),
+        else outcomes.fraction_with_sliding(objects, motions, measure, at),
         flip_rate=math.nan
         if brief or at is None or not motions.both
-        else flip_rate(objects, motions, measure, at),
+        else outcomes.flip_rate(objects, motions, measure, at),
     )
 
 
@@ -406,10 +311,10 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
     )
 
 
-def _target(level: Level | None, hazard: HazardCurve | None, years: float) -> Target:
+def _target(level: Level | None, hazard: HazardCurve | None, years: float) -> risk.Target:
     if hazard:
-        return risk_target(hazard, years)
-    return fraction_target(level.value) if level else amplitude_target(0.5)
+        return risk.risk_target(hazard, years)
+    return risk.fraction_target(level.value) if level else risk.amplitude_target(0.5)
 
 
 def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
@@ -430,8 +335,10 @@ def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
     name, body = next(iter(objects.arrangements.items()))
 
     def scatter(curve: HazardCurve) -> float:
-        intensity_levels = make_intensity_levels(motions, curve.measure)
-        first = outcomes_of(objects, {name: body}, motions, intensity_levels)[name].first_levels()
+        intensity_levels = outcomes.make_intensity_levels(motions, curve.measure)
+        first = outcomes.outcomes_of(objects, {name: body}, motions, intensity_levels)[
+            name
+        ].first_levels()
         known = np.log(first[np.isfinite(first)])
         return float(known.std()) if known.size > 1 else math.inf
 
@@ -494,12 +401,12 @@ def _moved(requests: Sequence[Request], plan: Plan) -> list[list[Moved[ObjectOut
     """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
     variants = [request.objects.variants() for request in requests]
     sides = [side for each in variants for variant in each for side in variant.sides]
-    shaken = iter(outcomes_of_all(sides, plan.fewer, plan.fewer_intensity_levels))
+    shaken = iter(outcomes.outcomes_of_all(sides, plan.fewer, plan.fewer_intensity_levels))
     found = [[variant.turned(lambda _: next(shaken)) for variant in each] for each in variants]
     objects = [request.objects for request in requests]
     for moved in requests[0].place.variants():
         floors = moved.turned(
-            lambda place: outcomes_of_all(
+            lambda place: outcomes.outcomes_of_all(
                 objects, plan.fewer.at(place), plan.fewer_intensity_levels
             )
         )
@@ -510,7 +417,7 @@ def _moved(requests: Sequence[Request], plan: Plan) -> list[list[Moved[ObjectOut
 
 def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
     """Standard deviation of ln rate that the quantiles of the hazard stand for."""
-    logs = {q: risk_target(curve, 1.0).on_scale(now) for q, curve in hazard.quantiles.items()}
+    logs = {q: risk.risk_target(curve, 1.0).on_scale(now) for q, curve in hazard.quantiles.items()}
     finite = {q: value for q, value in logs.items() if math.isfinite(value)}
     if len(finite) < 2:
         return {}
@@ -519,7 +426,7 @@ def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
     return {"hazard": abs(finite[high] - finite[low]) / width}
 
 
-def _mitigations(request: Request, target: Target, shaken: Shaken) -> tuple[Mitigation, ...]:
+def _mitigations(request: Request, target: risk.Target, shaken: Shaken) -> tuple[Mitigation, ...]:
     ways = shaken.arrangements
     now = next(iter(ways.values()))
     known = {name: ways[way] for name, way in shaken.alike.items()}

@@ -206,48 +206,32 @@ def outcomes_of_each(
         for object_, named in zip(objects, bodies, strict=True)
         for body in named.values()
     ]
-    systems = [object_.system_of(body) for object_, body in every]
-    solids = [object_.solid(body) for object_, body in every]
-    worst = any(object_.round for object_ in objects)
-    spreads = [object_.base_spread for object_, _ in every]
     most = max(1, MOST_TESTS // intensity_levels.scales.size)
-    found: list[ObjectOutcomes] = []
-    for i in range(0, len(systems), most):
-        found += _shaken(
-            systems[i : i + most],
-            solids[i : i + most],
-            motions,
-            intensity_levels,
-            spreads[i : i + most],
-            worst=worst,
-        )
-    each = iter(found)
+    parts = (every[i : i + most] for i in range(0, len(every), most))
+    each = iter([found for part in parts for found in _shaken(part, motions, intensity_levels)])
     return [{name: next(each) for name in named} for named in bodies]
 
 
 def _shaken(
-    systems: Sequence[System],
-    solids: Sequence[System | None],
-    motions: MotionSet,
-    intensity_levels: IntensityLevels,
-    spreads: Sequence[float],
-    *,
-    worst: bool,
+    every: Sequence[tuple[Objects, Body]], motions: MotionSet, intensity_levels: IntensityLevels
 ) -> list[ObjectOutcomes]:
     """Outcomes in space where both components act and a body is known in space, in a plane elsewhere.
 
-    On a pedestal that may lift both answers count: what falls in either falls. ``worst`` takes planar answers from
-    the worst direction of each record.
+    On a pedestal that may lift both answers count: what falls in either falls. Planar answers of round bases are
+    those of the worst direction of each record.
     """
+    systems = [object_.system_of(body) for object_, body in every]
     if not motions.both:
         return _shaken_in_plane(systems, motions, intensity_levels)
+    solids = [object_.solid(body) for object_, body in every]
     planar = [i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1]
+    worst = any(object_.round for object_, _ in every)
     shake = _shaken_from_all_sides if worst else _shaken_in_plane
     fallen = shake([systems[i] for i in planar], motions, intensity_levels)
     found = dict(zip(planar, fallen, strict=True))
     for i, body in enumerate(solids):
         if body is not None:
-            solid = in_space(body, motions, intensity_levels, spreads[i])
+            solid = in_space(body, motions, intensity_levels, every[i][0].base_spread)
             found[i] = found[i].joined(solid) if i in found else solid
     return [found[i] for i in range(len(systems))]
 
@@ -436,7 +420,7 @@ class Directions:
 
 
 def find_directions(
-    objects: Objects, motions: MotionSet, intensity_levels: IntensityLevels, level: float | None
+    objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float | None
 ) -> Directions | None:
     """Turn every record of two components through all directions; None where no record has two.
 
@@ -444,26 +428,28 @@ def find_directions(
     """
     if not motions.pairs:
         return None
+    asked = [] if level is None else [level]
+    levels = make_intensity_levels(motions, measure, asked, FEW_LEVELS).levels
     system = objects.system_of(objects.body)
     # opposite directions are alike to a system that is alike on both sides
     upright = all(contact.tilt == contact.offset[0] == 0 for contact in system.contacts)
     symmetric = upright and all(shape.x == 0 for shape in system.shapes)
     angles = range(0, 180 if symmetric else 360, STEP_DEG)
-    values = motions.values(intensity_levels.measure)
+    values = motions.values(measure)
     shaking, scales = [], []
     for pair in motions.pairs:
         first, other = common_pair(motions, pair)
         middle = float(np.sqrt(values[pair[0]] * values[pair[1]]))
         for angle in angles:
             shaking.append(rotate(first, other, angle))
-            scales.append(intensity_levels.levels / middle)
+            scales.append(levels / middle)
     believable = np.minimum(np.array(scales), believable_scales(shaking))
     found, _ = simulated([system], shaking, believable)
     fallen = found.overturned[0]
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
-    x = np.log(intensity_levels.levels)
-    at = (math.nan if level is None else level, intensity_levels.levels)
+    x = np.log(levels)
+    at = (math.nan if level is None else level, levels)
     return Directions(
         factor=float(np.exp(_half(x, worst) - _half(x, anyhow))),
         fraction=fraction_at(*at, anyhow),

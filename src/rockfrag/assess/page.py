@@ -12,7 +12,6 @@ from markupsafe import Markup
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.export import as_json, as_nrml
 from rockfrag.assess.figures import fractions_figure, sources_figure
-from rockfrag.assess.glossary import words_used
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.sources import SOURCES, parts_of
@@ -32,7 +31,7 @@ from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Column, by_row, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Section, figure_of, finding_of, section_of
 from rockfrag.report.study_report import page_text
-from rockfrag.report.wording import one_line, said, sentence
+from rockfrag.report.wording import PART, one_line, said, sentence
 
 MOTIONS_SHOWN = 15
 """Rows of the table of motions that topple the object first."""
@@ -229,7 +228,8 @@ def _years(period: float) -> str:
 
 
 def _glossary(found: Assessment) -> Section:
-    words, meanings = zip(*words_used(found), strict=True)
+    pairs = [line.split(PART) for line in said(page_says.words_used(found))]
+    words, meanings = zip(*sorted(pairs, key=lambda pair: pair[0].lower()), strict=True)
     table = text_table(
         {"Word": words, "What it means here": meanings}, "Words and abbreviations of this page."
     )

@@ -64,55 +64,20 @@ class Records:
 
 @dataclass(frozen=True)
 class Request:
-    """An object at a place, ready to be assessed.
+    """An object at a place, ready to be assessed."""
 
-    Attributes
-    ----------
-    name
-        What the object is called.
-    objects
-        The object, its pedestal, and what is not known of them.
-    place
-        The floor on which it stands.
-    level
-        The level of shaking asked about; None if none was given.
-    hazard
-        Hazard curves of the site, one a measure; empty if none was given.
-    years
-        Time for the probability [year].
-    records
-        Where the motions come from.
-    value
-        What the object is worth, in any unit; NaN if not given.
-    """
-
-    name: str
-    objects: Objects
-    place: Place
-    level: Level | None = None
-    hazard: tuple[HazardCurve, ...] = ()
-    years: float = YEARS
-    records: Records = field(default_factory=Records)
-    value: float = math.nan
+    name: str  #: What the object is called
+    objects: Objects  #: The object, its pedestal, and what is not known of them
+    place: Place  #: The floor on which it stands
+    level: Level | None = None  #: The level of shaking asked about
+    hazard: tuple[HazardCurve, ...] = ()  #: Hazard curves of the site, one a measure
+    years: float = YEARS  #: Time for the probability [year]
+    records: Records = field(default_factory=Records)  #: Where the motions come from
+    value: float = math.nan  #: What the object is worth, in any unit; NaN if not given
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:
-    """Read a request from a YAML file such as ``statue.yaml``.
-
-    Parameters
-    ----------
-    path
-        The file; paths in it are relative to it.
-
-    Returns
-    -------
-    The :class:`Request`.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or does not describe an object at a place.
-    """
+    """Read a request from a YAML file such as ``statue.yaml``; paths in it are relative to it."""
     return make_request(read_yaml(path), str(path), Path(path).parent)
 
 

@@ -65,22 +65,12 @@ def probability_in(rate: float, years: float) -> float:
 
 @dataclass(frozen=True)
 class Estimate:
-    """A probability with its interval, or a bound where no motion toppled the object.
+    """A probability with its interval, or a bound where no motion toppled the object."""
 
-    Attributes
-    ----------
-    value
-        Probability [-].
-    lower, upper
-        Limits of the interval [-].
-    sources
-        Standard deviation on the scale of the interval of each source of uncertainty [-].
-    """
-
-    value: float
-    lower: float
-    upper: float
-    sources: Mapping[str, float]
+    value: float  #: Probability [-]
+    lower: float  #: Lower limit of the interval [-]
+    upper: float  #: Upper limit [-]
+    sources: Mapping[str, float]  #: Standard deviation on the scale of the interval by source [-]
 
 
 @dataclass(frozen=True)
@@ -266,50 +256,37 @@ def _bounded(
     """Where every motion agrees: as many others could disagree as this number of earthquakes cannot exclude."""
     hidden = 1 - (1 - LEVEL) ** (1 / len(set(outcomes.earthquakes)))
     shift = _Z * math.sqrt(sum(spread**2 for spread in shifts.values()))
+    happens = middle > 0 and not math.isinf(target.certain)
+    sign = -1 if happens else 1
 
-    def most(changed: ObjectOutcomes, shift: float = 0.0) -> float:
-        fractions = np.maximum(changed.fractions(state=target.state), hidden)
-        could = np.where(changed.fractions(state=ROCKS) > 0, fractions, 0.0)
-        return target.of(changed.intensity_levels.levels, could, -shift)
-
-    def least(changed: ObjectOutcomes, shift: float = 0.0) -> float:
-        fractions = np.minimum(changed.fractions(state=target.state), 1 - hidden)
-        return target.of(changed.intensity_levels.levels, fractions, shift)
+    def bound(changed: ObjectOutcomes, shift: float = 0.0) -> float:
+        fractions = changed.fractions(state=target.state)
+        if happens:
+            fractions = np.minimum(fractions, 1 - hidden)
+        else:
+            could = changed.fractions(state=ROCKS) > 0
+            fractions = np.where(could, np.maximum(fractions, hidden), 0.0)
+        return target.of(changed.intensity_levels.levels, fractions, -sign * shift)
 
     if math.isinf(target.certain):
         # never reached: hidden motions could be enough at some level, or it lies above the last one
-        reached = min(most(outcomes, shift), float(outcomes.intensity_levels.levels[-1]))
+        reached = min(bound(outcomes, shift), float(outcomes.intensity_levels.levels[-1]))
         return Estimate(math.inf, reached, math.inf, {})
-    if middle > 0:
-        limit = target.back(_limit(target, least, outcomes, moved, shift, -1))
-        return Estimate(1.0, limit, 1.0, {})
-    return Estimate(0.0, 0.0, target.back(_limit(target, most, outcomes, moved, shift, 1)), {})
-
-
-def _limit(
-    target: Target,
-    of: Callable[..., float],
-    outcomes: ObjectOutcomes,
-    moved: Sides,
-    shift: float,
-    sign: int,
-) -> float:
-    """Limit on the scale, above (1) or below (-1): the bound, with what is not known of the properties."""
-    bound, plain = (target.forward(of(outcomes, by)) for by in (shift, 0.0))
-    ends = [max(sign * target.forward(of(side)) for side in both) for both in moved.values()]
-    if not math.isfinite(plain):
+    limit, plain = (target.forward(bound(outcomes, by)) for by in (shift, 0.0))
+    ends = [max(sign * target.forward(bound(side)) for side in both) for both in moved.values()]
+    if math.isfinite(plain):
+        further = [max(0.0, end - sign * plain) for end in ends]
+        limit += sign * _Z * math.sqrt(sum(term**2 for term in further))
+    else:
         # at rest as it is: what could move it decides
-        return sign * max([sign * bound, *ends])
-    further = [max(0.0, end - sign * plain) for end in ends]
-    return bound + sign * _Z * math.sqrt(sum(term**2 for term in further))
+        limit = sign * max([sign * limit, *ends])
+    if happens:
+        return Estimate(1.0, target.back(limit), 1.0, {})
+    return Estimate(0.0, 0.0, target.back(limit), {})
 
 
 def estimate_rocking(
-    level: float,
-    outcomes: ObjectOutcomes,
-    moved: Sides,
-    *,
-    exact: bool,
+    level: float, outcomes: ObjectOutcomes, moved: Sides, *, exact: bool
 ) -> Estimate:
     """Estimate the fraction of motions at a level that make the object rock.
 

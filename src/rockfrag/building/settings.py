@@ -36,8 +36,7 @@ def make_building(settings: Any, source: str = "building") -> model.ShearBuildin
 
 
 def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
-    heights = tuple(float(value) for value in settings["storey_heights_m"])
-    masses = tuple(float(value) for value in settings["masses_kg"])
+    heights, masses = settings["storey_heights_m"], settings["masses_kg"]
     if len(heights) != len(masses):
         raise InputError(
             f"storey_heights_m has {len(heights)} entries and masses_kg {len(masses)}; give one of "
@@ -57,11 +56,9 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
             )
     distinct_file_names(settings.get("floors", {}))
     if "first_period_s" in settings:
-        stiffnesses = model.stiffnesses_for_period(
-            masses, heights, float(settings["first_period_s"])
-        )
+        stiffnesses = model.stiffnesses_for_period(masses, heights, settings["first_period_s"])
     else:
-        stiffnesses = tuple(float(value) for value in settings["storey_stiffnesses_N_m"])
+        stiffnesses = settings["storey_stiffnesses_N_m"]
     building = model.ShearBuilding(
         masses=masses,
         heights=heights,

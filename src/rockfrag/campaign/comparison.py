@@ -20,14 +20,12 @@ from rockfrag.short_repr import short_repr
 STANDARD_ERRORS = 2.0
 """A trial is plausible if its fraction of right outcomes is within this many standard errors of the best."""
 
-FEWEST_VOTERS = 10
-"""Plausible trials below which votes say little: with ten they are tenths."""
+FEWEST_VOTERS = 10  # plausible trials below which votes say little: with ten they are tenths
 
 NEAR_CRITICAL = (0.1, 0.9)
 """A test is near-critical if plausible trials disagree: this fraction of votes or more says each outcome."""
 
-REPEATS = "majority of repeated tests (ceiling)"
-"""Who gave these outcomes, in the tables."""
+REPEATS = "majority of repeated tests (ceiling)"  # who gave these outcomes, in the tables
 
 REPLICATES = 400
 """Resamples of input motions behind the limits of a fragility and of ratios of fragilities."""

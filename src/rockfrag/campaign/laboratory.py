@@ -25,11 +25,9 @@ from rockfrag.records.read import read_motion
 from rockfrag.short_repr import short_repr
 from rockfrag.units import GRAVITY
 
-MEASURED = "overturned"
-"""Column of what the laboratory saw."""
+MEASURED = "overturned"  # column of what the laboratory saw
 
-NOTED = ("rocked", "slid")
-"""Columns of what a laboratory may have noted besides."""
+NOTED = ("rocked", "slid")  # columns of what a laboratory may have noted besides
 
 
 @dataclass(frozen=True)
@@ -93,7 +91,11 @@ def read_campaign(
     for name, recipe in measures.items():
         tests[name] = product_of(raw, recipe)
     if "motion" not in columns:
-        tests["motion"] = settings_of(tests, list(measures))
+        # tests that repeat a setting share its name, the measures in words
+        rows = tests[list(measures)].to_numpy().tolist()
+        tests["motion"] = [
+            ", ".join(f"{m} {v:g}" for m, v in zip(measures, row, strict=True)) for row in rows
+        ]
         tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
     for key in NOTED:
         if key in columns:
@@ -102,12 +104,6 @@ def read_campaign(
         tests["which_way"] = raw[columns["which_way"]]
     tests = _with_outcomes(tests, raw, columns, source)
     return Campaign(tests, tuple(measures), _codes(other_codes, columns["test"], tests["test"]))
-
-
-def settings_of(tests: pd.DataFrame, measures: Sequence[str]) -> list[str]:
-    """Name of each test's setting, its measures in words, which tests that repeat it share."""
-    rows = tests[list(measures)].to_numpy().tolist()
-    return [", ".join(f"{m} {v:g}" for m, v in zip(measures, row, strict=True)) for row in rows]
 
 
 def _with_outcomes(
@@ -154,11 +150,9 @@ def _codes(
 LARGEST_PEAK = 10 * GRAVITY
 """Largest acceleration that a shake table is believed to make [m/s²]; volts and counts look larger."""
 
-KEY = "{motion}"
-"""Stands for the test's motion in a pattern of file names."""
+KEY = "{motion}"  # stands for the test's motion in a pattern of file names
 
-DRIFT_CORNER_HZ = 0.1
-"""High-pass before a measured motion is integrated: its noise would drift."""
+DRIFT_CORNER_HZ = 0.1  # high-pass before a measured motion is integrated: its noise would drift
 
 LARGEST_FACTOR = 1.5
 """Factor between the middle listed and measured peak beyond which they are not of one motion: of ours.  On a table
@@ -199,14 +193,10 @@ def table_motions(
 
 def missing_motions(source: str | os.PathLike[str], names: Sequence[str]) -> list[str]:
     """Return the names of which there is no motion."""
-    if not _is_archive(str(source)):
+    if not str(source).endswith(".npz"):
         return [name for name in names if not is_file(Path(_path(str(source), name)))]
     with _archive(str(source)) as content:
         return [name for name in names if name not in content.files]
-
-
-def _is_archive(source: str) -> bool:
-    return source.endswith(".npz")
 
 
 def _path(pattern: str, name: str) -> str:
@@ -238,7 +228,7 @@ def _read(
             f"{source}: has no motion for {len(absent)} of {len(names)} tests, {', '.join(absent[:3])} first; "
             "add them, or set without_motion: leave_out."
         )
-    if not _is_archive(source):
+    if not source.endswith(".npz"):
         for name in names:
             motion = read_motion(_path(source, name), unit, channel, dt)
             yield Motion(motion.acceleration, motion.dt, name, motion.metadata, motion.provenance)

@@ -1,10 +1,8 @@
-"""Contact forces and energies of a computed response: was the model allowed to be used?
+"""Contact forces and positions of a computed response: was the model allowed to be used?
 
 The forces follow from the absolute accelerations of the centres of gravity: N2 = m2 (g + y2''),
 T2 = m2 x2'', and the sums over both blocks at the ground.
 """
-
-from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,93 +14,65 @@ from rockfrag.system import geometry
 from rockfrag.system.system import System
 
 Array = NDArray[np.float64]
-Pair = tuple[float, float]
 
 
-Way = tuple[NDArray[np.bool_], Pair, Pair, Pair]
+class Turned:
+    """The links of one or two bodies that rock, from pivot to pivot and to the centres, turned as they are."""
 
-
-def _ways(system: System, state: NDArray[np.int64]) -> Iterator[Way]:
-    """Yield the rows of each way to rock, and the arms of the lower body, of the upper one's foot, and of that."""
-    signs = np.where(state == 0, 1, state)
-    for side in (+1, -1):
-        arm = geometry.arm(system.shapes[0], side)
-        if system.count == 1:
-            yield signs[:, 0] == side, arm, (0.0, 0.0), (0.0, 0.0)
-            continue
-        for two in (+1, -1):
-            rows = (signs[:, 0] == side) & (signs[:, 1] == two)
-            foot = geometry.reach(system.pile, side, two)
-            yield rows, arm, foot, geometry.upper_arm(system.pile, two)
-
-
-def centres(system: System, state: NDArray[np.int64], theta: Array) -> Array:
-    """Centres of gravity of bodies that rock without sliding, relative to the ground [m], shape (n, blocks, 2)."""
-    found = np.zeros((*theta.shape, 2))
-    sine, cosine = _sines(theta)
-
-    def turned(arm: Pair, rows: NDArray[np.bool_], block: int) -> Array:
-        s, c = sine[rows, block], cosine[rows, block]
-        return np.column_stack([arm[0] * c + arm[1] * s, -arm[0] * s + arm[1] * c])
-
-    for rows, arm, foot, above in _ways(system, state):
-        found[rows, 0] = turned(arm, rows, 0)
+    def __init__(self, system: System, state: NDArray[np.int64], theta: Array) -> None:
+        self.system, side = system, (state < 0).astype(np.int64)
+        self.sine, self.cosine = np.empty_like(theta), np.empty_like(theta)
+        with compiling_alone(fill_sines):
+            # the same on every processor
+            fill_sines(theta, self.sine, self.cosine)
+        ways = (+1, -1)
+        # arms of each sample, (n, 2), and the body that each turns with
+        arm = np.array([geometry.arm(system.shapes[0], way) for way in ways])[side[:, 0]]
+        self.links = [(arm, 0)]
         if system.count == 2:
-            found[rows, 1] = turned(foot, rows, 0)
-            found[rows, 1] += turned(above, rows, 1)
-        found[rows, :, 0] += system.shapes[0].x - arm[0]
-    return found
+            feet = np.array([[geometry.reach(system.pile, a, b) for b in ways] for a in ways])
+            above = np.array([geometry.upper_arm(system.pile, way) for way in ways])
+            self.links += [(feet[side[:, 0], side[:, 1]], 0), (above[side[:, 1]], 1)]
 
+    def link(self, number: int) -> tuple[Array, Array]:
+        """X and y of a link [m]: to the lower centre, to the foot of the upper body, from there to its centre."""
+        arm, body = self.links[number]
+        (ax, ay), s, c = arm.T, self.sine[:, body], self.cosine[:, body]
+        return ax * c + ay * s, -ax * s + ay * c
 
-def _sines(theta: Array) -> tuple[Array, Array]:
-    """Sine and cosine of rotations, the same on every processor."""
-    sine, cosine = np.empty_like(theta), np.empty_like(theta)
-    with compiling_alone(fill_sines):
-        fill_sines(theta, sine, cosine)
-    return sine, cosine
+    def centres(self) -> Array:
+        """Centres of gravity relative to the ground [m], shape (n, blocks, 2)."""
+        found = [self.link(0)]
+        if self.system.count == 2:
+            (xd, yd), (x, y) = self.link(1), self.link(2)
+            found.append((xd + x, yd + y))
+        made = np.stack([np.column_stack(each) for each in found], axis=1)
+        made[..., 0] += self.system.shapes[0].x - self.links[0][0][:, :1]
+        return made
 
+    def forces(
+        self, ground: Array, gravity: Array, omega: Array, alpha: Array
+    ) -> tuple[Array, Array]:
+        """Normal and friction force of each interface, across and along the face that carries [N], (n, blocks)."""
 
-def contact_forces(
-    system: System,
-    ground: Array,
-    state: NDArray[np.int64],
-    theta: Array,
-    omega: Array,
-    alpha: Array,
-    gravity: Array,
-) -> tuple[Array, Array]:
-    """Normal and friction force of each interface, across and along the face that carries [N], (n, blocks)."""
-    normal = np.zeros_like(theta)
-    friction = np.zeros_like(theta)
-    sine, cosine = _sines(theta)
+        def acceleration(number: int) -> tuple[Array, Array]:
+            """Acceleration of the tip of a link that turns clockwise about its foot [m/s²]."""
+            (x, y), body = self.link(number), self.links[number][1]
+            w, q = omega[:, body], alpha[:, body]
+            return q * y - w * w * x, -q * x - w * w * y
 
-    def acceleration(arm: Pair, rows: NDArray[np.bool_], block: int) -> tuple[Array, Array]:
-        """Acceleration of the tip of ``arm`` that turns clockwise about its foot [m/s²]."""
-        s, c, w, q = (values[rows, block] for values in (sine, cosine, omega, alpha))
-        x, y = arm[0] * c + arm[1] * s, -arm[0] * s + arm[1] * c
-        return q * y - w * w * x, -q * x - w * w * y
-
-    mass = system.shapes[0].mass
-    for rows, arm, foot, above in _ways(system, state):
-        x1, y1 = acceleration(arm, rows, 0)
-        friction[rows, 0], normal[rows, 0] = mass * (ground[rows] + x1), mass * (gravity[rows] + y1)
-        if system.count == 2:
-            upper = system.pile.upper.mass
-            xd, yd = acceleration(foot, rows, 0)
-            x2, y2 = acceleration(above, rows, 1)
-            friction[rows, 1] = upper * (ground[rows] + xd + x2)
-            normal[rows, 1] = upper * (gravity[rows] + yd + y2)
-            friction[rows, 0] += friction[rows, 1]
-            normal[rows, 0] += normal[rows, 1]
-    if system.count == 1:
-        return normal, friction
-    pile = system.pile
-    # of the interface so far upright and level: the pedestal's top turns with it
-    x, y = pile.right[0] - pile.left[0], pile.right[1] - pile.left[1]
-    length = hypot(x, y)
-    tx = (x * cosine[:, 0] + y * sine[:, 0]) / length
-    ty = (y * cosine[:, 0] - x * sine[:, 0]) / length
-    across = tx * normal[:, 1] - ty * friction[:, 1]
-    friction[:, 1] = tx * friction[:, 1] + ty * normal[:, 1]
-    normal[:, 1] = across
-    return normal, friction
+        mass, (x1, y1) = self.system.shapes[0].mass, acceleration(0)
+        friction, normal = mass * (ground + x1), mass * (gravity + y1)
+        if self.system.count == 1:
+            return normal[:, np.newaxis], friction[:, np.newaxis]
+        pile, (xd, yd), (x2, y2) = self.system.pile, acceleration(1), acceleration(2)
+        level = pile.upper.mass * (ground + xd + x2)
+        upright = pile.upper.mass * (gravity + yd + y2)
+        # of the interface so far upright and level: the pedestal's top turns with it
+        x, y = pile.right[0] - pile.left[0], pile.right[1] - pile.left[1]
+        length, sine, cosine = hypot(x, y), self.sine[:, 0], self.cosine[:, 0]
+        tx, ty = (x * cosine + y * sine) / length, (y * cosine - x * sine) / length
+        return (
+            np.column_stack([normal + upright, tx * upright - ty * level]),
+            np.column_stack([friction + level, tx * level + ty * upright]),
+        )

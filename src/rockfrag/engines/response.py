@@ -20,16 +20,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 ROCKING_MODES = {
-    (0, 0): "rest",
-    (1, 1): "1a",
-    (-1, -1): "1b",
-    (1, -1): "2a",
-    (-1, 1): "2b",
-    (1, 0): "3a",
-    (-1, 0): "3b",
-    (0, 1): "4a",
-    (0, -1): "4b",
-}
+    (0, 0): "rest", (1, 1): "1a", (-1, -1): "1b", (1, -1): "2a", (-1, 1): "2b",
+    (1, 0): "3a", (-1, 0): "3b", (0, 1): "4a", (0, -1): "4b",
+}  # fmt: skip
 """Names of the contact states (ground, interface): the modes of Psycharis (1990) to both sides."""
 
 FLIGHT = 2  # contact state of an interface that is open at both ends
@@ -70,67 +63,48 @@ class Response:
 
     Attributes
     ----------
-    system
-        The system that was simulated.
-    time
-        Times of the samples [s], shape (n,); the motion and the free rocking after it.
-    ground_acceleration
-        Acceleration of the ground at these times [m/s²], shape (n,).
-    position
-        x and y of the centres of gravity relative to the moving ground [m], shape (n, blocks, 2); the middle of
-        the lowest base stood at 0.
-    theta, omega, alpha
-        Rotations [rad], angular velocities [rad/s] and accelerations [rad/s²], shape (n, blocks).
-    state
-        Contact states +1, -1 (rocking on the right, left pivot), 0 (full contact) or, with friction, 2 (flight),
-        shape (n, blocks).
-    slides
-        Whether the upper side of each interface sticks (0) or slides to the right (+1) or left (-1), shape
-        (n, blocks).
-    slip
-        Displacement along each interface of the corner that carries, from where it stood at first [m], shape
-        (n, blocks); positive to the right.
-    contact_events
-        One row per opening, impact or closed chatter: ``time`` [s], ``kind``, ``from``, ``to`` (patterns),
-        ``omega_before``, ``omega_after`` [rad/s], ``theta`` [rad] (tuples), ``energy_before``, ``energy_after``
-        (kinetic) [J].  With friction there are also the kinds ``slip`` and ``stick``, ``flight``, ``edge`` (a
-        corner of the statue passes an edge of the pedestal), ``closing`` (a contact closes without an impact),
-        ``paradox`` and ``fall``, and the columns ``modes`` (what each interface does from now on) and ``slip`` [m]
-        (tuples).
-    overturned
-        Whether a block fell.
-    overturned_body
-        Name of the body that fell, or ``""``.
-    overturning_time
-        When it lay down [s], NaN if it did not.
-    energy
-        Table over time [J]: ``kinetic``, ``potential``, ``input`` (work of the ground so far), ``lost_contact_1``
-        and on (in impacts of each contact so far, the ground's first), with friction ``lost_friction``, and
-        ``residual``, which is zero but for rounding.
-    normal_force, friction_force
-        Forces of each interface on the block above it, across and along the face that carries [N], shape (n,
-        blocks).
-    friction_demand
-        Largest |T| / N that the response asked of each interface [-], shape (blocks,): by forces and by impulses,
-        between samples too, until the last time that the block which falls was on this side of its balance.
-        Infinite where a normal force was not positive.  With friction, by the forces at the samples.
-    least_normal_force
-        Least normal force of each interface until then [N], shape (blocks,).
-    lost_contact
-        When a normal force first was none [s], NaN if they pushed throughout: the body would have jumped, and
-        what follows is beyond pure rocking.  NaN with friction, where flight is among the modes.
-    impacts, grazings
-        Numbers of impacts, and of contacts that met with less than 1e-3 rad/s.
-    paradoxes, forced
-        With friction, times that no mode of contact was consistent, and that accumulating contact events were
-        ended more coarsely than usual (``docs/contact.md``).
-    given_way
-        Number of impacts in which the law of a measured restitution had to give way, lest energy grow.
-    unstable_distance
-        Least distance of the response from an unstable equilibrium, in units of the critical angle (and of
-        p times it for the velocity).  An outcome with a small one hangs on little; a large one promises nothing,
-        since impacts and chaos decide too (see :func:`rockfrag.rocking.robustness.outcome_robustness`).  NaN once
-        a block has slid or flown.
+    system : that was simulated
+    time : of the samples [s], shape (n,); the motion and the free rocking after it
+    ground_acceleration : at these times [m/s²], shape (n,)
+    position : of the centres of gravity, x and y relative to the moving ground [m], shape (n, blocks, 2)
+        The middle of the lowest base stood at 0.
+    theta, omega, alpha : rotations [rad], angular velocities [rad/s] and accelerations [rad/s²], shape (n, blocks)
+    state : contact states, shape (n, blocks)
+        +1, -1 (rocking on the right, left pivot), 0 (full contact) or, with friction, 2 (flight).
+    slides : whether the upper side of each interface sticks (0) or slides to the right (+1) or left (-1), likewise
+    slip : displacement along each interface of the corner that carries [m], shape (n, blocks)
+        From where it stood at first; positive to the right.
+    contact_events : table, a row per opening, impact or closed chatter
+        ``time`` [s], ``kind``, ``from``, ``to`` (patterns), ``omega_before``, ``omega_after`` [rad/s], ``theta``
+        [rad] (tuples), ``energy_before``, ``energy_after`` (kinetic) [J].  With friction there are also the kinds
+        ``slip`` and ``stick``, ``flight``, ``edge`` (a corner of the statue passes an edge of the pedestal),
+        ``closing`` (a contact closes without an impact), ``paradox`` and ``fall``, and the columns ``modes`` (what
+        each interface does from now on) and ``slip`` [m] (tuples).
+    overturned, overturned_body : whether a block fell, and its name, or ``""``
+    overturning_time : when it lay down [s], NaN if it did not
+    energy : table over time [J]
+        ``kinetic``, ``potential``, ``input`` (work of the ground so far), ``lost_contact_1`` and on (in impacts of
+        each contact so far, the ground's first), with friction ``lost_friction``, and ``residual``, which is zero
+        but for rounding.
+    normal_force, friction_force : of each interface on the block above it [N], shape (n, blocks)
+        Across and along the face that carries.
+    friction_demand : largest |T| / N that the response asked of each interface [-], shape (blocks,)
+        By forces and by impulses, between samples too, until the last time that the block which falls was on this
+        side of its balance; infinite where a normal force was not positive.  With friction, by the forces at the
+        samples.
+    least_normal_force : of each interface until then [N], shape (blocks,)
+    lost_contact : when a normal force first was none [s], NaN if they pushed throughout
+        The body would have jumped, and what follows is beyond pure rocking.  NaN with friction, where flight is
+        among the modes.
+    impacts, grazings : numbers of impacts, and of contacts that met with less than 1e-3 rad/s
+    paradoxes, forced : with friction, numbers of times
+        That no mode of contact was consistent, and that accumulating contact events were ended more coarsely than
+        usual (``docs/contact.md``).
+    given_way : number of impacts in which the law of a measured restitution had to give way, lest energy grow
+    unstable_distance : least distance from an unstable equilibrium
+        In units of the critical angle (and of p times it for the velocity).  An outcome with a small one hangs on
+        little; a large one promises nothing, since impacts and chaos decide too
+        (:func:`rockfrag.rocking.robustness.outcome_robustness`).  NaN once a block has slid or flown.
     """
 
     system: System

@@ -24,23 +24,15 @@ def response_figure(response: Response, title: str) -> Figure:
     heights = [2, 3, 2, 2] if slides else [2, 3, 2]
     with style.figure_style():
         figure = style.new_figure(style.COLUMN_WIDTH, 0.6 * sum(heights))
-        panels = figure.subplots(
-            len(heights), 1, sharex=True, gridspec_kw={"height_ratios": heights}
-        )
+        panels = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
         ground, rotation, *between, rocking_mode = panels
-        ground.plot(
-            response.time, response.ground_acceleration / GRAVITY, color=style.BLACK, lw=0.5
-        )
+        acceleration = response.ground_acceleration / GRAVITY
+        ground.plot(response.time, acceleration, color=style.BLACK, lw=0.5)
         ground.set_ylabel("Ground [g]")
         ground.set_title(title, loc="left")
         for i, name in enumerate(names):
-            rotation.plot(
-                response.time,
-                response.theta[:, i] / critical[i],
-                color=colours[i],
-                lw=0.8,
-                label=name,
-            )
+            turned = response.theta[:, i] / critical[i]
+            rotation.plot(response.time, turned, color=colours[i], lw=0.8, label=name)
         rotation.axhline(1, color="#999999", lw=0.6, ls="--")
         rotation.axhline(-1, color="#999999", lw=0.6, ls="--")
         # a body that never rocked has a panel, too

@@ -89,8 +89,7 @@ def _integrated(case: Case, capacity: int) -> tuple[np.void, Any, Records, Recor
     most = case.motion.x.acceleration.size + shaking.free_samples
     if most > MOST_SAMPLES:
         raise InputError(
-            f"motion: {most} samples, with the free rocking after it, are more than the {MOST_SAMPLES} "
-            "allowed."
+            f"motion: {most} samples, with the free rocking after it, are more than the {MOST_SAMPLES} allowed."
         )
     history, contact_events = np.zeros(most, SAMPLE), np.zeros(capacity, CONTACT_EVENT)
     initial = initial_state(case.system)
@@ -159,7 +158,7 @@ def _response(
     system: System, record: np.void, shaking: Any, history: Records, found: Records, summary: Any
 ) -> Response:
     """Put the response of a system together, of whose contact events so many were found."""
-    from rockfrag.engines.forces import centres, contact_forces
+    from rockfrag.engines.forces import Turned
 
     n, contact_events = len(history), found[: int(summary["contact_events"])]
     count, demand = system.count, summary["demand"]
@@ -171,7 +170,8 @@ def _response(
     ground[: min(n, samples.size)] = samples[:n]
     up = shaking.scale * shaking.vertical[:n]
     gravity[: up.size] += gravity[: up.size] * up
-    normal, friction = contact_forces(system, ground, state, theta, omega, alpha, gravity)
+    turned = Turned(system, state, theta)
+    normal, friction = turned.forces(ground, gravity, omega, alpha)
     time = np.arange(n, dtype=np.float64) * dt
     fallen = int(summary["fallen"])
     which = fallen - (2 - system.count) if fallen else 0
@@ -179,7 +179,7 @@ def _response(
         system=system,
         time=time,
         ground_acceleration=ground,
-        position=centres(system, state, theta),
+        position=turned.centres(),
         theta=theta,
         omega=omega,
         alpha=alpha,
@@ -230,18 +230,14 @@ def _energies(
     from rockfrag.engines.kernels.jit import compiling_alone
     from rockfrag.engines.kernels.record import OPENING, fill_energies
 
-    kinetic = np.empty(len(history))
-    potential = np.empty(len(history))
+    kinetic, potential = np.empty(len(history)), np.empty(len(history))
     with compiling_alone(fill_energies):
         fill_energies(record, history, kinetic, potential, np.zeros(1, STATE)[0])
     # an impact closes the ground if the lower body's contact changed, the interface otherwise
     before = contact_events["before"]["c1"]
     by_ground = (before != 0) & (before != contact_events["after"]["c1"])
-    loss = np.where(
-        contact_events["kind"] == OPENING,
-        0.0,
-        contact_events["energy_before"] - contact_events["energy_after"],
-    )
+    lost = contact_events["energy_before"] - contact_events["energy_after"]
+    loss = np.where(contact_events["kind"] == OPENING, 0.0, lost)
     # of a lone body, the kernels' second, the interface is the ground
     closed = np.where(by_ground, 0, contacts - 1)
     losses = contact_events["time"], closed, loss

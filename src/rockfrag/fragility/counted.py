@@ -20,8 +20,7 @@ from rockfrag.machine_code import cached_njit
 from rockfrag.shaketable.swept import Swept
 
 CELLS = 2000  # cells of equal width in the logarithm of a measure
-MOTION = ("configuration", "earthquake", "floor", "motion")
-"""Columns that tell motions apart."""
+MOTION = ("configuration", "earthquake", "floor", "motion")  # columns that tell motions apart
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -33,8 +33,7 @@ _NAN = float("nan")
 NO_COVARIANCE: Covariance = ((_NAN, _NAN), (_NAN, _NAN))
 NO_CURVE: Curve = (_NAN, _NAN, NO_COVARIANCE)
 
-SAY = sayer("rockfrag.fragility", "fits.j2", {})
-"""What a reader must know of a fit, in sentences."""
+SAY = sayer("rockfrag.fragility", "fits.j2", {})  # what a reader must know of a fit, in sentences
 
 
 @dataclass(frozen=True)

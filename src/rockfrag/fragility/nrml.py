@@ -33,11 +33,7 @@ def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
     """OpenQuake's name of a measure and the factor to its unit (g, cm/s)."""
     measure = measure_labelled(name)
     if measure is None or not measure.openquake or name == measure.floor_label:
-        known = ", ".join(
-            dict.fromkeys(
-                each_measure.openquake for each_measure in declared() if each_measure.openquake
-            )
-        )
+        known = ", ".join(dict.fromkeys(each.openquake for each in declared() if each.openquake))
         raise InputError(
             f"NRML: {name} is no intensity measure of ground motion in OpenQuake; export curves in one of {known}."
         )

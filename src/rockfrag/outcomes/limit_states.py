@@ -88,13 +88,11 @@ def forget_limit_state(name: str) -> None:
     _STATES.pop(name, None)
 
 
+_PUT_BACK = "Inspect and put back"
+
+
 @limit_state(
-    ROCKS,
-    order=10,
-    label="rocking",
-    damage="Rocks and may be displaced",
-    repair="Inspect and put back",
-    exact=True,
+    ROCKS, 10, "rocking", damage="Rocks and may be displaced", repair=_PUT_BACK, exact=True
 )
 def _rocks(outcomes: Outcomes) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):
@@ -102,12 +100,7 @@ def _rocks(outcomes: Outcomes) -> NDArray[np.bool_]:
 
 
 @limit_state(
-    "slides",
-    order=20,
-    label="sliding",
-    damage="Slides and may be displaced",
-    repair="Inspect and put back",
-    slipping=True,
+    "slides", 20, "sliding", damage="Slides and may be displaced", repair=_PUT_BACK, slipping=True
 )
 def _slides(outcomes: Outcomes) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):

@@ -75,7 +75,7 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     of the amplitudes leave the mean open (no interval is narrower); tied pairs have equal amplitudes on both
     sides; of those at_bound one test never overturned.
     """
-    rows: list[dict[str, object]] = []
+    rows: list[list[object]] = []
     known = [name for name in floors if name in set(table["floor"])]
     known += sorted(set(table["floor"]) - set(known))
     table = table.assign(floor=pd.Categorical(table["floor"], known))
@@ -99,28 +99,19 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
             flips = cluster_means.sign_flip_test(sampled[place].d)
             same = cluster_means.equivalence(effect)
             names = key if isinstance(key, tuple) else (key,)
+            level = "/".join(str(name) for name in names) if columns else "all"
+            unit = "earthquake" if of["earthquakes"] > 1 else "motion"
+            estimate = (effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p)
+            open_to = (cluster_means.detectable_ratio(effect), math.exp(effect.resolution))
             rows.append(
-                {
-                    "scope": scope,
-                    "level": "/".join(str(name) for name in names) if columns else "all",
-                    "pairs": of["pairs"],
-                    "unit": "earthquake" if of["earthquakes"] > 1 else "motion",
-                    "units": effect.units,
-                    "ratio": effect.ratio,
-                    "lower": effect.ratio_lower,
-                    "upper": effect.ratio_upper,
-                    "p": effect.p,
-                    "p_sign_flip": flips.p,
-                    "smallest_p": flips.smallest_p,
-                    "p_equivalence": same,
-                    "equivalent": same < EQUIVALENCE_LEVEL,
-                    "detectable_ratio": cluster_means.detectable_ratio(effect),
-                    "resolution_ratio": math.exp(effect.resolution),
-                    "tied": of["tied"],
-                    "at_bound": of["at_bound"],
-                }
+                [
+                    *(scope, level, of["pairs"], unit, effect.units, *estimate, flips.p),
+                    *(flips.smallest_p, same, same < EQUIVALENCE_LEVEL, *open_to),
+                    *(of["tied"], of["at_bound"]),
+                ]
             )
-    result = pd.DataFrame(rows)
+    adjusted = ("p_holm", "p_bh")
+    result = pd.DataFrame(rows, columns=[name for name in EFFECT_COLUMNS if name not in adjusted])
     result["p_holm"] = result.groupby("scope")["p"].transform(cluster_means.holm)
     result["p_bh"] = cluster_means.benjamini_hochberg(result["p"])
     return result[EFFECT_COLUMNS]
@@ -133,24 +124,12 @@ def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:
         remark += STEPS_DECIDE
+    estimate, nan = (effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p), math.nan
+    drawn = "exact" if flips.exact else f"drawn with seed {seed}"
+    flipped = (effect.ratio, nan, nan, flips.p, flips.smallest_p, flips.units, drawn)
     rows = [
-        {
-            "method": f"t on the means of {unit}s",
-            "estimate": effect.ratio,
-            "lower": effect.ratio_lower,
-            "upper": effect.ratio_upper,
-            "p": effect.p,
-            "units": effect.units,
-            "remark": remark,
-        },
-        {
-            "method": "sign flips over earthquakes",
-            "estimate": effect.ratio,
-            "p": flips.p,
-            "smallest_p": flips.smallest_p,
-            "units": flips.units,
-            "remark": "exact" if flips.exact else f"drawn with seed {seed}",
-        },
+        [f"t on the means of {unit}s", *estimate, nan, effect.units, remark],
+        ["sign flips over earthquakes", *flipped],
     ]
     return pd.DataFrame(rows, columns=WHOLE_COLUMNS)
 

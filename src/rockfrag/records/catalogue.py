@@ -168,12 +168,7 @@ def load_motions(
 def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
     """Read the motion of one checked row of a catalogue in ``folder``: the component that ``file`` names."""
     motion = load_component(row, row["file"], folder, records)
-    facts = {
-        key: value
-        for key in _FACTS
-        if (value := row.get(key, "")) != ""
-        and not (isinstance(value, float) and math.isnan(value))
-    }
+    facts = {key: value for key in _FACTS if (value := row.get(key, "")) != "" and pd.notna(value)}
     facts |= {"source": row["source"], "file": row["file"]}
     named = replace(motion, name=row["name"], metadata={**motion.metadata, **facts})
     return scaled(named, row)

@@ -347,14 +347,9 @@ class CatalogueDraft:
         other = next((other for other in pair if other is not component), None)
         file, facts = component.file, component.facts
         self.notes += [(file, quality_flag) for quality_flag in component.quality_flags]
-        if (
-            other is not None
-            and file < other.file
-            and abs(component.npts - other.npts) > 0.1 * component.npts
-        ):
-            unlike = (
-                f"{component.npts} samples, but {other.npts} in {other.file} of the same record"
-            )
+        npts = component.npts
+        if other and file < other.file and abs(npts - other.npts) > 0.1 * npts:
+            unlike = f"{npts} samples, but {other.npts} in {other.file} of the same record"
             self.note(file, unlike)
         earthquake = str(facts.get("earthquake") or "")
         if not earthquake:

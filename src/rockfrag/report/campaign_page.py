@@ -76,8 +76,7 @@ def _better(row: Row) -> str:
     return f"{middle} [{low}, {high}]"
 
 
-LEVEL = 0.05
-"""A difference between programs is stated below this adjusted p value [-]."""
+LEVEL = 0.05  # a difference between programs is stated below this adjusted p value [-]
 
 
 def _p(value: float) -> str:

@@ -92,11 +92,7 @@ MOST_TABLE_ROWS = 500
 def table_html(
     table: pd.DataFrame, columns: Sequence[Column], caption: str, file: str = ""
 ) -> Markup:
-    """Render a table; on a narrow screen its rows become lists of titles and values.
-
-    It is empty without rows. Where the file of the results with all rows is named no more than
-    ``MOST_TABLE_ROWS`` are shown.
-    """
+    """Render a table, empty without rows; where the file with all rows is named ``MOST_TABLE_ROWS`` are shown."""
     if table.empty:
         return Markup("")
     if file and len(table) > MOST_TABLE_ROWS:

@@ -156,10 +156,7 @@ def draw_files(
 
 
 def draw_record(motion: Motion, path: str | os.PathLike[str]) -> None:
-    """Draw acceleration, velocity, displacement and the response spectrum of a motion as ``.png`` or ``.svg``.
-
-    Velocity and displacement are exact integrals from rest.
-    """
+    """Draw acceleration, its exact integrals from rest, and the spectra of a motion as ``.png`` or ``.svg``."""
     if Path(path).suffix not in (".png", ".svg"):
         raise InputError(f"{path}: a picture is written as .png or .svg.")
     style.save_figure(record_figure(motion), path)

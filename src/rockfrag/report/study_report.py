@@ -131,10 +131,7 @@ def figures_of(answer: Answer, sections: Sequence[Section]) -> list[FigureSpec]:
 
 
 def write_captions(answer: Answer, sections: Sequence[Section], folder: Path) -> None:
-    """Write what the page says of each figure into the folder of the figures, for Snakemake's report.
-
-    ``captions.json`` has chapter and caption of each by name.
-    """
+    """Write chapter and caption of each figure by name, ``captions.json``, for Snakemake's report."""
     found = [(answer.figure, "The answer")] if answer.figure else []
     found += [
         (part, section.title)

@@ -43,10 +43,9 @@ def decimals_of(value: float, significant: int = 3) -> int:
 def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
     """An estimate with its limits, ``1.01 [0.98, 1.04]``; without them where they say nothing.
 
-    Limits say nothing where there are none, or where they are the same to the decimals shown: a
-    set of steps cannot show that something is exactly so. An estimate that is its own upper limit, with none
-    below,
-    is a bound: ``≤ 0.04``.
+    Limits say nothing where there are none, or where they are the same to the decimals shown: a set of steps
+    cannot show that something is exactly so. An estimate that is its own upper limit, with none below, is a
+    bound: ``≤ 0.04``.
     """
     if not math.isfinite(value):
         return "–"
@@ -157,10 +156,7 @@ def sentence(words: str) -> str:
 
 
 class Macros:
-    """Macros of a template of sentences, which use the words given and those of this module.
-
-    The template is read when the first of them is asked for.
-    """
+    """Macros of a template, read when one is asked for, which use the words given and those of this module."""
 
     def __init__(
         self, package: str, template: str, words: Mapping[str, Any] = MappingProxyType({})

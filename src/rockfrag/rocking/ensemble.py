@@ -117,11 +117,6 @@ def overturns(
     Outcomes
         Arrays of shape (bodies, motions, scales), and three tidy tables; who answered stands in ``engine``.
 
-    Raises
-    ------
-    InputError
-        If an argument cannot be used, or two wishes cannot be met together; the message says which and why.
-
     Warns
     -----
     LightBodies
@@ -251,9 +246,8 @@ def _warn_of_weight(ratio: Array) -> None:
 
 def _warn_of_lifting(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]) -> None:
     """Warn of bodies whose own rocking may take the weight off a contact: squat ones in strong motions."""
-    peaks = np.array([motion.x.pga for motion in cases.motions])[:, np.newaxis] * np.abs(
-        cases.scales
-    )
+    unscaled = np.array([motion.x.pga for motion in cases.motions])
+    peaks = unscaled[:, np.newaxis] * np.abs(cases.scales)
     # a body that rocks at less is too slender or too squat to lift itself
     if not (peaks > LEAST_LIFTING * cases.request.g).any():
         return

@@ -64,10 +64,8 @@ def _checked_vertical(vertical: MotionLike, horizontal: Motion, name: str) -> Mo
             "resample one of them."
         )
     own = None if isinstance(vertical, Motion) else interval
-    values, samples = (
-        _checked_motion(vertical, own, name).acceleration,
-        horizontal.acceleration.size,
-    )
+    values = _checked_motion(vertical, own, name).acceleration
+    samples = horizontal.acceleration.size
     if values.size != samples:
         raise InputError(
             f"{name}: {values.size} samples for {samples} horizontal ones; cut or pad one of them."

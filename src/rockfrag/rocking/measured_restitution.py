@@ -29,14 +29,14 @@ class MeasuredRestitution:
 
     Attributes
     ----------
-    value
-        Of a lone block one ratio [-], or (right, left): of impacts that end on its right and on its left corner.
-        Of a stack a pair (ground, interface), each of them likewise, or None where momentum is conserved.
-    law
-        Name of a law in ``rockfrag.laws``.  ``"position"``: the impulse acts nearer the middle of the base where
-        momentum would leave less, and a couple brakes where it would leave more; ``"couple"``: a couple brakes or
-        drives the contact, so that its relative velocity is a fixed multiple of what momentum leaves;
-        ``"ratio"``: the relative velocities after and before have the measured ratio.
+    value : of a lone block one ratio [-], or (right, left)
+        Of impacts that end on its right and on its left corner.  Of a stack a pair (ground, interface), each
+        likewise, or None where momentum is conserved.
+    law : name of a law in ``rockfrag.laws``
+        ``"position"``: the impulse acts nearer the middle of the base where momentum would leave less, and a
+        couple brakes where it would leave more; ``"couple"``: a couple brakes or drives the contact, so that its
+        relative velocity is a fixed multiple of what momentum leaves; ``"ratio"``: the relative velocities after
+        and before have the measured ratio.
     """
 
     value: float | Sequence[Measured] | dict[str, Any]

@@ -100,11 +100,8 @@ def _friction_of_each(friction: Any, count: int) -> list[Any]:
 
 def frictions_of(count: int, friction: object, name: str = "friction") -> list[Friction | None]:
     """Return the friction of each contact of a body, the ground's first."""
-    places = (
-        ["ground", "interface"]
-        if count == 2
-        else ["ground", *[f"interface {k}" for k in range(1, count)]]
-    )
+    above = ["interface"] if count == 2 else [f"interface {k}" for k in range(1, count)]
+    places = ["ground", *above]
     if isinstance(friction, np.ndarray) and friction.ndim == 0:
         friction = friction.item()
     wanted = (

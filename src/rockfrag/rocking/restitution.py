@@ -75,10 +75,7 @@ def quarter_period(block: Block, peak: float, pivot: int = 1, *, linear: bool = 
 
 
 def restitution_from_peaks(
-    block: Block,
-    peaks: ArrayLike,
-    *,
-    confidence: float = 0.95,
+    block: Block, peaks: ArrayLike, *, confidence: float = 0.95
 ) -> RestitutionFit:
     """Fit e to successive peak rotations, by least squares on the rotations.
 
@@ -94,12 +91,6 @@ def restitution_from_peaks(
     -------
     The :class:`RestitutionFit`: ``restitution`` with ``lower`` and ``upper``, ``impacts``, ``scatter``,
     ``computed``.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two peaks, one is not between zero and the critical angle, or the
-        signs neither alternate nor agree.
     """
     values, pivots = _checked_peaks(block, peaks)
 
@@ -125,11 +116,7 @@ def restitution_from_peaks(
 
 
 def restitution_from_impacts(
-    block: Block,
-    times: ArrayLike,
-    *,
-    first_pivot: int = 1,
-    confidence: float = 0.95,
+    block: Block, times: ArrayLike, *, first_pivot: int = 1, confidence: float = 0.95
 ) -> RestitutionFit:
     """Fit e to the times of successive impacts, by least squares on the times.
 
@@ -169,9 +156,8 @@ def restitution_from_impacts(
             speed *= e
         return np.array(found)
 
-    largest = min(speed_before(block, block.critical_angle(pivot), pivot) for pivot in (+1, -1)) * (
-        1 - 1e-12
-    )
+    over = min(speed_before(block, block.critical_angle(pivot), pivot) for pivot in (+1, -1))
+    largest = over * (1 - 1e-12)
 
     def speed_of(interval: float, pivot: int) -> float:
         if flight(largest, pivot) <= interval:

@@ -62,11 +62,6 @@ def outcome_robustness(
     -------
     Fractions from 0 to 1, shape (bodies, motions, scales): 1 where no copy ends otherwise.
 
-    Raises
-    ------
-    InputError
-        If an argument cannot be used; the message says which and why.
-
     Examples
     --------
     >>> import numpy as np
@@ -181,11 +176,6 @@ def find_step_size_sensitive(
     Returns
     -------
     The :class:`StepSizeSensitive`: how many cases were looked at, and which of them changed.
-
-    Raises
-    ------
-    InputError
-        If an argument cannot be used; the message says which and why.
 
     Examples
     --------

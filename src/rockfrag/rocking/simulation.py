@@ -70,11 +70,6 @@ def simulate(
         Histories, contact events, energies and forces; of a body in space under both components a
         :class:`rockfrag.engines.spatial.SpatialResponse`.
 
-    Raises
-    ------
-    InputError
-        If an argument cannot be used, or two wishes cannot be met together; the message says which and why.
-
     Warns
     -----
     LightBodies

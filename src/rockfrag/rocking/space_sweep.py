@@ -13,6 +13,5 @@ class Sweep:
     levels: int  # number of levels, a constant factor apart
     directions: int  # directions of planar rocking over half a turn
     resamples: int  # times that earthquakes are drawn again for intervals
-    spread: (
-        float  # largest displacement of each vertex of a base over its extent [-], and turn [rad]
-    )
+    # largest displacement of each vertex of a base over its extent [-], and turn [rad]
+    spread: float

@@ -90,11 +90,6 @@ def rocking_spectrum(
     The :class:`RockingSpectrum`: peak ``rotation`` over the critical angle and ``velocity`` over p, infinite where
     the block overturns, and ``overturned``, of shape (j, k), angles × periods.
 
-    Raises
-    ------
-    InputError
-        If a period or an angle cannot be used.
-
     Examples
     --------
     Of blocks of one slenderness the larger ones stand longer:
@@ -121,7 +116,6 @@ def rocking_spectrum(
     shape = (angle.size, period.size)
     rotation = found.of_top("peak_rotation").reshape(shape)
     p = np.array([fastest_frequency(block, GRAVITY) for block in blocks]).reshape(shape)
-    velocity = np.where(
-        np.isinf(rotation), np.inf, found.of_top("peak_velocity").reshape(shape) / p
-    )
+    fastest = found.of_top("peak_velocity").reshape(shape)
+    velocity = np.where(np.isinf(rotation), np.inf, fastest / p)
     return RockingSpectrum(period, angle, rotation, velocity)

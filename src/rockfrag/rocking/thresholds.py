@@ -34,22 +34,19 @@ class Thresholds:
 
     Attributes
     ----------
-    table
-        One row per body and motion: ``body``, ``motion`` (positions in the lists given),
-        ``first_overturning`` (least scale found that overturns), ``always_overturning`` (from here to
-        the highest scale every outcome found is overturning), both also as peak accelerations
-        ``first_overturning_pga_g`` and ``always_overturning_pga_g``, and ``resurrections``, the number of
-        structural resurrections above the first overturning.  NaN if the body survives all scales, or for
-        ``always_overturning`` if it survives the highest.
-    resurrections
-        One row per structural resurrection: ``body``, ``motion``, ``lower``, ``upper``: the outermost scales
-        found to survive; ``upper`` is the highest scale for a window that is still open there.
-    narrowest_resurrection
-        Spacing of the grid.  A structural resurrection or of overturning at least this wide contains a point
-        of the grid and has been found; a narrower one can be missed.
-    tolerance
-        The outcome changes within this much below ``first_overturning`` and ``always_overturning``, and
-        within this much outside each window.
+    table : a row per body and motion
+        ``body``, ``motion`` (positions in the lists given), ``first_overturning`` (least scale found that
+        overturns), ``always_overturning`` (from here to the highest scale every outcome found is overturning),
+        both also as peak accelerations ``first_overturning_pga_g`` and ``always_overturning_pga_g``, and
+        ``resurrections``, the number of structural resurrections above the first overturning.  NaN if the body
+        survives all scales, or for ``always_overturning`` if it survives the highest.
+    resurrections : a row per structural resurrection: ``body``, ``motion``, ``lower``, ``upper``
+        The outermost scales found to survive; ``upper`` is the highest scale for a window still open there.
+    narrowest_resurrection : spacing of the grid
+        A window of survival or of overturning at least this wide contains a point of the grid and has been found;
+        a narrower one can be missed.
+    tolerance : within which the outcome changes
+        Below ``first_overturning`` and ``always_overturning``, and outside each window.
     """
 
     table: pd.DataFrame
@@ -90,11 +87,6 @@ def find_thresholds(
     Returns
     -------
     The :class:`Thresholds`: a table with a row per body and motion, and one of the structural resurrections.
-
-    Raises
-    ------
-    InputError
-        If an argument cannot be used; the message says which and why.
 
     Examples
     --------

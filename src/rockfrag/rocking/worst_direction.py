@@ -66,11 +66,6 @@ def worst_direction(
     Returns
     -------
     The :class:`WorstDirection`: ``angle_deg``, the ``motion`` in it, and a ``table`` of a row per direction.
-
-    Raises
-    ------
-    InputError
-        If the components do not fit together, no direction is given, or a number is not usable.
     """
     if not len(directions_deg):
         raise InputError("worst_direction: directions_deg is empty; give at least one angle.")

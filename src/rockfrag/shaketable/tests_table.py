@@ -35,10 +35,11 @@ COLUMNS = (
     *("repetition", "remark", "definition"),
 )
 
-PEDESTALS = ("P", "NP")
-CENSORED = ("none", "right")
-BODIES = ("", "statue", "pedestal")
-
+_CHOICES = {
+    "censored": ("none", "right"),
+    "overturned_body": ("", "statue", "pedestal"),
+    "pedestal": ("P", "NP"),
+}
 _TEXT = ("test", "object", "pedestal", "earthquake", "floor", "censored", "overturned_body")
 _IN_G = {"g": 1.0, "m_s2": 1 / GRAVITY}
 _OPTIONAL = ("remark", "motion", "amplitude_g", "amplitude_m_s2")
@@ -95,11 +96,7 @@ def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:
 
 
 def _test(row: Row, bounds: tuple[str, str], in_g: float) -> dict[str, object]:
-    for column, known in (
-        ("censored", CENSORED),
-        ("overturned_body", BODIES),
-        ("pedestal", PEDESTALS),
-    ):
+    for column, known in _CHOICES.items():
         if row.cells[column] not in known:
             choice = ", ".join(name or "nothing" for name in known)
             raise row.error(column, f"must be one of {choice}, got {row.cells[column]!r}")

@@ -26,8 +26,7 @@ from rockfrag.stages.campaign import campaign_with_motions, measured_tests, obje
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any
 
-WAYS = 512
-"""Guesses of how an object stands."""
+WAYS = 512  # guesses of how an object stands
 
 _LOG = logging.getLogger(__name__)
 LEVEL = 0.90  # confidence of intervals

@@ -1,4 +1,1 @@
-"""Studies: what is to be computed, read from a configuration file and checked first.
-
-:func:`rockfrag.study.loading.load_any` reads and checks.
-"""
+"""Studies: what is to be computed, read from a configuration file and checked by ``loading`` first."""

@@ -1,8 +1,4 @@
-"""Reading a study before anything runs, with every check that can be made beforehand.
-
-Nothing is checked twice: :func:`any_study` makes the one object that command line, rules and jobs
-use. Only what is in the user's records is left to :mod:`rockfrag.study.loading`, as it takes seconds.
-"""
+"""Reading a study before anything runs, with every check that can be made beforehand."""
 
 import os
 from collections.abc import Callable, Mapping, Sequence

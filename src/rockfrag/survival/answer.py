@@ -38,23 +38,14 @@ LIMITS = (
 class Constrained:
     """Hazard of a site after survival, and what it hangs on.
 
-    Attributes
-    ----------
-    site
-        What is known of the site.
-    result
-        Weights and curves.
-    by_object
-        A row an object: ``object``, ``information_bit`` of it alone, ``level_ratio_alone`` and
-        ``level_ratio_without`` (mean hazard after over before at ``DECISION_RATE``).
-    sensitivity
-        A row an assumption: ``assumption`` and ``level_ratio``.
+    Ratios of levels are of the mean hazard after over before at ``DECISION_RATE``.
     """
 
-    site: Site
-    result: Reweighted
+    site: Site  #: What is known of the site
+    result: Reweighted  #: Weights and curves
+    #: A row an object: ``object``, ``information_bit``, ``level_ratio_alone`` and ``level_ratio_without``
     by_object: pd.DataFrame
-    sensitivity: pd.DataFrame
+    sensitivity: pd.DataFrame  #: A row an assumption: ``assumption`` and ``level_ratio``
 
     @property
     def level_ratio(self) -> float:
@@ -71,20 +62,8 @@ class Constrained:
 def constrain(site: Site) -> Constrained:
     """Reweight the branches of a site by the survival of its objects.
 
-    Parameters
-    ----------
-    site
-        Branches and objects.
-
-    Returns
-    -------
-    Constrained
-        Weights, curves, contributions of objects and sensitivities.
-
-    Raises
-    ------
-    InputError
-        If no branch lets the objects stand, or a measure is in no hazard curve.
+    Returns weights, curves, contributions of objects and sensitivities; that no branch lets all of them stand is
+    an InputError.
     """
     result = _reweighted(site, site.objects)
     if float(result.log_survival.max()) < np.log(LEAST_SURVIVAL):

@@ -10,7 +10,7 @@ the same branches.
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -37,7 +37,7 @@ class Branch:
 
     name: str
     weight: float
-    curves: Mapping[IntensityMeasure, HazardCurve] = field(default_factory=dict)
+    curves: dict[IntensityMeasure, HazardCurve] = field(default_factory=dict)
 
 
 def read_branches(
@@ -87,21 +87,22 @@ def _names(branch: Branch) -> str:
 
 def _of_tables(paths: Sequence[str | os.PathLike[str]]) -> list[Branch]:
     """Branches of plain tables."""
-    weights: dict[str, float] = {}
-    curves: dict[str, dict[IntensityMeasure, HazardCurve]] = {}
+    found: dict[str, Branch] = {}
     for path in paths:
         for name, (weight, curve) in _table(path).items():
-            if weights.setdefault(name, weight) != weight:
+            branch = found.setdefault(name, Branch(name, weight))
+            if branch.weight != weight:
                 raise InputError(
-                    f"{path}: branch {name[:60]} has the weight {weight:g}, and {weights[name]:g} elsewhere."
+                    f"{path}: branch {name[:60]} has the weight {weight:g}, and {branch.weight:g} elsewhere."
                 )
-            of_branch = curves.setdefault(name, {})
-            if curve.measure in of_branch:
-                raise InputError(
-                    f"{path}: {curve.measure.imt} of branch {name[:60]} is given twice."
-                )
-            of_branch[curve.measure] = curve
-    return [Branch(name, weight, curves[name]) for name, weight in weights.items()]
+            _add(curve, branch, f"branch {name[:60]}", path)
+    return list(found.values())
+
+
+def _add(curve: HazardCurve, branch: Branch, name: str, path: str | os.PathLike[str]) -> None:
+    if curve.measure in branch.curves:
+        raise InputError(f"{path}: {curve.measure.imt} of {name} is given twice.")
+    branch.curves[curve.measure] = curve
 
 
 def _table(path: str | os.PathLike[str]) -> dict[str, tuple[float, HazardCurve]]:
@@ -140,26 +141,18 @@ def _of_openquake(
     paths: Sequence[str | os.PathLike[str]], realizations: str | os.PathLike[str]
 ) -> list[Branch]:
     """Branches of OpenQuake's exports."""
-    weights: dict[int, float] = {}
-    names: dict[int, str] = {}
-    for number, row in _realizations(realizations):
-        if number in weights:
-            raise InputError(f"{realizations}: realization {number} is given twice.")
-        weights[number], names[number] = row
-    curves: dict[int, dict[IntensityMeasure, HazardCurve]] = {number: {} for number in weights}
+    found = _realizations(realizations)
     for path in paths:
         number = _realization_of(path)
-        if number not in weights:
+        if number not in found:
             raise InputError(f"{path}: realization {number} is not in {realizations}.")
         curve = openquake_csv.read_curve(read_text(path, LARGEST_FILE), str(path))
-        if curve.measure in curves[number]:
-            raise InputError(f"{path}: {curve.measure.imt} of realization {number} is given twice.")
-        curves[number][curve.measure] = curve
-    return [Branch(names[number], weights[number], curves[number]) for number in weights]
+        _add(curve, found[number], f"realization {number}", path)
+    return list(found.values())
 
 
-def _realizations(path: str | os.PathLike[str]) -> list[tuple[int, tuple[float, str]]]:
-    """Number, weight and name of each realization."""
+def _realizations(path: str | os.PathLike[str]) -> dict[int, Branch]:
+    """Branches without curves, by the number of the realization."""
     lines = read_cells(path)
     header = lines[0][1] if lines else []
     places = {title: i for i, title in enumerate(header)}
@@ -168,14 +161,16 @@ def _realizations(path: str | os.PathLike[str]) -> list[tuple[int, tuple[float, 
             f"{path}: expected OpenQuake's realizations with the columns rlz_id, branch_path and weight; found "
             f"{', '.join(header)[:120] or 'nothing'}."
         )
-    found = []
+    found: dict[int, Branch] = {}
     for line, cells in lines[1:]:
         try:
             number, weight = int(cells[places["rlz_id"]]), float(cells[places["weight"]])
             path_of = cells[places["branch_path"]] if "branch_path" in places else ""
         except (ValueError, IndexError):
             raise InputError(f"{path}, line {line}: expected a number and a weight.") from None
-        found.append((number, (weight, f"rlz-{number:03d} {path_of}".strip())))
+        if number in found:
+            raise InputError(f"{path}: realization {number} is given twice.")
+        found[number] = Branch(f"rlz-{number:03d} {path_of}".strip(), weight)
     return found
 
 

@@ -20,10 +20,11 @@ from scipy import special
 from rockfrag.errors import InputError
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.survival.branches import Branch
-from rockfrag.survival.evidence import StandingObject, draw_errors
-from rockfrag.survival.rates import (
+from rockfrag.survival.evidence import (
     ShakingRates,
+    StandingObject,
     VelocityRelation,
+    draw_errors,
     quantile_weights,
     shaking_rates,
 )
@@ -42,21 +43,12 @@ QUANTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
 
 @dataclass(frozen=True)
 class Reweighted:
-    """Weights of branches before and after.
+    """Weights of branches before and after."""
 
-    Attributes
-    ----------
-    branches
-        The branches.
-    log_survival
-        ln S_i, the logarithm of the probability that all objects stand, shape (branches,).
-    weights
-        Weights afterwards, shape (branches,), of sum 1.
-    """
-
-    branches: tuple[Branch, ...]
+    branches: tuple[Branch, ...]  #: The branches
+    #: ln S_i, the logarithm of the probability that all objects stand, shape (branches,)
     log_survival: Floats
-    weights: Floats
+    weights: Floats  #: Weights afterwards, shape (branches,), of sum 1
 
     @property
     def prior(self) -> Floats:

@@ -12,8 +12,7 @@ from rockfrag.errors import InputError
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.schema import checked
 from rockfrag.survival.branches import Branch, read_branches
-from rockfrag.survival.evidence import Age, StandingObject, lognormal_coefficients
-from rockfrag.survival.rates import VelocityRelation
+from rockfrag.survival.evidence import Age, StandingObject, VelocityRelation, lognormal_coefficients
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.yaml_file import read_yaml
 
@@ -29,30 +28,14 @@ SHAKING = ("pga", "pgv", "sa", "hazard", "return_period", "return_period_years",
 
 @dataclass(frozen=True)
 class Site:
-    """What is known of a site.
+    """What is known of a site."""
 
-    Attributes
-    ----------
-    name
-        What the site is called.
-    branches
-        Branches of its hazard.
-    objects
-        What stands there.
-    shared_error
-        Correlation of the errors of the objects' fragilities [-].
-    same_earthquakes
-        Whether the objects feel the same earthquakes.
-    velocity
-        PGV that comes with a PGA; None if not stated.
-    """
-
-    name: str
-    branches: tuple[Branch, ...]
-    objects: tuple[StandingObject, ...]
-    shared_error: float
-    same_earthquakes: bool
-    velocity: VelocityRelation | None
+    name: str  #: What the site is called
+    branches: tuple[Branch, ...]  #: Branches of its hazard
+    objects: tuple[StandingObject, ...]  #: What stands there
+    shared_error: float  #: Correlation of the errors of the objects' fragilities [-]
+    same_earthquakes: bool  #: Whether the objects feel the same earthquakes
+    velocity: VelocityRelation | None  #: PGV that comes with a PGA; None if not stated
 
     @property
     def measure(self) -> IntensityMeasure:
@@ -62,24 +45,9 @@ class Site:
 
 
 def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Site:
-    """Read a site from a YAML file such as ``site.yaml``.
+    """Read a site from a YAML file such as ``site.yaml``: branches, objects and how these depend on each other.
 
-    Parameters
-    ----------
-    path
-        The file; paths in it are relative to it.
-    records
-        Folder of fetched records, for objects that are simulated.
-
-    Returns
-    -------
-    Site
-        Branches, objects and how these depend on each other.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read, or does not describe a site with branches and objects.
+    Paths in it are relative to it; ``records`` is the folder of fetched records, for objects that are simulated.
     """
     known = checked(read_yaml(path), "site", str(path))
     try:

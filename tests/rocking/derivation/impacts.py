@@ -13,9 +13,9 @@ def truth(old: tuple[int, int], new: tuple[int, int]):
     return lambda s: np.array(impact_map(s, old, new))
 
 
-def solved(rows: tuple[tuple[Array, ...], tuple[Array, ...]], s: System) -> Array:
-    """Solve P ω1⁺ + Q ω2⁺ = U ω1⁻ + V ω2⁻ for two rows (P, Q, U, V)."""
-    (p, q, u, v), (p2, q2, u2, v2) = rows
+def solved(s: System, row: tuple[Array, ...], row2: tuple[Array, ...]) -> Array:
+    """Solve P ω1⁺ + Q ω2⁺ = U ω1⁻ + V ω2⁻ for two rows (P, Q, U, V), as the thesis's quotients do."""
+    (p, q, u, v), (p2, q2, u2, v2) = row, row2
     det = p * q2 - q * p2
     first, two = u * s.w1 + v * s.w2, u2 * s.w1 + v2 * s.w2
     return np.array([(first * q2 - q * two) / det, (p * two - p2 * first) / det])
@@ -34,9 +34,7 @@ def case_276(s: System, printed: bool) -> Array:
         s.r2 * cos(s.tc2 + s.beta_ - s.th2) + 2 * s.h1 * cos(s.beta_) + s.xi_ * sin(s.beta_)
     )
     c6 = s.m2 * s.r2 * s.length_ * cos(s.tc2 + s.beta_ - s.th2)
-    a = (c1 * c2 - c3 * c4) / (c5 * c1 - c3 * c6)
-    b = (c6 * c2 - c5 * c4) / (c3 * c6 - c1 * c5)
-    return np.array([a * s.w1, b * s.w1 + s.w2])
+    return solved(s, (c5, c3, c2, c3), (c6, c1, c4, c1))
 
 
 def case_278(s: System, printed: bool) -> Array:
@@ -54,11 +52,7 @@ def case_278(s: System, printed: bool) -> Array:
     e6 = s.m2 * s.r2 * s.length_ * cos(s.tc2 + s.beta_)
     e7 = s.ic2 + s.m2 * s.r2 * s.rr * f(seven)
     e8 = s.ic2 + s.m2 * s.r2**2 * cos(2 * s.tc2)
-    a = (e1 * e2 - e3 * e4) / (e5 * e1 - e3 * e6)
-    b = (e1 * e7 - e3 * e8) / (e5 * e1 - e3 * e6)
-    c = (e6 * e2 - e5 * e4) / (e3 * e6 - e1 * e5)
-    d = (e6 * e7 - e5 * e8) / (e3 * e6 - e1 * e5)
-    return np.array([a * s.w1 + b * s.w2, c * s.w1 + d * s.w2])
+    return solved(s, (e5, e3, e2, e7), (e6, e1, e4, e8))
 
 
 def together(s: System, a1: Array, a2: Array) -> Array:
@@ -94,41 +88,26 @@ def case_280(s: System, printed: bool) -> Array:
     e6 = s.m2 * s.r2 * s.length * cos(arc - beta)
     back = s.tc2 - s.th2
     e7 = s.ic2 + s.m2 * s.r2 * (2 * s.h1 * cos(back) - s.xi * sin(back)) if printed else e3
-    a = (e1 * e2 - e3 * e4) / (e5 * e1 - e3 * e6)
-    b = (e1 * e7 - e3 * e1) / (e5 * e1 - e3 * e6)
-    c = (e6 * e2 - e5 * e4) / (e3 * e6 - e1 * e5)
-    d = (e6 * e7 - e5 * e1) / (e3 * e6 - e1 * e5)
-    return np.array([a * s.w1 + b * s.w2, c * s.w1 + d * s.w2])
+    return solved(s, (e5, e3, e2, e7), (e6, e1, e4, e1))
 
 
 def case_281(s: System, printed: bool) -> Array:
-    return printed_281(s) if printed else mended_281(s)
-
-
-def printed_281(s: System) -> Array:
+    th1, th2 = (s.th1, s.th2) if printed else (0.0, 0.0)
+    f6, f7 = (
+        (s.tc2 + s.big + th2, s.tc2 + s.beta_ - s.th1 - th2)
+        if printed
+        else (s.big - s.tc2, 2 * s.tc2)
+    )
+    turn = -1 if printed else 1
     e1 = s.io2
-    e2 = s.io1 + s.m2 * s.length_ * s.rr * sin(s.big - s.beta_ + s.th1)
-    e3 = s.m2 * s.r2 * s.length_ * cos(s.tc2 - s.beta_ + s.th1 - s.th2)
-    e4 = s.io1 + s.m2 * s.length * s.rr * sin(s.big - s.beta + s.th1)
-    e5 = s.m2 * s.r2 * s.length * cos(s.tc2 - s.beta + s.th1 - s.th2)
-    e6 = s.ic2 + s.m2 * s.r2 * s.rr * sin(s.tc2 + s.big + s.th2)
-    e7 = s.ic2 + s.m2 * s.r2**2 * cos(s.tc2 + s.beta_ - s.th1 - s.th2)
-    a = (e1 * e2 - e1 * e3) / (e4 * e1 - e1 * e5)
-    b = (e1 * e6 - e7 * e1) / (e4 * e1 - e1 * e5)
-    c = (e5 * e2 - e4 * e3) / (e1 * e5 - e1 * e4)
-    d = (e5 * e6 - e4 * e7) / (e1 * e5 - e1 * e4)
-    return np.array([a * s.w1 + b * s.w2, c * s.w1 + d * s.w2])
-
-
-def mended_281(s: System) -> Array:
-    e2 = s.io1 + s.m2 * s.length_ * s.rr * sin(s.big + s.beta_)
-    e3 = s.m2 * s.r2 * s.length_ * cos(s.tc2 - s.beta_)
-    e4 = s.io1 + s.m2 * s.length * s.rr * sin(s.big + s.beta)
-    e5 = s.m2 * s.r2 * s.length * cos(s.tc2 - s.beta)
-    e6 = s.ic2 + s.m2 * s.r2 * s.rr * sin(s.big - s.tc2)
-    e7 = s.ic2 + s.m2 * s.r2**2 * cos(2 * s.tc2)
-    new = s.ic2 + s.m2 * s.r2 * s.rr * sin(s.big + s.tc2)
-    return solved(((e4, new, e2, e6), (e5, s.io2, e3, e7)), s)
+    e2 = s.io1 + s.m2 * s.length_ * s.rr * sin(s.big + turn * s.beta_ + th1)
+    e3 = s.m2 * s.r2 * s.length_ * cos(s.tc2 - s.beta_ + th1 - th2)
+    e4 = s.io1 + s.m2 * s.length * s.rr * sin(s.big + turn * s.beta + th1)
+    e5 = s.m2 * s.r2 * s.length * cos(s.tc2 - s.beta + th1 - th2)
+    e6 = s.ic2 + s.m2 * s.r2 * s.rr * sin(f6)
+    e7 = s.ic2 + s.m2 * s.r2**2 * cos(f7)
+    lever = e1 if printed else s.ic2 + s.m2 * s.r2 * s.rr * sin(s.big + s.tc2)
+    return solved(s, (e4, lever, e2, e6), (e5, e1, e3, e7))
 
 
 def case_282(s: System, printed: bool) -> Array:
@@ -151,9 +130,7 @@ def case_283(s: System, printed: bool) -> Array:
     )
     c5 = s.io1 + s.m2 * s.length * (top * cos(s.beta) + s.b1 * sin(s.beta))
     c6 = s.m2 * s.length * (s.h2 * cos(s.beta) + s.b2 * sin(s.beta))
-    a = (c1 * c2 - c3 * c4) / (c5 * c1 - c3 * c6)
-    b = (c6 * c2 - c5 * c4) / (c3 * c6 - c1 * c5)
-    return np.array([a * s.w1, b * s.w1])
+    return solved(s, (c5, c3, c2, 0), (c6, c1, c4, 0))
 
 
 def case_284(s: System, printed: bool) -> Array:
@@ -170,11 +147,9 @@ def case_285(s: System, printed: bool) -> Array:
     c4 = s.io2 - 2 * s.m2 * s.b2**2
     c5 = s.io1 + s.m2 * s.length * (top * cos(s.beta) + s.b1 * sin(s.beta))
     c6 = s.m2 * s.length * (s.h2 * cos(s.beta) + s.b2 * sin(s.beta))
-    a = (c1 * c2 - c3 * c4) / (c5 * c1 - c3 * c6)
-    b = (c6 * c2 - c5 * c4) / (c3 * c6 - c1 * c5)
     if printed:
-        return np.array([a * s.w1, b * s.w1 + s.w2])
-    return np.array([a * s.w2, b * s.w2])
+        return solved(s, (c5, c3, c2, c3), (c6, c1, c4, c1))
+    return solved(s, (c5, c3, 0, c2), (c6, c1, 0, c4))
 
 
 def glued_at_rest() -> System:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy import cos, sign, sin
 
-from .single_block import standing_pivot
+from . import single_block as upper
 from .systems import Equation, Quantity, System, by_sign, misprinted, random_systems
 
 Array = np.ndarray
@@ -13,17 +13,15 @@ def rest(s: System) -> System:
     return s.with_(th1=0.0, th2=0.0, w1=0.0, w2=0.0, q1=0.0, q2=0.0)
 
 
-def rocking_mode(opposite: int) -> Quantity:
+def rocking_mode(opposite: int, equations: str = "motion") -> Quantity:
     """Both equations of pattern 1 (``opposite`` = 1) or 2 (-1) with the pivot of block 1 by S_θ1."""
-    return by_sign(lambda s, side: s.moments(side, side * opposite))
+    return by_sign(lambda s, side: s.get(equations, side, side * opposite))
 
 
-def gamma_1(s: System, side: Array | int) -> Array:  # 2.36, 2.41, 2.44
-    return s.tc2 - s.beta + side * (s.th1 - s.th2)
-
-
-def gamma_2(s: System, side: Array | int) -> Array:  # 2.47, 2.50, 2.52
-    return s.tc2 + s.beta_ - side * (s.th1 - s.th2)
+def gamma(s: System, side: Array | int, opposite: int) -> Array:
+    """γ1 of 2.36, 2.41 and 2.44, or γ2 of 2.47, 2.50 and 2.52."""
+    beta = s.beta if opposite == 1 else -s.beta_
+    return s.tc2 - beta + opposite * side * (s.th1 - s.th2)
 
 
 def positions(i: int, s1: int, s2: int):
@@ -35,6 +33,11 @@ def positions(i: int, s1: int, s2: int):
         ) * np.array([[0.0], [1.0]])
 
     return truth
+
+
+def centre_1(s: System, side: int) -> Array:  # 2.29, 2.38
+    x = s.xg + side * (s.b1 - s.r1 * sin(s.tc1 - side * s.th1))
+    return np.array([x, s.r1 * cos(s.tc1 - side * s.th1) - s.h1])
 
 
 def centre_2(s: System, s1: int, s2: int, turn: Array | None = None) -> Array:
@@ -57,41 +60,26 @@ def first(s: System, side: Array | int, length: Array, beta: Array, swirl: Array
     )
 
 
-def rocking_mode_1(s: System, side: Array | int) -> Array:  # 2.43; 2.37 and 2.40 for side = ±1
-    gamma, mr = gamma_1(s, side), s.m2 * s.r2 * s.length
-    swirl = mr * cos(gamma) * s.q2 + side * mr * sin(gamma) * s.w2**2
+def patterns(
+    s: System,
+    side: Array | int,
+    opposite: int,
+    weight: int | None = None,
+    label: Array | None = None,
+) -> Array:
+    """2.43 with 2.37 and 2.40 of pattern 1, 2.51 with 2.46 and 2.49 of pattern 2 (``opposite`` = -1)."""
+    angle, turn = gamma(s, side, opposite), opposite * side
+    reach, beta = (s.length, s.beta) if opposite == 1 else (s.length_, s.beta_)
+    mr = s.m2 * s.r2 * reach
+    swirl = mr * cos(angle if label is None else label) * s.q2 + turn * mr * sin(angle) * s.w2**2
     second = (
         s.io2 * s.q2
-        + mr * cos(gamma) * s.q1
-        - side * mr * sin(gamma) * s.w1**2
-        + side * s.m2 * s.g * s.r2 * sin(s.tc2 - side * s.th2)
-        + s.m2 * s.r2 * s.a * cos(s.tc2 - side * s.th2)
+        + mr * cos(angle) * s.q1
+        - turn * mr * sin(angle) * s.w1**2
+        + (weight or opposite) * side * s.m2 * s.g * s.r2 * sin(s.tc2 - turn * s.th2)
+        + s.m2 * s.r2 * s.a * cos(s.tc2 - turn * s.th2)
     )
-    return np.array([first(s, side, s.length, s.beta, swirl), second])
-
-
-def rocking_mode_2(
-    s: System, side: Array | int, weight: int = -1, label: Array | None = None
-) -> Array:  # 2.51; 2.46 and 2.49 for side = ±1
-    gamma, mr = gamma_2(s, side), s.m2 * s.r2 * s.length_
-    inertia = gamma if label is None else label
-    swirl = mr * cos(inertia) * s.q2 - side * mr * sin(gamma) * s.w2**2
-    second = (
-        s.io2 * s.q2
-        + mr * cos(gamma) * s.q1
-        + side * mr * sin(gamma) * s.w1**2
-        + weight * side * s.m2 * s.g * s.r2 * sin(s.tc2 + side * s.th2)
-        + s.m2 * s.r2 * s.a * cos(s.tc2 + side * s.th2)
-    )
-    return np.array([first(s, side, s.length_, s.beta_, swirl), second])
-
-
-def lone(s: System, side: Array | int) -> Array:  # 2.58; 2.56 and 2.57
-    return (
-        s.io2 * s.q2
-        + side * s.m2 * s.g * s.r2 * sin(s.tc2 - side * s.th2)
-        + s.m2 * s.r2 * s.a * cos(s.tc2 - side * s.th2)
-    )
+    return np.array([first(s, side, reach, beta, swirl), second])
 
 
 def whole(s: System, side: Array | int) -> Array:  # 2.55; 2.53 and 2.54
@@ -105,10 +93,6 @@ def whole(s: System, side: Array | int) -> Array:  # 2.55; 2.53 and 2.54
 
 def glued(s: System, side: int) -> Array:
     return s.rigidly_joined().moments(side, 1).sum(axis=0)
-
-
-def upper_alone(s: System, side: int) -> Array:
-    return s.standing().moments(1, side)[1]
 
 
 def speed_squared(s: System, cross: float) -> Array:  # 2.33
@@ -126,35 +110,24 @@ def block_1_speed_squared(s: System) -> Array:  # 2.32
     return s.vg**2 + s.r1**2 * s.w1**2 + 2 * s.r1 * s.w1 * s.vg * cos(s.tc1 - s.th1)
 
 
-def linear(s: System, side: Array, coupled: tuple[Array, Array, Array], weight: Array) -> Array:
-    """Both rows of 2.60 and 2.62: inertia (1,1), inertia (1,2), arm ξ, weight term of row 2."""
-    m11, m12, arm = coupled
+def linear(s: System, opposite: int, reach: Array, mass: Array) -> Array:
+    """Both rows of 2.60 and 2.62, with what is printed for l² and for the mass of the second row."""
+    side, arm = sign(s.th1), s.xi if opposite == 1 else s.xi_
+    m12 = s.m2 * (2 * s.h1 * s.h2 + opposite * s.b2 * arm)
     return np.array(
         [
-            m11 * s.q1
+            (s.io1 + s.m2 * reach) * s.q1
             + m12 * s.q2
             - (s.m1 + 2 * s.m2) * s.h1 * s.g * s.th1
             + side * (s.m1 * s.b1 + s.m2 * arm) * s.g
             + (s.m1 + 2 * s.m2) * s.h1 * s.a,
-            m12 * s.q1 + s.io2 * s.q2 - s.m2 * s.h2 * s.g * s.th2 + weight + s.m2 * s.h2 * s.a,
+            m12 * s.q1
+            + s.io2 * s.q2
+            - s.m2 * s.h2 * s.g * s.th2
+            + opposite * side * mass * s.b2 * s.g
+            + s.m2 * s.h2 * s.a,
         ]
     )
-
-
-def linear_1(s: System, reach: Array, mass: Array) -> Array:  # 2.60
-    side = sign(s.th1)
-    m12 = s.m2 * (2 * s.h1 * s.h2 + s.b2 * s.xi)
-    return linear(s, side, (s.io1 + s.m2 * reach, m12, s.xi), side * mass * s.b2 * s.g)
-
-
-def linear_2(s: System, reach: Array, mass: Array) -> Array:  # 2.62
-    side = sign(s.th1)
-    m12 = s.m2 * (2 * s.h1 * s.h2 - s.b2 * s.xi_)
-    return linear(s, side, (s.io1 + s.m2 * reach, m12, s.xi_), -side * mass * s.b2 * s.g)
-
-
-def linear_truth(opposite: int) -> Quantity:
-    return by_sign(lambda s, side: s.get("linear_motion", side, side * opposite))
 
 
 def linear_3(s: System, half_width: Array) -> Array:  # 2.64
@@ -168,10 +141,6 @@ def linear_3(s: System, half_width: Array) -> Array:  # 2.64
 
 def linear_glued(s: System, side: int) -> Array:
     return s.rigidly_joined().get("linear_motion", side, 1).sum(0)
-
-
-def linear_upper(s: System, side: int) -> Array:
-    return s.standing().get("linear_motion", 1, side)[1]
 
 
 def lagrange_by_newton(s: System) -> Array:
@@ -232,13 +201,7 @@ EQUATIONS = [
         lambda s: s.g * (s.m1 * s.get("centre1", 1, 1)[1] + s.m2 * s.get("centre2", 1, 1)[1]),
         lambda s: s.get("potential", 1, 1),
     ),
-    Equation(
-        "2.29",
-        lambda s: np.array(
-            [s.xg + s.b1 - s.r1 * sin(s.tc1 - s.th1), s.r1 * cos(s.tc1 - s.th1) - s.h1]
-        ),
-        positions(1, 1, 1),
-    ),
+    Equation("2.29", lambda s: centre_1(s, 1), positions(1, 1, 1)),
     Equation("2.30", lambda s: centre_2(s, 1, 1), positions(2, 1, 1)),
     Equation(
         "2.31",
@@ -279,34 +242,28 @@ EQUATIONS = [
         lambda s: s.get("potential", 1, 1) - rest(s).get("potential", 1, 1),
     ),
     # γ is what turns M12 = m2 R2 l cos γ: read off ∂²T/∂ω1∂ω2
-    Equation("2.36", lambda s: cos(gamma_1(s, 1)), lambda s: _cosine(s, 1, 1)),
-    Equation("2.37", lambda s: rocking_mode_1(s, 1), lambda s: s.moments(1, 1)),
-    Equation(
-        "2.38",
-        lambda s: np.array(
-            [s.xg - s.b1 + s.r1 * sin(s.tc1 + s.th1), s.r1 * cos(s.tc1 + s.th1) - s.h1]
-        ),
-        positions(1, -1, -1),
-    ),
+    Equation("2.36", lambda s: cos(gamma(s, 1, 1)), lambda s: _cosine(s, 1, 1)),
+    Equation("2.37", lambda s: patterns(s, 1, 1), lambda s: s.moments(1, 1)),
+    Equation("2.38", lambda s: centre_1(s, -1), positions(1, -1, -1)),
     Equation(
         "2.39",
         lambda s: centre_2(s, -1, -1, turn=-s.th2),
         positions(2, -1, -1),
         mended=lambda s: centre_2(s, -1, -1),
     ),
-    Equation("2.40", lambda s: rocking_mode_1(s, -1), lambda s: s.moments(-1, -1)),
-    Equation("2.41", lambda s: cos(gamma_1(s, -1)), lambda s: _cosine(s, -1, -1)),
-    Equation("2.42", lambda s: sign(s.th1), lambda s: standing_pivot(s.th1, s.b1)),
-    Equation("2.43", lambda s: rocking_mode_1(s, sign(s.th1)), rocking_mode(1)),
+    Equation("2.40", lambda s: patterns(s, -1, 1), lambda s: s.moments(-1, -1)),
+    Equation("2.41", lambda s: cos(gamma(s, -1, 1)), lambda s: _cosine(s, -1, -1)),
+    Equation("2.42", lambda s: sign(s.th1), lambda s: upper.standing_pivot(s.th1, s.b1)),
+    Equation("2.43", lambda s: patterns(s, sign(s.th1), 1), rocking_mode(1)),
     Equation(
         "2.44",
-        lambda s: cos(gamma_1(s, sign(s.th1))),
+        lambda s: cos(gamma(s, sign(s.th1), 1)),
         by_sign(lambda s, side: _cosine(s, side, side)),
     ),
     Equation("2.45", lambda s: centre_2(s, 1, -1), positions(2, 1, -1)),
     misprinted(
         "2.46",
-        lambda s, printed: rocking_mode_2(s, 1, weight=1 if printed else -1),
+        lambda s, printed: patterns(s, 1, -1, weight=1 if printed else -1),
         lambda s: s.moments(1, -1),
     ),
     # printed as γ2b, which 2.50 defines and 2.49 uses; it is γ2a
@@ -314,42 +271,42 @@ EQUATIONS = [
         "2.47",
         lambda s: cos(s.tc2 + s.beta_ - s.th1 + s.th2),
         lambda s: _cosine(s, -1, 1),
-        mended=lambda s: cos(gamma_2(s, -1)),
+        mended=lambda s: cos(gamma(s, -1, -1)),
     ),
     Equation("2.48", lambda s: centre_2(s, -1, 1), positions(2, -1, 1)),
-    Equation("2.49", lambda s: rocking_mode_2(s, -1), lambda s: s.moments(-1, 1)),
-    Equation("2.50", lambda s: cos(gamma_2(s, -1)), lambda s: _cosine(s, -1, 1)),
+    Equation("2.49", lambda s: patterns(s, -1, -1), lambda s: s.moments(-1, 1)),
+    Equation("2.50", lambda s: cos(gamma(s, -1, -1)), lambda s: _cosine(s, -1, 1)),
     # the first row names γ2a where it means γ2
     Equation(
         "2.51",
-        lambda s: rocking_mode_2(s, sign(s.th1), label=gamma_2(s, 1)),
+        lambda s: patterns(s, sign(s.th1), -1, label=gamma(s, 1, -1)),
         rocking_mode(-1),
-        mended=lambda s: rocking_mode_2(s, sign(s.th1)),
+        mended=lambda s: patterns(s, sign(s.th1), -1),
     ),
     Equation(
         "2.52",
-        lambda s: cos(gamma_2(s, sign(s.th1))),
+        lambda s: cos(gamma(s, sign(s.th1), -1)),
         by_sign(lambda s, side: _cosine(s, side, -side)),
     ),
     Equation("2.53", lambda s: whole(s, 1), lambda s: glued(s, 1)),
     Equation("2.54", lambda s: whole(s, -1), lambda s: glued(s, -1)),
     Equation("2.55", lambda s: whole(s, sign(s.th1)), by_sign(glued)),
-    Equation("2.56", lambda s: lone(s, 1), lambda s: upper_alone(s, 1)),
-    Equation("2.57", lambda s: lone(s, -1), lambda s: upper_alone(s, -1)),
-    Equation("2.58", lambda s: lone(s, sign(s.th2)), by_sign(upper_alone, "th2")),
-    Equation("2.59", lambda s: sign(s.th2), lambda s: standing_pivot(s.th2, s.b2)),
+    Equation("2.56", lambda s: upper.rocking(s, 1), lambda s: upper.about(s, 1)),
+    Equation("2.57", lambda s: upper.rocking(s, -1), lambda s: upper.about(s, -1)),
+    Equation("2.58", lambda s: upper.rocking(s, sign(s.th2)), upper.lone),
+    Equation("2.59", lambda s: sign(s.th2), lambda s: upper.standing_pivot(s.th2, s.b2)),
     Equation(
         "2.60",
-        lambda s: linear_1(s, s.length, 1.0),
-        linear_truth(1),
-        mended=lambda s: linear_1(s, s.length**2, s.m2),
+        lambda s: linear(s, 1, s.length, 1.0),
+        rocking_mode(1, "linear_motion"),
+        mended=lambda s: linear(s, 1, s.length**2, s.m2),
     ),
     Equation("2.61", lambda s: s.xi, lambda s: _between(s, 1, 1)),
     Equation(
         "2.62",
-        lambda s: linear_2(s, s.length_, 1.0),
-        linear_truth(-1),
-        mended=lambda s: linear_2(s, s.length_**2, s.m2),
+        lambda s: linear(s, -1, s.length_, 1.0),
+        rocking_mode(-1, "linear_motion"),
+        mended=lambda s: linear(s, -1, s.length_**2, s.m2),
     ),
     Equation("2.63", lambda s: s.xi_, lambda s: _between(s, 1, -1)),
     Equation(
@@ -366,7 +323,7 @@ EQUATIONS = [
             + sign(s.th2) * s.m2 * s.b2 * s.g
             + s.m2 * s.h2 * s.a
         ),
-        by_sign(linear_upper, "th2"),
+        upper.lone_linear,
     ),
 ]
 

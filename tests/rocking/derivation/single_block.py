@@ -29,17 +29,24 @@ def slender() -> System:
     )
 
 
-def lone(s: System) -> Array:
-    """Motion of the lone block on the pivot that its rotation asks for."""
-    return by_sign(lambda s, side: s.moments(1, side)[1], "th2")(s.standing())
+def about(s: System, side: int) -> Array:
+    """Motion of the lone block on a pivot."""
+    return s.standing().moments(1, side)[1]
 
 
-def lone_linear(s: System) -> Array:
-    return by_sign(lambda s, side: s.get("linear_motion", 1, side)[1], "th2")(s.standing())
+def linear_about(s: System, side: int) -> Array:
+    return s.standing().get("linear_motion", 1, side)[1]
 
 
-def lone_free_linear(s: System) -> Array:
-    return lone_linear(s.with_(a=0.0))
+lone, lone_linear = by_sign(about, "th2"), by_sign(linear_about, "th2")
+
+
+def rocking(s: System, side: Array | int) -> Array:  # 2.4 and 2.58; 2.2, 2.3, 2.56 and 2.57
+    return (
+        s.io2 * s.q2
+        + side * moment(s) * sin(s.tc2 - side * s.th2)
+        + s.m2 * s.r2 * s.a * cos(s.tc2 - side * s.th2)
+    )
 
 
 def moment(s: System) -> Array:
@@ -124,31 +131,9 @@ EQUATIONS = [
         lambda s: s.m2 * (s.a * s.h2 - s.g * s.b2),
         lambda s: s.with_(th2=0.0, w2=0.0, q2=0.0).standing().moments(1, -1)[1],
     ),
-    Equation(
-        "2.2",
-        lambda s: (
-            s.io2 * s.q2 + moment(s) * sin(s.tc2 - s.th2) + s.m2 * s.r2 * cos(s.tc2 - s.th2) * s.a
-        ),
-        lone,
-        systems=lambda: one_sided(1),
-    ),
-    Equation(
-        "2.3",
-        lambda s: (
-            s.io2 * s.q2 - moment(s) * sin(s.tc2 + s.th2) + s.m2 * s.r2 * cos(s.tc2 + s.th2) * s.a
-        ),
-        lone,
-        systems=lambda: one_sided(-1),
-    ),
-    Equation(
-        "2.4",
-        lambda s: (
-            s.io2 * s.q2
-            + moment(s) * sin(s.tc2 - mag(s.th2)) * sign(s.th2)
-            + s.m2 * s.r2 * cos(s.tc2 - mag(s.th2)) * s.a
-        ),
-        lone,
-    ),
+    Equation("2.2", lambda s: rocking(s, 1), lone, systems=lambda: one_sided(1)),
+    Equation("2.3", lambda s: rocking(s, -1), lone, systems=lambda: one_sided(-1)),
+    Equation("2.4", lambda s: rocking(s, sign(s.th2)), lone),
     Equation("2.5", lambda s: sign(s.th2), lambda s: standing_pivot(s.th2, s.b2)),
     Equation(
         "2.6",
@@ -198,7 +183,7 @@ EQUATIONS = [
     Equation(
         "2.15",
         lambda s: s.io2 * s.q2 + moment(s) * (s.tc2 - mag(s.th2)),
-        lone_free_linear,
+        lambda s: lone_linear(s.with_(a=0.0)),
         # holds where θ > 0
         mended=lambda s: s.io2 * s.q2 + moment(s) * sign(s.th2) * (s.tc2 - mag(s.th2)),
         systems=slender,

@@ -55,35 +55,15 @@ class System:
 
     def stacks(self) -> list[Stack]:
         """Return the systems as the package takes them."""
-        sizes = np.array(
-            [
-                2 * self.b1,
-                2 * self.h1,
-                self.m1,
-                self.ic1,
-                2 * self.b2,
-                2 * self.h2,
-                self.m2,
-                self.ic2,
-            ]
-        )
-        return [
-            Stack(Block(*lower), Block(*upper))
-            for lower, upper in sizes.T.reshape(-1, 2, 4).tolist()
-        ]
+        lower = np.array([2 * self.b1, 2 * self.h1, self.m1, self.ic1]).T.tolist()
+        upper = np.array([2 * self.b2, 2 * self.h2, self.m2, self.ic2]).T.tolist()
+        return [Stack(Block(*a), Block(*b)) for a, b in zip(lower, upper, strict=True)]
 
     def get(self, name: str, s1: float, s2: float) -> Array:
         """Evaluate one of the true quantities for these pivots."""
         kind = LinearModel if name == "linear_motion" else Model
-        state = np.array(
-            [
-                [self.th1, self.th2],
-                [self.w1, self.w2],
-                [self.q1, self.q2],
-                [self.xg, self.a],
-                [self.vg, self.g],
-            ]
-        )
+        turns = [self.th1, self.th2], [self.w1, self.w2], [self.q1, self.q2]
+        state = np.array([*turns, [self.xg, self.a], [self.vg, self.g]])
         found = [
             true_quantity(name, model, (s1, s2), values)
             for model, values in zip(self.models(kind), np.moveaxis(state, -1, 0), strict=True)

@@ -22,49 +22,42 @@ def ground(s1: int, s2: int):
     return lambda s: s1 * s.standing().moments(s1, s2)[0]
 
 
-def from_3(s: System, side: int, gravity: Array, swirl: Array, inertia: Array) -> Array:
+def from_3(s: System, side: int, swirl: Array, inertia: Array) -> Array:
     """m2 R2 × (right - left) of 2.66 to 2.71; ``side`` is the pivot block 2 opens on."""
     left = -side * cos(s.tc2 - side * s.th1) * s.a
-    return s.m2 * s.r2 * (s.g * gravity + swirl + inertia * s.q1 - left)
+    gravity = s.g * sin(s.tc2 - side * s.th1)
+    return s.m2 * s.r2 * (gravity + s.rr * swirl + inertia * s.q1 - left)
+
+
+def mended_3(s: System, s1: int, side: int) -> Array:
+    """2.66 and 2.69 to 2.71 as they hold, of a pedestal that rocks on s1."""
+    angle = s.big + s1 * side * s.tc2
+    swirl, inertia = s1 * side * cos(angle) * s.w1**2, s.rr * sin(angle) + own(s)
+    return from_3(s, side, swirl, side * inertia)
 
 
 def own(s: System) -> Array:
     return s.ic2 / (s.m2 * s.r2)
 
 
-def case_266(s: System, printed: bool) -> Array:
-    swirl = s.rr * cos(s.tc2 - s.th1 * s.w1**2) if printed else s.rr * cos(s.tc2 + s.big) * s.w1**2
-    return from_3(s, 1, sin(s.tc2 - s.th1), swirl, s.rr * sin(s.tc2 + s.big) + own(s))
+def printed_266(s: System) -> Array:
+    swirl = cos(s.tc2 - s.th1 * s.w1**2)
+    return from_3(s, 1, swirl, s.rr * sin(s.tc2 + s.big) + own(s))
 
 
-def case_269(s: System, printed: bool) -> Array:
-    if printed:
-        angle = 2 * s.th1 + s.tc2 + s.big
-        swirl, inertia = s.rr * cos(angle) * s.w1**2, s.rr * sin(angle) + own(s)
-    else:
-        swirl = -s.rr * cos(s.big - s.tc2) * s.w1**2
-        inertia = -(s.rr * sin(s.big - s.tc2) + own(s))
-    return from_3(s, -1, sin(s.tc2 + s.th1), swirl, inertia)
+def printed_269(s: System) -> Array:
+    angle = 2 * s.th1 + s.tc2 + s.big
+    return from_3(s, -1, cos(angle) * s.w1**2, s.rr * sin(angle) + own(s))
 
 
-def case_270(s: System, printed: bool) -> Array:
-    if printed:
-        swirl = -s.rr * sin(s.tc2 - s.big) * s.w1**2
-        inertia = -(s.rr * cos(s.tc2 - s.big) - own(s))
-    else:
-        swirl = s.rr * cos(s.tc2 + s.big) * s.w1**2
-        inertia = -(s.rr * sin(s.tc2 + s.big) + own(s))
-    return from_3(s, -1, sin(s.tc2 + s.th1), swirl, inertia)
+def printed_270(s: System) -> Array:
+    angle = s.tc2 - s.big
+    return from_3(s, -1, -sin(angle) * s.w1**2, own(s) - s.rr * cos(angle))
 
 
-def case_271(s: System, printed: bool) -> Array:
-    if printed:
-        swirl = -s.rr * sin(s.tc2 + s.big) * s.w1**2
-        inertia = s.rr * cos(s.tc2 + s.big) - own(s)
-    else:
-        swirl = -s.rr * cos(s.big - s.tc2) * s.w1**2
-        inertia = s.rr * sin(s.big - s.tc2) + own(s)
-    return from_3(s, 1, sin(s.tc2 - s.th1), swirl, inertia)
+def printed_271(s: System) -> Array:
+    swirl = -sin(s.tc2 - s.big) * s.w1**2
+    return from_3(s, 1, swirl, s.rr * cos(s.tc2 + s.big) - own(s))
 
 
 def case_from_4(s1: int, s2: int, turn: int, mended: int):
@@ -84,7 +77,7 @@ def case_from_4(s1: int, s2: int, turn: int, mended: int):
 
 
 EQUATIONS = [
-    misprinted("2.66", case_266, upper(1, 1)),
+    Equation("2.66", printed_266, upper(1, 1), lambda s: mended_3(s, 1, 1)),
     Equation(
         "2.67",
         lambda s: np.sqrt((2 * s.h1 + s.h2) ** 2 + s.b1**2),
@@ -95,9 +88,9 @@ EQUATIONS = [
         lambda s: np.arctan((2 * s.h1 + s.h2) / s.b1),
         lambda s: np.arctan2(_to_centre_2(s)[1], -_to_centre_2(s)[0]),
     ),
-    misprinted("2.69", case_269, upper(1, -1)),
-    misprinted("2.70", case_270, upper(-1, -1)),
-    misprinted("2.71", case_271, upper(-1, 1)),
+    Equation("2.69", printed_269, upper(1, -1), lambda s: mended_3(s, 1, -1)),
+    Equation("2.70", printed_270, upper(-1, -1), lambda s: mended_3(s, -1, -1)),
+    Equation("2.71", printed_271, upper(-1, 1), lambda s: mended_3(s, -1, 1)),
     misprinted("2.72", case_from_4(1, 1, 1, 1), ground(1, 1)),
     misprinted("2.73", case_from_4(-1, 1, 1, -1), ground(-1, 1)),
     misprinted("2.74", case_from_4(-1, -1, 1, 1), ground(-1, -1)),

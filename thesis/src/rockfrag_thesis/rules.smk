@@ -25,7 +25,7 @@ if ASKED.sensitivity:
             mem_mb=MEMORY_MB,
             runtime=120,
         params:
-            stage="rockfrag_thesis.stages.sensitivity:run",
+            stage="rockfrag_thesis.building_sensitivity:run",
             study=STUDY_FILE,
             settings=settings(
                 *("building_sensitivity", "building", "bodies", "amplitudes"),

@@ -21,15 +21,8 @@ _FORM = (
 )
 _LEVELS = ("pga", "pgv", "sa")
 _KEYS = (
-    *_FORM,
-    *_LEVELS,
-    "round",
-    "facing_deg",
-    "pedestal",
-    "building",
-    "return_period",
-    "hazard",
-    "records",
+    *(*_FORM, *_LEVELS, "round", "facing_deg", "pedestal", "building"),
+    *("return_period", "hazard", "records"),
 )
 """Keys of ``statue.yaml`` that the page has a field for, or is written with."""
 

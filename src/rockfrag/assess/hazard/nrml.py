@@ -18,6 +18,12 @@ from rockfrag.assess.hazard.curve import (
 )
 from rockfrag.errors import InputError
 
+_VERSIONS = (
+    ("hazardCurveField", "IML", "poE", "a hazardCurveField has no IML, the levels of the curve"),
+    ("hazardCurves", "IMLs", "poEs", "the hazardCurves have no IMLs, the levels"),
+)
+"""Elements of curves, of their levels and of probabilities, and what is said where levels are missing."""
+
 
 def recognise(text: str) -> bool:
     """Tell whether a text is XML."""
@@ -32,9 +38,12 @@ def read(text: str, path: str) -> list[Found]:
         root = ET.fromstring(text)
     except (ET.ParseError, ValueError) as error:
         raise InputError(f"{path}: is no well-formed XML ({error}).") from None
-    processing = next(_named(root, "hazardProcessing"), None)
-    found = [_old(field, processing, path) for field in _named(root, "hazardCurveField")]
-    found += [_new(curves, path) for curves in _named(root, "hazardCurves")]
+    above = next((part.attrib for part in _named(root, "hazardProcessing")), {})
+    found = [
+        _found(curves, above, level, poe, missing, path)
+        for name, level, poe, missing in _VERSIONS
+        for curves in _named(root, name)
+    ]
     if not found:
         raise InputError(
             f"{path}: holds no hazardCurves or hazardCurveField; ask the service for hazard curves, not "
@@ -43,54 +52,32 @@ def read(text: str, path: str) -> list[Found]:
     return found
 
 
-def _old(field: ET.Element, processing: ET.Element | None, path: str) -> Found:
-    about = {} if processing is None else processing.attrib
-    levels = next(_named(field, "IML"), None)
-    if levels is None:
-        raise InputError(f"{path}: a hazardCurveField has no IML, the levels of the curve.")
-    poes = list(_named(field, "poE"))
-    imt, years = _imt(levels, about), about.get("investigationTimeSpan")
-    return _found(levels.text, poes, imt, years, _kind(field), path)
-
-
-def _new(curves: ET.Element, path: str) -> Found:
-    kind = _kind(curves)
-    if not kind and curves.get("sourceModelTreePath"):
-        kind = "branch of a logic tree"
-    levels = next(_named(curves, "IMLs"), None)
-    if levels is None:
-        raise InputError(f"{path}: the hazardCurves have no IMLs, the levels.")
-    years = curves.get("investigationTime")
-    poes, imt = list(_named(curves, "poEs")), _imt(curves, curves.attrib)
-    return _found(levels.text, poes, imt, years, kind, path)
-
-
-def _imt(stated: ET.Element, about: Mapping[str, str]) -> str:
-    """Return the measure that an element states, with the period of SA, which may stand elsewhere."""
-    imt = stated.get("IMT", "")
-    return f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt
-
-
-def _kind(curves: ET.Element) -> str:
-    """Return which statistic of the hazard model the curves are, with the value of a quantile."""
-    kind = curves.get("statistics", "")
-    return f"quantile-{curves.get('quantileValue', '')}" if kind == "quantile" else kind
-
-
 def _found(
-    levels: str | None, poes: list[ET.Element], imt: str, years: str | None, kind: str, path: str
+    curves: ET.Element, above: Mapping[str, str], level: str, poe: str, missing: str, path: str
 ) -> Found:
+    levels = next(_named(curves, level), None)
+    if levels is None:
+        raise InputError(f"{path}: {missing}.")
+    poes = list(_named(curves, poe))
     if len(poes) != 1:
         raise InputError(f"{path}: found the curves of {len(poes)} sites; leave that of one.")
+    about = {**above, **curves.attrib, **levels.attrib}
+    years = about.get("investigationTimeSpan", about.get("investigationTime"))
     if years is None:
         raise InputError(f"{path}: the investigation time of the probabilities is not stated.")
-    measure = read_measure(imt, path)
-    values, fractions = (read_numbers(words or "", path) for words in (levels, poes[0].text))
+    imt = about.get("IMT", "")
+    # the period of SA stands elsewhere
+    measure = read_measure(f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt, path)
+    values, fractions = (read_numbers(part.text or "", path) for part in (levels, poes[0]))
     times = read_numbers(years, path)
     if len(times) != 1:
         raise InputError(f"{path}: the investigation time is {len(times)} numbers; give one.")
-    (time,) = times
-    rates = rates_of(fractions, time, path)
+    rates = rates_of(fractions, times[0], path)
+    kind = curves.get("statistics", "")
+    if kind == "quantile":
+        kind = f"quantile-{curves.get('quantileValue', '')}"
+    elif not kind and curves.get("sourceModelTreePath"):
+        kind = "branch of a logic tree"
     return Found(make_curve(measure, values, list(rates), path), read_statistic(kind, path))
 
 

@@ -20,23 +20,10 @@ KINDS: tuple[tuple[Callable[[str], bool], Callable[[str, str], list[Found]]], ..
 
 
 def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
-    """Read the hazard curves of one site.
+    """Read the hazard curves of one site: a curve for each measure, with its quantiles.
 
-    Parameters
-    ----------
-    paths
-        Files: OpenQuake's CSV or NRML, EFEHR's answer, the USGS's answer, or a table of levels and rates.
-        Files of a mean and of quantiles of one measure belong together.
-
-    Returns
-    -------
-    A curve for each measure, with its quantiles.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read, holds no hazard curve or those of several sites, or two files give the
-        same curve.
+    The files are OpenQuake's CSV or NRML, EFEHR's answer, the USGS's answer, or a table of levels and rates. Those
+    of a mean and of quantiles of one measure belong together; one curve given twice is an InputError.
     """
     found: list[Found] = []
     for path in paths:

@@ -3,18 +3,14 @@
 Read by :mod:`rockfrag.engines.kernels.jit` alone, with versions of numba that it knows.
 """
 
-import importlib
 import operator
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache
 from typing import Any, ClassVar
 
 import llvmlite.binding as llvm
 from numba import _dynfunc  # type: ignore[attr-defined]
-from numba.core import base, ir, typed_passes, typeinfer, untyped_passes
-from numba.core import lowering as lowering_stage
-from numba.core.base import BaseContext
+from numba.core import ir, typed_passes, untyped_passes
 from numba.core.cgutils import normalize_ir_text
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
@@ -26,7 +22,6 @@ from numba.core.targetconfig import ConfigStack
 from numba.core.transforms import canonicalize_cfg
 from numba.core.types.functions import BaseFunction, Dispatcher
 from numba.core.types.misc import unliteral
-from numba.core.typing.context import BaseContext as TypingContext
 from numba.core.typing.templates import signature
 from numba.cpython.builtins import do_minmax
 from numba.extending import intrinsic
@@ -177,30 +172,6 @@ class LowerPart(typed_passes.NativeLowering):
         return True
 
 
-class _While:
-    """What numba says of an error that comes up here, put together only if one does."""
-
-    says = staticmethod(typeinfer.new_error_context)  # type: ignore[attr-defined]
-
-    def __init__(self, message: str, *args: Any, **named: Any) -> None:
-        self._said = message, args, named
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, _: Any, error: BaseException | None, __: Any) -> None:
-        if error is not None:
-            message, args, named = self._said
-            with self.says(message, *args, **named):
-                raise error
-
-
-def _refresh(context: BaseContext) -> None:
-    """Learn of intrinsic functions, which make themselves known when they are used first."""
-    for registry in context._registries:
-        context.install_registry(registry)
-
-
 def _remembering_call_types(find: Any) -> Any:
     """Find only once what a function makes of arguments of some types, among dozens of implementations."""
     known: dict[Any, Any] = {}
@@ -227,41 +198,23 @@ def _of_plain_types(find: Any) -> Any:
     return get_call_type
 
 
-@cache
-def _import_without_scipy() -> None:
-    """Import what numba is about to, but not scipy's linear algebra, which takes longer than all else."""
-    linalg = importlib.import_module("numba.np.linalg")
-    look = linalg.ensure_blas
-    linalg.ensure_blas = lambda: None  # type: ignore[attr-defined]
-    try:
-        importlib.import_module("numba.np.arraymath")
-    finally:
-        linalg.ensure_blas = look  # type: ignore[attr-defined]
-
-
 @contextmanager
 def _shortcuts() -> Iterator[None]:
     """Spare numba what it would work out anew for each operation; the compiler's lock is held meanwhile."""
-    if BaseContext.refresh is _refresh:
+    kinds: tuple[Any, ...] = (BaseFunction, Dispatcher)
+    before = [kind.get_call_type for kind in kinds]
+    if before[0].__module__ == __name__:
         yield
         return
-    places: tuple[tuple[Any, str, Any], ...] = (
-        (BaseFunction, "get_call_type", _remembering_call_types(BaseFunction.get_call_type)),
-        (Dispatcher, "get_call_type", _of_plain_types(Dispatcher.get_call_type)),
-        (BaseContext, "refresh", _refresh),
-        (TypingContext, "refresh", lambda _: None),
-        (base, "_has_loc", cache(base._has_loc)),
-        (lowering_stage, "new_error_context", _While),
-        (typeinfer, "new_error_context", _While),
-    )
-    before = [(where, name, getattr(where, name)) for where, name, _ in places]
     try:
-        for where, name, value in places:
-            setattr(where, name, value)
+        for kind, made, find in zip(
+            kinds, (_remembering_call_types, _of_plain_types), before, strict=True
+        ):
+            kind.get_call_type = made(find)
         yield
     finally:
-        for where, name, value in before:
-            setattr(where, name, value)
+        for kind, find in zip(kinds, before, strict=True):
+            kind.get_call_type = find
 
 
 class _KernelCompiler(CompilerBase):
@@ -269,10 +222,6 @@ class _KernelCompiler(CompilerBase):
 
     library: ClassVar[type]
     lowering: ClassVar[type]
-
-    def __init__(self, *given: Any) -> None:
-        _import_without_scipy()
-        super().__init__(*given)
 
     def _compile_core(self) -> Any:
         """Take the kernel through its passes, without what numba works out between them for others."""

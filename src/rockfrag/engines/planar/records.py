@@ -32,10 +32,8 @@ BODY = np.dtype(
         # [interface] middle of the face below from the centre of the body below
         ("face", F, (MOST, 2)),
         ("half", F, (MOST,)),  # [interface] half width of the face below; infinite for the ground
-        ("tilt_cos", F, (MOST,)),  # [interface] tilt of face and base as all stand
-        ("tilt_sin", F, (MOST,)),
-        ("static", F, (MOST,)),
-        ("kinetic", F, (MOST,)),
+        # [interface] tilt of face and base as all stand, coefficients of friction
+        *((name, F, (MOST,)) for name in ("tilt_cos", "tilt_sin", "static", "kinetic")),
         ("law", INT, (MOST, 2)),  # [interface, corner that comes down] law of the impact ...
         ("number", F, (MOST, 2)),  # ... and its number
         # [body, side] its critical angle to the left, to the right [rad]
@@ -85,15 +83,9 @@ WORK = np.dtype(
         ("right", F, (3 * MOST,)),
         ("owner", INT, (3 * MOST,)),  # 3 k + end, or 3 k + 2 for shear
         ("upto", INT, (MOST + 2,)),  # number of unknowns of the interfaces up to this one
-        # a step: start, stages, interpolation
-        ("q0", F, (3 * MOST,)),
-        ("v0", F, (3 * MOST,)),
-        ("a0", F, (3 * MOST,)),
-        ("q1", F, (3 * MOST,)),
-        ("v1", F, (3 * MOST,)),
-        ("a1", F, (3 * MOST,)),
-        ("kv", F, (3 * MOST, 7)),
-        ("ka", F, (3 * MOST, 7)),
+        # a step: start, end, stages
+        *((name, F, (3 * MOST,)) for name in ("q0", "v0", "a0", "q1", "v1", "a1")),
+        *((name, F, (3 * MOST, 7)) for name in ("kv", "ka")),
         ("early", F, (MOST, 2)),  # speeds at which open ends part at the start of a step
         ("fails", INT, (MOST, 6)),  # [interface, channel] what has become negative
         # search for a mode

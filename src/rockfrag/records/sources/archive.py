@@ -163,11 +163,7 @@ def is_no_record(name: str) -> bool:
 
 def files_of(folder: str | os.PathLike[str]) -> list[Path]:
     """Return the files below a folder that may be records, in order of name."""
-    found = sorted(path for path in Path(folder).rglob("*") if not path.is_dir())
     inside = Path(folder)
-    return [
-        path
-        for path in found
-        if not is_no_record(path.name)
-        and not any(part.startswith(".") for part in path.relative_to(inside).parts)
-    ]
+    found = sorted(path for path in inside.rglob("*") if not path.is_dir())
+    shown = (path for path in found if not is_no_record(path.name))
+    return [path for path in shown if "/." not in f"/{path.relative_to(inside).as_posix()}"]

@@ -1,7 +1,4 @@
-"""The simulation in the page: the kernel itself, what it needs, and still frames for who runs no scripts.
-
-One source: the module is made of the kernel that `rockfrag.simulate` runs, see :mod:`rockfrag.rocking.browser`.
-"""
+"""The simulation in the page: the kernel that `rockfrag.simulate` runs, its data, and frames without scripts."""
 
 import math
 import warnings
@@ -40,8 +37,7 @@ def live_kernel(
     It is empty if no body is left. Of bodies that the page's kernel does not know only the names are shown; of
     the motions no more than carry ``MOST_SAMPLES`` samples are taken, the first ones. ``outcomes`` is a table of
     a study (``configuration``, ``motion``, ``amplitude_g``, ``overturned``, the same amplitudes for all); without
-    it ``AMPLITUDES_G`` are tried here. One of two bodies and a
-    motion that overturns it are shown first.
+    it ``AMPLITUDES_G`` are tried here. One of two bodies and a motion that overturns it are shown first.
     """
     known = {name: system for name, system in bodies.items() if in_page(system)}
     if not known:

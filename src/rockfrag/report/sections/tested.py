@@ -158,10 +158,7 @@ def _title(motion: Motion, peak_g: float) -> str:
 
 
 def acceleration_histories(motions: Sequence[Motion]) -> Figure:
-    """Draw the acceleration of each motion over time, one panel a motion, on the same scales.
-
-    The peak is marked. No more than ``MOST_PANELS`` motions are drawn.
-    """
+    """Draw the acceleration of ``MOST_PANELS`` motions over time with its peak, a panel a motion, on one scale."""
     shown = motions[:MOST_PANELS]
     with style.figure_style():
         figure = style.new_figure(style.COLUMN_WIDTH, 0.5 + 0.95 * len(shown))

@@ -13,7 +13,6 @@ from rockfrag_thesis.hypotheses import (  # noqa: F401  (each enters its hypothe
     blocks,
     earthquakes,
     floors,
-    pedestal,
     protocol,
     slenderness,
     spectra,

@@ -1,4 +1,4 @@
-"""C25 to C28, C30, C53, C54: what the towers' slenderness does."""
+"""C25 to C33, C49, C53, C54: what the towers' slenderness and the pedestal do."""
 
 import itertools
 import math
@@ -8,7 +8,6 @@ import pandas as pd
 
 from rockfrag.pedestal.cluster_means import Estimate, t_estimate
 from rockfrag.system.blocks import Stack
-from rockfrag_thesis.hypotheses import outcomes
 from rockfrag_thesis.hypotheses.contrasts import contrast, power_note, slope_effect
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
@@ -17,10 +16,21 @@ from rockfrag_thesis.hypotheses.orders import (
     PAIRS,
     Part,
     Parts,
+    effect_hypothesis,
     order,
     order_hypothesis,
 )
-from rockfrag_thesis.hypotheses.outcomes import LEVEL, SEEN, decided, p_nonzero, ratios, same
+from rockfrag_thesis.hypotheses.outcomes import (
+    LEVEL,
+    ONE_INTERVAL,
+    SEEN,
+    SEVERAL_INTERVALS,
+    all_of,
+    decided,
+    p_nonzero,
+    ratios,
+    same,
+)
 
 TOWERS = ("T1", "T2", "T3")
 """The towers from the squattest to the most slender."""
@@ -43,7 +53,7 @@ def _earthquake_means(tests: Evidence) -> pd.DataFrame:
     25,
     evidence=AMPLITUDES,
     rule=f"ln a falls with H/B; mean of T2 within ±{100 * SEEN:.0f} % of the middle between T1 and T3",
-    error_rate=outcomes.SEVERAL_INTERVALS,
+    error_rate=SEVERAL_INTERVALS,
 )
 def c25(tests: Evidence) -> Result:
     """The slope, and the bend at T2; equilibrium alone (a as B/H) has a bend of -6 %."""
@@ -53,7 +63,7 @@ def c25(tests: Evidence) -> Result:
     falls = order({"fall of a per unit of H/B": Part(_fall(tests.amplitudes))})
     straight = same(bend, f"T2 over the straight line {bend.text()}")
     return Result(
-        outcomes.all_of(falls.finding, straight.finding),
+        all_of(falls.finding, straight.finding),
         f"{straight.figure}; {falls.figure}",
         straight.estimate,
         straight.lower,
@@ -83,7 +93,7 @@ def c26(tests: Evidence) -> Parts:
     27,
     evidence=PAIRS,
     rule=f"decrease from T1 to T3 with P over that without, earthquake by earthquake, within ±{100 * SEEN:.0f} %",
-    error_rate=outcomes.ONE_INTERVAL,
+    error_rate=ONE_INTERVAL,
 )
 def c27(tests: Evidence) -> Result:
     """Equal relative decrease from T1 to T3."""
@@ -177,6 +187,54 @@ def c30(tests: Evidence) -> Result:
     )
 
 
+def _changed(tests: Evidence) -> str:
+    """How many pairs change by more than the steps of their series of levels."""
+    table = tests.table
+    steps = table.get("resolution", 0.0)
+    return (
+        f"pairs: {len(table)}, of which {int((table['d'] > steps).sum())} gain and "
+        f"{int((table['d'] < -steps).sum())} lose by more than their steps"
+    )
+
+
+effect_hypothesis(29, "an increase over all pairs", "P/NP of all pairs")
+
+
+@order_hypothesis(49, rule="as C29, which says the same", more=_changed)
+def c49(tests: Evidence) -> Parts:
+    """The effect over all pairs."""
+    return {"P/NP of all pairs": Part(tests.effect())}
+
+
+@hypothesis(
+    31,
+    evidence=PAIRS,
+    rule=f"slope of ln P/NP on H/B inside each earthquake: over the range of H/B within ±{100 * SEEN:.0f} %",
+    error_rate=ONE_INTERVAL,
+)
+def c31(tests: Evidence) -> Result:
+    """No trend of the effect with slenderness."""
+    table = tests.table.assign(slenderness=tests.table["object"].map(tests.slenderness))
+    over = slope_effect(table, "slenderness").times(float(np.ptp(table["slenderness"])))
+    return same(over, f"P/NP of the most slender over that of the least {over.text()}")
+
+
+@order_hypothesis(
+    32, rule="P/NP of T3 exceeds that of T1 and of T2, earthquake by earthquake", several=True
+)
+def c32(tests: Evidence) -> Parts:
+    """T3's effect over T1's and T2's."""
+    return {
+        f"P/NP of T3 over {other}": Part(tests.lead("object", "T3", other))
+        for other in ("T1", "T2")
+    }
+
+
+effect_hypothesis(
+    33, "an increase of T2; “nearly opposite” cannot be tested", "P/NP of T2", object="T2"
+)
+
+
 @order_hypothesis(
     53,
     evidence=AMPLITUDES,
@@ -199,7 +257,7 @@ def c53(tests: Evidence) -> Parts:
     evidence=AMPLITUDES,
     rule="the trends a on H/B (the thesis's), ln a on H/B and a on B/H through T1 and T2 prolonged to T3: "
     f"true if all miss its mean, false if the thesis's own is within ±{100 * SEEN:.0f} %",
-    error_rate=outcomes.SEVERAL_INTERVALS,
+    error_rate=SEVERAL_INTERVALS,
 )
 def c54(tests: Evidence) -> Result:
     """Error of three extrapolations to T3; scatter alone makes none of them miss the mean."""
