@@ -192,15 +192,18 @@ def _turns_high(x: Floats) -> bool:
     does = False
     for i in range(LANES):
         highest = max(abs(x[_U0 + i]), abs(x[_U + i])) + x[_ADDED + i]
-        does |= (x[_V0 + i] * x[_V + i] < 0) & (highest > x[_KEPT + i] * x[_LARGEST + i])
+        does |= highest > x[_KEPT + i] * x[_LARGEST + i]
     return does
 
 
 @cached_njit(error_model="numpy")
 def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
-    """Let the peak of lane i between the last two steps count, if it can be the largest."""
-    u, v, u1, v1 = x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i]
-    if v * v1 < 0 and max(abs(u), abs(u1)) + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
-        t = spectra.turning_time(u, v, u1, v1, step)
-        peak = abs(spectra.state_after(u, v, a, s, x[_C + i], x[_K + i], t)[0])
+    """Let the peaks of lane i between the last two steps count, if they can be the largest."""
+    u, v, u1, v1, c, k = x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i], x[_C + i], x[_K + i]
+    if max(abs(u), abs(u1)) + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
+        if v * v1 < 0:
+            t = spectra.turning_time(u, v, u1, v1, step)
+            peak = abs(spectra.state_after(u, v, a, s, c, k, t)[0])
+        else:
+            peak = spectra.peak_of_two(0, u, v, u1, v1, a, s, c, k, step)
         x[_LARGEST + i] = max(x[_LARGEST + i], peak)

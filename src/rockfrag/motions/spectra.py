@@ -136,6 +136,54 @@ def state_after(
 
 
 @cached_njit()
+def _value_and_slopes(
+    order: int, u: float, v: float, a: float, s: float, c: float, k: float
+) -> tuple[float, float, float]:
+    """u, u' or the total acceleration u'' + a for order 0, 1 or 2, and its first two derivatives."""
+    relative = -a - c * v - k * u
+    jerk = -s - c * relative - k * v
+    if order == 0:
+        return u, v, relative
+    if order == 1:
+        return v, relative, jerk
+    return relative + a, jerk + s, -c * jerk - k * relative
+
+
+@cached_njit()
+def peak_of_two(
+    order: int,
+    u: float,
+    v: float,
+    u1: float,
+    v1: float,
+    a: float,
+    s: float,
+    c: float,
+    k: float,
+    h: float,
+) -> float:
+    """Larger of two peaks that a response (see above) has within a step; 0 if it does not turn twice."""
+    x0, m0, n0 = _value_and_slopes(order, u, v, a, s, c, k)
+    x1, m1, n1 = _value_and_slopes(order, u1, v1, a + h * s, s, c, k)
+    if n0 * n1 >= 0:
+        return 0.0
+    # between two turns of one direction lies one of the slope
+    middle = turning_time(m0, n0, m1, n1, h)
+    ut, vt = state_after(u, v, a, s, c, k, middle)
+    xt, mt, _ = _value_and_slopes(order, ut, vt, a + middle * s, s, c, k)
+    if mt * m0 >= 0:
+        return 0.0
+    peak = 0.0
+    for t in (
+        turning_time(x0, m0, xt, mt, middle),
+        middle + turning_time(xt, mt, x1, m1, h - middle),
+    ):
+        ut, vt = state_after(u, v, a, s, c, k, t)
+        peak = max(peak, abs(_value_and_slopes(order, ut, vt, a + t * s, s, c, k)[0]))
+    return peak
+
+
+@cached_njit()
 def _peaks(
     acceleration: Floats, step: float, parts: int, matrix: Floats, omega: float, damping: float
 ) -> tuple[float, float, float]:
@@ -159,13 +207,19 @@ def _peaks(
             if v * v1 < 0:
                 t = turning_time(u, v, u1, v1, step)
                 sd = max(sd, abs(state_after(u, v, a, s, c, k, t)[0]))
+            else:
+                sd = max(sd, peak_of_two(0, u, v, u1, v1, a, s, c, k, step))
             if relative * relative1 < 0:
                 t = turning_time(v, relative, v1, relative1, step)
                 sv = max(sv, abs(state_after(u, v, a, s, c, k, t)[1]))
+            else:
+                sv = max(sv, peak_of_two(1, u, v, u1, v1, a, s, c, k, step))
             if jerk * jerk1 < 0:
                 t = turning_time(total, jerk, total1, jerk1, step)
                 there = state_after(u, v, a, s, c, k, t)
                 sa = max(sa, abs(c * there[1] + k * there[0]))
+            else:
+                sa = max(sa, peak_of_two(2, u, v, u1, v1, a, s, c, k, step))
             u, v, total, relative, jerk = u1, v1, total1, relative1, jerk1
     return sd, sv, sa
 
