@@ -64,20 +64,41 @@ class Records:
 
 @dataclass(frozen=True)
 class Request:
-    """An object at a place, ready to be assessed."""
+    """An object at a place, ready to be assessed.
 
-    name: str  #: What the object is called
-    objects: Objects  #: The object, its pedestal, and what is not known of them
-    place: Place  #: The floor on which it stands
-    level: Level | None = None  #: The level of shaking asked about
-    hazard: tuple[HazardCurve, ...] = ()  #: Hazard curves of the site, one a measure
-    years: float = YEARS  #: Time for the probability [year]
-    records: Records = field(default_factory=Records)  #: Where the motions come from
-    value: float = math.nan  #: What the object is worth, in any unit; NaN if not given
+    Attributes
+    ----------
+    name : what the object is called
+    objects : the object, its pedestal, and what is not known of them
+    place : the floor on which it stands
+    level : the level of shaking asked about
+    hazard : hazard curves of the site, one a measure
+    years : time for the probability [year]
+    records : where the motions come from
+    value : what the object is worth, in any unit; NaN if not given
+    """
+
+    name: str
+    objects: Objects
+    place: Place
+    level: Level | None = None
+    hazard: tuple[HazardCurve, ...] = ()
+    years: float = YEARS
+    records: Records = field(default_factory=Records)
+    value: float = math.nan
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:
-    """Read a request from a YAML file such as ``statue.yaml``; paths in it are relative to it."""
+    """Read a request from a YAML file.
+
+    Parameters
+    ----------
+    path : file such as ``statue.yaml``; paths in it are relative to it
+
+    Returns
+    -------
+    The :class:`Request`.
+    """
     return make_request(read_yaml(path), str(path), Path(path).parent)
 
 

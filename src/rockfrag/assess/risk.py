@@ -65,12 +65,20 @@ def probability_in(rate: float, years: float) -> float:
 
 @dataclass(frozen=True)
 class Estimate:
-    """A probability with its interval, or a bound where no motion toppled the object."""
+    """A probability with its interval, or a bound where no motion toppled the object.
 
-    value: float  #: Probability [-]
-    lower: float  #: Lower limit of the interval [-]
-    upper: float  #: Upper limit [-]
-    sources: Mapping[str, float]  #: Standard deviation on the scale of the interval by source [-]
+    Attributes
+    ----------
+    value : probability [-]
+    lower : lower limit of the interval [-]
+    upper : upper limit [-]
+    sources : standard deviation on the scale of the interval by source [-]
+    """
+
+    value: float
+    lower: float
+    upper: float
+    sources: Mapping[str, float]
 
 
 @dataclass(frozen=True)

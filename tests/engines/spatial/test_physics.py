@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag import Block, simulate
+from rockfrag.engines.spatial.body import standing
 from rockfrag.engines.spatial.outcome import history_table, run_case
 
 from .checks import (
@@ -81,7 +82,9 @@ def test_in_a_plane_of_symmetry_it_is_the_planar_block(seed, cases):
         ground = motion.copy()
         ground[:, :2] = turned(motion[:, :2], angle)
         body = box(width, depth, height)
-        outcome, history = run_case(body, ground, DT, turned=angle, samples=len(ground))
+        outcome, history = run_case(
+            body, ground, DT, start=standing(body, angle), samples=len(ground)
+        )
         planar = simulate(Block(width, height, 100.0), motion[:, 0], DT)
         assert outcome.overturned == planar.overturned
         tilt = history_table(history, DT, height / 2).tilt_rad.to_numpy()

@@ -20,10 +20,16 @@ KINDS: tuple[tuple[Callable[[str], bool], Callable[[str, str], list[Found]]], ..
 
 
 def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
-    """Read the hazard curves of one site: a curve for each measure, with its quantiles.
+    """Read the hazard curves of one site.
 
-    The files are OpenQuake's CSV or NRML, EFEHR's answer, the USGS's answer, or a table of levels and rates. Those
-    of a mean and of quantiles of one measure belong together; one curve given twice is an InputError.
+    Parameters
+    ----------
+    paths : files: OpenQuake's CSV or NRML, EFEHR's or the USGS's answer, or tables of levels and rates; those of
+        a mean and of quantiles of one measure belong together, and one curve given twice is an InputError
+
+    Returns
+    -------
+    A curve for each measure, with its quantiles.
     """
     found: list[Found] = []
     for path in paths:
