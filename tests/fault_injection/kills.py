@@ -24,18 +24,17 @@ LONGEST_WORDS = 8
 
 def shell(run: psutil.Process) -> list[psutil.Process]:
     """Shells in which Snakemake starts the jobs of a run."""
-    return [item for item in _family(run) if item.name() in ("bash", "sh")]
+    return [item for item in _family(run) if Path((_words(item) or [""])[0]).name in ("bash", "sh")]
 
 
 def job(run: psutil.Process) -> list[psutil.Process]:
     """Jobs of a run, without the workers of their pools."""
-    jobs = [item for item in _family(run) if _is_job(item)]
-    return [job for job in jobs if not _is_job(job.parent())]
+    return [item for item in _family(run) if _is_job(item) and not _is_worker(item)]
 
 
 def worker(run: psutil.Process) -> list[psutil.Process]:
     """Workers of the pools of a run's jobs."""
-    return [item for item in _family(run) if _is_job(item) and _is_job(item.parent())]
+    return [item for item in _family(run) if _is_worker(item)]
 
 
 def itself(run: psutil.Process) -> list[psutil.Process]:
@@ -54,10 +53,22 @@ def _family(run: psutil.Process) -> list[psutil.Process]:
     return []
 
 
-def _is_job(process: psutil.Process | None) -> bool:
+def _words(process: psutil.Process) -> list[str]:
+    """What a process was started with; nothing of one that has ended meanwhile."""
     with suppress(psutil.NoSuchProcess):
-        words = [] if process is None else process.cmdline()
-        return len(words) > 1 and "python" in words[0] and ".snakemake/scripts" in words[-1]
+        return list(process.cmdline())
+    return []
+
+
+def _is_job(process: psutil.Process) -> bool:
+    words = _words(process)
+    return len(words) > 1 and "python" in words[0] and ".snakemake/scripts" in words[-1]
+
+
+def _is_worker(process: psutil.Process) -> bool:
+    with suppress(psutil.NoSuchProcess):
+        parent = process.parent()
+        return parent is not None and _is_job(process) and _is_job(parent)
     return False
 
 
