@@ -57,6 +57,10 @@ UNUSABLE = [
     ),
     (lambda: Block(0.1, -0.5, 3.0), "height: expected a positive number of metres, got -0.5"),
     (lambda: Block(0.1, 0.5, math.inf), "Block: mass: expected a positive number of kilograms"),
+    (
+        lambda: Block(0.2, 1e12, 30.0),
+        "no block is larger than 1e+06 m; give its width and height in metres",
+    ),
     (simulated(g=10**400), "g: expected"),
     (lambda: Block(0.1, 0.5, 3.0, inertia=[1.0]), "Block: inertia: expected a positive number"),
     (lambda: Block(0.1, 0.5, 3.0, cg_height="low"), "Block: cg_height: expected a positive number"),

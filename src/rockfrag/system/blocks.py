@@ -39,6 +39,10 @@ class Vector(NamedTuple):
         return Vector(self.x - other.x, self.y - other.y)
 
 
+LARGEST = 1e6
+"""Width and height of a block are no larger: one of 1e12 m falls for days, which takes minutes to compute [m]."""
+
+
 class UnlikelyBlock(UserWarning):
     """A block whose sizes or inertia are probably given in other units."""
 
@@ -86,6 +90,11 @@ class Block:
     def __post_init__(self) -> None:
         for name, unit in (("width", "metres"), ("height", "metres"), ("mass", "kilograms")):
             self._check_number(name, unit, positive_number)
+        if max(self.width, self.height) > LARGEST:
+            raise InputError(
+                f"Block: {self.width:g} m × {self.height:g} m: no block is larger than {LARGEST:g} m; give its "
+                "width and height in metres."
+            )
         self._check_space()
         if self.cg_height is not None:
             self._check_number("cg_height", "metres", positive_number)
