@@ -47,6 +47,9 @@ class LogHandler(LogHandlerBase):
         elif event == LogEvent.JOB_INFO:
             log = Path(about["log"][0] if about["log"] else "")
             self.running[about["jobid"]] = about["rule_name"], log, time.time()
+            # Snakemake 9.0 does not hand on what is said of the report while the rules are read
+            made = [Path(str(file)) for file in about.get("output") or ()]
+            self.report = next((file for file in made if file.name == "report.html"), self.report)
         elif event == LogEvent.JOB_FINISHED:
             self._finish(int(about["job_id"]))
         elif event == LogEvent.JOB_ERROR:
