@@ -132,7 +132,7 @@ def _integrate(
             for i in range(LANES):
                 x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
             _advance(x, ground[0, j], ground[1, j])
-            if _turns_high(x):
+            if _turns_high(x, ground[0, j], ground[1, j], step):
                 for lane in range(LANES):
                     _look_between(x, lane, ground[0, j], ground[1, j], step)
 
@@ -187,12 +187,15 @@ def _advance(x: Floats, a: float, s: float) -> None:
 
 
 @cached_njit(error_model="numpy")
-def _turns_high(x: Floats) -> bool:
+def _turns_high(x: Floats, a: float, s: float, step: float) -> bool:
     """Whether a lane has a peak between the last two steps that can be its largest."""
     does = False
     for i in range(LANES):
         highest = max(abs(x[_U0 + i]), abs(x[_U + i])) + x[_ADDED + i]
-        does |= highest > x[_KEPT + i] * x[_LARGEST + i]
+        before = a + x[_C + i] * x[_V0 + i] + x[_K + i] * x[_U0 + i]
+        after = a + step * s + x[_C + i] * x[_V + i] + x[_K + i] * x[_U + i]
+        turns = (x[_V0 + i] * x[_V + i] < 0) | (before * after < 0)
+        does |= turns & (highest > x[_KEPT + i] * x[_LARGEST + i])
     return does
 
 
@@ -201,9 +204,7 @@ def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
     """Let the peaks of lane i between the last two steps count, if they can be the largest."""
     u, v, u1, v1, c, k = x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i], x[_C + i], x[_K + i]
     if max(abs(u), abs(u1)) + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
-        if v * v1 < 0:
-            t = spectra.turning_time(u, v, u1, v1, step)
-            peak = abs(spectra.state_after(u, v, a, s, c, k, t)[0])
-        else:
-            peak = spectra.peak_of_two(0, u, v, u1, v1, a, s, c, k, step)
+        first = u, v, -(c * v + k * u) - a
+        last = u1, v1, -(c * v1 + k * u1) - (a + step * s)
+        peak = spectra.peak_within(0, first, last, (u, v, a, s), c, k, step)
         x[_LARGEST + i] = max(x[_LARGEST + i], peak)

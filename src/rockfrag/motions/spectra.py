@@ -136,50 +136,48 @@ def state_after(
 
 
 @cached_njit()
-def _value_and_slopes(
-    order: int, u: float, v: float, a: float, s: float, c: float, k: float
-) -> tuple[float, float, float]:
-    """u, u' or the total acceleration u'' + a for order 0, 1 or 2, and its first two derivatives."""
-    relative = -a - c * v - k * u
-    jerk = -s - c * relative - k * v
+def _response(
+    order: int, u: float, v: float, ground: float, c: float, k: float
+) -> tuple[float, float]:
+    """u, u' or the total acceleration for order 0, 1 or 2, and its slope."""
     if order == 0:
-        return u, v, relative
-    if order == 1:
-        return v, relative, jerk
-    return relative + a, jerk + s, -c * jerk - k * relative
+        return u, v
+    total = -(c * v + k * u)
+    relative = total - ground
+    return (v, relative) if order == 1 else (total, -(c * relative + k * v))
 
 
 @cached_njit()
-def peak_of_two(
+def peak_within(
     order: int,
-    u: float,
-    v: float,
-    u1: float,
-    v1: float,
-    a: float,
-    s: float,
+    first: tuple[float, float, float],
+    last: tuple[float, float, float],
+    start: tuple[float, float, float, float],
     c: float,
     k: float,
     h: float,
 ) -> float:
-    """Larger of two peaks that a response (see above) has within a step; 0 if it does not turn twice."""
-    x0, m0, n0 = _value_and_slopes(order, u, v, a, s, c, k)
-    x1, m1, n1 = _value_and_slopes(order, u1, v1, a + h * s, s, c, k)
+    """Largest value of a response (see above) where it turns within a step, once or twice; 0 if it does not.
+
+    ``first`` and ``last`` are its value, slope and curvature at both ends, ``start`` is (u, u', a, s).
+    """
+    (x0, m0, n0), (x1, m1, n1), (u, v, a, s) = first, last, start
+    if m0 * m1 < 0:
+        t = turning_time(x0, m0, x1, m1, h)
+        there = state_after(u, v, a, s, c, k, t)
+        return abs(_response(order, there[0], there[1], a + t * s, c, k)[0])
     if n0 * n1 >= 0:
         return 0.0
-    # between two turns of one direction lies one of the slope
+    # between two turns lies one of the slope
     middle = turning_time(m0, n0, m1, n1, h)
-    ut, vt = state_after(u, v, a, s, c, k, middle)
-    xt, mt, _ = _value_and_slopes(order, ut, vt, a + middle * s, s, c, k)
-    if mt * m0 >= 0:
+    there = state_after(u, v, a, s, c, k, middle)
+    x, m = _response(order, there[0], there[1], a + middle * s, c, k)
+    if m * m0 >= 0:
         return 0.0
     peak = 0.0
-    for t in (
-        turning_time(x0, m0, xt, mt, middle),
-        middle + turning_time(xt, mt, x1, m1, h - middle),
-    ):
-        ut, vt = state_after(u, v, a, s, c, k, t)
-        peak = max(peak, abs(_value_and_slopes(order, ut, vt, a + t * s, s, c, k)[0]))
+    for t in (turning_time(x0, m0, x, m, middle), middle + turning_time(x, m, x1, m1, h - middle)):
+        there = state_after(u, v, a, s, c, k, t)
+        peak = max(peak, abs(_response(order, there[0], there[1], a + t * s, c, k)[0]))
     return peak
 
 
@@ -204,22 +202,18 @@ def _peaks(
             relative1 = total1 - (a + step * s)
             jerk1 = -(c * relative1 + k * v1)
             sd, sv, sa = max(sd, abs(u1)), max(sv, abs(v1)), max(sa, abs(total1))
-            if v * v1 < 0:
-                t = turning_time(u, v, u1, v1, step)
-                sd = max(sd, abs(state_after(u, v, a, s, c, k, t)[0]))
-            else:
-                sd = max(sd, peak_of_two(0, u, v, u1, v1, a, s, c, k, step))
-            if relative * relative1 < 0:
-                t = turning_time(v, relative, v1, relative1, step)
-                sv = max(sv, abs(state_after(u, v, a, s, c, k, t)[1]))
-            else:
-                sv = max(sv, peak_of_two(1, u, v, u1, v1, a, s, c, k, step))
-            if jerk * jerk1 < 0:
-                t = turning_time(total, jerk, total1, jerk1, step)
-                there = state_after(u, v, a, s, c, k, t)
-                sa = max(sa, abs(c * there[1] + k * there[0]))
-            else:
-                sa = max(sa, peak_of_two(2, u, v, u1, v1, a, s, c, k, step))
+            at, third, third1 = (u, v, a, s), jerk - s, jerk1 - s
+            fourth, fourth1 = -c * third - k * relative, -c * third1 - k * relative1
+            # most steps hold no turn, and are not looked into
+            if v * v1 < 0 or relative * relative1 < 0:
+                ends = (u, v, relative), (u1, v1, relative1)
+                sd = max(sd, peak_within(0, ends[0], ends[1], at, c, k, step))
+            if relative * relative1 < 0 or third * third1 < 0:
+                ends = (v, relative, third), (v1, relative1, third1)
+                sv = max(sv, peak_within(1, ends[0], ends[1], at, c, k, step))
+            if jerk * jerk1 < 0 or fourth * fourth1 < 0:
+                ends = (total, jerk, fourth), (total1, jerk1, fourth1)
+                sa = max(sa, peak_within(2, ends[0], ends[1], at, c, k, step))
             u, v, total, relative, jerk = u1, v1, total1, relative1, jerk1
     return sd, sv, sa
 
