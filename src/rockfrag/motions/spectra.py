@@ -165,7 +165,7 @@ def peak_within(
     if m0 * m1 < 0:
         t = turning_time(x0, m0, x1, m1, h)
         there = state_after(u, v, a, s, c, k, t)
-        return abs(_response(order, there[0], there[1], a + t * s, c, k)[0])
+        return float(abs(_response(order, there[0], there[1], a + t * s, c, k)[0]))
     if n0 * n1 >= 0:
         return 0.0
     # between two turns lies one of the slope
