@@ -28,14 +28,11 @@ NEAR = 1 + 0.01 * np.arange(-10, 11)
 RECORDED = ("overturning_time", "certain_time", "impacts", "unstable_distance", "peak_rotation")
 """Columns of outcomes in every IDA curve."""
 
-SLID = ("flights", "slip", "peak_slip")
-"""Columns of outcomes in IDA curves with friction."""
+SLID = ("flights", "slip", "peak_slip")  # Columns of outcomes in IDA curves with friction
 
-ROWS_AT_ONCE = 131_072
-"""Histories in memory at a time, and of a row group of a file."""
+ROWS_AT_ONCE = 131_072  # Histories in memory at a time, and of a row group of a file
 
-FEWEST_AT_ONCE = 12
-"""Motions shaken at a time are no fewer, to keep every core busy."""
+FEWEST_AT_ONCE = 12  # Motions shaken at a time are no fewer, to keep every core busy
 
 
 def run(job: Job[Study]) -> Results:
