@@ -31,20 +31,11 @@ MOTIONS_AT_ONCE = 64  # motions of a row group of a file, which can be read by t
 
 @dataclass(frozen=True)
 class Motion:
-    """One component of acceleration, linear between samples.
+    """One component of acceleration [m/s²], shape (n,), read-only, every ``dt`` [s], linear between samples.
 
-    Attributes
-    ----------
-    acceleration
-        Acceleration [m/s²], shape (n,), read-only.
-    dt
-        Sampling interval [s].
-    name
-        Short name, unique within a study.
-    metadata
-        What is known about it: ``earthquake``, ``station``, ``component``, ``start_time``, ``floor``, …
-    provenance
-        One entry per step it went through: ``{"step": name, **parameters}``.
+    ``name`` is short and unique within a study, ``metadata`` what is known of the motion: ``earthquake``,
+    ``station``, ``component``, ``start_time``, ``floor``, …; ``provenance`` has an entry per step that it
+    went through: ``{"step": name, **parameters}``.
     """
 
     acceleration: NDArray[np.float64]
@@ -164,23 +155,21 @@ def read_motion_set(
         first, last = number * total // parts, (number + 1) * total // parts
         if most is not None:
             last = min(last, first + most)
-        found, begin = [], 0
-        for group in range(file.num_row_groups):
-            end = begin + file.metadata.row_group(group).num_rows
-            if begin < last and end > first:
-                rows = file.read_row_group(group).slice(max(first - begin, 0))
-                table = rows.slice(0, last - max(first, begin)).to_pandas()
-                found += [
-                    Motion(
-                        acceleration=np.asarray(row["acceleration_m_s2"], dtype=np.float64),
-                        dt=row["dt_s"],
-                        name=row["name"],
-                        metadata=json.loads(row["metadata"]),
-                        provenance=tuple(json.loads(row["provenance"])),
-                    )
-                    for row in table.to_dict("records")
-                ]
-            begin = end
+        found, size = [], file.metadata.row_group(0).num_rows if total else 1
+        for group in range(first // size, -(-last // size)):
+            begin = group * size
+            rows = file.read_row_group(group).slice(max(first - begin, 0))
+            table = rows.slice(0, last - max(first, begin)).to_pandas()
+            found += [
+                Motion(
+                    acceleration=np.asarray(row["acceleration_m_s2"], dtype=np.float64),
+                    dt=row["dt_s"],
+                    name=row["name"],
+                    metadata=json.loads(row["metadata"]),
+                    provenance=tuple(json.loads(row["provenance"])),
+                )
+                for row in table.to_dict("records")
+            ]
     return found
 
 
@@ -197,14 +186,7 @@ SAME_STEP = 1e-9  # relative difference of sampling intervals that is rounding o
 class GroundMotion:
     """Acceleration of the ground or floor: along x, and where it is known along y and upwards (z).
 
-    Attributes
-    ----------
-    x
-        Horizontal component along the x axis of the bodies, the plane of planar ones.
-    y
-        Horizontal component across that plane; None where it is not given.
-    z
-        Vertical component, upwards; None where it is not given.
+    x is the horizontal axis of the bodies, in the plane of planar ones, y the one across that plane.
     """
 
     x: Motion
@@ -245,9 +227,9 @@ class GroundMotion:
     def accelerations(self) -> NDArray[np.float64]:
         """Accelerations along x, y and z [m/s²], shape (n, 3); zero where a component is not given."""
         found = np.zeros((self.x.acceleration.size, 3))
-        for k, motion in enumerate((self.x, self.y, self.z)):
+        for column, motion in zip(found.T, (self.x, self.y, self.z), strict=True):
             if motion is not None:
-                found[:, k] = motion.acceleration
+                column[:] = motion.acceleration
         return found
 
 
