@@ -31,11 +31,20 @@ MOTIONS_AT_ONCE = 64  # motions of a row group of a file, which can be read by t
 
 @dataclass(frozen=True)
 class Motion:
-    """One component of acceleration [m/s²], shape (n,), read-only, every ``dt`` [s], linear between samples.
+    """One component of acceleration, linear between samples.
 
-    ``name`` is short and unique within a study, ``metadata`` what is known of the motion: ``earthquake``,
-    ``station``, ``component``, ``start_time``, ``floor``, …; ``provenance`` has an entry per step that it
-    went through: ``{"step": name, **parameters}``.
+    Attributes
+    ----------
+    acceleration
+        Acceleration [m/s²], shape (n,), read-only.
+    dt
+        Sampling interval [s].
+    name
+        Short name, unique within a study.
+    metadata
+        What is known about it: ``earthquake``, ``station``, ``component``, ``start_time``, ``floor``, …
+    provenance
+        One entry per step it went through: ``{"step": name, **parameters}``.
     """
 
     acceleration: NDArray[np.float64]
@@ -186,7 +195,14 @@ SAME_STEP = 1e-9  # relative difference of sampling intervals that is rounding o
 class GroundMotion:
     """Acceleration of the ground or floor: along x, and where it is known along y and upwards (z).
 
-    x is the horizontal axis of the bodies, in the plane of planar ones, y the one across that plane.
+    Attributes
+    ----------
+    x
+        Horizontal component along the x axis of the bodies, the plane of planar ones.
+    y
+        Horizontal component across that plane; None where it is not given.
+    z
+        Vertical component, upwards; None where it is not given.
     """
 
     x: Motion

@@ -38,12 +38,7 @@ def step_of_times(
     if times.size < 2:
         text.fail("one time alone says nothing about the sampling interval", first_line)
     check_rising(times, text, first_line)
-    resolution = resolution_of(times)
-    decades = np.floor(np.log10(np.maximum(np.abs(times), 1.0)))
-    printed = np.empty_like(times)  # decimal unit [s] that each time is printed to
-    for decade in np.unique(decades):
-        inside = decades == decade
-        printed[inside] = resolution_of(times[inside])
+    resolution, printed = resolution_of(times), _printed_resolution(times)
     mean = float((times[-1] - times[0]) / (times.size - 1))
     tolerance = max(float(printed[-1]) / (times.size - 1), 1e-12 * mean)
     # the decimal of fewest digits that it can be
@@ -90,6 +85,16 @@ def resolution_of(times: NDArray[np.float64]) -> float:
         if bool((np.abs(scaled - np.round(scaled)) <= 1e-6 + 1e-12 * np.abs(scaled)).all()):
             return float(10.0**-digits)
     return float(10.0**-_FINEST_DIGITS)
+
+
+def _printed_resolution(times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the decimal unit [s] that each time is printed to, shape (n,)."""
+    decades = np.floor(np.log10(np.maximum(np.abs(times), 1.0)))
+    resolution = np.empty_like(times)
+    for decade in np.unique(decades):
+        inside = decades == decade
+        resolution[inside] = resolution_of(times[inside])
+    return resolution
 
 
 def clock_time(
