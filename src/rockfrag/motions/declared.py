@@ -60,7 +60,7 @@ class IntensityMeasure:
         """Return the spectral measure of one period [s]."""
         digits = f"{period:.12g}".replace(".", "_") + ("" if period % 1 else "_0")
         name, label = f"{self.name}_{digits}s", f"{self.label}({period:g}s)"
-        return replace(self, name=name, label=label, period=period)
+        return replace(self, name=name, label=label, period=period, shared=_spectrum_at(period))
 
     @property
     def imt(self) -> str:
@@ -69,18 +69,24 @@ class IntensityMeasure:
 
     def of_motion(self, motion: Motion, damping: float = 0.05) -> float:
         """Return its value of a motion, in its unit; ``damping`` [-] is that of what is spectral."""
-        if self.period is not None:
-            from rockfrag.motions.spectra import response_spectrum
-
-            return float(self.of(response_spectrum(motion, [self.period], damping))[0])
         return float(self.of(motion if self.shared is None else self.shared(motion, damping)))
 
     def of(self, subject: Any) -> Any:
         """Return its value of a motion, or of what several measures share of it, in its unit."""
-        value = self.value(subject)
+        value = self.value(subject) if self.period is None else float(self.value(subject)[0])
         if self.unit == "g":
             return value / GRAVITY
         return value * CENTIMETRES_PER_METRE if self.unit in ("cm", "cm/s") else value
+
+
+@cache
+def _spectrum_at(period: float) -> Shared:
+    def spectrum(motion: Motion, damping: float) -> Any:
+        from rockfrag.motions.spectra import response_spectrum
+
+        return response_spectrum(motion, [period], damping)
+
+    return spectrum
 
 
 _MEASURES: dict[str, IntensityMeasure] = {}
