@@ -9,7 +9,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.keywords import named_keywords
 from rockfrag.motions import intensity
-from rockfrag.motions.declared import SPECTRAL_PERIODS, intensity_measures
+from rockfrag.motions.intensity import SPECTRAL_PERIODS, intensity_measures
 from rockfrag.motions.pulse_extraction import strongest_pulse
 from rockfrag.motions.rotation import DIRECTIONS_DEG, rotate
 from rockfrag.processes import in_processes

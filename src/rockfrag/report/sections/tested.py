@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from rockfrag import figure_style as style
-from rockfrag.motions.declared import intensity_measures
+from rockfrag.motions.intensity import intensity_measures
 from rockfrag.records.motion import Motion
 from rockfrag.report.figures.amplitudes import GREY, MARKERS, drawn_tests
 from rockfrag.report.page import Column, table_html
