@@ -37,8 +37,7 @@ def pga(motion: Motion) -> float:
 
     Parameters
     ----------
-    motion
-        Motion to be measured.
+    motion : motion to be measured
 
     Returns
     -------
@@ -55,8 +54,7 @@ def pgv(motion: Motion) -> float:
 
     Parameters
     ----------
-    motion
-        Motion to be measured.
+    motion : motion to be measured
 
     Returns
     -------

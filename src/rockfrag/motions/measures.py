@@ -25,12 +25,9 @@ def measure_motion(
 
     Parameters
     ----------
-    motion
-        What to measure.
-    periods
-        Periods of the spectral measures [s].
-    damping
-        Damping of the spectral measures and of the Housner intensity [-].
+    motion : what to measure
+    periods : periods of the spectral measures [s]
+    damping : damping of the spectral measures and of the Housner intensity [-]
 
     Returns
     -------
@@ -67,12 +64,9 @@ def measure_motions(
 
     Parameters
     ----------
-    motions
-        What to measure, one after the other; an iterator is used up.
-    periods, damping
-        As of :func:`measure_motion`.
-    processes
-        How many processes may measure at once; the table does not depend on it.
+    motions : what to measure, one after the other; an iterator is used up
+    periods, damping : as of :func:`measure_motion`
+    processes : how many processes may measure at once; the table does not depend on it
 
     Returns
     -------
@@ -93,10 +87,8 @@ def measure_rocking(
 
     Parameters
     ----------
-    motions
-        What to measure.
-    blocks
-        Critical angle [rad] and frequency parameter p [1/s] of each block by its name.
+    motions : what to measure
+    blocks : critical angle [rad] and frequency parameter p [1/s] of each block by its name
 
     Returns
     -------
@@ -126,10 +118,8 @@ def measure_pair(
 
     Parameters
     ----------
-    first, second
-        Perpendicular components, sampled at the same times.
-    periods, damping
-        As of :func:`measure_motion`.
+    first, second : perpendicular components, sampled at the same times
+    periods, damping : as of :func:`measure_motion`
 
     Returns
     -------

@@ -84,8 +84,7 @@ def restitution_from_peaks(
     block, peaks
         Peak rotations of the block in their order [rad], shape (n,), n ≥ 2; alternating in sign, or magnitudes.
         They alternate between the corners; the first is on that of the first peak's sign.
-    confidence
-        Level of the interval.
+    confidence : level of the interval
 
     Returns
     -------
@@ -122,12 +121,9 @@ def restitution_from_impacts(
 
     Parameters
     ----------
-    block, times
-        Times of successive impacts of the block [s], shape (n,), n ≥ 3, rising; none may be left out.
-    first_pivot
-        Corner the block rocks on between the first two.
-    confidence
-        Level of the interval.
+    block, times : times of successive impacts of the block [s], shape (n,), n ≥ 3, rising; none may be left out
+    first_pivot : corner the block rocks on between the first two
+    confidence : level of the interval
 
     Returns
     -------
@@ -190,8 +186,7 @@ def restitution_from_history(
     block, time, theta
         Times of the samples [s], evenly spaced, none before the release, and clockwise rotations of the block
         [rad], shape (n,).
-    confidence
-        Level of the interval.
+    confidence : level of the interval
 
     Returns
     -------
