@@ -16,9 +16,9 @@ from rockfrag.system.system import System, uplift_ratios
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
-    from rockfrag.fragility.empirical import IdaData
+    from rockfrag.fragility.empirical import TableIda
 
-    StateIdaCurves = dict[str, dict[tuple[str, str], IdaData]]
+    StateIdaCurves = dict[str, dict[tuple[str, str], TableIda]]
 
 
 def floor_measures(level: int) -> tuple[str, ...]:
