@@ -5,20 +5,14 @@ import re
 import shutil
 import sys
 import textwrap
-from collections.abc import Collection, Sequence
-from functools import partial
+from collections.abc import Callable, Collection, Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 
 _INVENTORY = ".csv"
-_KEYS = (
-    *("width", "height", "depth", "mass", "cg_height", "cg_offset", "pga", "pgv", "return_period"),
-    *("name", "facing_deg", "base_spread", "restitution", "friction", "pad_friction", "floor"),
-    *("sa", "hazard", "years", "magnitude", "distance_km"),
-)
-"""Keys of ``statue.yaml`` that are options as they are."""
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 
 
@@ -78,108 +72,90 @@ def add_assess_commands(commands: Any) -> None:
     rules.set_defaults(run=_rules)
 
 
+_OPTIONS = {
+    "the object": """
+name NAME | what it is called
+width SIZE | of the base, or the diameter of a round one
+height SIZE | of the whole
+depth SIZE | of the base, as the width if not given
+mass MASS | of stone if not given
+cg-height SIZE | of the centre of gravity, half the height if not given
+cg-offset SIZE | of the centre of gravity from the middle of the base
+facing number DEGREES | facing_deg | direction of the width, or of a mesh's x axis,
+  from the first component of each record
+base-spread number FRACTION | by how much corners of the base lie elsewhere in space, over its size,
+  and it is turned: 0.001
+round | the base is round
+mesh FILE | mesh.file | mesh of it (OBJ, PLY, STL, GLB) instead
+up x,y,z | mesh.up | axis of the mesh that points up
+hull | mesh.hull | take the convex hull of a mesh that is not closed
+mesh-unit m,cm,mm,in,ft | mesh.metres_per_unit | unit of the mesh, m if not given
+contact-tolerance SIZE | mesh.contact_tolerance | height up to which points of the mesh carry, 2mm if not given
+restitution number | measured ratio of angular velocities
+friction number | coefficient: it may slide at that level
+pad-friction number | coefficient of a pad under the object, tried as a mitigation
+pedestal SIZE… | width, height and, if known, mass of the block it stands on; again for what that stands on
+""",
+    "the place": """
+floor LEVEL/STOREYS | such as 2/4, with 0 for the ground: level 2 is the second floor in Europe,
+  the third in America
+building FILE | YAML file with the building
+storey-height SIZE… | building.storey_height | of every storey, or of each from below; 3.5m if not given
+period TIME | building.first_period_s | first period of the building: 0.4s
+material masonry,concrete,steel | building.material | of the building: its period follows from that and its height
+pga ACCELERATION | of the ground: 0.25g
+pgv VELOCITY | of the ground, alone or beside the other: 20cm/s
+sa PERIOD ACCELERATION | 0.3s 0.6g
+return-period YEARS | of that level
+hazard FILE… | hazard curves of the site
+years number | time of the probability, 50 if not given
+magnitude number | of the earthquakes that matter most there
+distance number KM | distance_km | of these earthquakes
+""",
+    "the motions": """
+record PATH… | records.paths | own records, folders or catalogues instead of the default set
+on-floor | records.recorded_on | they were recorded on that floor
+unit UNIT | records.unit | unit of records that do not state theirs: g, m/s2, cm/s2
+dt number S | records.dt_s | sampling interval of records without one
+""",
+}
+"""Options by their group: name and what it takes (nothing, one value or more, ``…`` for any number of them, a
+number, or one of several words), the key of ``statue.yaml`` if it is called otherwise, and help."""
+
+
+def _options(group: str) -> Iterator[tuple[str, str, str, str]]:
+    """Name of each option of a group, what it takes, its key, and help."""
+    for line in _OPTIONS[group].strip().replace("\n  ", " ").split("\n"):
+        first, *key, words = line.split(" | ")
+        name, _, takes = first.partition(" ")
+        yield name, takes, key[0] if key else name.replace("-", "_"), words
+
+
 def add_request_options(parser: argparse.ArgumentParser) -> None:
     """Add what an object, its place and its motions are told by."""
-    _add_object(parser.add_argument_group("the object"))
-    _add_place(parser.add_argument_group("the place"))
-    _add_motions(parser.add_argument_group("the motions"))
-
-
-def _add_object(about: Any) -> None:
-    once = partial(about.add_argument, action=_Once)
-    once("--name", help="what it is called")
-    once("--width", metavar="SIZE", help="of the base, or the diameter of a round one")
-    once("--height", metavar="SIZE", help="of the whole")
-    once("--depth", metavar="SIZE", help="of the base, as the width if not given")
-    once("--mass", metavar="MASS", help="of stone if not given")
-    words = "of the centre of gravity"
-    once("--cg-height", metavar="SIZE", help=f"{words}, half the height if not given")
-    once("--cg-offset", metavar="SIZE", help=f"{words} from the middle of the base")
-    once(
-        "--facing",
-        dest="facing_deg",
-        type=float,
-        metavar="DEGREES",
-        help="direction of the width, or of a mesh's x axis, from the first component of each record",
-    )
-    once(
-        "--base-spread",
-        type=float,
-        metavar="FRACTION",
-        help="by how much corners of the base lie elsewhere in space, over its size, and it is turned: 0.001",
-    )
-    about.add_argument("--round", action="store_true", help="the base is round")
-    once("--mesh", metavar="FILE", help="mesh of it (OBJ, PLY, STL, GLB) instead")
-    once("--up", choices="xyz", help="axis of the mesh that points up")
-    about.add_argument(
-        "--hull", action="store_true", help="take the convex hull of a mesh that is not closed"
-    )
-    once("--mesh-unit", choices=list(_METRES), help="unit of the mesh, m if not given")
-    once(
-        "--contact-tolerance",
-        metavar="SIZE",
-        help="height up to which points of the mesh carry, 2mm if not given",
-    )
-    once("--restitution", type=float, help="measured ratio of angular velocities")
-    once("--friction", type=float, help="coefficient: it may slide at that level")
-    once(
-        "--pad-friction",
-        type=float,
-        help="coefficient of a pad under the object, tried as a mitigation",
-    )
-    about.add_argument(
-        "--pedestal",
-        action="append",
-        nargs="+",
-        metavar="SIZE",
-        help="width, height and, if known, mass of the block it stands on; again for what that stands on",
-    )
-
-
-def _add_place(place: Any) -> None:
-    once = partial(place.add_argument, action=_Once)
-    once(
-        "--floor",
-        metavar="LEVEL/STOREYS",
-        help="such as 2/4, with 0 for the ground: level 2 is the second floor in Europe, the third in America",
-    )
-    once("--building", metavar="FILE", help="YAML file with the building")
-    once(
-        "--storey-height",
-        nargs="+",
-        metavar="SIZE",
-        help="of every storey, or of each from below; 3.5m if not given",
-    )
-    once("--period", metavar="TIME", help="first period of the building: 0.4s")
-    once(
-        "--material",
-        choices=["masonry", "concrete", "steel"],
-        help="of the building: its period follows from that and its height",
-    )
-    once("--pga", metavar="ACCELERATION", help="of the ground: 0.25g")
-    once("--pgv", metavar="VELOCITY", help="of the ground, alone or beside the other: 20cm/s")
-    once("--sa", nargs=2, metavar=("PERIOD", "ACCELERATION"), help="0.3s 0.6g")
-    once("--return-period", metavar="YEARS", help="of that level")
-    once("--hazard", nargs="+", metavar="FILE", help="hazard curves of the site")
-    once("--years", type=float, help="time of the probability, 50 if not given")
-    once("--magnitude", type=float, help="of the earthquakes that matter most there")
-    once("--distance", dest="distance_km", type=float, metavar="KM", help="of these earthquakes")
-
-
-def _add_motions(motions: Any) -> None:
-    once = partial(motions.add_argument, action=_Once)
-    once(
-        "--record",
-        nargs="+",
-        metavar="PATH",
-        help="own records, folders or catalogues instead of the default set",
-    )
-    motions.add_argument("--on-floor", action="store_true", help="they were recorded on that floor")
-    once("--unit", help="unit of records that do not state theirs: g, m/s2, cm/s2")
-    once("--dt", type=float, metavar="S", help="sampling interval of records without one")
-    motions.add_argument(
+    for title in _OPTIONS:
+        group = parser.add_argument_group(title)
+        for name, takes, _, words in _options(title):
+            group.add_argument(f"--{name}", help=words, **_taken(name, takes))
+    group.add_argument(
         "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
     )
+
+
+def _taken(name: str, takes: str) -> dict[str, Any]:
+    """What a parser is told of the values that an option takes."""
+    if not takes:
+        return {"action": "store_true"}
+    action = "append" if name == "pedestal" else _Once
+    if "," in takes:
+        return {"action": action, "choices": takes.split(",")}
+    kind, *words = takes.split()
+    if kind == "number":
+        return {"action": action, "type": float, "metavar": words[0] if words else None}
+    if words:
+        return {"action": action, "nargs": 2, "metavar": (kind, *words)}
+    nargs = "+" if kind.endswith("…") else None
+    return {"action": action, "nargs": nargs, "metavar": kind.rstrip("…")}
 
 
 # imported when it runs: `rockfrag --help` should not wait for numba
@@ -210,19 +186,13 @@ def _is_inventory(options: argparse.Namespace) -> bool:
 def _refuse_unused(options: argparse.Namespace) -> None:
     """Refuse options that would have no effect."""
     without = [
-        (bool(options.record), "--record", ("on_floor", "unit", "dt")),
-        (bool(options.mesh), "--mesh", ("up", "hull", "mesh_unit", "contact_tolerance")),
         (_is_inventory(options), "an inventory, a .csv file", ("pages", "keep_going")),
         (not _is_inventory(options), "one object, not an inventory", ("pdf", "json")),
     ]
     for there, needed, names in without:
         for name in names:
-            if getattr(options, name) not in (None, False) and not there:
+            if getattr(options, name) and not there:
                 raise InputError(f"--{name.replace('_', '-')} needs {needed}; leave it out.")
-    if options.building and (options.storey_height or options.period or options.material):
-        raise InputError(
-            "--building: the file says all of the building; leave out --storey-height, --period and --material."
-        )
 
 
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
@@ -269,55 +239,50 @@ def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:
 
 
 def settings_of(options: argparse.Namespace) -> dict[str, Any]:
-    """What the command line says, with the keys of ``statue.yaml``."""
-    plain = {key: getattr(options, key) for key in _KEYS}
-    plain |= {
-        "round": options.round or None,
-        "mesh": _mesh(options),
-        "pedestal": _pedestals(options.pedestal),
-        "building": options.building or _building(options),
-    }
-    if options.record:
-        plain["records"] = {
-            "paths": options.record,
-            "recorded_on": "floor" if options.on_floor else "ground",
-            **({"unit": options.unit} if options.unit else {}),
-            **({"dt_s": options.dt} if options.dt is not None else {}),
-        }
-    return {key: value for key, value in plain.items() if value is not None}
+    """What the command line says, with the keys of ``statue.yaml``; options without effect are refused."""
+    found: dict[str, Any] = {}
+    for name, _, key, _ in chain.from_iterable(map(_options, _OPTIONS)):
+        value = getattr(options, name.replace("-", "_"))
+        if value is None or value is False:
+            continue
+        whole, _, part = key.partition(".")
+        if not part:
+            found[key] = _pedestals(value) if key == "pedestal" else value
+            continue
+        if whole in _WHOLE and whole not in found and name != _WHOLE[whole]:
+            raise InputError(f"--{name} needs --{_WHOLE[whole]}; leave it out.")
+        if options.building and whole == "building":
+            raise InputError(
+                "--building: the file says all of the building; leave out --storey-height, --period "
+                "and --material."
+            )
+        if name == "storey-height":
+            part, value = ("storey_heights", value) if value[1:] else (part, value[0])
+        found.setdefault(whole, {})[part] = _MADE.get(name, lambda given: given)(value)
+    return found
 
 
-def _mesh(options: argparse.Namespace) -> dict[str, Any] | None:
-    if options.mesh is None:
-        return None
-    known = {
-        "file": options.mesh,
-        "up": options.up,
-        "hull": options.hull or None,
-        "metres_per_unit": _METRES[options.mesh_unit] if options.mesh_unit else None,
-        "contact_tolerance": options.contact_tolerance,
-    }
-    return {key: value for key, value in known.items() if value is not None}
+_WHOLE = {"mesh": "mesh", "records": "record"}
+"""Options without which there is nothing of which the others of their key tell more."""
 
 
-def _building(options: argparse.Namespace) -> dict[str, Any] | None:
+def _seconds(period: str) -> float:
     from rockfrag.units import quantity
 
-    known: dict[str, Any] = {}
-    if heights := options.storey_height:
-        known |= {"storey_heights": heights} if heights[1:] else {"storey_height": heights[0]}
-    if options.period:
-        try:
-            known["first_period_s"] = quantity(options.period, "s", None)
-        except InputError as error:
-            raise InputError(f"--period: {error}") from None
-    return known | ({"material": options.material} if options.material else {}) or None
+    with errors_of("--period"):
+        return quantity(period, "s", None)
 
 
-def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:
+_MADE: dict[str, Callable[[Any], Any]] = {
+    "mesh-unit": _METRES.__getitem__,
+    "on-floor": lambda _: "floor",
+    "period": _seconds,
+}
+"""Values as a file has them, of options whose values are others."""
+
+
+def _pedestals(given: Sequence[Sequence[str]]) -> Any:
     """The pedestal as a file would have it, or several from above."""
-    if given is None:
-        return None
     for numbers in given:
         if len(numbers) not in (2, 3):
             raise InputError(
@@ -355,25 +320,7 @@ def _rules(options: argparse.Namespace) -> int:
     return 0
 
 
-_OPTIONS = {
-    "distance": "distance",
-    "records": "record",
-    "records.unit": "unit",
-    "records.dt": "dt",
-    "mesh.file": "mesh",
-    "mesh.metres_per_unit": "mesh-unit",
-    "mesh.up": "up",
-    "mesh.hull": "hull",
-    "mesh.contact_tolerance": "contact-tolerance",
-    "building.storey_height": "storey-height",
-    "building.storey_heights": "storey-height",
-    "building.first_period": "period",
-    "building.material": "material",
-    "building.damping_ratio": "damping",
-}
-"""Options that are not called as their keys are."""
-
-_UNITS = ("_kg_m2", "_years", "_km", "_kg", "_deg", "_m", "_s")
+_UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|s)$")
 _KEY = re.compile(
     r"(?<!\w)key ([a-z_][a-z0-9_.]*[a-z0-9_])(\[\d+\](?:\.[a-z_]+)?)?(: true\b|: (?=[xyz]\b))?"
 )
@@ -384,12 +331,16 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
 
     All of them are taken as given if None.
     """
+    options = chain.from_iterable(map(_options, _OPTIONS))
+    names = {_UNITS.sub("", key): name for name, _, key, _ in options}
+    names |= {"records": "record", "building.storey_heights": "storey-height"}
 
     def option(found: re.Match[str]) -> str:
-        key = _without_unit(found[1])
-        if given is not None and key.split(".")[0] not in {_without_unit(other) for other in given}:
+        key = _UNITS.sub("", found[1])
+        whole = key.split(".")[0]
+        if given is not None and whole not in {_UNITS.sub("", other) for other in given}:
             return found[0]
-        name = _OPTIONS.get(key, key.split(".")[0].replace("_", "-"))
+        name = names.get(key, whole.replace("_", "-"))
         # a flag takes no value, and an axis stands beside its option
         return f"--{name}" + (" " if found[3] == ": " else "")
 
@@ -397,10 +348,3 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
 
 
 _METRES_PER_UNIT = "key mesh.metres_per_unit (0.001 for millimetres, 0.3048 for feet)"
-
-
-def _without_unit(key: str) -> str:
-    for unit in _UNITS:
-        if key.endswith(unit):
-            return key.removesuffix(unit)
-    return key

@@ -10,10 +10,10 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.curve_facts import total_beta
-from rockfrag.fragility.empirical import IdaData, TableIda, fraction_in_bins, local_fraction
+from rockfrag.fragility.empirical import TableIda, fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
 from rockfrag.fragility.observations import Observations, positive
-from rockfrag.motions.declared import declared, measure_of
+from rockfrag.motions.intensity import declared, measure_of
 from rockfrag.records.motion import Motion
 
 
@@ -134,30 +134,19 @@ def fragility_table(
 ) -> pd.DataFrame:
     """Fit every configuration of an IDA curve in every measure: the source of all exports.
 
-    Parameters
-    ----------
-    ida
-        One row per configuration, motion and amplitude, with ``motion``, ``amplitude_g``,
-        ``overturned``, the columns ``by`` and ``earthquake``, and the measures
-        (:func:`with_measures`).
-    columns, by, earthquake
-        Columns of the measures, of what tells the curves apart, and of the earthquake, whose resampling gives the
-        limits; None resamples motions.
-    record_set, level
-        Hash of the motions (:func:`record_set_hash`), and confidence level of the limits.
+    ``ida`` has one row per configuration, motion and amplitude, with ``motion``, ``amplitude_g``, ``overturned``,
+    the columns ``by``, which tell the curves apart, and ``earthquake``, whose resampling gives the limits (None
+    resamples motions), and the measures, ``columns`` (:func:`with_measures`). ``record_set`` is a hash of the
+    motions (:func:`record_set_hash`), ``level`` the confidence level of the limits.
 
-    Returns
-    -------
-    pandas.DataFrame
-        One row per curve: the columns ``by``, ``im``, ``unit``, ``estimator``
-        (``mean_probability`` for each measure; ``first_overturning`` and ``always_overturning``
-        for the amplitude), ``theta``, ``beta`` with limits, ``level``, ``interval_method``,
-        ``resampled``, ``groups``, standard errors, ``log_likelihood``, ``aic``, ``link``,
-        ``method``, ``n``, ``n_overturned``, ``n_motions``, ``n_earthquakes``; ``p_fit``, ``fit_test``,
-        ``largest_residual``, ``influential``, ``influence`` (see
-        :class:`rockfrag.fragility.checks.Checks`); ``theta_isotonic``, ``beta_isotonic`` with limits (see
-        :class:`rockfrag.fragility.fractions.Fractions`); ``beta_statistical`` and ``beta_total`` (with the
-        model's uncertainty, :mod:`rockfrag.fragility.curve_facts`); ``record_set_sha256``, ``warnings``.
+    Returns one row per curve: the columns ``by``, ``im``, ``unit``, ``estimator`` (``mean_probability`` for each
+    measure; ``first_overturning`` and ``always_overturning`` for the amplitude), ``theta``, ``beta`` with limits,
+    ``level``, ``interval_method``, ``resampled``, ``groups``, standard errors, ``log_likelihood``, ``aic``,
+    ``link``, ``method``, ``n``, ``n_overturned``, ``n_motions``, ``n_earthquakes``; ``p_fit``, ``fit_test``,
+    ``largest_residual``, ``influential``, ``influence`` (see :class:`rockfrag.fragility.checks.Checks`);
+    ``theta_isotonic``, ``beta_isotonic`` with limits (see :class:`rockfrag.fragility.fractions.Fractions`);
+    ``beta_statistical`` and ``beta_total`` (with the model's uncertainty, :mod:`rockfrag.fragility.curve_facts`);
+    ``record_set_sha256``, ``warnings``.
     """
     for column in by:
         if column not in ida:
@@ -166,16 +155,13 @@ def fragility_table(
         (dict(zip(by, key, strict=True)), TableIda(part, earthquake))
         for key, part in ida.groupby(list(by), sort=True)
     )
-    return tables_of_ida_curves(
-        parts, columns, earthquake=earthquake, record_set=record_set, level=level
-    ).curves
+    return tables_of_ida_curves(parts, columns, record_set=record_set, level=level).curves
 
 
 def tables_of_ida_curves(
-    ida_curves: Iterable[tuple[Mapping[str, Any], IdaData]],
+    ida_curves: Iterable[tuple[Mapping[str, Any], TableIda]],
     columns: Sequence[str],
     *,
-    earthquake: str | None = "earthquake",
     record_set: str = "",
     level: float = 0.90,
 ) -> FragilityTables:
@@ -186,7 +172,7 @@ def tables_of_ida_curves(
         for column in columns:
             outcomes = ida.outcomes(column)
             if column in ("amplitude_g", "pga_g"):
-                result = fit_incremental(ida, amplitude=column, earthquake=earthquake, level=level)
+                result = fit_incremental(ida, amplitude=column, level=level)
                 definitions = {
                     "mean_probability": result.probability,
                     "first_overturning": result.first,

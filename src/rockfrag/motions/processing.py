@@ -34,8 +34,7 @@ def process(motion: Motion, steps: Sequence[Mapping[str, Any]] = ()) -> Motion:
 
     Parameters
     ----------
-    motion
-        What to process.
+    motion : what to process
     steps
         Each a mapping with the ``step``'s name and its parameters, such as
         ``{"step": "highpass", "corner_hz": 0.1, "order": 4}``.

@@ -39,19 +39,12 @@ class StrongestPulse:
 
     Attributes
     ----------
-    period
-        Prevailing period Tp [s].
-    velocity
-        Amplitude of the velocity pulse [m/s], positive.
-    cycles
-        Oscillatory character γ [-].
-    phase_deg
-        Phase ν [degrees], from -180 to 180.
-    time
-        Middle of the pulse [s].
-    explained
-        Fraction of the record's ∫ v² dt that goes when the pulse is subtracted, 0 to 1: the matching
-        index.
+    period : prevailing period Tp [s]
+    velocity : amplitude of the velocity pulse [m/s], positive
+    cycles : oscillatory character γ [-]
+    phase_deg : phase ν [degrees], from -180 to 180
+    time : middle of the pulse [s]
+    explained : fraction of the record's ∫ v² dt that goes when the pulse is subtracted, 0 to 1: the matching index
     """
 
     period: float
@@ -80,8 +73,7 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
 
     Parameters
     ----------
-    motion
-        Acceleration; its velocity from rest should not drift.
+    motion : acceleration; its velocity from rest should not drift
 
     Returns
     -------

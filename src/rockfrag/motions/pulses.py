@@ -27,14 +27,10 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
 
     Parameters
     ----------
-    amplitude
-        Peak acceleration a [m/s²], of either sign.
-    period
-        Period T [s].
-    cycles
-        Number of whole cycles, 1 to 1000.
-    dt
-        Longest sampling interval [s].
+    amplitude : peak acceleration a [m/s²], of either sign
+    period : period T [s]
+    cycles : number of whole cycles, 1 to 1000
+    dt : longest sampling interval [s]
 
     Returns
     -------
@@ -54,8 +50,7 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude, period, dt
-        As of :func:`sine`.
+    amplitude, period, dt : as of :func:`sine`
 
     Returns
     -------
@@ -74,8 +69,7 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude, period, dt
-        As of :func:`sine`.
+    amplitude, period, dt : as of :func:`sine`
 
     Returns
     -------
@@ -109,8 +103,7 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude, duration, dt
-        As of :func:`sine`; it lasts d [s].
+    amplitude, duration, dt : as of :func:`sine`; it lasts d [s]
 
     Returns
     -------
@@ -130,8 +123,7 @@ def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude, duration, dt
-        As of :func:`sine`; it lasts d [s].
+    amplitude, duration, dt : as of :func:`sine`; it lasts d [s]
 
     Returns
     -------
@@ -151,8 +143,7 @@ def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
 
     Parameters
     ----------
-    amplitude, period, dt
-        As of :func:`sine`.
+    amplitude, period, dt : as of :func:`sine`
 
     Returns
     -------
@@ -177,8 +168,7 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
 
     Parameters
     ----------
-    amplitude, period, dt
-        As of :func:`sine`.
+    amplitude, period, dt : as of :func:`sine`
 
     Returns
     -------
@@ -208,16 +198,11 @@ def mavroeidis_papageorgiou(
 
     Parameters
     ----------
-    velocity
-        Amplitude A of the velocity [m/s], of either sign.
-    period
-        Prevailing period T [s].
-    cycles
-        Oscillatory character γ [-], one or more: nearly the number of half waves in the pulse.
-    phase_deg
-        Phase ν [degrees]; 0 is a symmetric velocity pulse, 90 an antisymmetric one.
-    dt
-        As of :func:`sine`.
+    velocity : amplitude A of the velocity [m/s], of either sign
+    period : prevailing period T [s]
+    cycles : oscillatory character γ [-], one or more: nearly the number of half waves in the pulse
+    phase_deg : phase ν [degrees]; 0 is a symmetric velocity pulse, 90 an antisymmetric one
+    dt : as of :func:`sine`
 
     Returns
     -------
@@ -251,14 +236,10 @@ def sine_sweep(
 
     Parameters
     ----------
-    amplitude
-        Peak acceleration [m/s²].
-    start_hz, end_hz
-        First and last frequency [Hz], different, below a quarter of the sampling frequency.
-    octaves_per_minute
-        Rate r [1/min], positive.
-    dt
-        As of :func:`sine`.
+    amplitude : peak acceleration [m/s²]
+    start_hz, end_hz : first and last frequency [Hz], different, below a quarter of the sampling frequency
+    octaves_per_minute : rate r [1/min], positive
+    dt : as of :func:`sine`
 
     Returns
     -------

@@ -21,10 +21,8 @@ def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:
 
     Parameters
     ----------
-    first, second
-        Perpendicular components, sampled at the same times.
-    angle_deg
-        Direction [degrees]; 0 gives the first component, 90 the second.
+    first, second : perpendicular components, sampled at the same times
+    angle_deg : direction [degrees]; 0 gives the first component, 90 the second
 
     Returns
     -------
@@ -45,13 +43,11 @@ def rotd(
 
     Parameters
     ----------
-    first, second
-        As of :func:`rotate`.
+    first, second : as of :func:`rotate`
     measure
         Any measure of one component, such as :func:`rockfrag.motions.pga` or
         ``lambda m: spectral_acceleration(m, 1.0)``.
-    percentile
-        From 0 to 100.
+    percentile : from 0 to 100
 
     Returns
     -------

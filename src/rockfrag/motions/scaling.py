@@ -17,10 +17,8 @@ def scale(motion: Motion, factor: float) -> Motion:
 
     Parameters
     ----------
-    motion
-        Motion as it is.
-    factor
-        Factor on the acceleration [-], positive.
+    motion : motion as it is
+    factor : factor on the acceleration [-], positive
 
     Returns
     -------
@@ -41,10 +39,8 @@ def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
 
     Parameters
     ----------
-    motion
-        As of :func:`scale`, not zero throughout.
-    pga_g
-        Wanted peak acceleration [g], positive.
+    motion : as of :func:`scale`, not zero throughout
+    pga_g : wanted peak acceleration [g], positive
 
     Returns
     -------
@@ -59,10 +55,8 @@ def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
 
     Parameters
     ----------
-    motion
-        As of :func:`scale`, not zero throughout.
-    pgv_cm_s
-        Wanted peak velocity [cm/s], positive.
+    motion : as of :func:`scale`, not zero throughout
+    pgv_cm_s : wanted peak velocity [cm/s], positive
 
     Returns
     -------

@@ -31,16 +31,11 @@ class ResponseSpectrum:
 
     Attributes
     ----------
-    period
-        Natural periods [s], shape (k,).
-    damping
-        Fraction of critical damping [-].
-    displacement
-        Sd, peak relative displacement [m], shape (k,).
-    velocity
-        Sv, peak relative velocity [m/s], shape (k,).
-    acceleration
-        Sa, peak absolute (total) acceleration [m/s²], shape (k,).
+    period : natural periods [s], shape (k,)
+    damping : fraction of critical damping [-]
+    displacement : Sd, peak relative displacement [m], shape (k,)
+    velocity : Sv, peak relative velocity [m/s], shape (k,)
+    acceleration : Sa, peak absolute (total) acceleration [m/s²], shape (k,)
     """
 
     period: Floats
@@ -238,12 +233,9 @@ def response_spectrum(
 
     Parameters
     ----------
-    motion
-        Ground acceleration, linear between samples and zero after the last one.
-    periods
-        Natural periods [s], shape (k,), each positive.
-    damping
-        Fraction of critical damping [-], zero or more.
+    motion : ground acceleration, linear between samples and zero after the last one
+    periods : natural periods [s], shape (k,), each positive
+    damping : fraction of critical damping [-], zero or more
 
     Returns
     -------

@@ -53,20 +53,14 @@ def evolutionary(
 
     Parameters
     ----------
-    seed
-        Seed of the white noise, a whole number from zero.
-    arias_m_s
-        Arias intensity expected before the high-pass [m/s]; one motion scatters about it.
+    seed : seed of the white noise, a whole number from zero
+    arias_m_s : Arias intensity expected before the high-pass [m/s]; one motion scatters about it
     d5_95_s, mid_s
         Expected significant duration, less than 4.9 × ``mid_s``, and time of 45 % of the Arias intensity [s].
-    mid_hz, slope_hz_s
-        Filter frequency at that time [Hz] and its rate of change [Hz/s], mostly negative.
-    filter_damping
-        Damping of the filter [-], between 0.02 and 1: its bandwidth.
-    corner_hz
-        Frequency of the high-pass oscillator [Hz].
-    dt
-        Sampling interval [s].
+    mid_hz, slope_hz_s : filter frequency at that time [Hz] and its rate of change [Hz/s], mostly negative
+    filter_damping : damping of the filter [-], between 0.02 and 1: its bandwidth
+    corner_hz : frequency of the high-pass oscillator [Hz]
+    dt : sampling interval [s]
 
     Returns
     -------
@@ -126,18 +120,12 @@ def spectrum_compatible(
 
     Parameters
     ----------
-    seed
-        Seed of the noise, a whole number from zero.
-    periods
-        Periods of the target [s], shape (k,), k ≥ 2, increasing, the shortest at least 4 ``dt``.
-    target_g
-        Pseudo-spectral accelerations wanted [g], shape (k,), positive.
-    damping
-        Damping of the target spectrum [-].
-    d5_95_s, mid_s
-        Significant duration and time of 45 % of the Arias intensity of the noise [s].
-    dt
-        Sampling interval [s].
+    seed : seed of the noise, a whole number from zero
+    periods : periods of the target [s], shape (k,), k ≥ 2, increasing, the shortest at least 4 ``dt``
+    target_g : pseudo-spectral accelerations wanted [g], shape (k,), positive
+    damping : damping of the target spectrum [-]
+    d5_95_s, mid_s : significant duration and time of 45 % of the Arias intensity of the noise [s]
+    dt : sampling interval [s]
 
     Returns
     -------

@@ -81,36 +81,28 @@ def overturns(
 
     Parameters
     ----------
-    bodies
-        Blocks, stacks, columns and systems.
+    bodies : blocks, stacks, columns and systems
     motions
         Motions, ground motions, or horizontal accelerations [m/s²], each of shape (n,), linear between samples and
         zero one sample after the last.
-    dt
-        Sampling interval of accelerations [s], one or one per motion; a Motion has its own.
-    scales
-        Factors on the accelerations, shape (scales,) for all motions or (motions, scales).
+    dt : sampling interval of accelerations [s], one or one per motion; a Motion has its own
+    scales : factors on the accelerations, shape (scales,) for all motions or (motions, scales)
     theta0, omega0
         A list with one entry per body: rotations [rad] and angular velocities [rad/s] at the start, as in
         :func:`simulate`; None starts all at rest.
-    restitution
-        A list with one entry per body, each as in :func:`simulate`; None conserves momentum in all.
-    linear
-        Use the linearised equations of motion (Housner, 1963; Psycharis, 1990).
+    restitution : a list with one entry per body, each as in :func:`simulate`; None conserves momentum in all
+    linear : use the linearised equations of motion (Housner, 1963; Psycharis, 1990)
     friction
         A list with one entry per body, each as in :func:`simulate`; or one number, one ``Friction`` or one mapping
         ``{"ground": …, "interface": …}`` for all; None: nothing slides.
     vertical
         Vertical accelerations, upwards [m/s²], one for each motion and sampled as it; they are scaled with it.
-    forces
-        Also tell the friction that the responses asked, and least normal forces.
-    g
-        Acceleration of gravity [m/s²].
+    forces : also tell the friction that the responses asked, and least normal forces
+    g : acceleration of gravity [m/s²]
     step
         Largest p h of a step, of which a stack takes 0.35 while both its blocks rotate: smaller is more accurate
         and slower.
-    threads
-        Threads to use; all cores if None.  Results do not depend on it.
+    threads : threads to use; all cores if None.  Results do not depend on it.
 
     Returns
     -------

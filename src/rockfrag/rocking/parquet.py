@@ -61,10 +61,8 @@ def stream_overturns(
 
     Parameters
     ----------
-    bodies, motions, dt, scales
-        As in :func:`overturns`.
-    path, table
-        The file to write, of "cases", "bodies" or "contacts".
+    bodies, motions, dt, scales : as in :func:`overturns`
+    path, table : the file to write, of "cases", "bodies" or "contacts"
     columns
         Columns beside those that say which case it is, named as the attributes of the outcomes; None takes
         ``overturned`` and ``overturned_body`` of cases, and all of bodies and contacts.
@@ -167,8 +165,7 @@ def stream_histories(
 
     Parameters
     ----------
-    bodies, motions, dt, scales, path, progress, **options
-        As in :func:`stream_overturns`, but for ``forces``.
+    bodies, motions, dt, scales, path, progress, **options : as in :func:`stream_overturns`, but for ``forces``
 
     Returns
     -------

@@ -48,12 +48,9 @@ def outcome_robustness(
 
     Parameters
     ----------
-    bodies, motions, dt, scales
-        The ensemble, as in :func:`rockfrag.rocking.overturns`.
-    perturbation
-        Largest relative change [-], such as 1e-6.
-    copies, seed
-        Number of copies, and seed of the draws.
+    bodies, motions, dt, scales : the ensemble, as in :func:`rockfrag.rocking.overturns`
+    perturbation : largest relative change [-], such as 1e-6
+    copies, seed : number of copies, and seed of the draws
     **options
         As in :func:`rockfrag.rocking.overturns`, but for ``forces``; measured restitution, friction and start stay
         as they are.
@@ -166,12 +163,9 @@ def find_step_size_sensitive(
 
     Parameters
     ----------
-    bodies, motions, dt, scales
-        The ensemble, as in :func:`overturns`.
-    sample, seed
-        Number of cases, drawn without repetition (all of them if there are fewer), and seed of the draw.
-    **options
-        As in :func:`rockfrag.rocking.overturns`, but for ``forces``.
+    bodies, motions, dt, scales : the ensemble, as in :func:`overturns`
+    sample, seed : number of cases, drawn without repetition (all of them if there are fewer), and seed of the draw
+    **options : as in :func:`rockfrag.rocking.overturns`, but for ``forces``
 
     Returns
     -------

@@ -40,29 +40,24 @@ def simulate(
 
     Parameters
     ----------
-    body
-        A :class:`Block`, a :class:`Stack`, a :class:`Column` or a :class:`System`.
+    body : a :class:`Block`, a :class:`Stack`, a :class:`Column` or a :class:`System`
     motion
         A :class:`Motion`, a :class:`GroundMotion`, or the acceleration of the ground or floor [m/s²], shape (n,),
         linear between samples, n ≥ 2.
-    dt
-        Sampling interval of an acceleration [s]; a Motion has its own.
+    dt : sampling interval of an acceleration [s]; a Motion has its own
     theta0, omega0
         Rotations [rad] and angular velocities [rad/s] at the start: a number, or one for each body from below.
     restitution
         Measured ratio of angular velocities of an impact: a number, or for several bodies
         ``{"ground": …, "interface": …}`` or (ground, interface), or a :class:`MeasuredRestitution` with its law;
         None, the default, conserves momentum (Housner, 1963; Spanos, Roussis and Politis, 2001).
-    linear
-        Use the linearised equations of motion (Housner, 1963; Psycharis, 1990).
+    linear : use the linearised equations of motion (Housner, 1963; Psycharis, 1990)
     friction
         Coefficient of friction of all contacts, or ``{"ground": …, "interface": …}``, or (ground, interface) of a
         stack; ``Friction(static, kinetic)`` or a pair may stand in place of each number, and numbers may be
         infinite.  None: nothing slides and nothing jumps.
-    vertical
-        Vertical acceleration of the ground or floor, upwards [m/s²], sampled as ``motion``.
-    g
-        Acceleration of gravity [m/s²].
+    vertical : vertical acceleration of the ground or floor, upwards [m/s²], sampled as ``motion``
+    g : acceleration of gravity [m/s²]
 
     Returns
     -------

@@ -74,16 +74,11 @@ def rocking_spectrum(
 
     Parameters
     ----------
-    motion
-        Ground acceleration, linear between samples; the free rocking after it counts too.
-    periods
-        2π/p [s], shape (k,).
-    alpha
-        Critical angles [rad], one or several, shape (j,).
-    restitution, friction
-        The same for all, as in :func:`rockfrag.rocking.simulate`.
-    vertical
-        Vertical acceleration, upwards [m/s²], sampled as the motion.
+    motion : ground acceleration, linear between samples; the free rocking after it counts too
+    periods : 2π/p [s], shape (k,)
+    alpha : critical angles [rad], one or several, shape (j,)
+    restitution, friction : the same for all, as in :func:`rockfrag.rocking.simulate`
+    vertical : vertical acceleration, upwards [m/s²], sampled as the motion
 
     Returns
     -------

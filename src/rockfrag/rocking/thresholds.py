@@ -72,17 +72,13 @@ def find_thresholds(
 
     Parameters
     ----------
-    bodies, motions, dt
-        As in :func:`overturns`.
-    highest
-        Largest scale on the accelerations to look at; motions with a peak of 1 g make scales PGAs in g.
-    tolerance
-        Width to which every change of outcome is bracketed, in scale.
+    bodies, motions, dt : as in :func:`overturns`
+    highest : largest scale on the accelerations to look at; motions with a peak of 1 g make scales PGAs in g
+    tolerance : width to which every change of outcome is bracketed, in scale
     narrowest_resurrection
         Width of the narrowest window that must not be missed, in scale: the spacing of the grid that is
         looked at first.
-    **options
-        As in :func:`rockfrag.rocking.overturns`, but for ``forces``.
+    **options : as in :func:`rockfrag.rocking.overturns`, but for ``forces``
 
     Returns
     -------

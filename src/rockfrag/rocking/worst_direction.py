@@ -54,14 +54,10 @@ def worst_direction(
 
     Parameters
     ----------
-    body
-        The body; its plane is turned into each direction.
-    first, second
-        Perpendicular components of one record; they are brought to common times.
-    highest
-        Largest scale that is tried [-].
-    directions_deg
-        Angles from the first component towards the second [degrees].
+    body : the body; its plane is turned into each direction
+    first, second : perpendicular components of one record; they are brought to common times
+    highest : largest scale that is tried [-]
+    directions_deg : angles from the first component towards the second [degrees]
 
     Returns
     -------

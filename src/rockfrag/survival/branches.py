@@ -14,15 +14,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rockfrag.assess.hazard import openquake_csv
 from rockfrag.assess.hazard.curve import HazardCurve, make_curve
+from rockfrag.assess.hazard.reading import LARGEST_FILE, read_openquake
 from rockfrag.assess.hazard.table import annual_rates, level_column, measure_of
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.tabular import read_cells, read_rows, read_text
-
-LARGEST_FILE = 50_000_000
-"""Bytes of a file of branches."""
 
 MOST_BRANCHES = 10_000
 """Branches of one site."""
@@ -146,7 +143,7 @@ def _of_openquake(
         number = _realization_of(path)
         if number not in found:
             raise InputError(f"{path}: realization {number} is not in {realizations}.")
-        curve = openquake_csv.read_curve(read_text(path, LARGEST_FILE), str(path))
+        curve, _ = read_openquake(read_text(path, LARGEST_FILE), str(path))
         _add(curve, found[number], f"realization {number}", path)
     return list(found.values())
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure, declared
+from rockfrag.motions.intensity import IntensityMeasure, declared
 from rockfrag.short_repr import short_repr
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
@@ -93,7 +93,7 @@ def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
 
 
 def make_curve(
-    measure: IntensityMeasure, levels: Sequence[float], rates: Sequence[float], where: str
+    measure: IntensityMeasure, levels: ArrayLike, rates: ArrayLike, where: str
 ) -> HazardCurve:
     """Make a curve of levels and rates [1/year] of a file, or say in one sentence what is wrong with it.
 
@@ -163,38 +163,6 @@ def curve_of_one_level(measure: IntensityMeasure, level: float, years: float) ->
     main = curve(EC8_SLOPE, source)
     main.quantiles.update({q: curve(k, source) for q, k in flanks.items()})
     return main
-
-
-@dataclass(frozen=True)
-class Found:
-    """A curve of a file and which statistic of the hazard model it is."""
-
-    curve: HazardCurve  # The curve
-    statistic: str  # ``mean`` or such as ``quantile-0.16``
-
-
-def read_statistic(text: str, where: str) -> str:
-    """Return the name of a statistic as ``mean`` or ``quantile-0.16``; refuse a single branch of a logic tree.
-
-    It may stand there as ``quantile_curve-0.5``, or be empty for the only curve of a file.
-    """
-    if text in ("", "mean"):
-        return "mean"
-    quantile = re.fullmatch(r"quantile\D*?(0?\.\d+)", text)
-    if quantile:
-        return f"quantile-{float(quantile[1]):g}"
-    raise InputError(
-        f"{where}: the curve is of the kind {text[:40]!r}; give the mean and the quantiles of the hazard model, "
-        "not single branches or deviations."
-    )
-
-
-def read_numbers(text: str, where: str) -> list[float]:
-    """Return numbers that are separated by blanks."""
-    try:
-        return [float(word) for word in text.split()]
-    except ValueError as error:
-        raise InputError(f"{where}: a level or probability is no number ({error}).") from None
 
 
 PERIODS = (0.01, 10.0)

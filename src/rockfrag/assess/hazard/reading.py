@@ -1,22 +1,25 @@
 """Reading hazard files: which kind a file is of, and the mean with its quantiles out of several."""
 
+import csv
+import io
+import json
 import os
-from collections.abc import Callable, Sequence
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
+from typing import Any
 
-from rockfrag.assess.hazard import nrml, openquake_csv, table, usgs
-from rockfrag.assess.hazard.curve import Found, HazardCurve
+from rockfrag.assess.hazard.curve import HazardCurve, make_curve, rates_of, read_measure
+from rockfrag.assess.hazard.table import read_table
 from rockfrag.errors import InputError
 from rockfrag.tabular import read_text
 
 LARGEST_FILE = 50_000_000
 """Bytes of a hazard file; that of one site has some thousand."""
 
-KINDS: tuple[tuple[Callable[[str], bool], Callable[[str, str], list[Found]]], ...] = tuple(
-    (kind.recognise, kind.read) for kind in (nrml, usgs, openquake_csv, table)
-)
-"""Whether a text is of a kind, and its reader, in the order in which they are asked; the last takes any."""
+Found = tuple[HazardCurve, str]
+"""A curve of a file and which statistic of the hazard model it is, as the file says it; empty for its only one."""
 
 
 def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
@@ -31,37 +34,207 @@ def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
     -------
     A curve for each measure, with its quantiles.
     """
-    found: list[Found] = []
-    for path in paths:
-        text = read_text(Path(path), LARGEST_FILE)
-        read = next(read for recognise, read in KINDS if recognise(text))
-        found += read(text, str(path))
-    curves = []
-    for measure in dict.fromkeys(part.curve.measure for part in found):
-        mine = [part for part in found if part.curve.measure == measure]
-        curves.append(_assembled(measure.imt, mine))
-    return curves
+    found: dict[str, dict[str, HazardCurve]] = {}
+    for path in map(str, paths):
+        text = read_text(path, LARGEST_FILE)
+        for curve, kind in _reader(text)(text, path):
+            named, statistic = found.setdefault(curve.measure.imt, {}), _statistic(kind, path)
+            if statistic in named:
+                raise InputError(
+                    f"{path}: {curve.measure.imt} ({statistic}) is given twice, in {named[statistic].source} "
+                    "too; leave one out."
+                )
+            named[statistic] = curve
+    return [_assembled(name, named) for name, named in found.items()]
 
 
-def _assembled(name: str, found: Sequence[Found]) -> HazardCurve:
+def _reader(text: str) -> Callable[[str, str], Sequence[Found]]:
+    """What reads the kind of file that a text is of; any may be a table, which says what it lacks."""
+    start = text.lstrip()
+    if start.startswith("<"):
+        return _read_nrml
+    if start.startswith(("{", "[")):
+        return _read_usgs
+    if "poe-" in text[:20_000] and start.startswith(("#", '"#', "lon", "custom_site_id")):
+        return lambda text, path: [read_openquake(text, path)]
+    return lambda text, path: [(read_table(text, path), "")]
+
+
+def _statistic(kind: str, where: str) -> str:
+    """A statistic as ``mean`` or ``quantile-0.16``, which may be ``quantile_curve-0.5``; branches are refused."""
+    if kind in ("", "mean"):
+        return "mean"
+    quantile = re.fullmatch(r"quantile\D*?(0?\.\d+)", kind)
+    if quantile:
+        return f"quantile-{float(quantile[1]):g}"
+    raise InputError(
+        f"{where}: the curve is of the kind {kind[:40]!r}; give the mean and the quantiles of the hazard model, "
+        "not single branches or deviations."
+    )
+
+
+def _assembled(name: str, named: Mapping[str, HazardCurve]) -> HazardCurve:
     """Put the quantiles of one measure to its mean; the median stands in for a mean that is not there."""
-    named: dict[str, Found] = {}
-    for part in found:
-        if part.statistic in named:
-            raise InputError(
-                f"{part.curve.source}: {name} ({part.statistic}) is given twice, in "
-                f"{named[part.statistic].curve.source} too; leave one out."
-            )
-        named[part.statistic] = part
     quantiles = {
-        float(statistic.removeprefix("quantile-")): part.curve
-        for statistic, part in named.items()
-        if statistic.startswith("quantile-")
+        float(statistic.removeprefix("quantile-")): curve
+        for statistic, curve in named.items()
+        if statistic != "mean"
     }
-    main = named["mean"].curve if "mean" in named else quantiles.get(0.5)
+    main = named.get("mean", quantiles.get(0.5))
     if main is None:
         raise InputError(
-            f"{found[0].curve.source}: only {', '.join(sorted(named))} of {name} is given; give the mean or the "
-            "median curve too."
+            f"{next(iter(named.values())).source}: only {', '.join(sorted(named))} of {name} is given; give the "
+            "mean or the median curve too."
         )
     return replace(main, quantiles={q: c for q, c in sorted(quantiles.items()) if q != 0.5})
+
+
+def read_openquake(text: str, path: str) -> Found:
+    """Read OpenQuake's export as CSV: the one curve of a file with one site, and its kind.
+
+    A comment with ``kind``, ``investigation_time`` and ``imt``, a header ``lon,lat,depth,poe-0.0050000,…``
+    whose names hold the levels (g; cm/s for PGV), and a row of probabilities of exceedance for each site.
+    """
+    try:
+        rows = [row for row in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        raise InputError(f"{path}: it is damaged as a table ({error}).") from None
+    comment = ",".join(rows[0]) if rows[0][0].lstrip().startswith("#") else ""
+    facts = dict(re.findall(r"(\w+)='?([^',\"]+)'?", comment))
+    missing = [name for name in ("investigation_time", "imt") if name not in facts]
+    if missing:
+        raise InputError(
+            f"{path}: the first line does not state {missing[0]}; give the file as OpenQuake exported it."
+        )
+    header, *sites = rows[1:] or [[]]
+    columns = {
+        i: found[1]
+        for i, name in enumerate(header)
+        if (found := re.fullmatch(r"poe-([0-9.eE+-]+)", name))
+    }
+    if len(sites) != 1 or not columns:
+        raise InputError(
+            f"{path}: found {len(sites)} sites with {len(columns)} levels; leave the row of one site."
+        )
+    if len(sites[0]) != len(header):
+        raise InputError(f"{path}: the row has {len(sites[0])} cells, its header {len(header)}.")
+    try:
+        levels = [float(level) for level in columns.values()]
+        poes = [float(sites[0][i]) for i in columns]
+        years = float(facts["investigation_time"])
+    except ValueError as error:
+        raise InputError(f"{path}: a level, probability or time is no number ({error}).") from None
+    measure = read_measure(facts["imt"], path)
+    return make_curve(measure, levels, rates_of(poes, years, path), path), facts.get("kind", "")
+
+
+def _read_usgs(text: str, path: str) -> list[Found]:
+    """Read the answer of the USGS's hazard web services (NSHM) as JSON: the curves of all measures.
+
+    ``response.hazardCurves`` is a list with ``imt`` and ``data``, of which the component ``Total`` has ``values``
+    with ``xs`` (levels [g]; PGV [cm/s]) and ``ys`` (annual rates of exceedance). Before 2021 ``response`` was a
+    list with ``metadata`` (``imt``, ``xvalues``) and ``data`` (``yvalues``).
+    """
+    try:
+        answer = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: is not whole JSON ({error}); ask the service again.") from None
+    try:
+        response = answer["response"]
+        is_old = isinstance(response, list)
+        found = []
+        for curve in response if is_old else response["hazardCurves"]:
+            total = {part["component"]: part for part in curve["data"]}["Total"]
+            about, values = (curve["metadata"], total) if is_old else (curve, total["values"])
+            x, y = (about["xvalues"], values["yvalues"]) if is_old else (values["xs"], values["ys"])
+            measure = read_measure(str(about["imt"]["value"]), path)
+            found.append((make_curve(measure, _numbers(x), _numbers(y), path), ""))
+    except (KeyError, TypeError, IndexError, OverflowError) as error:
+        raise InputError(
+            f"{path}: is not an answer of the USGS hazard service with hazard curves "
+            f"({type(error).__name__}: {str(error)[:80]})."
+        ) from None
+    if not found:
+        raise InputError(f"{path}: the answer holds no hazard curve.")
+    return found
+
+
+def _numbers(values: Any) -> list[float]:
+    if not isinstance(values, list) or any(
+        isinstance(value, bool) or not isinstance(value, int | float) for value in values
+    ):
+        raise TypeError("levels and rates are lists of numbers")
+    return [float(value) for value in values]
+
+
+_VERSIONS = (
+    ("hazardCurveField", "IML", "poE", "a hazardCurveField has no IML, the levels of the curve"),
+    ("hazardCurves", "IMLs", "poEs", "the hazardCurves have no IMLs, the levels"),
+)
+"""Elements of curves, of their levels and of probabilities, and what is said where levels are missing."""
+
+
+def _read_nrml(text: str, path: str) -> list[Found]:
+    """Read hazard curves in NRML: EFEHR's answers (version 0.3) and OpenQuake's export (0.4 and 0.5), of one site.
+
+    In 0.3 a ``hazardCurveField`` has the levels (``IML``) and a node with ``poE``, the time and the period of
+    SA stand at ``hazardProcessing``; later versions say it all at ``hazardCurves`` with ``IMLs`` and ``poEs``.
+    Levels are in g.
+    """
+    if "<!DOCTYPE" in text or "<!ENTITY" in text:
+        raise InputError(f"{path}: has a document type, which no hazard file needs; remove it.")
+    try:
+        root = ET.fromstring(text)
+    except (ET.ParseError, ValueError) as error:
+        raise InputError(f"{path}: is no well-formed XML ({error}).") from None
+    above = next((part.attrib for part in _named(root, "hazardProcessing")), {})
+    found = [
+        _of_element(curves, above, version, path)
+        for version in _VERSIONS
+        for curves in _named(root, version[0])
+    ]
+    if not found:
+        raise InputError(
+            f"{path}: holds no hazardCurves or hazardCurveField; ask the service for hazard curves, not "
+            f"maps or spectra."
+        )
+    return found
+
+
+def _of_element(
+    curves: ET.Element, above: Mapping[str, str], version: Sequence[str], path: str
+) -> Found:
+    _, level, poe, missing = version
+    levels = next(_named(curves, level), None)
+    if levels is None:
+        raise InputError(f"{path}: {missing}.")
+    poes = list(_named(curves, poe))
+    if len(poes) != 1:
+        raise InputError(f"{path}: found the curves of {len(poes)} sites; leave that of one.")
+    about = {**above, **curves.attrib, **levels.attrib}
+    years = about.get("investigationTimeSpan", about.get("investigationTime"))
+    if years is None:
+        raise InputError(f"{path}: the investigation time of the probabilities is not stated.")
+    imt = about.get("IMT", "")
+    # the period of SA stands elsewhere
+    measure = read_measure(f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt, path)
+    try:
+        values, fractions, times = (
+            [float(word) for word in words.split()]
+            for words in (levels.text or "", poes[0].text or "", years)
+        )
+    except ValueError as error:
+        raise InputError(f"{path}: a level or probability is no number ({error}).") from None
+    if len(times) != 1:
+        raise InputError(f"{path}: the investigation time is {len(times)} numbers; give one.")
+    kind = curves.get("statistics", "")
+    if kind == "quantile":
+        kind = f"quantile-{curves.get('quantileValue', '')}"
+    elif not kind and curves.get("sourceModelTreePath"):
+        kind = "branch of a logic tree"
+    return make_curve(measure, values, rates_of(fractions, times[0], path), path), kind
+
+
+def _named(root: ET.Element, name: str) -> Iterator[ET.Element]:
+    """Elements of a name in any namespace."""
+    return (element for element in root.iter() if element.tag.rpartition("}")[2] == name)

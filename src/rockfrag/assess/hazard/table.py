@@ -6,9 +6,9 @@ Two columns: levels, as ``pga_g``, ``pgv_cm_s`` or ``sa_0_3s_g``, and how often 
 
 import re
 
-from rockfrag.assess.hazard.curve import PGA, PGV, Found, make_curve, rates_of, read_measure
+from rockfrag.assess.hazard.curve import HazardCurve, make_curve, rates_of, read_measure
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.tabular import cells_of
 from rockfrag.units import GRAVITY
 
@@ -18,15 +18,14 @@ _EXPECTED = (
 )
 _POE = re.compile(r"poe_(\d+(?:\.\d+)?)_?y(?:ears)?")
 _RETURN_PERIOD = re.compile(r"(?:tr|return_period)(?:_(?:years?|yrs?|a|anni))?")
+_UNITS = {
+    "pgv": {"cm_s": 1.0, "m_s": 100.0},
+    "others": {"g": 1.0, "m_s2": 1 / GRAVITY, "cm_s2": 0.01 / GRAVITY},
+}
 _LEVEL = re.compile(r"(pga|pgv|sa_(\d+(?:_\d+)?)s)_(g|cm_s|m_s|m_s2|cm_s2)")
 
 
-def recognise(text: str) -> bool:
-    """Any text may be a table; what it lacks is said when it is read."""
-    return True
-
-
-def read(text: str, path: str) -> list[Found]:
+def read_table(text: str, path: str) -> HazardCurve:
     """Return the curve of a table."""
     lines = cells_of(text, path)
     if len(lines) < 3:
@@ -49,7 +48,7 @@ def read(text: str, path: str) -> list[Found]:
     rows.sort()
     levels = [level * factor for level, _ in rows]
     rates = annual_rates(titles[others[0]], [value for _, value in rows], path)
-    return [Found(make_curve(measure, levels, rates, path), "mean")]
+    return make_curve(measure, levels, rates, path)
 
 
 def _plain(title: str) -> str:
@@ -67,16 +66,11 @@ def measure_of(title: str, path: str) -> tuple[IntensityMeasure, float]:
     """Return measure and factor to its unit of a title such as ``pga_cm_s2``."""
     found = _LEVEL.fullmatch(title)
     assert found is not None
-    unit = found[3]
-    is_velocity = unit in ("cm_s", "m_s")
-    if is_velocity != (found[1] == "pgv"):
-        raise InputError(f"{path}: {title} is no unit of {found[1].upper()}; use g or cm_s.")
-    if found[1] == "pgv":
-        return PGV, {"cm_s": 1.0, "m_s": 100.0}[unit]
-    factor = {"g": 1.0, "m_s2": 1 / GRAVITY, "cm_s2": 0.01 / GRAVITY}[unit]
-    if found[1] == "pga":
-        return PGA, factor
-    return read_measure(f"SA({found[2].replace('_', '.')})", path), factor
+    name, period, unit = found.groups()
+    units = _UNITS["pgv" if name == "pgv" else "others"]
+    if unit not in units:
+        raise InputError(f"{path}: {title} is no unit of {name.upper()}; use g or cm_s.")
+    return read_measure(f"SA({period.replace('_', '.')})" if period else name, path), units[unit]
 
 
 def annual_rates(title: str, values: list[float], path: str) -> list[float]:
