@@ -13,7 +13,7 @@ from rockfrag.fragility.curve_facts import total_beta
 from rockfrag.fragility.empirical import TableIda, fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
 from rockfrag.fragility.observations import Observations, positive
-from rockfrag.motions.declared import declared, measure_of
+from rockfrag.motions.intensity import declared, measure_of
 from rockfrag.records.motion import Motion
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.survival.branches import Branch
 from rockfrag.survival.evidence import (
     ShakingRates,
