@@ -87,7 +87,7 @@ def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int6
     target = risk_target(first.hazard, years)
     # what is not known of one body says nothing about the others; these two are common to all
     shifts = {"model": MODEL_ERRORS[CUT].blind, "space": SPACE}
-    at = int(together.intensity_levels.levels.searchsorted(first.level.value))
+    at = together.intensity_levels.place_of(first.level.value)
     rows = []
     for least in [n for n in NUMBERS if n <= count.max()] or [1]:
         many = replace(together, overturned=count >= least, rocked=np.ones_like(together.rocked))
@@ -101,7 +101,7 @@ def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int6
                 "probability": probability_in(rate, years),
                 "probability_lower": found.lower,
                 "probability_upper": found.upper,
-                "at_the_site": fractions[min(at, fractions.size - 1)],
+                "at_the_site": fractions[at],
             }
         )
     return pd.DataFrame(rows)

@@ -47,9 +47,8 @@ RANGE = (0.05, 8.0)
 LARGEST_FACTOR = 10.0
 """Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
 
-
-WORST_STEP_DEG = 15
-"""Angle between directions of which the worst is taken [degrees]."""
+STEP_DEG = 15
+"""Angle between directions that are tried [degrees]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +61,10 @@ class IntensityLevels:
     # Whether a factor is within ``LARGEST_FACTOR`` and the motion at the base one that a floor may
     # feel, shape (motions, levels)
     allowed: NDArray[np.bool_]
+
+    def place_of(self, level: float) -> int:
+        """Place of the first level that is not below one that is given; of the last one where all are."""
+        return min(int(self.levels.searchsorted(level)), self.levels.size - 1)
 
 
 AT_REST = 1e-9
@@ -174,16 +177,6 @@ class ObjectOutcomes:
             name=self.intensity_levels.measure.imt,
             unit=self.intensity_levels.measure.unit,
         )
-
-
-def outcomes_of(
-    objects: Objects,
-    bodies: Mapping[str, Body],
-    motions: MotionSet,
-    intensity_levels: IntensityLevels,
-) -> dict[str, ObjectOutcomes]:
-    """Shake bodies of one object, by name, by every motion at every level."""
-    return outcomes_of_each([objects], [bodies], motions, intensity_levels)[0]
 
 
 def outcomes_of_all(
@@ -341,7 +334,7 @@ def _shaken_from_all_sides(
     """Outcomes by records, each in its worst direction; both components get that of the record."""
     if not systems:
         return []
-    records = motions.turned(WORST_STEP_DEG)
+    records = motions.turned(STEP_DEG)
     shaking = [motion for _, turned in records for motion in turned]
     of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])
     result, light = simulated(systems, shaking, _factors(intensity_levels, shaking, of_row))
@@ -399,10 +392,6 @@ def fraction_with_sliding(
         friction=objects.friction,
     ).overturned[0, :, 0]
     return float(fallen[allowed].mean())
-
-
-STEP_DEG = 15
-"""Angle between directions that are tried [degrees]."""
 
 
 @dataclass(frozen=True)

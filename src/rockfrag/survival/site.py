@@ -7,13 +7,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.hazard.curve import PGA, read_measure
+from rockfrag.assess.hazard.curve import PGA, read_level, read_measure
 from rockfrag.errors import InputError
 from rockfrag.motions.declared import IntensityMeasure
 from rockfrag.schema import checked
 from rockfrag.survival.branches import Branch, read_branches
 from rockfrag.survival.evidence import Age, StandingObject, VelocityRelation, lognormal_coefficients
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.yaml_file import read_yaml
 
 RECORDS = "resources/records"
@@ -182,9 +181,10 @@ def _object(name: str, settings: Mapping[str, Any]) -> StandingObject:
             raise InputError(
                 "beta is missing; give the logarithmic standard deviation of its fragility."
             )
-        coefficients = lognormal_coefficients(
-            _median(settings["median"], measure), settings["beta"]
-        )
+        median = read_level(settings["median"], measure)
+        if not median > 0:
+            raise InputError(f"median: expected more than 0, found {settings['median']}.")
+        coefficients = lognormal_coefficients(median, settings["beta"])
     if coefficients[1] <= 0:
         raise InputError(
             "coefficients: the second one, of ln PGA, must be above 0, or shaking would help it stand."
@@ -196,16 +196,6 @@ def _object(name: str, settings: Mapping[str, Any]) -> StandingObject:
     return StandingObject(
         name, measure, tuple(coefficients), float(settings.get("median_sd_ln", 0.0)), _age(settings)
     )
-
-
-def _median(text: str, measure: IntensityMeasure) -> float:
-    """Median of a fragility in the measure's unit."""
-    velocity = measure.openquake == "PGV"
-    value = quantity(text, "m_s" if velocity else "m_s2", None)
-    value = value * CENTIMETRES_PER_METRE if velocity else value / GRAVITY
-    if not value > 0:
-        raise InputError(f"median: expected more than 0, found {text}.")
-    return value
 
 
 def _age(settings: Mapping[str, Any]) -> Age:

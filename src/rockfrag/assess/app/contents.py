@@ -201,7 +201,7 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
     both = motions.with_both_components()
     fewer = both.thinned()
     names = [motion.name for motion in both.ground]
-    turns = [math.radians(angle) for angle in range(0, 180, outcomes.WORST_STEP_DEG)]
+    turns = [math.radians(angle) for angle in range(0, 180, outcomes.STEP_DEG)]
     return {
         "records": [
             {"first": pair[0], "second": pair[1], "times": _times(both, pair)}
