@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, NullFormatter
 
@@ -151,15 +152,9 @@ def numbers_figure(joint: JointRisk, years: float) -> Figure:
     bars = [np.maximum(middle - low, 0), np.maximum(high - middle, 0)]
     with one_panel(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.errorbar(at, middle, yerr=bars, fmt="o", color=BLUE, capsize=2)
-        axes.set(
-            xscale="log",
-            yscale="log",
-            xlabel="Objects that topple in one earthquake, at least",
-            ylabel=f"Probability in {years:g} years [%]",
-        )
+        _set_logarithmic(axes, "Objects that topple in one earthquake, at least", years)
         axes.set_xticks(at, [f"{n:g}" for n in at])
         axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
-        plain_log(axes, "y")
     return figure
 
 
@@ -169,16 +164,17 @@ def losses_figure(joint: JointRisk, years: float) -> Figure:
     chance = [100 * probability_in(rate, years) for rate in losses["annual_rate"]]
     with one_panel(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.step(losses["loss"], chance, where="pre", color=BLUE)
-        axes.set(
-            xscale="log",
-            yscale="log",
-            xlabel="Loss in one earthquake [unit of the values]",
-            ylabel=f"Probability in {years:g} years [%]",
-        )
+        _set_logarithmic(axes, "Loss in one earthquake [unit of the values]", years)
         axes.xaxis.set_major_formatter(EngFormatter(sep=""))
         axes.xaxis.set_minor_formatter(NullFormatter())
-        plain_log(axes, "y")
     return figure
+
+
+def _set_logarithmic(axes: Axes, words: str, years: float) -> None:
+    """Both axes by the logarithm: across what the words say, upwards the probability in some years."""
+    label = f"Probability in {years:g} years [%]"
+    axes.set(xscale="log", yscale="log", xlabel=words, ylabel=label)
+    plain_log(axes, "y")
 
 
 def correlation_figure(joint: JointRisk) -> Figure:
