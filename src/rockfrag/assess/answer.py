@@ -104,6 +104,11 @@ class Plan:
     # Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space
     compares_few: bool
 
+    @property
+    def hazard(self) -> HazardCurve | None:
+        """The hazard curve that counts."""
+        return self.curves[0] if self.curves else None
+
 
 @dataclass(frozen=True, eq=False)
 class Shaken:
@@ -209,7 +214,7 @@ def _pad_words(
 def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     """Say what follows from what the motions of a plan do to an object."""
     objects, motions, level = request.objects, plan.motions, plan.level
-    hazard = plan.curves[0] if plan.curves else None
+    hazard = plan.hazard
     measure = plan.intensity_levels.measure
     counted = next(iter(shaken.arrangements.values()))
     target = _target(level, hazard, request.years)

@@ -20,7 +20,7 @@ from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, one_panel, plain_log
 from rockfrag.files import write_table, write_text
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import (
     Answer,
     FigureSpec,
@@ -31,6 +31,7 @@ from rockfrag.report.part import (
     section_of,
 )
 from rockfrag.report.study_report import page_text
+from rockfrag.report.wording import number
 
 MOST_DRAWN = 40
 """Objects of which the correlation is drawn: those that add most."""
@@ -109,26 +110,18 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
     return section_of(text, "ranking", [table])
 
 
-_NUMBERS = (
-    Column("at_least", "At least so many", 0),
-    Column(
-        "annual_rate",
-        "Earthquakes that topple so many [1/year]",
-        lambda table: map("{:.2g}".format, table["annual_rate"]),
-    ),
-    Column("probability", "Probability [%]", 2),
-    Column("probability_lower", "Lower limit [%]", 2),
-    Column("probability_upper", "Upper limit [%]", 2),
-)
-
-
 def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
-    numbers = joint.numbers.copy()
-    numbers[[column.name for column in _NUMBERS[2:]]] *= 100
-    most = int(joint.numbers["at_least"].max())
-    rate = joint.numbers["annual_rate"].iloc[-1]
+    numbers = joint.numbers
+    most, rate = int(numbers["at_least"].max()), numbers["annual_rate"].iloc[-1]
     years = float(f"{1 / rate:.2g}") if rate else 0.0
-    table = table_html(numbers, _NUMBERS, "How many objects topple in one earthquake.")
+    shown = {
+        "At least so many": [number(n, 0) for n in numbers["at_least"]],
+        "Earthquakes that topple so many [1/year]": [f"{x:.2g}" for x in numbers["annual_rate"]],
+        "Probability [%]": [number(100 * p, 2) for p in numbers["probability"]],
+        "Lower limit [%]": [number(100 * p, 2) for p in numbers["probability_lower"]],
+        "Upper limit [%]": [number(100 * p, 2) for p in numbers["probability_upper"]],
+    }
+    table = text_table(shown, "How many objects topple in one earthquake.", list(shown))
     return section_of(gallery_says.numbers(most, years), "numbers", [table, *figures])
 
 
