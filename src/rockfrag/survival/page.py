@@ -17,7 +17,8 @@ from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import page_text
 from rockfrag.sentences import sayer
-from rockfrag.survival.answer import DECISION_RATE, LIMITS, RULED_OUT, Constrained
+from rockfrag.survival.answer import LIMITS, RULED_OUT, Constrained
+from rockfrag.survival.reweight import DECISION_RATE
 
 BRANCHES = (
     Column("branch", "Branch"),
@@ -45,7 +46,7 @@ def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Pat
     """
     stem = Path(folder) / file_name(found.site.name)
     write_table(weights_table(found), Path(f"{stem}-weights.csv"))
-    write_table(found.result.curves(found.site.measure), Path(f"{stem}-curves.csv"))
+    write_table(found.result.curves(), Path(f"{stem}-curves.csv"))
     write_text(json_of(found), f"{stem}.json")
     page = Path(f"{stem}.html")
     write_text(page_of(found), page)
@@ -72,7 +73,7 @@ def json_of(found: Constrained) -> str:
     """All numbers of the answer as JSON."""
     tables = {
         "branches": found.result.table(),
-        "mean_hazard": found.result.ratios(found.site.measure),
+        "mean_hazard": found.result.ratios(),
         "objects": found.by_object,
         "sensitivity": found.sensitivity,
     }
@@ -93,12 +94,12 @@ _say = sayer("rockfrag.survival", "page.j2", {"RULED_OUT": RULED_OUT, "LIMITS": 
 
 def _sentences(found: Constrained) -> list[str]:
     """Hazard, branches, evidence and what the answer hangs on, a sentence each."""
-    hazard = found.result.ratios(found.site.measure).set_index("annual_rate")
+    hazard = found.result.ratios().set_index("annual_rate")
     moved = found.sensitivity.iloc[1:]
     moved = moved[moved["level_ratio"] > 0]
     worst = None
-    if len(moved) and found.level_ratio > 0:
-        away = np.log(moved["level_ratio"] / found.level_ratio).abs()
+    if len(moved) and found.result.level_ratio > 0:
+        away = np.log(moved["level_ratio"] / found.result.level_ratio).abs()
         worst = moved.iloc[int(away.to_numpy().argmax())].to_dict()
     return _say("sentences", found, hazard.loc[DECISION_RATE].to_dict(), worst)
 
@@ -148,7 +149,7 @@ def _hazard(found: Constrained) -> Markup:
         Column("level_ratio", "Level after / before", 2),
         Column("rate_ratio", "Rate of the level before, after / before", 2),
     )
-    table = found.result.ratios(found.site.measure)
+    table = found.result.ratios()
     table["annual_rate"] = [f"{rate:g}" for rate in table["annual_rate"]]
     return table_html(table, columns, "Mean hazard at annual rates of 1e-2 to 1e-5.")
 
@@ -171,7 +172,7 @@ LONGEST_LABEL = 34
 def curves_figure(found: Constrained) -> Figure:
     """Mean hazard before and after, with the range of the branches from the 16th to the 84th percentile."""
     measure = found.site.measure
-    curves = found.result.curves(measure)
+    curves = found.result.curves()
     level = curves["level"].to_numpy()
     with style.one_panel(style.COLUMN_WIDTH, 2.8) as (figure, axes):
         for when, colour, line, words in (

@@ -32,9 +32,10 @@ class Site:
     name: str  #: What the site is called
     branches: tuple[Branch, ...]  #: Branches of its hazard
     objects: tuple[StandingObject, ...]  #: What stands there
-    shared_error: float  #: Correlation of the errors of the objects' fragilities [-]
-    same_earthquakes: bool  #: Whether the objects feel the same earthquakes
-    velocity: VelocityRelation | None  #: PGV that comes with a PGA; None if not stated
+    #: Correlation of the errors of the objects' fragilities, 0 (each its own) to 1 (all the same) [-]
+    shared_error: float = 0.0
+    same_earthquakes: bool = True  #: Whether the objects feel the same earthquakes
+    velocity: VelocityRelation | None = None  #: PGV that comes with a PGA; None if not stated
 
     @property
     def measure(self) -> IntensityMeasure:
