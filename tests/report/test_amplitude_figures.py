@@ -10,7 +10,7 @@ from matplotlib.path import Path as Outline
 from matplotlib.text import Text
 
 from rockfrag.figure_style import figure_style, new_figure, save_figure
-from rockfrag.report.figures.amplitudes import (
+from rockfrag.report.figures import (
     amplitudes_by,
     pedestal_scatter,
 )

@@ -23,7 +23,7 @@ from rockfrag.assess.sources import SPACE
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import ROCKS
 from rockfrag.short_repr import short_repr
 

@@ -22,7 +22,7 @@ from rockfrag.assess.request import Level, Records
 from rockfrag.errors import InputError
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.fragility.vector import VectorFragility, fit_vector
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 
 Floats = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.rotation import common_time, rotate
 from rockfrag.records.catalogue import load_motion, load_motions
 from rockfrag.records.make_catalogue import make_catalogue

@@ -15,7 +15,7 @@ from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.fragility.observations import Observations
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion, Motion

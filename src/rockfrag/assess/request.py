@@ -21,7 +21,7 @@ from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
 from rockfrag.errors import InputError, errors_of
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.schema import checked
 from rockfrag.units import quantity
 from rockfrag.yaml_file import read_yaml

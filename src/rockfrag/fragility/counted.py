@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.fragility.empirical import resurrections_of
+from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.fragility.intervals import blocks_of
 from rockfrag.fragility.observations import Floats, Observations, name_and_unit, positive
@@ -20,7 +20,6 @@ from rockfrag.machine_code import cached_njit
 from rockfrag.shaketable.swept import Swept
 
 CELLS = 2000  # cells of equal width in the logarithm of a measure
-MOTION = ("configuration", "earthquake", "floor", "motion")  # columns that tell motions apart
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,20 +45,9 @@ class CountedObservations(Observations):
         return self.earthquakes
 
     @property
-    def n_repeated(self) -> int:
-        """No IDA curve repeats an amplitude."""
-        return 0
-
-    @property
     def is_swept(self) -> bool:
         """Every motion has several rows."""
         return True
-
-    @property
-    def log_spread(self) -> float:
-        """Standard deviation of ln IM of the tests."""
-        mean = np.average(self.log_im, weights=self.trials)
-        return float(np.sqrt(np.average((self.log_im - mean) ** 2, weights=self.trials)))
 
     def ways(self) -> Floats:
         """Nothing: each test is told from the others."""
@@ -145,56 +133,47 @@ def _count(
             total[cell] += log_im
 
 
-@dataclass(frozen=True)
-class CountedIda:
-    """IDA curves of one configuration on one floor, or on all of them: see :class:`IdaData`."""
+@dataclass(frozen=True, kw_only=True)
+class CountedIda(TableIda):
+    """IDA curves on one floor, or on all, whose ``table`` has a row a motion with its resurrections."""
 
-    # a row a motion: its configuration, earthquake, floor and name, and its structural resurrections
-    windows: pd.DataFrame
     counts: Mapping[str, "_Counts"]  # by measure
 
-    def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
-        """See :func:`rockfrag.fragility.empirical.find_resurrections`; ``amplitude`` is the one in g."""
-        others = [*(name for name in MOTION if name not in by), *by]
-        columns = [*by, *self.windows.columns.drop(others)]
-        return self.windows[columns].sort_values(by, ignore_index=True)
+    def resurrections(self, amplitude: str) -> pd.DataFrame:
+        """See :class:`TableIda`; ``amplitude`` is the one in g."""
+        return self.table.sort_values(["motion", "earthquake"], ignore_index=True)
 
     def outcomes(self, column: str) -> Observations:
         """Outcomes with a measure."""
         return self.counts[column].outcomes()
 
-    def motions(self) -> pd.DataFrame:
-        """One row per motion: ``configuration``, ``earthquake``, ``floor``, ``motion``."""
-        return self.windows[list(MOTION)]
-
 
 def count_ida(
+    windows: pd.DataFrame,
     parts: Iterable[Swept],
-    again: Iterable[Swept],
     measures: pd.DataFrame,
     columns: Mapping[str, Sequence[str]],
 ) -> dict[str, CountedIda]:
     """Count IDA curves of one configuration part by part, by floor.
 
-    ``parts`` and ``again`` are the IDA curves, read twice: for their windows, and to be counted. ``measures`` has
-    one row per motion as recorded, with ``name`` and ``pga_g``; ``columns`` are the measures that will be asked
-    for, by floor, those under the empty name of all floors together.
+    ``windows`` are the resurrections of the motions of all ``parts``; ``measures`` has one row per motion as
+    recorded, with ``name`` and ``pga_g``; ``columns`` are the measures that will be asked for, by floor, those
+    under the empty name of all floors together.
     """
-    windows = resurrections_of(parts)
-    known = measures.set_index("name").loc[windows["motion"]].reset_index()
-    place = {name: row for row, name in enumerate(windows["motion"])}
+    motions = pd.Index(windows["motion"])
+    known = measures.set_index("name").loc[motions].reset_index()
     counts: dict[str, dict[str, _Counts]] = {}
-    for part in again:
+    for part in parts:
         counts = counts or {
             floor: {name: _Counts(known, windows, floor, name, part.amplitude_g) for name in some}
             for floor, some in columns.items()
         }
-        rows = np.array([place[name] for name in part.about["motion"]])
+        rows = motions.get_indexer(pd.Index(part.about["motion"]))
         for of_floor in counts.values():
             for count in of_floor.values():
                 count.add(rows, part.overturned)
     return {
-        floor: CountedIda(windows[windows["floor"] == floor] if floor else windows, of_floor)
+        floor: CountedIda(windows[windows["floor"] == floor] if floor else windows, counts=of_floor)
         for floor, of_floor in counts.items()
     }
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.censored import Brackets, brackets_from_table
 from rockfrag.fragility.observations import (
     Floats,
     Observations,
@@ -161,37 +161,36 @@ def _resurrections(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str
     }
 
 
-class IdaData(Protocol):
-    """IDA curves of one configuration."""
-
-    def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
-        """Structural resurrections, a row a motion: :func:`rockfrag.fragility.empirical.find_resurrections`."""
-
-    def outcomes(self, column: str) -> Observations:
-        """All outcomes with a measure."""
-
-    def motions(self) -> pd.DataFrame:
-        """One row per motion."""
-
-
 @dataclass(frozen=True)
 class TableIda:
-    """IDA curves as a table with a row per motion and amplitude."""
+    """IDA curves of one configuration, as a table with a row per motion and amplitude."""
 
     table: pd.DataFrame  # with ``motion``, ``overturned``, the amplitude and the measures
     earthquake: str | None = "earthquake"  # column of the earthquake; None where motions have none
     motion: str = "motion"  # column of the motion
 
-    def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
-        """See :class:`IdaData`."""
+    def resurrections(self, amplitude: str) -> pd.DataFrame:
+        """Structural resurrections, a row a motion: see :func:`find_resurrections`."""
+        by = [name for name in (self.motion, self.earthquake) if name is not None]
         return find_resurrections(self.table, amplitude=amplitude, by=by)
 
+    def brackets(self, windows: pd.DataFrame, definition: str, amplitude: str) -> Brackets:
+        """Bounds of each motion's ``first`` amplitude that overturns, or that above which all ``always`` do."""
+        return brackets_from_table(
+            windows,
+            lower=f"{definition}_lower",
+            upper=f"{definition}_upper",
+            motion=self.motion,
+            earthquake=self.earthquake,
+            measure=amplitude,
+        )
+
     def outcomes(self, column: str) -> Observations:
-        """See :class:`IdaData`."""
+        """All outcomes with a measure."""
         return observations_from_table(
             self.table, column, motion=self.motion, earthquake=self.earthquake, source="ida"
         )
 
     def motions(self) -> pd.DataFrame:
-        """See :class:`IdaData`."""
+        """One row per motion."""
         return self.table.drop_duplicates(self.motion)

@@ -9,7 +9,7 @@ from scipy import stats
 
 from rockfrag.fragility import censored, observations
 from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_outcomes
-from rockfrag.fragility.empirical import IdaData, TableIda
+from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.keywords import named_keywords
@@ -18,15 +18,7 @@ from rockfrag.short_repr import short_repr
 
 @dataclass(frozen=True)
 class Fragility:
-    """A fitted curve with its confidence limits and what speaks for and against it.
-
-    Attributes
-    ----------
-    fit, interval
-        The fitted curve, and its confidence limits.
-    checks
-        Goodness of fit and influence of single motions.
-    """
+    """A fitted curve, its confidence limits, and checks of its fit and of the influence of single motions."""
 
     fit: FragilityFit
     interval: Interval
@@ -53,16 +45,11 @@ class Fragility:
 class IncrementalFragility:
     """Three definitions of overturning intensity, of the same analyses; resurrections make them differ.
 
-    Attributes
-    ----------
-    first, always
-        First overturning amplitude of each motion (first passage), and that above which each always overturns, as
-        far as it was raised.
-    probability
-        Mean P(overturn | amplitude) over the motions, structural resurrections included.
-    resurrections, fraction_with_resurrections
-        Table of :func:`rockfrag.fragility.empirical.find_resurrections`; fraction of the motions that overturned
-        and have at least one window.
+    ``first`` is of the first overturning amplitude of each motion (first passage), ``always`` of that above which
+    each always overturns, as far as it was raised, ``probability`` the mean P(overturn | amplitude) over the
+    motions, structural resurrections included. ``resurrections`` are the table of
+    :func:`rockfrag.fragility.empirical.find_resurrections`, ``fraction_with_resurrections`` that of the motions
+    that overturned and have at least one window.
     """
 
     first: Fragility
@@ -102,18 +89,9 @@ def fit_cloud(
 ) -> Fragility:
     """Fit a curve to single tests at scattered values of the measure (cloud analysis).
 
-    Parameters
-    ----------
-    table, im, overturned
-        One row a test; its columns of the intensity measure and of the outcome.
-    motion, earthquake
-        Columns of their names; None where tests have none.
-    level
-        Of the confidence limits [-], 0 to 1.
-
-    Returns
-    -------
-    The :class:`Fragility`.
+    ``table`` has one row a test; ``im``, ``overturned``, ``motion`` and ``earthquake`` are its columns of the
+    intensity measure, the outcome and the names, None where tests have none; ``level`` is that of the confidence
+    limits [-], 0 to 1.
     """
     outcomes = observations.observations_from_table(
         table, im, overturned=overturned, motion=motion, earthquake=earthquake
@@ -135,18 +113,9 @@ def fit_stripes(
     """Fit a curve to counts at a few levels of the measure (multiple stripe analysis).
 
     The curve maximises the product of the binomial likelihoods of the stripes (Baker, 2015,
-    Earthquake Spectra 31: 579-599, eq. 11). Rows are counts when ``trials`` names a column, else
-    single tests, which are pooled by level for the likelihood; the limits resample motions (each
-    stripe a motion of its own only when ``motion`` is None).
-
-    Parameters
-    ----------
-    table, im, overturned, trials, motion, earthquake, level
-        As of :func:`fit_cloud`; column with the number of tests in a row, None where a row is one test.
-
-    Returns
-    -------
-    The :class:`Fragility`.
+    Earthquake Spectra 31: 579-599, eq. 11). Rows are counts when ``trials`` names the column of the number of
+    tests in a row, else single tests, which are pooled by level for the likelihood; the limits resample motions
+    (each stripe a motion of its own only when ``motion`` is None). All else is as of :func:`fit_cloud`.
     """
     outcomes = observations.observations_from_table(
         table, im, overturned=overturned, trials=trials, motion=motion, earthquake=earthquake
@@ -160,7 +129,7 @@ def fit_stripes(
 
 @named_keywords
 def fit_incremental(
-    ida: pd.DataFrame | IdaData,
+    ida: pd.DataFrame | TableIda,
     *,
     amplitude: str = "amplitude_g",
     motion: str = "motion",
@@ -169,43 +138,21 @@ def fit_incremental(
 ) -> IncrementalFragility:
     """Fit first overturning, always overturning, and mean probability to incremental dynamic analyses.
 
-    Parameters
-    ----------
-    ida
-        One row per motion and amplitude, with ``overturned``; or the IDA curves in another form. One body.
-    amplitude, motion, earthquake, level
-        Names of the columns, and the level of the confidence limits [-], 0 to 1.
-
-    Returns
-    -------
-    The :class:`IncrementalFragility`.
+    ``ida`` has one row per motion and amplitude of one body, with ``overturned`` and the columns ``amplitude``,
+    ``motion`` and ``earthquake``, or is IDA curves in another form; ``level`` is that of the limits [-], 0 to 1.
     """
     data = TableIda(ida, earthquake, motion) if isinstance(ida, pd.DataFrame) else ida
-    resurrections = data.resurrections(
-        amplitude, [motion] if earthquake is None else [motion, earthquake]
+    resurrections = data.resurrections(amplitude)
+    first, always = (
+        fragility_of_brackets(data.brackets(resurrections, definition, amplitude), level)
+        for definition in ("first", "always")
     )
-    definitions = {}
-    for definition in ("first", "always"):
-        brackets = censored.brackets_from_table(
-            resurrections,
-            lower=f"{definition}_lower",
-            upper=f"{definition}_upper",
-            motion=motion,
-            earthquake=earthquake,
-            measure=amplitude,
-        )
-        definitions[definition] = fragility_of_brackets(brackets, level)
     fell = resurrections["first_upper"].notna()
     fraction = (
         float((resurrections.loc[fell, "resurrections"] > 0).mean()) if fell.any() else float("nan")
     )
-    return IncrementalFragility(
-        definitions["first"],
-        definitions["always"],
-        fragility_of(data.outcomes(amplitude), level=level),
-        resurrections,
-        fraction,
-    )
+    probability = fragility_of(data.outcomes(amplitude), level=level)
+    return IncrementalFragility(first, always, probability, resurrections, fraction)
 
 
 def fit_step_tests(
@@ -219,16 +166,8 @@ def fit_step_tests(
 ) -> Fragility:
     """Fit a curve to tests of a step protocol, one row per test, interval- or right-censored.
 
-    Parameters
-    ----------
-    tests, lower, upper
-        One row a test; its columns of the largest amplitude survived and of the one that overturned.
-    motion, earthquake, level
-        As of :func:`fit_cloud`.
-
-    Returns
-    -------
-    The :class:`Fragility`.
+    ``lower`` and ``upper`` are the columns of the largest amplitude survived and of the one that overturned; all
+    else is as of :func:`fit_cloud`.
     """
     brackets = censored.brackets_from_table(
         tests, lower=lower, upper=upper, motion=motion, earthquake=earthquake
@@ -238,10 +177,8 @@ def fit_step_tests(
 
 def fragility_of_brackets(brackets: censored.Brackets, level: float) -> Fragility:
     """Fit a curve to bracketed amplitudes and give it limits over motions, or earthquakes where known."""
-    fit, interval = (
-        censored.fit_brackets(brackets),
-        censored.bracket_interval(brackets, level=level),
-    )
+    fit = censored.fit_brackets(brackets)
+    interval = censored.bracket_interval(brackets, level=level)
     return Fragility(fit, interval, checks_of_brackets(brackets, fit, interval))
 
 

@@ -10,10 +10,10 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.curve_facts import total_beta
-from rockfrag.fragility.empirical import IdaData, TableIda, fraction_in_bins, local_fraction
+from rockfrag.fragility.empirical import TableIda, fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
 from rockfrag.fragility.observations import Observations, positive
-from rockfrag.motions.declared import declared, measure_of
+from rockfrag.motions.intensity import declared, measure_of
 from rockfrag.records.motion import Motion
 
 
@@ -81,6 +81,7 @@ def fragility_row(
     fractions = checks.fractions
     of_fit = ("se_log_theta", "se_beta", "log_likelihood", "aic", "link", "method")
     counted = ("n", "n_overturned", "n_motions")
+    of_checks = ("largest_residual", "influential", "influence")
     return {
         **labels,
         "im": fit.im,
@@ -96,9 +97,7 @@ def fragility_row(
         "n_earthquakes": interval.groups if interval.over == "earthquake" else fit.n_motions,
         "p_fit": checks.p_fit,
         "fit_test": checks.test,
-        **{
-            name: getattr(checks, name) for name in ("largest_residual", "influential", "influence")
-        },
+        **{name: getattr(checks, name) for name in of_checks},
         **_limited("theta_isotonic", fractions.theta, fractions.theta_limits),
         **_limited("beta_isotonic", fractions.beta, fractions.beta_limits),
         "beta_statistical": fragility.beta_statistical,
@@ -134,30 +133,19 @@ def fragility_table(
 ) -> pd.DataFrame:
     """Fit every configuration of an IDA curve in every measure: the source of all exports.
 
-    Parameters
-    ----------
-    ida
-        One row per configuration, motion and amplitude, with ``motion``, ``amplitude_g``,
-        ``overturned``, the columns ``by`` and ``earthquake``, and the measures
-        (:func:`with_measures`).
-    columns, by, earthquake
-        Columns of the measures, of what tells the curves apart, and of the earthquake, whose resampling gives the
-        limits; None resamples motions.
-    record_set, level
-        Hash of the motions (:func:`record_set_hash`), and confidence level of the limits.
+    ``ida`` has one row per configuration, motion and amplitude, with ``motion``, ``amplitude_g``, ``overturned``,
+    the columns ``by``, which tell the curves apart, and ``earthquake``, whose resampling gives the limits (None
+    resamples motions), and the measures, ``columns`` (:func:`with_measures`). ``record_set`` is a hash of the
+    motions (:func:`record_set_hash`), ``level`` the confidence level of the limits.
 
-    Returns
-    -------
-    pandas.DataFrame
-        One row per curve: the columns ``by``, ``im``, ``unit``, ``estimator``
-        (``mean_probability`` for each measure; ``first_overturning`` and ``always_overturning``
-        for the amplitude), ``theta``, ``beta`` with limits, ``level``, ``interval_method``,
-        ``resampled``, ``groups``, standard errors, ``log_likelihood``, ``aic``, ``link``,
-        ``method``, ``n``, ``n_overturned``, ``n_motions``, ``n_earthquakes``; ``p_fit``, ``fit_test``,
-        ``largest_residual``, ``influential``, ``influence`` (see
-        :class:`rockfrag.fragility.checks.Checks`); ``theta_isotonic``, ``beta_isotonic`` with limits (see
-        :class:`rockfrag.fragility.fractions.Fractions`); ``beta_statistical`` and ``beta_total`` (with the
-        model's uncertainty, :mod:`rockfrag.fragility.curve_facts`); ``record_set_sha256``, ``warnings``.
+    Returns one row per curve: the columns ``by``, ``im``, ``unit``, ``estimator`` (``mean_probability`` for each
+    measure; ``first_overturning`` and ``always_overturning`` for the amplitude), ``theta``, ``beta`` with limits,
+    ``level``, ``interval_method``, ``resampled``, ``groups``, standard errors, ``log_likelihood``, ``aic``,
+    ``link``, ``method``, ``n``, ``n_overturned``, ``n_motions``, ``n_earthquakes``; ``p_fit``, ``fit_test``,
+    ``largest_residual``, ``influential``, ``influence`` (see :class:`rockfrag.fragility.checks.Checks`);
+    ``theta_isotonic``, ``beta_isotonic`` with limits (see :class:`rockfrag.fragility.fractions.Fractions`);
+    ``beta_statistical`` and ``beta_total`` (with the model's uncertainty, :mod:`rockfrag.fragility.curve_facts`);
+    ``record_set_sha256``, ``warnings``.
     """
     for column in by:
         if column not in ida:
@@ -166,16 +154,13 @@ def fragility_table(
         (dict(zip(by, key, strict=True)), TableIda(part, earthquake))
         for key, part in ida.groupby(list(by), sort=True)
     )
-    return tables_of_ida_curves(
-        parts, columns, earthquake=earthquake, record_set=record_set, level=level
-    ).curves
+    return tables_of_ida_curves(parts, columns, record_set=record_set, level=level).curves
 
 
 def tables_of_ida_curves(
-    ida_curves: Iterable[tuple[Mapping[str, Any], IdaData]],
+    ida_curves: Iterable[tuple[Mapping[str, Any], TableIda]],
     columns: Sequence[str],
     *,
-    earthquake: str | None = "earthquake",
     record_set: str = "",
     level: float = 0.90,
 ) -> FragilityTables:
@@ -186,7 +171,7 @@ def tables_of_ida_curves(
         for column in columns:
             outcomes = ida.outcomes(column)
             if column in ("amplitude_g", "pga_g"):
-                result = fit_incremental(ida, amplitude=column, earthquake=earthquake, level=level)
+                result = fit_incremental(ida, amplitude=column, level=level)
                 definitions = {
                     "mean_probability": result.probability,
                     "first_overturning": result.first,
@@ -199,12 +184,8 @@ def tables_of_ida_curves(
             for name, fragility in definitions.items():
                 rows.append(fragility_row(fragility, labels, name, record_set))
                 fractions.append(fraction_points({**labels, "estimator": name}, fragility))
-    return FragilityTables(
-        pd.DataFrame(rows),
-        pd.concat(bands, ignore_index=True),
-        pd.concat(bins, ignore_index=True),
-        pd.concat(fractions, ignore_index=True),
-    )
+    points = (pd.concat(parts, ignore_index=True) for parts in (bands, bins, fractions))
+    return FragilityTables(pd.DataFrame(rows), *points)
 
 
 POINTS = 120  # points of a curve, in equal ratios

@@ -43,22 +43,12 @@ class FragilityFit:
     F is the standard normal distribution (link ``probit``) or the standard logistic one
     (``logit``).
 
-    Attributes
-    ----------
-    theta, beta
-        Median of the intensity measure at overturning, in ``unit``, and logarithmic standard deviation (probit) or
-        logistic scale (logit); NaN where the data give none.
-    covariance
-        Covariance of (ln θ, β), 2 × 2, by the delta method from the expected information. It takes
-        tests for independent; where motions repeat, use an interval over motions instead.
-    log_likelihood
-        With binomial coefficients.
-    n, n_overturned, n_motions
-        Tests, those that overturned, and different motions.
-    method, warnings
-        How it was fitted, in words, and a sentence for each thing that a reader must know before using the curve.
-    im, unit, link
-        Intensity measure and its unit; ``probit`` or ``logit``.
+    ``theta`` is the median of the intensity measure ``im`` at overturning, in ``unit``, ``beta`` the logarithmic
+    standard deviation (probit) or logistic scale (logit); both NaN where the data give none. ``covariance`` is of
+    (ln θ, β), 2 × 2, by the delta method from the expected information. It takes tests for independent; where
+    motions repeat, use an interval over motions instead. ``log_likelihood`` has binomial coefficients; of ``n``
+    tests ``n_overturned`` did, under ``n_motions`` different motions. ``method`` says how it was fitted, and
+    ``warnings`` has a sentence for each thing that a reader must know before using the curve.
     """
 
     theta: float
@@ -123,14 +113,7 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
     says what the data do tell. Where the probability does not rise with the measure, or all tests are
     at one value of it, there is no curve either.
 
-    Parameters
-    ----------
-    outcomes, link
-        Outcomes with their measure; ``probit`` (lognormal curve) or ``logit``.
-
-    Returns
-    -------
-    The :class:`FragilityFit`.
+    ``link`` is ``probit`` (lognormal curve) or ``logit``.
     """
     notes = SAY("outcomes", outcomes)
     if outcomes.im.size > MOST_ROWS:
@@ -139,12 +122,8 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
         found = fit_lognormal(outcomes, link=link)
         # cells are not tests: which of a cell's tests overturned is known
         likelihood = found.log_likelihood + float(whole.ways().sum() - outcomes.ways().sum())
-        return replace(
-            found,
-            n_motions=whole.n_motions,
-            log_likelihood=likelihood,
-            warnings=(*notes, *found.warnings),
-        )
+        said = (*notes, *found.warnings)
+        return replace(found, n_motions=whole.n_motions, log_likelihood=likelihood, warnings=said)
     curve, log_likelihood = NO_CURVE, 0.0
     if outcomes.n_overturned in (0, outcomes.n):
         method = "none: all tests agree"
@@ -162,17 +141,9 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
             notes += SAY("falling", outcomes)
         else:
             curve = curve_parameters(coefficients, np.asarray(np.linalg.inv(information)))
+    counted = (outcomes.n, outcomes.n_overturned, outcomes.n_motions)
     return FragilityFit(
-        *curve,
-        log_likelihood,
-        outcomes.n,
-        outcomes.n_overturned,
-        outcomes.n_motions,
-        method,
-        outcomes.name,
-        outcomes.unit,
-        link,
-        tuple(notes),
+        *curve, log_likelihood, *counted, method, outcomes.name, outcomes.unit, link, tuple(notes)
     )
 
 

@@ -1,7 +1,7 @@
 """Which intensity measure predicts overturning best, and how sure is that choice?"""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -12,7 +12,7 @@ from statsmodels.tools.tools import add_constant
 
 from rockfrag.errors import InputError
 from rockfrag.fragility import censored, held_out, observations
-from rockfrag.fragility.empirical import IdaData, TableIda
+from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import scale_power, with_measures
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
@@ -30,20 +30,13 @@ SUFFICIENT_P = 0.05  # a residual's dependence on a column is named below this p
 class MeasureSelection:
     """Comparison of intensity measures on the same tests.
 
-    Attributes
-    ----------
-    recommended, name
-        Column of the recommended measure, and what the field calls it, for example ``PGV``; empty where no measure
-        has a rising curve.
-    table
-        One row per measure, best first: ``measure``, ``im``, ``unit``, ``theta``, ``beta``
-        (efficiency: the smaller the better), ``beta_lower``, ``beta_upper``, ``aic``, ``auc``,
-        ``score`` (mean log probability of what was held out, per test [-]; the larger the better),
-        ``p_worse`` (p value of scoring as the best does, t over motions or earthquakes), ``chosen_fraction``
-        (fraction of bootstrap samples of motions or earthquakes in which it scores best), and ``p_<column>``
-        for the sufficiency against each given column.
-    words
-        The recommendation with its reasons, for a report.
+    ``recommended`` is the column of the recommended measure and ``name`` what the field calls it, for example
+    ``PGV``; empty where no measure has a rising curve. ``words`` are the recommendation with its reasons.
+    ``table`` has one row per measure, best first: ``measure``, ``im``, ``unit``, ``theta``, ``beta`` (efficiency:
+    the smaller the better), ``beta_lower``, ``beta_upper``, ``aic``, ``auc``, ``score`` (mean log probability of
+    what was held out, per test [-]; the larger the better), ``p_worse`` (p value of scoring as the best does, t
+    over motions or earthquakes), ``chosen_fraction`` (fraction of bootstrap samples of motions or earthquakes in
+    which it scores best), and ``p_<column>`` for the sufficiency against each given column.
     """
 
     recommended: str
@@ -55,16 +48,9 @@ class MeasureSelection:
 
 
 def area_under_curve(outcomes: Observations) -> float:
-    """Probability that an overturned test had the larger measure than a survived one; ties half.
+    """Probability that an overturned test had the larger measure than a survived one [-], ties half.
 
-    Parameters
-    ----------
-    outcomes
-        Outcomes with their measure.
-
-    Returns
-    -------
-    The area [-], from 0 to 1; NaN where all tests agree.
+    NaN where all tests agree.
     """
     fell, stood = outcomes.overturned, outcomes.trials - outcomes.overturned
     _, level = np.unique(outcomes.im, return_inverse=True)
@@ -123,19 +109,9 @@ def recommend_measure(
     the best score is recommended. Measures that the scores do not tell from it are named as equals,
     with the more efficient one (smaller β) first.
 
-    Parameters
-    ----------
-    table, measures
-        One row per test, and its columns of measures.
-    given, overturned, motion, earthquake
-        Columns of what sufficiency is tested against (magnitude, distance, …), and of each test.
-    level, replicates, seed, source
-        Of the limits of β; of the bootstrap over motions (earthquakes where given) for ``chosen_fraction``; what
-        messages call the table.
-
-    Returns
-    -------
-    The :class:`MeasureSelection`.
+    ``table`` has one row per test; sufficiency is tested against its columns ``given`` (magnitude, distance, …).
+    ``level`` is that of the limits of β, ``replicates`` and ``seed`` are of the bootstrap over motions
+    (earthquakes where given) for ``chosen_fraction``; ``source`` is what messages call the table.
     """
     if not measures:
         raise InputError("measures: name at least one column with an intensity measure.")
@@ -273,7 +249,7 @@ def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> st
 
 
 def recommend_ida_measure(
-    ida: pd.DataFrame | IdaData,
+    ida: pd.DataFrame | TableIda,
     measures: pd.DataFrame,
     columns: Sequence[str],
     *,
@@ -304,34 +280,22 @@ def recommend_ida_measure(
         )
     if isinstance(ida, pd.DataFrame):
         ida = TableIda(with_measures(ida, measures, columns), earthquake)
-    resurrections = ida.resurrections(
-        "amplitude_g", ["motion"] if earthquake is None else ["motion", earthquake]
-    )
-    amplitude = censored.brackets_from_table(
-        resurrections,
-        lower="first_lower",
-        upper="first_upper",
-        earthquake=earthquake,
-        measure="amplitude_g",
-    )
+    amplitude = ida.brackets(ida.resurrections("amplitude_g"), "first", "amplitude_g")
     known = measures.set_index("name")
-    place = known.index.get_indexer(pd.Index(resurrections["motion"]))
+    place = known.index.get_indexer(pd.Index(amplitude.motion))
     extra = {column: numbers(measures, column, "measures")[place] for column in given}
-    pga = observations.positive(known.loc[resurrections["motion"]], "pga_g", "measures")
+    recorded = known.loc[list(amplitude.motion)]
+    pga = observations.positive(recorded, "pga_g", "measures")
     rows, brackets = [], []
     for column, power in powers.items():
-        unit_value = (
-            observations.positive(known.loc[resurrections["motion"]], column, "measures")
-            / pga**power
-        )
+        unit_value = observations.positive(recorded, column, "measures") / pga**power
         outcomes = ida.outcomes(column)
-        scaled = censored.Brackets(
-            unit_value * amplitude.lower**power,
-            unit_value * amplitude.upper**power,
-            amplitude.motion,
-            amplitude.earthquake,
-            outcomes.name,
-            outcomes.unit,
+        scaled = replace(
+            amplitude,
+            lower=unit_value * amplitude.lower**power,
+            upper=unit_value * amplitude.upper**power,
+            name=outcomes.name,
+            unit=outcomes.unit,
         )
         fit = censored.fit_brackets(scaled)
         interval = censored.bracket_interval(scaled, level=level)

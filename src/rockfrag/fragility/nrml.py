@@ -15,7 +15,7 @@ from rockfrag.files import write_text
 from rockfrag.fragility.checks import REJECTION
 from rockfrag.fragility.curve_facts import StateCurve, curve_facts, curves_by_name
 from rockfrag.fragility.observations import Floats
-from rockfrag.motions.declared import declared, measure_labelled
+from rockfrag.motions.intensity import declared, measure_labelled
 from rockfrag.outcomes.limit_states import limit_states
 from rockfrag.sentences import environment
 
@@ -58,23 +58,15 @@ def write_nrml(
     NRML has no place for confidence limits and numbers of motions, so a comment before each function gives them.
     The description has what is to be warned of, each sentence once.
 
-    Parameters
-    ----------
-    table
-        One row per configuration and limit state (one estimator and one measure each), as
-        :func:`rockfrag.fragility.ida_curves.fragility_table` gives them; a column ``state`` names the limit
-        state (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. A column ``floor`` must be
-        empty: only motions of the ground are known to OpenQuake. No function may lack a state that another has.
-    path, identifier
-        File to write, and name of the model.
-    by
-        Column whose value names the function (OpenQuake's taxonomy); what OpenQuake
-        does not take in a name becomes ``_``.
-    fractions
-        Points of the non-parametric fragility function (:func:`rockfrag.fragility.ida_curves.fraction_points`),
-        with columns ``by`` and ``state``. A function of which a state has such points is written as discrete
-        levels; so is one whose lognormal curves would make a state more probable than the one that comes before
-        it.
+    ``table`` has one row per configuration and limit state (one estimator and one measure each), as
+    :func:`rockfrag.fragility.ida_curves.fragility_table` gives them; a column ``state`` names the limit state
+    (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. A column ``floor`` must be empty: only
+    motions of the ground are known to OpenQuake. No function may lack a state that another has. The value in the
+    column ``by`` names the function (OpenQuake's taxonomy); what OpenQuake does not take in a name becomes ``_``.
+    ``fractions`` are points of the non-parametric fragility function
+    (:func:`rockfrag.fragility.ida_curves.fraction_points`), with columns ``by`` and ``state``. A function of which
+    a state has such points is written as discrete levels; so is one whose lognormal curves would make a state more
+    probable than the one that comes before it. ``identifier`` names the model.
     """
     # OpenQuake takes letters, digits, "_", "-" and ":" in a name
     curves = curves_by_name("NRML", table, by, "_:-", fractions)

@@ -11,7 +11,7 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_table, write_text
 from rockfrag.fragility.curve_facts import StateCurve, curve_facts, curves_by_name
 from rockfrag.fragility.observations import Floats
-from rockfrag.motions.declared import declared
+from rockfrag.motions.intensity import declared
 from rockfrag.outcomes.limit_states import limit_state_named
 
 _UNITS = {"g": {"g": "g", "m/s²": "mps2"}, "cm/s": {"cm/s": "cmps", "m/s": "mps"}}
@@ -42,18 +42,9 @@ def write_simcenter(
 ) -> None:
     """Write rows of a fragility table as a damage model.
 
-    Parameters
-    ----------
-    table
-        As of :func:`rockfrag.fragility.nrml.write_nrml`. PGA and PGV are demands of the ground, PFA and PFV of the
-        floor on which the object stands.
-    csv_path, json_path
-        Files to write.
-    by
-        Column that names the curve; the ID is ``ROCKFRAG.`` and its letters and digits.
-    fractions
-        As of :func:`rockfrag.fragility.nrml.write_nrml`; a state that has such points is written with the family
-        ``multilinear_CDF``.
+    All is as of :func:`rockfrag.fragility.nrml.write_nrml`, but PGA and PGV are demands of the ground, PFA and PFV
+    of the floor on which the object stands; the ID is ``ROCKFRAG.`` and letters and digits of the value in the
+    column ``by``, and a state with points in ``fractions`` is written with the family ``multilinear_CDF``.
     """
     rows = []
     notes: dict[str, object] = {

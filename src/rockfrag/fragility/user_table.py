@@ -22,17 +22,10 @@ from rockfrag.short_repr import short_repr
 class UserFragility:
     """All that a table of tests says about fragility.
 
-    Attributes
-    ----------
-    tests
-        The table as used: ``motion``, ``earthquake``, ``overturned`` and a column per measure.
-    outcomes, fits, choice
-        By measure, in the order given, and the recommendation of a measure.
-    two_measures
-        Fragility in the first two measures with contours and cells; None with one measure.
-    table, bins
-        Tidy table of curves, see :func:`rockfrag.fragility.ida_curves.fragility_table`, and empirical fractions in
-        bins, by measure (column ``measure``).
+    ``tests`` is the table as used: ``motion``, ``earthquake``, ``overturned`` and a column per measure.
+    ``outcomes`` and ``fits`` are by measure, in the order given; ``choice`` recommends one. ``two_measures`` is
+    fragility in the first two measures with contours and cells, None with one measure. ``table`` has a row a
+    curve, see :func:`rockfrag.fragility.ida_curves.fragility_table`, ``bins`` empirical fractions by ``measure``.
     """
 
     tests: pd.DataFrame
@@ -66,21 +59,10 @@ def fit_user_table(
 ) -> UserFragility:
     """Read a table of tests from a text file and fit, compare and judge fragility curves in its measures.
 
-    Parameters
-    ----------
-    path
-        Text file with one row per test.
-    measures
-        As of :func:`rockfrag.fragility.tests_file.read_tests`, for example
-        ``{"pga_g": ["pga_g"], "pgv_cm_s": ["pga_g", "pgv_over_pga_s", 980.665]}``.
-    overturned, motion, earthquake, given
-        Columns; sufficiency is tested against the last.
-    level, replicates, seed
-        Of confidence limits and bootstraps.
-
-    Returns
-    -------
-    The :class:`UserFragility`.
+    The file at ``path`` has one row per test. ``measures`` are as of
+    :func:`rockfrag.fragility.tests_file.read_tests`, for example
+    ``{"pga_g": ["pga_g"], "pgv_cm_s": ["pga_g", "pgv_over_pga_s", 980.665]}``; sufficiency is tested against the
+    columns ``given``. ``level``, ``replicates`` and ``seed`` are of confidence limits and bootstraps.
     """
     source = Path(path).name
     tests = read_tests(
@@ -117,12 +99,5 @@ def fit_user_table(
             level=level,
             seed=seed,
         )
-    return UserFragility(
-        tests,
-        outcomes,
-        fits,
-        choice,
-        both,
-        pd.DataFrame(rows),
-        pd.concat(bins, ignore_index=True),
-    )
+    tables = pd.DataFrame(rows), pd.concat(bins, ignore_index=True)
+    return UserFragility(tests, outcomes, fits, choice, both, *tables)

@@ -41,15 +41,10 @@ _say = sayer("rockfrag.fragility", "vector.j2", {"FEWEST_GROUPS": FEWEST_GROUPS}
 class Interaction:
     """Whether the effect of one measure depends on the other.
 
-    Attributes
-    ----------
-    p
-        p value of no interaction, score test with contributions summed by earthquake [-]; NaN with fewer than
-        three earthquakes.
-    likelihood_ratio
-        2 ln (L with / L without) [-]; tests counted as independent, for comparison with other programs.
-    kept
-        Whether the fit has the interaction: p below ``INTERACTION_LEVEL``, and held-out earthquakes score better.
+    ``p`` is the p value of no interaction, a score test with contributions summed by earthquake [-], NaN with
+    fewer than three earthquakes; ``likelihood_ratio`` is 2 ln (L with / L without) [-], tests counted as
+    independent, for comparison with other programs. The interaction is ``kept`` in the fit if p is below
+    ``INTERACTION_LEVEL`` and held-out earthquakes score better.
     """
 
     p: float
@@ -65,21 +60,11 @@ NOT_TRIED = Interaction(np.nan, np.nan, kept=False)
 class VectorFragility:
     """P(overturn | IM1, IM2) with limits over earthquakes.
 
-    Attributes
-    ----------
-    measures
-        Columns of the two measures.
-    coefficients, covariance
-        Of 1, ln IM1, ln IM2 and, where it earned its place, ln IM1 ln IM2; the covariance is from the expected
-        information, which takes tests for independent.
-    log_likelihood, method, interaction
-        Of the fit; maximum likelihood, or penalised under separation; and the test of an interaction.
-    replicates
-        Coefficients without one earthquake each, shape (earthquakes, coefficients).
-    n, n_overturned, n_earthquakes
-        Tests, those that overturned, and earthquakes.
-    level, warnings
-        Two-sided confidence level of limits, and what a reader must know before using it.
+    ``coefficients`` are of 1, ln IM1, ln IM2 and, where it earned its place, ln IM1 ln IM2, IM1 and IM2 being the
+    columns ``measures``; ``covariance`` is from the expected information, which takes tests for independent. The
+    ``method`` is maximum likelihood, or penalised under separation. ``replicates`` are coefficients without one
+    earthquake each, shape (earthquakes, coefficients); ``level`` is the two-sided confidence level of limits, and
+    ``warnings`` are what a reader must know before using it.
     """
 
     measures: tuple[str, str]
@@ -163,19 +148,10 @@ def fit_vector(
 ) -> VectorFragility:
     """Fit the probability of overturning in two intensity measures.
 
-    Parameters
-    ----------
-    table, measures
-        One row a test, and the columns of the two measures, such as ``pga_g`` and ``pgv_over_pga_s``.
-    overturned, earthquake
-        Columns of outcome (0 or 1) and earthquake; None where each test has an earthquake of its own.
-    level, source, try_interaction
-        Two-sided confidence level of limits [-]; what messages call the table; whether to test an interaction,
-        which takes most of the time: without it none is kept.
-
-    Returns
-    -------
-    The :class:`VectorFragility`, with replicates by earthquake.
+    ``table`` has one row a test; ``measures`` are two of its columns, such as ``pga_g`` and ``pgv_over_pga_s``,
+    ``earthquake`` is None where each test has one of its own. ``level`` is the two-sided confidence level of
+    limits [-], ``source`` what messages call the table. ``try_interaction`` takes most of the time: without it
+    none is kept.
     """
     if not 0.0 < level < 1.0:
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
@@ -203,20 +179,11 @@ def fit_vector(
     groups = int(group.max()) + 1
     replicates = _replicates(design, outcome, group, fit.coefficients)
     names = [name_and_unit(column)[0] for column in measures]
-    return VectorFragility(
-        measures,
-        tuple(fit.coefficients.tolist()),
-        tuple(tuple(row) for row in np.linalg.inv(fit.information).tolist()),
-        fit.log_likelihood,
-        fit.method,
-        replicates,
-        interaction,
-        int(outcome.size),
-        int(outcome.sum()),
-        groups,
-        level,
-        tuple(_say("notes", names, fit, replicates, groups)),
-    )
+    notes = tuple(_say("notes", names, fit, replicates, groups))
+    covariance = tuple(tuple(row) for row in np.linalg.inv(fit.information).tolist())
+    found = (tuple(fit.coefficients.tolist()), covariance, fit.log_likelihood, fit.method)
+    counted = (int(outcome.size), int(outcome.sum()), groups)
+    return VectorFragility(measures, *found, replicates, interaction, *counted, level, notes)
 
 
 class _Fit(NamedTuple):

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from rockfrag.figure_style import BLACK, COLUMN_WIDTH, one_panel, plain_log
 from rockfrag.report import findings
-from rockfrag.report.figures.amplitudes import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
+from rockfrag.report.figures import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results, figure_of
 from rockfrag.report.wording import Macros, said, sentence, shortened
 

@@ -17,7 +17,7 @@ from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility
 from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
-from rockfrag.report.figures.amplitudes import GREY
+from rockfrag.report.figures import GREY
 from rockfrag.report.page import Column, estimated, p_values, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, finding_of, section_of
 from rockfrag.report.sections.curves import (

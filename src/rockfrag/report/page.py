@@ -1,5 +1,7 @@
 """The page: one HTML file that loads nothing from outside, with its figures inside as text and lines."""
 
+import base64
+import json
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -11,11 +13,17 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from markupsafe import Markup
 
 from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED
-from rockfrag.report.figures.amplitudes import BAND, GREY
+from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.glossary import terms_used
-from rockfrag.report.live.embedded import TEMPLATES
 from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.report.wording import estimates, number, probability
+
+TEMPLATES = Environment(
+    loader=PackageLoader("rockfrag.report"),
+    autoescape=select_autoescape(default=True),
+    undefined=StrictUndefined,
+)
+"""Scripts, styles and elements of pages."""
 
 _PIXELS_PER_POINT = 96 / 72 * 1.22
 _COLUMN = 252 * _PIXELS_PER_POINT
@@ -216,13 +224,8 @@ def render(
     ``basis`` that is ``simulated`` and not ``measured``. For ``live`` see
     :func:`rockfrag.report.live.live_kernel`.
     """
-    environment = Environment(
-        loader=PackageLoader("rockfrag.report"),
-        autoescape=select_autoescape(default=True),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
+    environment = TEMPLATES.overlay(
+        trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
     )
     return environment.get_template("report.html.j2").render(
         title=title,
@@ -240,3 +243,18 @@ def render(
         ),
         script=Markup(environment.get_template("page.js").render()),
     )
+
+
+def scripts_of(*names: str) -> Markup:
+    """Return scripts of the package as text of a page."""
+    return Markup("\n".join(TEMPLATES.get_template(f"{name}.js").render() for name in names))
+
+
+def base64_text(content: bytes) -> str:
+    """Return bytes as text of a page."""
+    return base64.b64encode(content).decode("ascii")
+
+
+def json_text(data: Any) -> Markup:
+    """Return data as JSON in a script: a name in it may hold anything, but never the script's end."""
+    return Markup(json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"))

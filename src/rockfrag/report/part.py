@@ -1,7 +1,7 @@
 """What a report is made of: parts, each with its words, tables and figures in one file.
 
-To add a part, write one :class:`Part` in a module of ``report/sections/``, its words into ``sections.j2`` there,
-and name it in ``report/sections/__init__.py`` where it should stand.
+To add a part, write a function, a :data:`Part`, in a module of ``report/sections/``, its words into
+``sections.j2`` there, and name it in ``report/sections/__init__.py`` where it should stand.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -17,10 +17,13 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
-from rockfrag.report.wording import PART, one_line, said
+from rockfrag.report.wording import PART, Macros, one_line, said
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.shaketable.swept import read_swept
 from rockfrag.study.study import Study
+
+says = Macros("rockfrag.report.sections", "sections.j2")
+"""What the parts of a report say, a macro of ``sections.j2`` by their anchors, and names with ``_figure``."""
 
 MOST_MOTIONS = 50
 """Motions of which a report shows every outcome; of a larger study it shows the first."""
@@ -174,10 +177,5 @@ class Results:
         return f"{100 * self.study.fragility.confidence:g} %"
 
 
-@dataclass(frozen=True)
-class Part:
-    """A part of the report."""
-
-    # Writes its section, or None where there is nothing to show
-    section: Callable[[Results], Section | None]
-    asked: Callable[[Study], bool] = lambda _: True  # Whether a study has it
+Part = Callable[[Results], Section | None]
+"""A part of the report: returns its section, None where it is not asked for or has nothing to show."""

@@ -36,8 +36,7 @@ def run(job: Job[Study]) -> Results:
     answer: Callable[[StudyResults], Answer] = study_answer
     for plugin in plugins_of(study):
         parts, answer = plugin.report(study, parts, answer)
-    asked = [part for part in parts if part.asked(study)]
-    sections = [section for part in asked if (section := part.section(results)) is not None]
+    sections = [section for part in parts if (section := part(results)) is not None]
     earthquakes = len({record.get("earthquake") for record in results.records})
     lead = (
         f"Rocking and overturning of {counted(len(study.configurations), 'configuration')} under "

@@ -10,15 +10,15 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.files import file_name
-from rockfrag.motions.declared import intensity_measures
+from rockfrag.motions.intensity import intensity_measures
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.system.system import System, uplift_ratios
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
-    from rockfrag.fragility.empirical import IdaData
+    from rockfrag.fragility.empirical import TableIda
 
-    StateIdaCurves = dict[str, dict[tuple[str, str], IdaData]]
+    StateIdaCurves = dict[str, dict[tuple[str, str], TableIda]]
 
 
 def floor_measures(level: int) -> tuple[str, ...]:

@@ -2,24 +2,22 @@
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
-from rockfrag.motions.declared import declared, intensity_measures
-from rockfrag.outcomes.limit_states import OVERTURNS, LimitState, limit_states
+from rockfrag.motions.intensity import declared, intensity_measures
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.shaketable.swept import Swept
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
 from rockfrag.stages.ida import ida_curves_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
-from rockfrag.system.system import System
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
-    from rockfrag.fragility.empirical import IdaData
+    from rockfrag.fragility.empirical import TableIda
     from rockfrag.stages.floor_curves import StateIdaCurves
 
 
@@ -30,8 +28,7 @@ def run(job: Job[Study]) -> Results:
     settings, measures = job.study.fragility, job.table("measures")
     record_set = record_set_hash(job.motions("motions/records"))
     columns = list(settings.measures)
-    data = _counted(job, measures) if job.study.is_large else _rows(job, measures)
-    of_all = data.of_all
+    of_all, of_floors, resurrections = _ida_curves(job, measures)
     found = tables_of_ida_curves(
         (({"configuration": name}, of_all[name]) for name in sorted(of_all)),
         columns,
@@ -43,14 +40,14 @@ def run(job: Job[Study]) -> Results:
     yield "fragility_bands", _at_the_base(found.bands, several)
     yield "fragility_bins", _at_the_base(found.bins, several)
     yield "fragility_fractions", _at_the_base(found.fractions, several)
-    yield "resurrections", data.resurrections
+    yield "resurrections", resurrections
     yield from _two_measures(job, measures)
     choice = measure_selection(of_all, measures, settings.confidence, job.study.seed)
     yield "measure_selection", choice
     systems = {system.name: system for system in job.study.configurations}
     at_once = not (job.study.slides or job.study.vertical)
     about = (job.study.floors, systems, record_set, settings.confidence, at_once)
-    by_floor, floor_fractions = floor_curves(data.of_floors, measures, *about)
+    by_floor, floor_fractions = floor_curves(of_floors, measures, *about)
     yield "fragility_floors", by_floor
     yield "fragility_floors_fractions", floor_fractions
     exports = job.folder / "exports"
@@ -70,7 +67,7 @@ def _two_measures(job: Job[Study], measures: pd.DataFrame) -> Results:
     columns = list(dict.fromkeys(measure for pair in pairs for measure in pair))
     tests = {}
     for configuration in job.study.configurations if pairs else []:
-        rows = rows_of(ida_curves_of(job, configuration))
+        rows = rows_of(ida_curves_of(job, configuration), MOST_LEVELS)
         tests[configuration.name] = with_measures(rows, measures, columns)
     settings = job.study.fragility
     found = vector_tables(tests, pairs, level=settings.confidence, seed=job.study.seed)
@@ -95,7 +92,7 @@ def best_of(choice: pd.DataFrame, asked: Sequence[str]) -> list[str]:
 
 
 def measure_selection(
-    ida_curves: Mapping[str, "IdaData"], measures: pd.DataFrame, level: float, seed: int
+    ida_curves: Mapping[str, "TableIda"], measures: pd.DataFrame, level: float, seed: int
 ) -> pd.DataFrame:
     """Compare measures for every configuration.
 
@@ -117,93 +114,67 @@ def measure_selection(
     return pd.concat(parts, ignore_index=True)
 
 
-MOST_LEVELS = 200
-"""Intensity levels of a motion that stand in a table of tests; of more every so many-th does."""
+MOST_LEVELS = 200  # intensity levels of a motion in fits of two measures
 
 
-def rows_of(parts: Iterable[Swept]) -> pd.DataFrame:
+def rows_of(parts: Iterable[Swept], most_levels: int | None = None) -> pd.DataFrame:
     """Put outcomes of IDA curves of one configuration into a table with a row a test.
 
-    Columns: ``earthquake``, ``floor``, ``motion``, ``amplitude_g`` and ``overturned`` (0 or 1).
+    Columns: ``earthquake``, ``floor``, ``motion``, ``amplitude_g`` and ``overturned`` (0 or 1). ``most_levels`` of
+    a motion are taken.
     """
-    about = ("earthquake", "floor", "motion")
-    tables = [part.rows(about, -(-part.amplitude_g.size // MOST_LEVELS)) for part in parts]
+    tables = []
+    for part in parts:
+        step = 1 if most_levels is None else -(-part.amplitude_g.size // most_levels)
+        tables.append(part.rows(("earthquake", "floor", "motion"), step))
     return pd.concat(tables, ignore_index=True).astype({"overturned": np.int64})
 
 
-BY = ["configuration", "earthquake", "floor", "motion"]
-
-
-@dataclass(frozen=True)
-class _IdaCurves:
+def _ida_curves(
+    job: Job[Study], measures: pd.DataFrame
+) -> tuple[dict[str, "TableIda"], "StateIdaCurves", pd.DataFrame]:
     """IDA curves by configuration, and by limit state, configuration and floor; resurrections of all."""
+    from rockfrag.fragility.counted import count_ida
+    from rockfrag.fragility.empirical import resurrections_of
 
-    of_all: dict[str, "IdaData"]
-    of_floors: "StateIdaCurves"
-    resurrections: pd.DataFrame
-
-
-def _states(study: Study) -> dict[str, tuple[LimitState, ...]]:
-    """Limit states that the IDA curve of each configuration counts."""
-    return {
-        configuration.name: tuple(state for state in limit_states() if state.counted(configuration))
-        for configuration in study.configurations
-    }
-
-
-def _rows(job: Job[Study], measures: pd.DataFrame) -> _IdaCurves:
-    """IDA curves as tables, every outcome a row."""
-    from rockfrag.fragility.empirical import TableIda, find_resurrections
-    from rockfrag.fragility.ida_curves import with_measures
-
-    ida = pd.concat(
-        [pd.read_parquet(job.file(path)) for path in job.study.ida_files], ignore_index=True
-    )
-    wanted = list(dict.fromkeys([*job.study.fragility.measures, *candidates()]))
-    measured = with_measures(ida, measures, wanted)
-    of_all: dict[str, IdaData] = {
-        str(name): TableIda(part) for name, part in measured.groupby("configuration", sort=False)
-    }
-    states = _states(job.study)
-    of_floors: StateIdaCurves = defaultdict(dict)
-    for (name, floor), part in ida.groupby(["configuration", "floor"], sort=False):
-        columns = floor_measures(job.study.floors[str(floor)])
-        here = with_measures(part, measures, columns)
-        for state in states[str(name)]:
-            reached = here[state.column].astype(bool)
-            of_floors[state.name][str(name), str(floor)] = TableIda(here.assign(overturned=reached))
-    return _IdaCurves(of_all, of_floors, find_resurrections(measured, by=BY))
-
-
-def _counted(job: Job[Study], measures: pd.DataFrame) -> _IdaCurves:
-    """IDA curves as counts, read part by part."""
-    from rockfrag.fragility.counted import CountedIda, count_ida
-
-    wanted = list(dict.fromkeys([*job.study.fragility.measures, *candidates()]))
-    floors = {name: floor_measures(level) for name, level in job.study.floors.items()}
-
-    def counted(
-        system: System, columns: Mapping[str, Sequence[str]], state: str = OVERTURNS
-    ) -> dict[str, CountedIda]:
-        first, again = (ida_curves_of(job, system, state=state) for _ in range(2))
-        return count_ida(first, again, measures, columns)
-
-    of_all: dict[str, IdaData] = {}
+    study = job.study
+    floors = {name: floor_measures(level) for name, level in study.floors.items()}
+    wanted = {"": tuple(dict.fromkeys([*study.fragility.measures, *candidates()])), **floors}
+    of_all: dict[str, TableIda] = {}
     of_floors: StateIdaCurves = defaultdict(dict)
     resurrections = []
-    states = _states(job.study)
-    for configuration in job.study.configurations:
-        found = counted(configuration, {"": wanted, **floors})
-        of_all[configuration.name] = found[""]
-        resurrections.append(found[""].windows)
-        for state in states[configuration.name]:
-            of_state = found
-            if state.name != OVERTURNS:
-                of_state = counted(configuration, floors, state.name)
+    for system in study.configurations:
+        windows = resurrections_of(ida_curves_of(job, system))
+        resurrections.append(windows)
+        for state in (state for state in limit_states() if state.counted(system)):
+            parts = ida_curves_of(job, system, state=state.name)
+            columns = wanted if state.name == OVERTURNS else floors
+            found: Mapping[str, TableIda] = (
+                count_ida(windows, parts, measures, columns)
+                if study.is_large
+                else _rows(parts, measures, columns)
+            )
+            if "" in found:
+                of_all[system.name] = found[""]
             for floor in floors:
-                of_floors[state.name][configuration.name, floor] = of_state[floor]
-    table = pd.concat(resurrections, ignore_index=True).sort_values(BY, ignore_index=True)
-    return _IdaCurves(of_all, of_floors, table)
+                of_floors[state.name][system.name, floor] = found[floor]
+    by = ["configuration", "earthquake", "floor", "motion"]
+    table = pd.concat(resurrections, ignore_index=True).sort_values(by, ignore_index=True)
+    return of_all, of_floors, table
+
+
+def _rows(
+    parts: Iterable[Swept], measures: pd.DataFrame, columns: Mapping[str, Sequence[str]]
+) -> dict[str, "TableIda"]:
+    """IDA curves with a row an outcome, by floor, those under the empty name of all floors."""
+    from rockfrag.fragility.empirical import TableIda
+    from rockfrag.fragility.ida_curves import with_measures
+
+    ida = rows_of(parts)
+    return {
+        floor: TableIda(with_measures(ida[ida["floor"] == floor] if floor else ida, measures, some))
+        for floor, some in columns.items()
+    }
 
 
 def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:

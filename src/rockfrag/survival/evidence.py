@@ -10,7 +10,7 @@ from scipy import special, stats
 
 from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G, HazardCurve, rate_weights
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 
 Floats = NDArray[np.float64]
 

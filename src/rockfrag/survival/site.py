@@ -9,7 +9,7 @@ from typing import Any
 
 from rockfrag.assess.hazard.curve import PGA, read_level, read_measure
 from rockfrag.errors import InputError, errors_of
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.schema import checked
 from rockfrag.survival.branches import Branch, read_branches
 from rockfrag.survival.evidence import Age, StandingObject, VelocityRelation, lognormal_coefficients

@@ -3,22 +3,23 @@
 from collections.abc import Sequence
 
 from rockfrag.report.part import Part
-from rockfrag.report.sections.amplitudes import COMPARISONS
-from rockfrag.report.sections.tested import MOTIONS
-from rockfrag.report.sections.validity import VALIDITY
-from rockfrag_thesis.sections.building import BUILDING
-from rockfrag_thesis.sections.counterparts import COUNTERPARTS
-from rockfrag_thesis.sections.floor_order import FLOOR_ORDER
-from rockfrag_thesis.sections.friction import FRICTION
-from rockfrag_thesis.sections.hypotheses import HYPOTHESES, MEASURED_HYPOTHESES
-from rockfrag_thesis.sections.inverse_problem import INVERSE_PROBLEM
-from rockfrag_thesis.sections.printed import PRINTED
-from rockfrag_thesis.sections.sensitivity_analysis import SENSITIVITY_ANALYSIS
-from rockfrag_thesis.sections.signs import SIGNS
+from rockfrag.report.sections.amplitudes import comparisons
+from rockfrag.report.sections.tested import motions, validity
+from rockfrag_thesis.sections.building import building
+from rockfrag_thesis.sections.counterparts import counterparts
+from rockfrag_thesis.sections.floor_order import floor_order_found
+from rockfrag_thesis.sections.friction import friction
+from rockfrag_thesis.sections.hypotheses import hypotheses_found, measured_hypotheses
+from rockfrag_thesis.sections.inverse_problem import inverse_problem
+from rockfrag_thesis.sections.printed import printed
+from rockfrag_thesis.sections.sensitivity_analysis import sensitivity_analysis
+from rockfrag_thesis.sections.signs import signs
 
-_BEHIND = {VALIDITY: (SENSITIVITY_ANALYSIS, INVERSE_PROBLEM, FRICTION)}
-_BEFORE = {MOTIONS: (BUILDING,)}
-_COMPARED = (SIGNS, FLOOR_ORDER, PRINTED, HYPOTHESES, MEASURED_HYPOTHESES)
+_BEHIND: dict[Part, tuple[Part, ...]] = {
+    validity: (sensitivity_analysis, inverse_problem, friction)
+}
+_BEFORE: dict[Part, tuple[Part, ...]] = {motions: (building,)}
+_COMPARED = (signs, floor_order_found, printed, hypotheses_found, measured_hypotheses)
 
 
 def with_thesis(parts: Sequence[Part], compares: bool) -> list[Part]:
@@ -30,4 +31,4 @@ def with_thesis(parts: Sequence[Part], compares: bool) -> list[Part]:
     ours = [p for part in parts for p in (*_BEFORE.get(part, ()), part, *_BEHIND.get(part, ()))]
     if not compares:
         return ours
-    return [*(COUNTERPARTS if part is COMPARISONS else part for part in ours), *_COMPARED]
+    return [*(counterparts if part is comparisons else part for part in ours), *_COMPARED]

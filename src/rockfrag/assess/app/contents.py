@@ -33,7 +33,7 @@ from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
 from rockfrag.fragility import held_out, vector
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.spectra import oscillator_matrix
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.browser import driver_text

@@ -17,7 +17,7 @@ from rockfrag.assess.sources import SOURCES
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import Motion
-from rockfrag.report.live.embedded import TEMPLATES, base64_text, json_text, scripts_of
+from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.units import GRAVITY
 

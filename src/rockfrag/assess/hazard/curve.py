@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure, declared
+from rockfrag.motions.intensity import IntensityMeasure, declared
 from rockfrag.short_repr import short_repr
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 

@@ -11,8 +11,8 @@ from markupsafe import Markup
 
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.report.live.embedded import TEMPLATES, base64_text, json_text, scripts_of
 from rockfrag.report.live.frames import frames_svg
+from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of
 from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import driver_text, in_page, module_bytes
 from rockfrag.rocking.ensemble import LightBodies
@@ -57,10 +57,12 @@ def _element(
     of_study = outcomes is not None
     if outcomes is None:
         outcomes = swept(bodies, motions)
-    amplitudes = np.sort(outcomes["amplitude_g"].unique())
-    rows = [
-        [_row(outcomes, name, motion.name, amplitudes) for motion in motions] for name in bodies
-    ]
+    by_case = outcomes.pivot_table(
+        "overturned", ["configuration", "motion"], "amplitude_g", aggfunc="first"
+    )
+    amplitudes = by_case.columns.to_numpy()
+    fell = by_case.astype(int).astype(str).agg("".join, axis=1)
+    rows = [[str(fell[name, motion.name]) for motion in motions] for name in bodies]
     body, motion = _start(bodies, rows)
     first = rows[body][motion].find("1")
     shown = first if first >= 0 else len(amplitudes) - 1
@@ -74,13 +76,9 @@ def _element(
         "outcomes": rows,
         "start": {"body": body, "motion": motion, "amplitude": float(amplitudes[shown])},
     }
-    three = (
-        amplitudes[[shown // 2, max(shown - 1, 0), shown]]
-        if first > 0
-        else amplitudes[[0, shown // 2, shown]]
-    )
+    three = (shown // 2, shown - 1, shown) if first > 0 else (0, shown // 2, shown)
     frames, words = frames_svg(
-        list(bodies.values())[body], motions[motion], list(dict.fromkeys(three.tolist()))
+        list(bodies.values())[body], motions[motion], amplitudes[np.unique(three)].tolist()
     )
     return Markup(
         TEMPLATES.get_template("live.html.j2").render(
@@ -113,13 +111,6 @@ def swept(bodies: Mapping[str, System], motions: Sequence[Motion]) -> pd.DataFra
         names=["configuration", "motion", "amplitude_g"],
     )
     return pd.DataFrame({"overturned": fell.ravel()}, index=index).reset_index()
-
-
-def _row(outcomes: pd.DataFrame, body: str, motion: str, amplitudes: Any) -> str:
-    """Outcomes of one body under one motion, a digit an amplitude."""
-    own = outcomes[(outcomes["configuration"] == body) & (outcomes["motion"] == motion)]
-    fell = own.set_index("amplitude_g")["overturned"].reindex(amplitudes)
-    return "".join("1" if fallen else "0" for fallen in fell.to_numpy(dtype=bool))
 
 
 def _start(bodies: Mapping[str, System], rows: list[list[str]]) -> tuple[int, int]:

@@ -10,7 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from rockfrag.records.motion import GroundMotion
-from rockfrag.report.live.embedded import TEMPLATES, base64_text, json_text, scripts_of
+from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Circle, RigidBody

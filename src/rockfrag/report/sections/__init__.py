@@ -1,21 +1,21 @@
 """Parts of the report of any study, in its order; a new part is written in a module here and an entry below."""
 
 from rockfrag.report.part import Part
-from rockfrag.report.sections import amplitudes, curves, measured, pedestal, tested, validity
+from rockfrag.report.sections import amplitudes, curves, pedestal, tested
 
 PARTS: tuple[Part, ...] = (
-    tested.LEFT_OUT,
-    amplitudes.AS_RECORDED,
-    amplitudes.AMPLITUDES,
-    amplitudes.COMPARISONS,
-    pedestal.PEDESTAL,
-    curves.FRAGILITY,
-    curves.TWO_MEASURES,
-    curves.FLOOR_CURVES,
-    curves.MEASURES,
-    validity.VALIDITY,
-    measured.MEASURED,
-    tested.SHAKER,
-    tested.MOTIONS,
-    tested.BODIES,
+    tested.left_out,
+    amplitudes.as_recorded,
+    amplitudes.amplitudes,
+    amplitudes.comparisons,
+    pedestal.pedestal,
+    curves.fragility,
+    curves.two_measures,
+    curves.floor_curves,
+    curves.measures,
+    tested.validity,
+    pedestal.measured,
+    tested.shaker,
+    tested.motions,
+    tested.bodies,
 )

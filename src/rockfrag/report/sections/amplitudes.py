@@ -15,11 +15,9 @@ from numpy.typing import NDArray
 from rockfrag import figure_style as style
 from rockfrag.files import file_name
 from rockfrag.pedestal.paired_tests import with_counterparts
-from rockfrag.report import findings
-from rockfrag.report.figures import amplitudes as figures
+from rockfrag.report import figures, findings
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
-from rockfrag.report.sections.words import says
+from rockfrag.report.part import FigureSpec, Results, Section, figure_of, says, section_of
 from rockfrag.report.wording import amplitude, label, shortened
 
 _MOTION = (Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion"))
@@ -40,7 +38,8 @@ def _wide(table: pd.DataFrame, texts: list[str], about: tuple[str, ...]) -> pd.D
     return pd.DataFrame(list(rows.values())).fillna("–")
 
 
-def _as_recorded(results: Results) -> Section:
+def as_recorded(results: Results) -> Section:
+    """What the motions do as strong as they were recorded."""
     recorded = results.table("as_recorded")
     names = recorded["configuration"].unique()
     columns = [*_MOTION, Column("pga_g", "Peak [g]", 3), *(Column(name, name) for name in names)]
@@ -65,7 +64,8 @@ def _outcome(row: dict[Any, Any]) -> str:
     return f"{words} (sensitive)" if 0 < row["fraction_near"] < 1 else words
 
 
-def _amplitudes(results: Results) -> Section:
+def amplitudes(results: Results) -> Section:
+    """The amplitude of every test, and all amplitudes that overturn."""
     resurrections = findings.resurrections_found(
         results.table("resurrections"), results.table("tests")
     )
@@ -95,7 +95,8 @@ def _maps(results: Results) -> list[FigureSpec]:
     return specs
 
 
-def _comparisons(results: Results) -> Section | None:
+def comparisons(results: Results) -> Section | None:
+    """Objects, floors and pedestals side by side."""
     study, tests, means = results.study, results.tests, results.table("mean_amplitudes")
     if len(tests) < 2:
         return None
@@ -242,8 +243,3 @@ def _bars(table: pd.DataFrame, bottom: float, height: float) -> list[NDArray[np.
         np.array([(a, bottom), (b, bottom), (b, bottom + height), (a, bottom + height)])
         for a, b in zip(starts, ends, strict=True)
     ]
-
-
-AS_RECORDED = Part(_as_recorded)
-AMPLITUDES = Part(_amplitudes)
-COMPARISONS = Part(_comparisons)

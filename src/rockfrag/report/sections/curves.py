@@ -20,11 +20,10 @@ from rockfrag.fragility.vector import INTERACTION_LEVEL
 from rockfrag.fragility.vector_tables import VectorTables, describe_pair
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.report.answer import has_one_record
-from rockfrag.report.figures.amplitudes import GREY
+from rockfrag.report.figures import GREY
 from rockfrag.report.findings import ONE_MOTION, strength_found
 from rockfrag.report.page import Column, Row, estimated, p_values, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
-from rockfrag.report.sections.words import says
+from rockfrag.report.part import FigureSpec, Results, Section, figure_of, says, section_of
 from rockfrag.report.wording import decimals_of, estimates, number, sentence, shortened
 from rockfrag.stages.fragility import best_of
 
@@ -57,7 +56,8 @@ _MEASURES = (
 )
 
 
-def _fragility(results: Results) -> Section:
+def fragility(results: Results) -> Section:
+    """Curves by object, in the measures and definitions that the study asks for."""
     if has_one_record(results):
         return Section("fragility", "Fragility", f"{ONE_MOTION.headline}.", [ONE_MOTION.text])
     order = {configuration.name: i for i, configuration in enumerate(results.study.configurations)}
@@ -137,7 +137,10 @@ def _lean(row: Row) -> str:
     return f"{row['influential']} (× {number(row['influence'], 2)})"
 
 
-def _two_measures(results: Results) -> Section | None:
+def two_measures(results: Results) -> Section | None:
+    """Fits in two measures; None where the study asks for none."""
+    if not results.study.fragility.pairs:
+        return None
     names = ("two_measures", "contours", "cells")
     tables = VectorTables(*(results.table(f"fragility_{name}") for name in names))
     return two_measures_section(tables, results.study.fragility.confidence)
@@ -180,7 +183,7 @@ def _contours(tables: VectorTables, found: pd.DataFrame) -> list[FigureSpec]:
     return specs
 
 
-def _floor_curves(results: Results) -> Section | None:
+def floor_curves(results: Results) -> Section | None:
     """Fragility on each floor in the peak of that floor's own motion, for each limit state."""
     curves = results.table("fragility_floors")
     shown = curves[(curves["measure"] == "pga_g") & curves["theta"].notna()]
@@ -200,7 +203,8 @@ def _floor_curves(results: Results) -> Section | None:
     return section_of(says.floor_curves(weakest, files), "floor_curves", [table])
 
 
-def _measures(results: Results) -> Section:
+def measures(results: Results) -> Section:
+    """The measure that predicts overturning best."""
     choice = results.table("measure_selection")
     asked = results.study.fragility.measures
     best = choice[choice["recommended"].astype(bool)]
@@ -330,9 +334,3 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
 def _axis(column: str) -> str:
     name, unit = name_and_unit(column)
     return f"{name} [{unit}]" if unit else name
-
-
-FRAGILITY = Part(_fragility)
-TWO_MEASURES = Part(_two_measures, asked=lambda study: bool(study.fragility.pairs))
-FLOOR_CURVES = Part(_floor_curves)
-MEASURES = Part(_measures)

@@ -1,4 +1,4 @@
-"""The effect of the pedestal: ratios of amplitudes with and without it."""
+"""The effect of the pedestal, ratios of amplitudes with and without it; and tests that were measured."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,13 +12,20 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from rockfrag import figure_style as style
-from rockfrag.report import page
-from rockfrag.report.figures.amplitudes import BAND, GREY
+from rockfrag.report import figures, page
+from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import WITH_PEDESTAL, Sides, pedestal_effect, ratio_of, sides_of
 from rockfrag.report.page import Column, Row, by_row, estimated, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
-from rockfrag.report.sections.words import says
-from rockfrag.report.wording import counted, has_interval, number, probability, sentence, shortened
+from rockfrag.report.part import FigureSpec, Results, Section, figure_of, says, section_of
+from rockfrag.report.wording import (
+    amplitude,
+    counted,
+    has_interval,
+    number,
+    probability,
+    sentence,
+    shortened,
+)
 from rockfrag.shaketable.definitions import DEFINITION
 
 MOST_ROWS = 45
@@ -68,8 +75,11 @@ def shown_effects(effects: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def _section(results: Results) -> Section:
+def pedestal(results: Results) -> Section | None:
+    """Ratios of amplitudes with and without a pedestal, or of arrangements that are compared."""
     study = results.study
+    if not study.has_pairs:
+        return None
     effects, whole = results.table("pedestal/effects"), results.table("pedestal/whole")
     here = effects[effects["definition"] == DEFINITION]
     about = sides_of(study)
@@ -195,4 +205,59 @@ def ratio_axis(
     axes.set_xlabel(sides.axis)
 
 
-PEDESTAL = Part(_section, asked=lambda study: study.has_pairs)
+_MEASURED = (
+    Column("object", "Object"),
+    Column("pedestal", "Side"),
+    Column("earthquake", "Earthquake"),
+    Column("floor", "Floor"),
+    Column("amplitude_g", "Measured [g]", by_row(amplitude)),
+    Column("simulated_g", "Simulated [g]", 3),
+    Column("ratio", "Measured / simulated", 2),
+)
+_MEASURED_CURVES = (
+    Column("configuration", "Configuration"),
+    estimated("theta", "Median θ [g]"),
+    Column("beta", "β", 3),
+)
+
+
+def measured(results: Results) -> Section | None:
+    """Measured tests, their curves and the effect of the pedestal in them."""
+    if results.study.measured_tests is None:
+        return None
+    beside = results.table("measured/beside")
+    ratio = np.log(beside["ratio"].dropna())
+    words = says.beside(len(beside), len(ratio), np.exp(ratio.mean()), ratio.std())
+    parts: list[Markup | FigureSpec] = []
+    if beside["simulated_g"].notna().any():
+        text = says.measured_beside_figure(words)
+        parts.append(figure_of(text, "measured_beside", lambda: measured_beside(beside)))
+    curves, effects = results.table("measured/fragility"), results.table("measured/effects")
+    parts += [
+        table_html(beside, _MEASURED, "Measured tests beside simulated ones."),
+        table_html(curves, _MEASURED_CURVES, "Fragility from the measured tests."),
+    ]
+    if len(effects):
+        caption = "Measured effect of the pedestal."
+        parts.append(table_html(shown_effects(effects), effect_columns(), caption))
+    notes = results.table("measured/notes")["note"]
+    return section_of(says.measured(words, notes), "measured", parts)
+
+
+def measured_beside(beside: pd.DataFrame) -> Figure:
+    """Draw measured against simulated figures."""
+    known = figures.drawn_tests(beside.dropna(subset=["simulated_g"]))
+    with style.one_panel(style.COLUMN_WIDTH, 3.2) as (figure, axes):
+        largest = 1.15 * float(known[["a", "simulated_g"]].to_numpy(dtype=float).max())
+        axes.plot([0, largest], [0, largest], color=figures.GREY, lw=0.8)
+        for side, name in figures.SIDE_NAME.items():
+            rows = known[known["pedestal"] == side]
+            if rows.empty:
+                continue
+            marker, colour = figures.SIDE_MARKER[side], figures.SIDE_COLOUR[side]
+            figures.plot_tests(axes, rows["simulated_g"].to_numpy(float), rows, marker, colour)
+            axes.plot([], [], marker, mfc="none", color=colour, label=name)
+        axes.set(xlim=(0, largest), ylim=(0, largest), aspect="equal")
+        axes.set(xlabel="Simulated amplitude [g]", ylabel="Measured amplitude [g]")
+        axes.legend()
+        return figure

@@ -1,4 +1,4 @@
-"""What was tested: the bodies, the motions and the shaking table, and what a study went on without."""
+"""What was tested: bodies, motions and shaking table, what the model assumes, and what a study went on without."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,15 +10,16 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from rockfrag import figure_style as style
-from rockfrag.motions.declared import intensity_measures
+from rockfrag.motions.intensity import intensity_measures
 from rockfrag.records.motion import Motion
-from rockfrag.report.figures.amplitudes import GREY, MARKERS, drawn_tests
+from rockfrag.report.figures import GREY, MARKERS, drawn_tests
+from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
+from rockfrag.report.part import FigureSpec, Results, Section, figure_of, says, section_of
 from rockfrag.report.sections.amplitudes import MOST_ROWS
-from rockfrag.report.sections.words import says
 from rockfrag.report.wording import label, number, shortened
 from rockfrag.stages.tests import LIMITED
+from rockfrag.stages.validity import MOST_TESTED
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 _LEFT_OUT = (Column("motion", "Record"), Column("reason", "Why it could not be used"))
@@ -40,18 +41,39 @@ _BODIES = (
     Column("frequency_1_s", "Frequency parameter p [1/s]", 2),
     Column("uplift_g", "Starts to rock at [g]", 3),
 )
+_VALIDITY = (
+    Column("object", "Object"),
+    Column("side", "Pedestal"),
+    Column("tests", "Tests", 0),
+    Column("median", "Friction needed, median", 2),
+    Column("largest", "largest", 2),
+    Column("beyond", "No friction is enough", 0),
+    Column("lifted", "Lifts off", 0),
+)
+_SLIDING = (
+    Column("configuration", "Configuration"),
+    Column("cases", "Analyses", 0),
+    Column("slid", "Slides", 0),
+    Column("flew", "Flies", 0),
+    Column("largest_slip_cm", "Largest slip [cm]", 1),
+    Column("saved", "Saved by sliding", 0),
+    Column("felled", "Overturned by it", 0),
+)
 
 
-def _left_out(results: Results) -> Section | None:
-    table = results.table("left_out")
-    if table.empty:
+def left_out(results: Results) -> Section | None:
+    """Records that a study went on without."""
+    if not results.study.keep_going or (table := results.table("left_out")).empty:
         return None
     shown = table_html(table, _LEFT_OUT, "Records that could not be used.", "left_out.csv")
     text = says.left_out(list(table["motion"]), len(results.study.catalogue))
     return section_of(text, "left-out", [shown])
 
 
-def _shaker(results: Results) -> Section:
+def shaker(results: Results) -> Section | None:
+    """What the shaking table could do."""
+    if results.study.shaker is None:
+        return None
     limits, tests = results.table("shaker"), results.table("tests")
     limited = tests[tests["definition"] == LIMITED]
     ended = limited[limited["censored"] == "right"]
@@ -70,7 +92,8 @@ def _shaker(results: Results) -> Section:
     return replace(section, parts=[figure, table_html(limits, _SHAKER, caption, "shaker.csv")])
 
 
-def _motions(results: Results) -> Section:
+def motions(results: Results) -> Section:
+    """The motions, how strong each is and how it goes."""
     measures, ground = results.table("measures"), results.ground
     columns = [Column("name", "Motion")] + [
         Column(each.column, f"{each.title or each.label} [{each.unit or '-'}]", each.decimals)
@@ -87,18 +110,49 @@ def _motions(results: Results) -> Section:
     return section_of(text, "motions", [table, figure])
 
 
-def _bodies(results: Results) -> Section:
-    bodies = results.table("bodies")
-    shown = bodies.assign(
-        stands_on=bodies["stands_on"].replace("", "the floor"),
-        width_cm=bodies["width_m"] * CENTIMETRES_PER_METRE,
-        height_cm=bodies["height_m"] * CENTIMETRES_PER_METRE,
-        uplift_g=bodies["uplift_m_s2"] / GRAVITY,
+def bodies(results: Results) -> Section:
+    """The objects, alone and on their pedestals."""
+    table = results.table("bodies")
+    shown = table.assign(
+        stands_on=table["stands_on"].replace("", "the floor"),
+        width_cm=table["width_m"] * CENTIMETRES_PER_METRE,
+        height_cm=table["height_m"] * CENTIMETRES_PER_METRE,
+        uplift_g=table["uplift_m_s2"] / GRAVITY,
     )
     ends = (number(value, 2) for value in (shown["uplift_g"].min(), shown["uplift_g"].max()))
     may_differ = results.study.slides or results.study.vertical
-    table = table_html(shown, _BODIES, "The objects, alone and on their pedestals.")
-    return section_of(says.bodies(len(shown), *ends, may_differ), "bodies", [table])
+    drawn = table_html(shown, _BODIES, "The objects, alone and on their pedestals.")
+    return section_of(says.bodies(len(shown), *ends, may_differ), "bodies", [drawn])
+
+
+def validity(results: Results) -> Section | None:
+    """What the model assumes, or what friction did where it is limited."""
+    if results.study.slides:
+        sliding = results.table("sliding")
+        shown = sliding.assign(largest_slip_cm=100 * sliding["largest_slip_m"])
+        table = table_html(shown, _SLIDING, "Sliding and flight in all analyses.")
+        return section_of(says.sliding(sliding_found(sliding)), "validity", [table])
+    tests = results.table("validity")
+    if tests.empty:
+        return None
+    demand = tests["friction_demand"].astype(float)
+    known = tests.assign(
+        needed=demand.where(np.isfinite(demand)), lifted=tests["least_normal_force_n"] <= 0
+    )
+    shown = known.groupby(["object", "pedestal"], sort=False, as_index=False).agg(
+        tests=("needed", "size"),
+        known=("needed", "count"),
+        median=("needed", "median"),
+        largest=("needed", "max"),
+        lifted=("lifted", "sum"),
+    )
+    shown = shown.assign(
+        side=shown["pedestal"].map({"P": "with", "NP": "without"}),
+        beyond=shown["tests"] - shown["known"],
+    )
+    caption = "Friction coefficient needed, and tests with lift-off."
+    text = says.validity(model_allowed(tests)[0], shown["tests"].max() < MOST_TESTED)
+    return section_of(text, "validity", [table_html(shown, _VALIDITY, caption)])
 
 
 def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
@@ -177,9 +231,3 @@ def acceleration_histories(motions: Sequence[Motion]) -> Figure:
         panels[-1].set_xlim(0, max(motion.time[-1] for motion in shown))
         figure.supylabel("Acceleration [g]", fontsize=8)
         return figure
-
-
-LEFT_OUT = Part(_left_out, asked=lambda study: study.keep_going)
-SHAKER = Part(_shaker, asked=lambda study: study.shaker is not None)
-MOTIONS = Part(_motions)
-BODIES = Part(_bodies)

@@ -6,11 +6,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from rockfrag.figure_style import COLUMN_WIDTH, OKABE_ITO, one_panel
-from rockfrag.report.figures.amplitudes import GREY, MARKERS
+from rockfrag.report.figures import GREY, MARKERS
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Part, Results, Section, figure_of, section_of
+from rockfrag.report.part import Results, Section, figure_of, section_of
 from rockfrag.report.wording import shortened
-from rockfrag.study.study import Study
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.settings import settings_of
 
@@ -31,12 +30,10 @@ _COLUMNS = (
 )
 
 
-def varies_building(study: Study) -> bool:
-    """Whether a study varies its building."""
-    return settings_of(study).sensitivity is not None
-
-
-def _section(results: Results) -> Section:
+def building(results: Results) -> Section | None:
+    """Amplitudes on the floors of other buildings; None where the study varies none."""
+    if settings_of(results.study).sensitivity is None:
+        return None
     means = results.table("building_sensitivity/means")
     floors = means[(means["by"] == "floor") & (means["pedestal"] == "NP")]
     varied = floors[floors["axis"] != "reference"]
@@ -87,6 +84,3 @@ def floor_amplitudes(means: pd.DataFrame, axis: str) -> Figure:
         axes.set(xlabel=AXIS_NAMES[axis], ylabel="Mean overturning amplitude [g]")
         figure.legend(loc="outside upper center", ncols=4)
     return figure
-
-
-BUILDING = Part(_section, asked=varies_building)

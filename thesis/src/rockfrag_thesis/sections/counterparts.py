@@ -9,16 +9,17 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockfrag import figure_style as style
-from rockfrag.report.figures import amplitudes
+from rockfrag.report import figures as amplitudes
 from rockfrag.report.findings import mean_sentence, objects_compared, ratio_of
-from rockfrag.report.part import Part, Results, Section, figure_of, section_of
-from rockfrag.report.sections.amplitudes import COMPARISONS
+from rockfrag.report.part import Results, Section, figure_of, section_of
+from rockfrag.report.sections.amplitudes import comparisons
 from rockfrag_thesis.sections import says
 
 
-def _section(results: Results) -> Section | None:
+def counterparts(results: Results) -> Section | None:
+    """Counterparts of the figures; without pairs what any study shows there."""
     if not results.study.has_pairs:
-        return COMPARISONS.section(results)
+        return comparisons(results)
     tests, means = results.tests, results.table("mean_amplitudes")
     ratio = ratio_of(results.table("pedestal/effects"))
     found, words = objects_compared(means, results.slenderness), mean_sentence(means)
@@ -79,6 +80,3 @@ def slenderness_figure(
         handles.append(Line2D([], [], color=style.BLACK, marker="_", ms=10, label="geometric mean"))
         figure.legend(handles=handles, loc="outside upper center", ncols=3, handletextpad=0.3)
     return figure
-
-
-COUNTERPARTS = Part(_section)

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, one_panel
 from rockfrag.report.answer import could_change, questions, rests_on, study_answer
-from rockfrag.report.figures.amplitudes import BAND, GREY
+from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import FRICTION, ratio_text
 from rockfrag.report.part import Answer, Finding, Results, figure_of, finding_of
 from rockfrag.report.sections.pedestal import NONE, ratio_axis

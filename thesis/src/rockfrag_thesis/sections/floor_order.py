@@ -14,11 +14,12 @@ from matplotlib.patches import Patch
 
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, GREEN, ORANGE, WIDEST, one_panel
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section, figure_of, section_of
+from rockfrag.report.part import FigureSpec, Results, Section, figure_of, section_of
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag_thesis.floor_order import HYPOTHESES, TIE
 from rockfrag_thesis.sections import says
-from rockfrag_thesis.sections.building import AXIS_NAMES, varies_building
+from rockfrag_thesis.sections.building import AXIS_NAMES
+from rockfrag_thesis.settings import settings_of
 
 FLOOR_STYLES = {
     "GF": ("ground floor", BLUE, "o"),
@@ -37,7 +38,10 @@ _COLUMNS = (
 )
 
 
-def _section(results: Results) -> Section:
+def floor_order_found(results: Results) -> Section | None:
+    """Order of the floors and margins of the hypotheses in other buildings; None where none is varied."""
+    if settings_of(results.study).sensitivity is None:
+        return None
     margins = results.table("building_sensitivity/margins")
     rows = margins[margins["definition"] == DEFINITION]
     order = rows[(rows["axis"] == "first_period_s") & (rows["hypothesis"] == "order")]
@@ -128,6 +132,3 @@ def floor_hypotheses(margins: pd.DataFrame, axis: str, definition: str) -> Figur
         bar.ax.set_yticklabels([str(mark) for mark in marks])
         bar.set_label("Margin [%], positive: holds")
     return figure
-
-
-FLOOR_ORDER = Part(_section, asked=varies_building)

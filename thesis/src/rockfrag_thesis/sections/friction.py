@@ -7,9 +7,8 @@ import pandas as pd
 
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, table_html
-from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.part import Results, Section, section_of
 from rockfrag.report.wording import said
-from rockfrag.study.study import Study
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.sections.inverse_problem import PLACES, goals
 from rockfrag_thesis.settings import settings_of
@@ -46,12 +45,10 @@ _COLUMNS = (
 )
 
 
-def asks_friction(study: Study) -> bool:
-    """Whether a study asks what friction does, and has pairs that could show it."""
-    return bool(settings_of(study).friction) and study.has_pairs
-
-
-def _section(results: Results) -> Section | None:
+def friction(results: Results) -> Section | None:
+    """What friction does to the ratio; None where the study does not ask it."""
+    if not (settings_of(results.study).friction and results.study.has_pairs):
+        return None
     effects = results.table("sensitivity_analysis/friction")
     tables = {place: _by_pair(effects, place) for place in PLACES}
     ground, above = tables.values()
@@ -104,6 +101,3 @@ def _found(tables: Mapping[str, Means], wanted: Mapping[str, float]) -> list[str
     usual = sum(map(_is_ordinary, signs))
     about = (ordinary, *ORDINARY, goal, len(tables["ground"]), named, len(clear), usual)
     return said(says.friction_found(*about))
-
-
-FRICTION = Part(_section, asked=asks_friction)

@@ -8,7 +8,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.report.page import Column, Row, table_html
-from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.part import Results, Section, section_of
 from rockfrag.report.wording import probability
 from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
 from rockfrag_thesis.sections import says
@@ -38,7 +38,10 @@ _HYPOTHESIS = Markup(
 )
 
 
-def _section(results: Results) -> Section:
+def hypotheses_found(results: Results) -> Section | None:
+    """What was found of each hypothesis, and where the thesis contradicts itself."""
+    if not results.study.has_pairs:
+        return None
     hypotheses, contradictions = results.table("hypotheses"), results.table("contradictions")
     parts = [
         table_html(outcomes_by_kind(hypotheses), _KINDS, "What was found, by kind of hypothesis."),
@@ -48,7 +51,10 @@ def _section(results: Results) -> Section:
     return outcomes_section("hypotheses", "The thesis’s hypotheses", hypotheses, parts)
 
 
-def _measured(results: Results) -> Section | None:
+def measured_hypotheses(results: Results) -> Section | None:
+    """What measured tests say of the hypotheses."""
+    if results.study.measured_tests is None:
+        return None
     hypotheses = results.table("measured/hypotheses")
     if hypotheses.empty:
         return None
@@ -103,7 +109,3 @@ def outcomes_by_kind(hypotheses: pd.DataFrame) -> pd.DataFrame:
         words = ", ".join(f"{count} {outcome}" for outcome, count in counts)
         rows.append((kind, len(part), words))
     return pd.DataFrame(rows, columns=["kind", "hypotheses", "outcomes"])
-
-
-HYPOTHESES = Part(_section, asked=lambda study: study.has_pairs)
-MEASURED_HYPOTHESES = Part(_measured, asked=lambda study: study.measured_tests is not None)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import pandas as pd
 
 from rockfrag.report.page import Column, Row, by_row, table_html
-from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.part import Results, Section, section_of
 from rockfrag.report.wording import said, sentence
 from rockfrag.study.study import Study
 from rockfrag_thesis.sections import says
@@ -38,7 +38,10 @@ def asks_inverse_problem(study: Study) -> bool:
     return asks_sensitivity_analysis(study) and bool(settings_of(study).wanted_percent)
 
 
-def _section(results: Results) -> Section | None:
+def inverse_problem(results: Results) -> Section | None:
+    """What would give the effect asked for; None where the study asks for none."""
+    if not asks_inverse_problem(results.study):
+        return None
     table = results.table("sensitivity_analysis/inverse_problem")
     if table.empty:
         return None
@@ -93,6 +96,3 @@ def mechanism_name(row: Row) -> str:
         for number in (1, 2)
         if row[f"factor_{number}"]
     )
-
-
-INVERSE_PROBLEM = Part(_section, asked=asks_inverse_problem)

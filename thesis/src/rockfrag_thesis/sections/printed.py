@@ -7,7 +7,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.report.page import framed
-from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.part import Results, Section, section_of
 from rockfrag.report.wording import number
 from rockfrag_thesis.sections import says
 
@@ -21,7 +21,8 @@ _CAPTIONS = {
 }
 
 
-def _section(results: Results) -> Section:
+def printed(results: Results) -> Section:
+    """The printed tables beside what is computed."""
     comparison = pd.concat([results.table(name) for name in _CAPTIONS], ignore_index=True)
     known = comparison[comparison["agrees"].notna()]
     wrong = known[~known["agrees"].astype(bool)]
@@ -61,6 +62,3 @@ def _compared(row: Mapping[str, Any] | None) -> Markup:
     return Markup("<span>{}<br><small>{} {}</small></span>").format(
         number(row["computed"], 4), row["printed"], sign
     )
-
-
-PRINTED = Part(_section)

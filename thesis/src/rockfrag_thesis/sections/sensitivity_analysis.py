@@ -13,10 +13,10 @@ from matplotlib.lines import Line2D
 
 from rockfrag.figure_style import BLACK, OKABE_ITO, WIDEST, one_panel
 from rockfrag.pedestal.cluster_means import benjamini_hochberg
-from rockfrag.report.figures.amplitudes import BAND, GREY, MARKERS
+from rockfrag.report.figures import BAND, GREY, MARKERS
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, estimated, table_html
-from rockfrag.report.part import Part, Results, Section, figure_of, section_of
+from rockfrag.report.part import Results, Section, figure_of, section_of
 from rockfrag.report.sections.pedestal import NONE, ratio_axis
 from rockfrag.report.wording import has_interval, one_line, probability, sentence, shortened
 from rockfrag.study.study import Study
@@ -130,7 +130,10 @@ def perturbations(effects: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def _section(results: Results) -> Section | None:
+def sensitivity_analysis(results: Results) -> Section | None:
+    """What each perturbed parameter does to the ratio; None where the study perturbs none."""
+    if not asks_sensitivity_analysis(results.study):
+        return None
     effects = results.table("sensitivity_analysis/effects")
     whole = perturbations(effects)
     if whole.empty:
@@ -241,6 +244,3 @@ def _draw_floors(
         if floor in ratios.index:
             axes.plot(ratios[floor], y, ls="", ms=3.2, mew=0, zorder=2, **style)
     return [float(value) for value in ratios]
-
-
-SENSITIVITY_ANALYSIS = Part(_section, asked=asks_sensitivity_analysis)

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Part, Results, Section, section_of
+from rockfrag.report.part import Results, Section, section_of
 from rockfrag.report.wording import sentence
 from rockfrag_thesis.hypotheses.floors import FLOORS, GROUND
 from rockfrag_thesis.sections import says
@@ -37,7 +37,10 @@ def perturbations_by_floor(effects: pd.DataFrame) -> pd.DataFrame:
     return perturbations(effects).merge(found.reset_index(), on=keys, how="left")
 
 
-def _section(results: Results) -> Section:
+def signs(results: Results) -> Section | None:
+    """Which perturbed parameters have the signs that the thesis reports; None where the study perturbs none."""
+    if not asks_sensitivity_analysis(results.study):
+        return None
     table = perturbations_by_floor(results.table("sensitivity_analysis/effects"))
     kinds = ("signs", "beyond_chance")
     named, clear = (list(table.loc[table[kind], "name"]) for kind in kinds)
@@ -48,6 +51,3 @@ def _section(results: Results) -> Section:
     caption = "Mean ratio of amplitudes with/without pedestal by floor."
     text = says.signs(named, clear, len(table))
     return section_of(text, "signs", [table_html(shown, _COLUMNS, caption)])
-
-
-SIGNS = Part(_section, asked=asks_sensitivity_analysis)
