@@ -77,13 +77,8 @@ def read_campaign(
     }
     kinds = {columns[key]: kind for kind, some in keys.items() for key in some if key in columns}
     raw = read_columns(path, dict.fromkeys(factors, "positive") | kinds)
-    tests = pd.DataFrame(
-        {
-            "test": raw[columns["test"]],
-            "motion": raw[columns["motion"]] if "motion" in columns else "",
-        }
-    )
-    tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
+    motion = raw[columns["motion"]] if "motion" in columns else ""
+    tests = pd.DataFrame({"test": raw[columns["test"]], "motion": motion, "group": ""})
     doubled = tests["test"][tests["test"].duplicated()]
     if len(doubled):
         raise InputError(f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test.")
@@ -95,7 +90,7 @@ def read_campaign(
         tests["motion"] = [
             ", ".join(f"{m} {v:g}" for m, v in zip(measures, row, strict=True)) for row in rows
         ]
-        tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
+    tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
     for key in NOTED:
         if key in columns:
             tests[key] = raw[columns[key]].astype(bool)
