@@ -117,17 +117,10 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
             if left[0] <= right[0]:
                 method, case = "interval estimate (brackets overlap)", "overlap"
                 curve, log_likelihood = (*curve[:2], lognormal.NO_COVARIANCE), float("nan")
+    counted = (low.size, brackets.n_overturned, brackets.n_motions)
+    notes = tuple(lognormal.SAY("brackets", brackets, case))
     return lognormal.FragilityFit(
-        *curve,
-        log_likelihood,
-        low.size,
-        brackets.n_overturned,
-        brackets.n_motions,
-        method,
-        brackets.name,
-        brackets.unit,
-        "probit",
-        tuple(lognormal.SAY("brackets", brackets, case)),
+        *curve, log_likelihood, *counted, method, brackets.name, brackets.unit, "probit", notes
     )
 
 

@@ -179,20 +179,11 @@ def fit_vector(
     groups = int(group.max()) + 1
     replicates = _replicates(design, outcome, group, fit.coefficients)
     names = [name_and_unit(column)[0] for column in measures]
-    return VectorFragility(
-        measures,
-        tuple(fit.coefficients.tolist()),
-        tuple(tuple(row) for row in np.linalg.inv(fit.information).tolist()),
-        fit.log_likelihood,
-        fit.method,
-        replicates,
-        interaction,
-        int(outcome.size),
-        int(outcome.sum()),
-        groups,
-        level,
-        tuple(_say("notes", names, fit, replicates, groups)),
-    )
+    notes = tuple(_say("notes", names, fit, replicates, groups))
+    covariance = tuple(tuple(row) for row in np.linalg.inv(fit.information).tolist())
+    found = (tuple(fit.coefficients.tolist()), covariance, fit.log_likelihood, fit.method)
+    counted = (int(outcome.size), int(outcome.sum()), groups)
+    return VectorFragility(measures, *found, replicates, interaction, *counted, level, notes)
 
 
 class _Fit(NamedTuple):

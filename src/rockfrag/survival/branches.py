@@ -18,7 +18,7 @@ from rockfrag.assess.hazard.curve import HazardCurve, make_curve
 from rockfrag.assess.hazard.reading import LARGEST_FILE, read_openquake
 from rockfrag.assess.hazard.table import annual_rates, level_column, measure_of
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.tabular import read_cells, read_rows, read_text
 
 MOST_BRANCHES = 10_000

@@ -8,7 +8,7 @@ import re
 
 from rockfrag.assess.hazard.curve import HazardCurve, make_curve, rates_of, read_measure
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.tabular import cells_of
 from rockfrag.units import GRAVITY
 

@@ -101,6 +101,12 @@ def point_velocity(y, rows, p):
 
 
 @kernel
+def velocity_of(body, y, rows, i):
+    """Velocity in the world of point i."""
+    return point_velocity(y, rows, arm(body, rows[2], i))
+
+
+@kernel
 def energy(body, y, g):
     """Kinetic energy and the energy of height over rest [J/kg]."""
     omega = omega_of(y)
@@ -117,15 +123,10 @@ def free_spin(body, omega):
 
 
 @kernel
-def first_candidate(body):
-    """Number of the first point that may touch when the body is not flat: the rim, or vertex 0."""
-    return body.count if body.rim > 0 else 0
-
-
-@kernel
-def last_candidate(body):
-    """One more than the number of the last such point."""
-    return body.count + 1 if body.rim > 0 else body.count
+def candidates(body):
+    """Numbers of the points that may touch when the body is not flat: the rim's, or the vertices."""
+    first = body.count if body.rim > 0 else 0
+    return range(first, body.count + (first > 0))
 
 
 @kernel

@@ -36,13 +36,13 @@ RAYS /= np.sqrt((RAYS * RAYS).sum(axis=1, keepdims=True))
 
 
 @kernel
-def product(s, n, x, out):
-    """Fill in out = W x + b."""
+def fill_after(s, n):
+    """Fill in the velocities after the impulses, u = W P + b."""
     for i in range(3 * n):
         value = s.free[i]
         for j in range(3 * n):
-            value += s.delassus[i, j] * x[j]
-        out[i] = value
+            value += s.delassus[i, j] * s.impulse[j]
+        s.after[i] = value
 
 
 @kernel
@@ -151,9 +151,9 @@ def fill_slopes(s, size, x, pace):
 
 
 @kernel
-def newton(s, n, mask, pace, small):
-    """Improve the impulses of a set until the residuals vanish; return whether they do."""
-    x, size = s.impulse, members(s, n, mask)
+def newton(s, size, pace, small):
+    """Improve the impulses of the members of a set until the residuals vanish; return whether they do."""
+    x = s.impulse
     worst = residuals(s, size, x, pace, s.right)
     stuck = 0
     for _ in range(NEWTON_STEPS):
@@ -222,75 +222,60 @@ def others_open(s, n, mask, small):
 
 
 @kernel
-def bits(mask):
-    """Return the number of contacts in a set."""
-    return (mask & 1) + ((mask >> 1) & 1) + ((mask >> 2) & 1) + ((mask >> 3) & 1)
-
-
-@kernel
-def stick_set(s, n, mask, scale, largest):
-    """Solve for one set that sticks; return whether all of it pushes and nothing else approaches."""
-    small = 1e-11 * scale
-    size = bits(mask)
+def stick_set(s, n, mask, size, largest):
+    """Solve for one set that sticks; return whether its equations have a solution."""
     for i in range(3 * n):
         s.impulse[i] = 0.0
     if size == 1:
-        stick_alone(s, n, mask)
+        stick_alone(s, s.member[0])
     elif size > 1:
         if not stick_together(s, n, mask, SOFT * largest):
             return False
         if size == 2:
-            fraction_in_set(s, n, mask)
-    return cones_hold(s, n, mask, small / largest) and others_open(s, n, mask, small)
+            fraction_in_set(s, s.member[0], s.member[1])
+    return True
 
 
 @kernel
-def stick_alone(s, n, mask):
+def stick_alone(s, i):
     """Solve for the impulse at which the one contact of a set sticks (or slides the given way)."""
-    for i in range(n):
-        if in_set(mask, i):
-            a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
-            w = s.delassus
-            if s.given[i]:
-                way = (-s.friction[i] * s.way[i, 0], -s.friction[i] * s.way[i, 1])
-                normal = -s.free[c] / (w[c, c] + w[c, a] * way[0] + w[c, b] * way[1])
-                s.impulse[a], s.impulse[b] = way[0] * normal, way[1] * normal
-                s.impulse[c] = normal
-            else:
-                s.impulse[a], s.impulse[b], s.impulse[c] = solve_symmetric(
-                    w[a, a], w[a, b], w[a, c], w[b, b], w[b, c], w[c, c],
-                    (-s.free[a], -s.free[b], -s.free[c]),
-                )  # fmt: skip
+    a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
+    w = s.delassus
+    if s.given[i]:
+        way = (-s.friction[i] * s.way[i, 0], -s.friction[i] * s.way[i, 1])
+        normal = -s.free[c] / (w[c, c] + w[c, a] * way[0] + w[c, b] * way[1])
+        s.impulse[a], s.impulse[b], s.impulse[c] = way[0] * normal, way[1] * normal, normal
+    else:
+        s.impulse[a], s.impulse[b], s.impulse[c] = solve_symmetric(
+            w[a, a], w[a, b], w[a, c], w[b, b], w[b, c], w[c, c],
+            (-s.free[a], -s.free[b], -s.free[c]),
+        )  # fmt: skip
 
 
 @kernel
-def slide_set(s, n, mask, scale, largest):
-    """Solve for one set of which some slides; return whether all of it pushes and nothing else approaches."""
+def slide_set(s, n, mask, size, largest, scale):
+    """Solve for one set of which some slides; return whether a solution within the cones was found."""
     small, pace = 1e-11 * scale, 1.0 / largest
-    if bits(mask) == 1:
-        return (
-            slide_alone(s, n, mask)
-            and cones_hold(s, n, mask, small / largest)
-            and others_open(s, n, mask, small)
-        )
-    if mask == 0 or not stick_together(s, n, mask, SOFT * largest):
+    if size == 1:
+        return slide_alone(s, n, s.member[0])
+    if size == 0 or not stick_together(s, n, mask, SOFT * largest):
         return False
     # shears are shortened to the cones, from which Newton's method then begins
     for i in range(n):
         if in_set(mask, i) and not s.given[i]:
             a = 3 * i
             limit = s.friction[i] * max(s.impulse[a + 2], 0.0)
-            size = norm(s.impulse[a], s.impulse[a + 1])
-            if size > limit:
-                s.impulse[a] *= limit / size
-                s.impulse[a + 1] *= limit / size
-    found = newton(s, n, mask, pace, CLOSE_ENOUGH * scale)
+            shear = norm(s.impulse[a], s.impulse[a + 1])
+            if shear > limit:
+                s.impulse[a] *= limit / shear
+                s.impulse[a + 1] *= limit / shear
+    found = newton(s, size, pace, CLOSE_ENOUGH * scale)
     for k in range(4):
         if found and cones_hold(s, n, mask, small / largest):
             break
         start_sliding(s, n, mask, 1.5707963267948966 * k)
-        found = newton(s, n, mask, pace, CLOSE_ENOUGH * scale)
-    return found and cones_hold(s, n, mask, small / largest) and others_open(s, n, mask, small)
+        found = newton(s, size, pace, CLOSE_ENOUGH * scale)
+    return found
 
 
 @kernel
@@ -309,13 +294,10 @@ def off_direction(s, i, e, f):
 
 
 @kernel
-def slide_alone(s, n, mask):
+def slide_alone(s, n, i):
     """Solve for the impulse at which the one contact of a set slides, with the least energy left, if it can."""
     for j in range(3 * n):
         s.impulse[j] = 0.0
-    i = 0
-    while not in_set(mask, i):
-        i += 1
     if s.given[i]:
         return False
     a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
@@ -335,9 +317,8 @@ def slide_alone(s, n, mask):
                 left -= normal * s.friction[i] * slip / gives
                 if not found or left < least:
                     found, least = True, left
-                    s.impulse[a] = -s.friction[i] * normal * e
+                    s.impulse[a], s.impulse[c] = -s.friction[i] * normal * e, normal
                     s.impulse[b] = -s.friction[i] * normal * f
-                    s.impulse[c] = normal
         p, q, before = u, v, after
     return found
 
@@ -367,17 +348,10 @@ def direction_between(s, i, p, q, u, v, before, after):
 
 
 @kernel
-def fraction_in_set(s, n, mask):
+def fraction_in_set(s, first, second):
     """Share along the edge between the two contacts of a set so that both cones hold, if they can and may."""
-    first, second = -1, -1
-    for i in range(n):
-        if in_set(mask, i):
-            if s.given[i]:
-                return
-            if first < 0:
-                first = i
-            else:
-                second = i
+    if s.given[first] or s.given[second]:
+        return
     edge = (s.edge[first, second, 0], s.edge[first, second, 1])
     p, along = s.impulse, 0.0
     room_for = (0.0, 0.0)
@@ -396,24 +370,6 @@ def fraction_in_set(s, n, mask):
 
 
 @kernel
-def scale_of(s, n):
-    """Largest velocity (or acceleration) that there is to stop."""
-    largest = 1e-300
-    for i in range(3 * n):
-        largest = max(largest, abs(s.free[i]))
-    return largest
-
-
-@kernel
-def energy_left(s, n):
-    """Change of kinetic energy by the impulses: P·b + P·W P / 2."""
-    change = 0.0
-    for i in range(3 * n):
-        change += 0.5 * s.impulse[i] * (s.free[i] + s.after[i])
-    return change
-
-
-@kernel
 def solve_cones(s, n, least):
     """Find the impulses: all that push stick if that is possible; the fewest that push; the least energy left.
 
@@ -427,29 +383,33 @@ def solve_cones(s, n, least):
     if chosen >= 0:
         for i in range(3 * n):
             s.impulse[i] = s.best[i]
-        product(s, n, s.impulse, s.after)
+        fill_after(s, n)
     return chosen, ways
 
 
 @kernel
 def fewest(s, n, least, slide):
     """Find the smallest set that sticks (or slides), with the least energy left, and how many are as small."""
-    scale, largest = scale_of(s, n), largest_compliance(s, n)
+    largest, scale = largest_compliance(s, n), 1e-300
+    for i in range(3 * n):
+        # the largest velocity (or acceleration) that there is to stop
+        scale = max(scale, abs(s.free[i]))
+    small = 1e-11 * scale
     chosen, ways, size_found, lowest = -1, 0, 99, 0.0
     for k in range(1 << MOST):
         mask = ORDER[k]
-        size = bits(mask)
+        size = members(s, n, mask)
         if mask >= (1 << n) or size < least or size > size_found:
             continue
-        solved = (
-            slide_set(s, n, mask, scale, largest)
-            if slide
-            else stick_set(s, n, mask, scale, largest)
-        )
-        if solved:
+        solved = slide == 0 and stick_set(s, n, mask, size, largest)
+        solved = solved or (slide == 1 and slide_set(s, n, mask, size, largest, scale))
+        if solved and cones_hold(s, n, mask, small / largest) and others_open(s, n, mask, small):
             ways += 1
-            product(s, n, s.impulse, s.after)
-            change = energy_left(s, n)
+            fill_after(s, n)
+            # change of kinetic energy by the impulses: P·b + P·W P / 2
+            change = 0.0
+            for i in range(3 * n):
+                change += 0.5 * s.impulse[i] * (s.free[i] + s.after[i])
             if chosen < 0 or change < lowest - 1e-12 * scale * scale:
                 chosen, lowest, size_found = mask, change, size
                 for i in range(3 * n):

@@ -20,8 +20,15 @@ def fill_body(body: Any, g: float) -> bool:
         _reach_of_polygon(body)
     body.barrier = g * (hypot(body.nearest, body.height) - body.height)
     for i in range(body.count):
-        body.points[i, 2] = -body.height
-        _fill_about(body, i)
+        p, about = body.points[i], body.about[i]
+        p[2] = -body.height
+        square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
+        # tensor about the point
+        for j in range(3):
+            for k in range(3):
+                about[j, k] = body.inertia[j, k] - p[j] * p[k]
+            about[j, j] += square
+        _invert(about, body.about_inverse[i])
     return bool(body.nearest > 0)
 
 
@@ -48,17 +55,6 @@ def _reach_of_polygon(body: Any) -> None:
         edge = (across * x - along * y) / hypot(along, across)
         body.nearest = min(body.nearest, edge)
         body.furthest = max(body.furthest, hypot(x, y))
-
-
-def _fill_about(body: Any, i: int) -> None:
-    """Tensor about point i."""
-    p, about = body.points[i], body.about[i]
-    square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
-    for j in range(3):
-        for k in range(3):
-            about[j, k] = body.inertia[j, k] - p[j] * p[k]
-        about[j, j] += square
-    _invert(about, body.about_inverse[i])
 
 
 def _invert(of: Any, into: Any) -> None:

@@ -117,7 +117,7 @@ def fill_delassus(body, rows, which, n, delassus):
 def fill_velocities(body, y, rows, which, n, out):
     """Fill in the velocities of contacts."""
     for i in range(n):
-        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], which[i]))
+        u = solid.velocity_of(body, y, rows, which[i])
         for k in range(3):
             out[3 * i + k] = u[k]
 
@@ -193,18 +193,15 @@ def hinge_acceleration(body, rows, omega, weight, i, j):
 
 
 @kernel
-def far_force(body, rows, omega, alpha, whole, e, i, j):
-    """Force at the far end j of the edge from point i but for its part along the edge, by the moment about i."""
-    p, q = solid.arm(body, rows[2], i), solid.arm(body, rows[2], j)
+def share_force(body, rows, omega, alpha, force, e, s):
+    """Share the force of a hinge between its ends so that both hold if they can; world components."""
+    p, q = (solid.arm(body, rows[2], s.closed[0]), solid.arm(body, rows[2], s.closed[1]))
     gyroscopic = cross(omega, times(body.inertia, omega))
-    left = minus(plus(times(body.inertia, alpha), gyroscopic), cross(p, whole))
-    return scaled(1.0 / dot(minus(q, p), e), cross(left, e))
-
-
-@kernel
-def fraction_along(whole, far, edge, friction, s):
-    """Share the force along an edge between its ends so that both hold if they can; world components."""
-    near = minus(whole, far)
+    # but for its part along the edge, the force at the far end follows from the moment about the near one
+    left = minus(plus(times(body.inertia, alpha), gyroscopic), cross(p, force))
+    far = to_world(rows, scaled(1.0 / dot(minus(q, p), e), cross(left, e)))
+    edge, friction = to_world(rows, e), body.static
+    near = minus(to_world(rows, force), far)
     along = dot(near, edge)
     across = minus(near, scaled(along, edge))
     first = max(friction**2 * across[2] ** 2 - across[0] ** 2 - across[1] ** 2, 0.0)
@@ -285,7 +282,7 @@ def solve_general(body, y, rows, n, friction, s):
     """Solve for the forces (or impulses) that undo s.free in a mode; fill ``lam`` in world components."""
     fill_delassus(body, rows, s.closed, n, s.delassus)
     for i in range(n):
-        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.closed[i]))
+        u = solid.velocity_of(body, y, rows, s.closed[i])
         s.way[i, 0], s.way[i, 1] = slip_direction(s, i, u[0], u[1])
         s.given[i], s.friction[i] = s.slides[i], friction
     stick_together(s, n, (1 << n) - 1, SOFTNESS * largest_compliance(s, n))
@@ -324,12 +321,10 @@ def rates(body, tau, y, dy, s, share=True):
         acceleration = plus(pull, pushed)
     elif kind == HINGE:
         i, j = s.closed[0], s.closed[1]
-        alpha, whole, e = hinge_acceleration(body, rows, omega, weight, i, j)
-        pushed = to_world(rows, whole)
+        alpha, force, e = hinge_acceleration(body, rows, omega, weight, i, j)
         if share:
-            far = far_force(body, rows, omega, alpha, whole, e, i, j)
-            fraction_along(pushed, to_world(rows, far), to_world(rows, e), body.static, s)
-        acceleration = plus(pull, pushed)
+            share_force(body, rows, omega, alpha, force, e, s)
+        acceleration = plus(pull, to_world(rows, force))
     elif kind == SLIDER:
         spin = solid.free_spin(body, omega)
         force, p, u = slider_force(body, y, rows, omega, spin, weight, s)

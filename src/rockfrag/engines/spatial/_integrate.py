@@ -48,27 +48,24 @@ def set_field(field, acceleration, k, scale, dt, g):
 
 
 @kernel
-def lies_still(body, pull):
-    """Whether a flat body rests whichever way it is pulled."""
-    level = algebra.norm(pull[0], pull[1])
-    return (
-        level * body.height < -pull[2] * body.nearest * (1 - 1e-9)
-        and level < -body.static * pull[2]
-    )
-
-
-@kernel
 def rest_ends(body, y, field, tau, dt):
     """When the ground no longer carries the body at rest, -1 if it does: concave margins need only ends."""
-    if lies_still(body, forces.pull_at(field, dt)):
+    pull = forces.pull_at(field, dt)
+    level = algebra.norm(pull[0], pull[1])
+    if (
+        level * body.height < -pull[2] * body.nearest * (1 - 1e-9)
+        and level < -body.static * pull[2]
+    ):
+        # a flat body rests whichever way it is pulled
         return -1.0
     rows = algebra.rotation(y)
-    if modes.rest_margin(body, y, rows, forces.pull_at(field, dt)) >= 0:
+    below = modes.rest_margin(body, y, rows, pull)
+    if below >= 0:
         return -1.0
     above = modes.rest_margin(body, y, rows, forces.pull_at(field, tau))
     if above <= 0:
         return tau
-    bracket = (tau, above, dt, modes.rest_margin(body, y, rows, forces.pull_at(field, dt)), 0)
+    bracket = (tau, above, dt, below, 0)
     for _ in range(100):
         low, above, high, below, _ = bracket
         middle = (low * below - high * above) / (below - above)
@@ -207,7 +204,7 @@ def lowest_open(body, y, s):
     """Number of the lowest open point."""
     up = algebra.rotation(y)[2]
     lowest, found = 1e300, 0
-    for i in range(solid.first_candidate(body), solid.last_candidate(body)):
+    for i in solid.candidates(body):
         if not step.is_closed(s, i):
             height = solid.gap(body, y, up, i)
             if height < lowest:
@@ -219,7 +216,7 @@ def lowest_open(body, y, s):
 def rising(body, y, i):
     """Velocity upwards of point i."""
     rows = algebra.rotation(y)
-    return solid.point_velocity(y, rows, solid.arm(body, rows[2], i))[2]
+    return solid.velocity_of(body, y, rows, i)[2]
 
 
 @kernel
@@ -542,15 +539,14 @@ def note_loss(loss, out):
 def look_after_rim(body, y, tau, cut, ahead, s, out):
     """Pass a rolling rim through flat, or let it rest."""
     up = algebra.rotation(y)[2]
-    if s.count == 1 and algebra.norm(up[0], up[1]) < FLAT_PASS:
-        before = solid.energy(body, y, s.field[6])
-        pass_flat(body, y, s)
-        note_loss(before - solid.energy(body, y, s.field[6]), out)
-        return 1e-9
     before = solid.energy(body, y, s.field[6])
-    small_rim(body, y, tau, cut, s)
+    passes = s.count == 1 and algebra.norm(up[0], up[1]) < FLAT_PASS
+    if passes:
+        pass_flat(body, y, s)
+    else:
+        small_rim(body, y, tau, cut, s)
     note_loss(before - solid.energy(body, y, s.field[6]), out)
-    return ahead
+    return 1e-9 if passes else ahead
 
 
 @entry_kernel

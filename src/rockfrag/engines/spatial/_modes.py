@@ -29,10 +29,10 @@ def touching(body, y, rows, s):
     speed = s.vector
     if body.rim > 0 and algebra.norm(rows[2][0], rows[2][1]) < 1e-9:
         return stand_on_feet(body, y, rows, s)
-    for i in range(solid.first_candidate(body), solid.last_candidate(body)):
+    for i in solid.candidates(body):
         if solid.gap(body, y, rows[2], i) > TOUCH:
             continue
-        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], i))[2]
+        u = solid.velocity_of(body, y, rows, i)[2]
         if n < forces.MOST:
             s.which[n], speed[n] = i, u
             n += 1
@@ -79,29 +79,6 @@ def fill_edges(body, y, rows, which, n, s):
 
 
 @kernel
-def prepare_impact(body, y, rows, n, s):
-    """Set up the problem of an impact at the contacts s.which; points that slid keep kinetic friction."""
-    forces.fill_delassus(body, rows, s.which, n, s.delassus)
-    forces.fill_velocities(body, y, rows, s.which, n, s.free)
-    for i in range(n):
-        s.given[i] = 0
-        slid = False
-        for k in range(s.count):
-            slid = slid or (s.closed[k] == s.which[i] and s.slides[k] == forces.SLIDES)
-        s.friction[i] = body.kinetic if slid else body.static
-
-
-@kernel
-def apply_impulses(body, y, rows, n, s):
-    """Change the velocities by the impulses found."""
-    for i in range(n):
-        forces.push_at(
-            body, y, rows, s.which[i],
-            (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2]),
-        )  # fmt: skip
-
-
-@kernel
 def hold(body, y, rows, s):
     """Take away what velocity is left against the conditions of a mode, by the least kinetic energy."""
     n = s.count
@@ -118,17 +95,30 @@ def impact(body, y, least, s):
     """Solve an impact of all points that touch, and hold those that hardly leave."""
     rows = algebra.rotation(y)
     n = touching(body, y, rows, s)
-    prepare_impact(body, y, rows, n, s)
+    forces.fill_delassus(body, rows, s.which, n, s.delassus)
+    forces.fill_velocities(body, y, rows, s.which, n, s.free)
+    for i in range(n):
+        # points that slid keep kinetic friction
+        s.given[i], slid = 0, False
+        for k in range(s.count):
+            slid = slid or (s.closed[k] == s.which[i] and s.slides[k] == forces.SLIDES)
+        s.friction[i] = body.kinetic if slid else body.static
     fill_edges(body, y, rows, s.which, n, s)
     found, ways = solve_cones(s, n, least)
     s.counters[IMPACTS] += 1
     s.counters[AMBIGUOUS] += ways > 1
     s.jammed = 0
     if found < 0:
+        # last resort: no point that touches approaches or slips any more
         s.counters[UNSOLVED] += 1
-        stop_all(body, y, rows, n, s)
+        for i in range(n):
+            s.closed[i], s.slides[i] = s.which[i], forces.STICKS
+        s.count, s.rests = n, 0
+        hold(body, y, rows, s)
         return
-    apply_impulses(body, y, rows, n, s)
+    for i in range(n):
+        push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
+        forces.push_at(body, y, rows, s.which[i], push)
     keep_slow_contacts(body, y, rows, n, found, s)
 
 
@@ -148,22 +138,6 @@ def keep_slow_contacts(body, y, rows, n, found, s):
     s.count, s.rests = count, 0
     if slow:
         hold(body, y, rows, s)
-
-
-@kernel
-def stop_all(body, y, rows, n, s):
-    """Last resort where no impact was found: no point that touches approaches or slips any more."""
-    for i in range(n):
-        s.closed[i], s.slides[i] = s.which[i], forces.STICKS
-    s.count, s.rests = n, 0
-    hold(body, y, rows, s)
-
-
-@kernel
-def still(body, y):
-    """Whether nothing moves."""
-    spin = body.height * math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
-    return math.sqrt(y[7] ** 2 + y[8] ** 2 + y[9] ** 2) + spin < 10 * CLOSE
 
 
 @kernel
@@ -216,7 +190,7 @@ def slide_flat(body, y, rows, pull, s):
     level = max(algebra.norm(pull[0], pull[1]), 1e-300)
     n = touching(body, y, rows, s)
     for i in range(n):
-        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.which[i]))
+        u = solid.velocity_of(body, y, rows, s.which[i])
         speed = algebra.norm(u[0], u[1])
         s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
         if speed > AT_REST:
@@ -270,8 +244,9 @@ def choose_mode(body, tau, y, s):
     """Choose the mode that follows for the points that touch and do not leave; return whether one was found."""
     rows = algebra.rotation(y)
     pull = forces.pull_at(s.field, tau)
-    lies = still(body, y) and count_touching(body, y, rows) >= 3
-    if lies and rest_margin(body, y, rows, pull) >= 0:
+    spin = body.height * math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
+    still = math.sqrt(y[7] ** 2 + y[8] ** 2 + y[9] ** 2) + spin < 10 * CLOSE
+    if still and count_touching(body, y, rows) >= 3 and rest_margin(body, y, rows, pull) >= 0:
         come_to_rest(body, y, s)
         return True
     if carried_flat(body, y, rows, pull):
@@ -306,7 +281,7 @@ def pick_closed(body, y, rows, slow, s):
     n = touching(body, y, rows, s)
     kept, slipping = 0, 0
     for i in range(n):
-        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.which[i]))
+        u = solid.velocity_of(body, y, rows, s.which[i])
         if u[2] > LEAVES:
             continue
         s.which[kept] = s.which[i]
@@ -351,10 +326,9 @@ def write_mode(body, y, rows, n, found, s):
                 s.slides[count] = forces.SLIDES
                 s.direction[count, 0], s.direction[count, 1] = u / size, v / size
                 s.counters[SLIDINGS] += 1
-        p = solid.position_of_base(y, rows, solid.arm(body, rows[2], s.which[i]))
-        s.anchor[count, 0], s.anchor[count, 1] = p[0], p[1]
         count += 1
     s.count = count
+    anchor_all(body, y, s)
 
 
 @kernel

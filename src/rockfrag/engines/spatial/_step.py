@@ -55,7 +55,7 @@ def error_of(body, h, y, s):
 @kernel
 def slip_along(body, y, rows, i, s):
     """Slip velocity of closed point i along a direction of the plan."""
-    u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.closed[i]))
+    u = solid.velocity_of(body, y, rows, s.closed[i])
     return u[0] * s.slip[i, 0] + u[1] * s.slip[i, 1]
 
 
@@ -75,19 +75,13 @@ def begin_slips(body, y, s):
     for i in range(s.count):
         s.armed[i] = 0
         if s.slides[i] == SLIDES:
-            u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.closed[i]))
+            u = solid.velocity_of(body, y, rows, s.closed[i])
             speed = norm(u[0], u[1])
             s.slip[i, 0], s.slip[i, 1] = s.direction[i, 0], s.direction[i, 1]
             if speed > 2 * modes.AT_REST:
                 s.slip[i, 0], s.slip[i, 1] = u[0] / speed, u[1] / speed
                 s.direction[i, 0], s.direction[i, 1] = s.slip[i, 0], s.slip[i, 1]
                 s.armed[i] = 1
-
-
-@kernel
-def sinks(body, y, rows, i):
-    """Whether an open point moves down, and not by rounding alone."""
-    return solid.point_velocity(y, rows, solid.arm(body, rows[2], i))[2] < -1e-10
 
 
 @kernel
@@ -102,18 +96,11 @@ def pressure_centre(body, s):
 
 
 @kernel
-def pressure_margin(body, s):
-    """Distance of the centre of pressure from the edge of a round face; a negative one means that it tips [m]."""
-    x, y = pressure_centre(body, s)
-    return body.rim - norm(x, y) + 1e-12
-
-
-@kernel
 def face_slip(body, y, rows, s):
     """By how much the fastest point of a face slips; one that has not begun to may not slip backwards [m/s]."""
     fastest, forwards, armed = 0.0, -1.0, 0
     for i in range(s.count):
-        u = solid.point_velocity(y, rows, solid.arm(body, rows[2], s.closed[i]))
+        u = solid.velocity_of(body, y, rows, s.closed[i])
         fastest = max(fastest, norm(u[0], u[1]))
         forwards = max(forwards, slip_along(body, y, rows, i, s))
         armed = max(armed, s.armed[i])
@@ -125,10 +112,12 @@ def margin(body, y, s):
     """Return the least of all that must not be negative, and what it belongs to."""
     rows = rotation(y)
     least, what = 1e300, modes.NOTHING
-    for i in range(solid.first_candidate(body), solid.last_candidate(body)):
+    for i in solid.candidates(body):
         if not is_closed(s, i):
             value = solid.gap(body, y, rows[2], i) + 0.5 * modes.TOUCH
-            if value < 0.5 * modes.TOUCH and not sinks(body, y, rows, i):
+            # an open point that moves down, and not by rounding alone
+            sinks = solid.velocity_of(body, y, rows, i)[2] < -1e-10
+            if value < 0.5 * modes.TOUCH and not sinks:
                 value += modes.TOUCH
             if value < least:
                 least, what = value, modes.LANDS
@@ -137,7 +126,9 @@ def margin(body, y, s):
     passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
     on_face = body.rim > 0 and s.count >= 3
     if on_face:
-        least, what = pressure_margin(body, s), modes.OPENS
+        # where the centre of pressure leaves a round face, it tips
+        x, z = pressure_centre(body, s)
+        least, what = body.rim - norm(x, z) + 1e-12, modes.OPENS
         value = face_slip(body, y, rows, s)
         if value < least:
             least, what = value, modes.SLIP_ENDS
@@ -161,11 +152,11 @@ def dips(body, y, h, s):
     """Whether a point that is open at both ends of a step may have touched inside it."""
     new = s.new
     before, after = rotation(y), rotation(new)
-    for i in range(solid.first_candidate(body), solid.last_candidate(body)):
+    for i in solid.candidates(body):
         if is_closed(s, i):
             continue
-        sinking = solid.point_velocity(y, before, solid.arm(body, before[2], i))[2]
-        rising = solid.point_velocity(new, after, solid.arm(body, after[2], i))[2]
+        sinking = solid.velocity_of(body, y, before, i)[2]
+        rising = solid.velocity_of(body, new, after, i)[2]
         if sinking < 0 < rising:
             lowest = solid.gap(body, y, before[2], i) - 0.5 * h * sinking**2 / (rising - sinking)
             if lowest - 0.02 * h * (rising - sinking) < -0.5 * modes.TOUCH:

@@ -7,7 +7,7 @@ import numpy as np
 from markupsafe import Markup
 
 from rockfrag.engines.response import Response
-from rockfrag.motions.scaling import scale_to_pga
+from rockfrag.motions.processing import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.report.wording import listed, number
 from rockfrag.rocking import simulate
