@@ -7,8 +7,7 @@ from typing import Any
 
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names
-from rockfrag.rocking.measured_restitution import Measured, MeasuredRestitution
-from rockfrag.rocking.options import system_of
+from rockfrag.rocking.options import Measured, MeasuredRestitution, system_of
 from rockfrag.system.blocks import Block, stacked
 from rockfrag.system.system import System
 from rockfrag.tabular import Row, read_rows
