@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.planar.impact import strike
+from rockfrag.engines.planar.impact import kinetic_energy, strike
 from rockfrag.engines.planar.integrate import Book, Shaking, contact_event_columns, integrate
-from rockfrag.engines.planar.modes import kinetic_energy
 from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory
 from rockfrag.engines.planar.solve import look_at
 from rockfrag.rocking import MeasuredRestitution, simulate
