@@ -13,20 +13,14 @@ from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.system.blocks import Block, Body, Stack, stacked
 
-WIDER = 1.25
-"""Width of a foot plate over that of the base."""
-
-PLATE, STEEL = 0.02, 7850.0
-"""Thickness of a foot plate [m], square and of steel [kg/m³]."""
-
-LOWER = 0.8
-"""Factor of a lower centre of gravity."""
+WIDER = 1.25  # Width of a foot plate over that of the base
+PLATE, STEEL = 0.02, 7850.0  # Thickness of a foot plate [m], square and of steel [kg/m³]
+LOWER = 0.8  # Factor of a lower centre of gravity
 
 BALLAST, BALLAST_AT = 0.25, 0.05
 """Mass of ballast over that of the object, and its height over that of the object."""
 
-PEDESTAL_HEIGHT = 0.5
-"""Height of another pedestal over that of the one that is there."""
+PEDESTAL_HEIGHT = 0.5  # Height of another pedestal over that of the one that is there
 
 
 @dataclass(frozen=True)

@@ -37,17 +37,13 @@ ON_POINTS = {"livelier": 0.85, "restitution": 0.1}
 """Middle and relative standard deviation of the restitution of a scanned body over that of momentum, which is
 uniform from 0.7 to 1 (:mod:`rockfrag.campaign.standing`)."""
 
-ROLLING = 1.0
-"""Restitution of a round base: its rim rolls from edge to edge and loses nothing."""
-
-HIGHER = 1.0 + 1e-9
-"""Height of a body that is another one than the object, over that of the object."""
+ROLLING = 1.0  # Restitution of a round base: its rim rolls from edge to edge and loses nothing
+HIGHER = 1.0 + 1e-9  # Height of a body that is another one than the object, over that of the object
 
 ASIDE = 45.0
 """Angle to both sides of how it faces the shaking, where nobody said it [degrees]: two at a right angle."""
 
-ALONE = "on the floor"
-"""How an object stands without a pedestal."""
+ALONE = "on the floor"  # How an object stands without a pedestal
 
 
 @dataclass(frozen=True)

@@ -133,14 +133,9 @@ def parts_of(sources: Mapping[str, float]) -> dict[str, float]:
     return {name: sources[name] ** 2 / total for name in ranked}
 
 
-LIKELY, UNLIKELY = 0.5, 0.01
-"""An interval of a fraction that holds both tells nothing."""
-
-LEAST_GAIN = 0.15
-"""Fraction of the variance that a measurement must take away to be worth naming."""
-
-MOST_NAMED = 2
-"""Measurements that are named together."""
+LIKELY, UNLIKELY = 0.5, 0.01  # An interval of a fraction that holds both tells nothing
+LEAST_GAIN = 0.15  # Fraction of the variance that a measurement must take away to be worth naming
+MOST_NAMED = 2  # Measurements that are named together
 
 
 MEASUREMENTS: Mapping[str, Measurement] = {

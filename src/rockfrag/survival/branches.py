@@ -21,8 +21,7 @@ from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.tabular import read_cells, read_rows, read_text
 
-MOST_BRANCHES = 10_000
-"""Branches of one site."""
+MOST_BRANCHES = 10_000  # Branches of one site
 
 WEIGHT_ERROR = 1e-3
 """By how much the sum of weights may differ from 1, which rounding to four digits explains."""

@@ -162,11 +162,8 @@ def _branches(found: Constrained) -> list[Markup | FigureSpec]:
     return [weights, table_html(found.result.table(), BRANCHES, caption, file)]
 
 
-MOST_BRANCHES_SHOWN = 20
-"""Branches whose weights are drawn: those that matter most before or after."""
-
-LONGEST_LABEL = 34
-"""Characters of a branch's name beside its weights."""
+MOST_BRANCHES_SHOWN = 20  # Branches whose weights are drawn: those that matter most before or after
+LONGEST_LABEL = 34  # Characters of a branch's name beside its weights
 
 
 def curves_figure(found: Constrained) -> Figure:

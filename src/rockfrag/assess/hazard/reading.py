@@ -15,8 +15,7 @@ from rockfrag.assess.hazard.table import read_table
 from rockfrag.errors import InputError
 from rockfrag.tabular import read_text
 
-LARGEST_FILE = 50_000_000
-"""Bytes of a hazard file; that of one site has some thousand."""
+LARGEST_FILE = 50_000_000  # Bytes of a hazard file; that of one site has some thousand
 
 Found = tuple[HazardCurve, str]
 """A curve of a file and which statistic of the hazard model it is, as the file says it; empty for its only one."""
