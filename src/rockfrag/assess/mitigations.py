@@ -115,19 +115,15 @@ def compare(
     target: Target, now: ObjectOutcomes, changed: Mapping[str, ObjectOutcomes]
 ) -> list[Mitigation]:
     """Estimate again with each change of the object."""
-    return [_mitigation(target, name, now, outcomes) for name, outcomes in changed.items()]
-
-
-def _mitigation(
-    target: Target, name: str, now: ObjectOutcomes, changed: ObjectOutcomes
-) -> Mitigation:
-    before, after = target.value(now), target.value(changed)
-    helps = after > before if math.isinf(target.certain) else after < before
-    if not (math.isfinite(before) and before > 0 and math.isfinite(after)):
-        return Mitigation(name, after, math.nan, math.nan, math.nan, helps)
-    factor = after / before
-    limits = _limits(target, now, changed, factor)
-    return Mitigation(name, after, factor, *limits, helps)
+    before, found = target.value(now), []
+    for name, outcomes in changed.items():
+        after, factor, limits = target.value(outcomes), math.nan, (math.nan, math.nan)
+        if math.isfinite(before) and before > 0 and math.isfinite(after):
+            factor = after / before
+            limits = _limits(target, now, outcomes, factor)
+        helps = after > before if math.isinf(target.certain) else after < before
+        found.append(Mitigation(name, after, factor, *limits, helps))
+    return found
 
 
 def _limits(
