@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
-from rockfrag.assess.objects import Objects, higher
+from rockfrag.assess.objects import Objects, stretched_block
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
 from rockfrag.fragility.intervals import jackknife_error
@@ -41,7 +41,9 @@ def mitigations_of(objects: Objects) -> dict[str, Body]:
     """Bodies that result from each change of the object."""
     block, pedestals = objects.block, objects.pedestals
     lower = {
-        f"a centre of gravity {100 * (1 - LOWER):.0f} % lower": higher(block, LOWER),
+        f"a centre of gravity {100 * (1 - LOWER):.0f} % lower": stretched_block(
+            block, height=LOWER
+        ),
         f"ballast of {100 * BALLAST:.0f} % of its mass in its foot": with_ballast(block),
     }
     if not pedestals:
