@@ -113,7 +113,7 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
-    from rockfrag.motions.scaling import scale, scale_to_pga
+    from rockfrag.motions.processing import scale, scale_to_pga
     from rockfrag.rocking import simulate
 
     if options.plot is not None and not options.plot.endswith((".png", ".svg")):
@@ -161,7 +161,7 @@ def _simulate_in_space(
 ) -> int:
     """Shake one body by both horizontal components of a record, and the vertical one if it is told."""
     from rockfrag.engines.spatial import SpatialResponse
-    from rockfrag.motions.scaling import scale
+    from rockfrag.motions.processing import scale
     from rockfrag.records.motion import GroundMotion
     from rockfrag.rocking import simulate
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides
 from rockfrag.assess.scan import Scan, make_scan
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.rocking.options import system_of
 from rockfrag.system import geometry
@@ -107,15 +107,11 @@ class Objects:
     @property
     def arrangements(self) -> dict[str, Body]:
         """The ways in which it can stand, as it stands now first."""
-        body = self.body
-        if len(body.blocks) == 1:
+        body, under = self.body, f"its {self.stand}"
+        if not self.pedestals:
             return {ALONE: body}
         joined = body.rigidly_joined()
-        return {
-            f"on its {self.stand}": body,
-            f"fixed to its {self.stand}": joined,
-            ALONE: self.block,
-        }
+        return {f"on {under}": body, f"fixed to {under}": joined, ALONE: self.block}
 
     @property
     def least_uplift(self) -> float:
@@ -292,10 +288,8 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         block, plane = _from_dimensions(settings, assumed, quality_flags)
     depth, facing = _in_plan(settings)
     pedestals = _pedestals(settings, assumed)
-    try:
+    with errors_of("key pedestal"):
         stacked((*pedestals, block))
-    except InputError as error:
-        raise InputError(f"key pedestal: {error}") from None
     for each in (block, *pedestals):
         if quality_flag := size_warning(each.width, each.height):
             quality_flags.append(quality_flag + ".")
@@ -416,10 +410,11 @@ def _from_dimensions(
         mass = STONE * width * depth * height * (math.pi / 4 if is_round else 1.0)
         solid = "cylinder" if is_round else "box"
         assumed.append(assume("mass", "mass", mass=mass, solid=solid, density=STONE))
-    check_density(width, height, float(mass))
+    mass = float(mass)
+    check_density(width, height, mass)
     if "depth_m" in settings:
         volume = width * depth * height
-        density = float(mass) / volume
+        density = mass / volume
         words = f"{mass:g} kg in a box of {volume:.3g} m³ are {density:.3g} kg/m³"
         if not DENSITIES[0] <= density <= DENSITIES[1]:
             raise InputError(f"key mass: {words}, a density that no solid has; check the units.")
@@ -432,17 +427,10 @@ def _from_dimensions(
         raise InputError(
             f"key cg_height: {cg_height:g} m is not below the top, at {height:g} m; check the unit."
         )
-    block = Block(
-        width=width,
-        height=height,
-        mass=float(mass),
-        inertia=settings.get("inertia_kg_m2", round_inertia(width, height, float(mass)))
-        if is_round
-        else settings.get("inertia_kg_m2"),
-        cg_height=cg_height,
-        cg_offset=float(settings.get("cg_offset_m", 0.0)),
-    )
-    return block, plane
+    usual = round_inertia(width, height, mass) if is_round else None
+    inertia = settings.get("inertia_kg_m2", usual)
+    offset = float(settings.get("cg_offset_m", 0.0))
+    return Block(width, height, mass, inertia, cg_height=cg_height, cg_offset=offset), plane
 
 
 _FROM_MESH = ("width_m", "height_m", "depth_m", "cg_height_m", "cg_offset_m", "inertia_kg_m2")
@@ -495,30 +483,20 @@ def _in_keys(words: str) -> str:
 
 
 def _pedestals(settings: Mapping[str, Any], assumed: list[Assumption]) -> tuple[Block, ...]:
-    """What the object stands on, from below."""
-    given = settings.get("pedestal", [])
-    found = [
-        _pedestal(block, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
-        for i, block in enumerate(given, start=1)
-    ]
-    return tuple(reversed(found))
-
-
-def _pedestal(
-    given: Mapping[str, Any], settings: Mapping[str, Any], assumed: list[Assumption], name: str
-) -> Block:
-    """A pedestal, called by a name, in the plane in which the statue rocks."""
-    width, height = float(given["width_m"]), float(given["height_m"])
-    depth = float(given.get("depth_m", width))
+    """What the object stands on, from below, in the plane in which it rocks."""
+    given, found = settings.get("pedestal", []), []
     across = settings.get("depth_m", math.inf) < settings.get("width_m", math.inf)
-    if across:
-        width, depth = depth, width
-    mass = given.get("mass_kg")
-    if mass is None:
-        mass = STONE * width * depth * height
-        assumed.append(assume("pedestal", "mass", name=name, mass=mass, density=STONE))
-    try:
-        check_density(width, height, float(mass))
-    except InputError as error:
-        raise InputError(f"key pedestal: {error}") from None
-    return Block(width, height, float(mass))
+    for i, block in enumerate(given, start=1):
+        width, height = float(block["width_m"]), float(block["height_m"])
+        depth = float(block.get("depth_m", width))
+        if across:
+            width, depth = depth, width
+        mass = block.get("mass_kg")
+        if mass is None:
+            mass = STONE * width * depth * height
+            name = f"pedestal {i}" if len(given) > 1 else "the pedestal"
+            assumed.append(assume("pedestal", "mass", name=name, mass=mass, density=STONE))
+        with errors_of("key pedestal"):
+            check_density(width, height, float(mass))
+        found.append(Block(width, height, float(mass)))
+    return tuple(reversed(found))

@@ -66,7 +66,7 @@ class Scan:
 
     def block(self, fraction: float = 0.5) -> Block:
         """The planar block of such a way."""
-        return body_of(self.shape, self.row_at(fraction))
+        return body_of(self.shape, self.row_at(fraction)).blocks[-1]
 
     def body(self, fraction: float = 0.5, turned_deg: float = 0.0) -> RigidBody:
         """The body in space of such a way."""

@@ -106,8 +106,7 @@ def _influential(found: Assessment) -> list[tuple[str, float]]:
     if found.level is None:
         return []
     outcomes = found.outcomes
-    at = int(outcomes.intensity_levels.levels.searchsorted(found.level.value))
-    fell = outcomes.overturned[:, min(at, outcomes.intensity_levels.levels.size - 1)]
+    fell = outcomes.overturned[:, outcomes.intensity_levels.place_of(found.level.value)]
     if fell.sum() < 4:
         return []
     names = outcomes.earthquakes[fell]

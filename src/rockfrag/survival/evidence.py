@@ -145,14 +145,10 @@ class StandingObject:
     @property
     def reach(self) -> tuple[float, float]:
         """Lowest and highest level of ``measure`` between which its fragility changes."""
-        c0, c1 = self.coefficients[:2]
+        c0, c1, *others = self.coefficients
         wide = TAIL * (1 / c1 + self.sd_ln)
         # the second measure moves the median by as much as PGV/PGA of 0.02 to 0.5 s may
-        aside = (
-            [self.coefficients[2] * math.log(r) for r in (0.02, 0.5)]
-            if len(self.coefficients) > 2
-            else [0.0]
-        )
+        aside = [c * math.log(ratio) for c in others for ratio in (0.02, 0.5)] or [0.0]
         middle = [-(c0 + shift) / c1 for shift in aside]
         return math.exp(min(middle) - wide), math.exp(max(middle) + wide)
 

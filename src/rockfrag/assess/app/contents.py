@@ -26,7 +26,7 @@ from rockfrag.assess import (
 from rockfrag.assess.conversion import VelocityRelation
 from rockfrag.assess.hazard import curve
 from rockfrag.assess.hazard.curve import PGA, PGV
-from rockfrag.assess.motions import MotionSet, common_pair
+from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
 from rockfrag.building.model import ModalDamping, ShearBuilding
@@ -201,7 +201,7 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
     both = motions.with_both_components()
     fewer = both.thinned()
     names = [motion.name for motion in both.ground]
-    turns = [math.radians(angle) for angle in range(0, 180, outcomes.WORST_STEP_DEG)]
+    turns = [math.radians(angle) for angle in range(0, 180, outcomes.STEP_DEG)]
     return {
         "records": [
             {"first": pair[0], "second": pair[1], "times": _times(both, pair)}
@@ -219,7 +219,7 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
 def _times(motions: MotionSet, pair: tuple[int, int]) -> list[dict[str, Any] | None]:
     """Which times of each component are common to both; None where it is all of them."""
     found = []
-    for own, common in zip(pair, common_pair(motions, pair), strict=True):
+    for own, common in zip(pair, motions.components(pair), strict=True):
         found.append(None if common is motions.base[own] else _part(motions.base[own], common))
     return found
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure, declared
 from rockfrag.short_repr import short_repr
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 
 Floats = NDArray[np.float64]
 
@@ -36,24 +36,15 @@ FLANKS = (0.16, 0.84)
 
 @dataclass(frozen=True, eq=False)
 class HazardCurve:
-    """Annual rates with which levels of a measure are exceeded; a power law between the points.
+    """Annual rates with which levels of a measure are exceeded; a power law between the points."""
 
-    Attributes
-    ----------
-    measure : the intensity measure
-    levels : levels in the measure's unit, rising, shape (n,), n ≥ 2
-    rates : annual rates of exceedance [1/year], falling, shape (n,)
-    source : where it comes from, in a few words
-    quantiles : curves of the same measure by their quantile, such as 0.16 and 0.84
-    is_read : whether it was read; False where one level was continued with an assumed slope
-    """
-
-    measure: IntensityMeasure
-    levels: Floats
-    rates: Floats
-    source: str
+    measure: IntensityMeasure  #: The intensity measure
+    levels: Floats  #: Levels in the measure's unit, rising, shape (n,), n ≥ 2
+    rates: Floats  #: Annual rates of exceedance [1/year], falling, shape (n,)
+    source: str  #: Where it comes from, in a few words
+    #: Curves of the same measure by their quantile, such as 0.16 and 0.84
     quantiles: dict[float, "HazardCurve"] = field(default_factory=dict)
-    is_read: bool = True
+    is_read: bool = True  #: Whether it was read; False where one level was continued with a slope
 
     __repr__ = short_repr
 
@@ -191,3 +182,10 @@ def read_measure(text: str, where: str) -> IntensityMeasure:
             f"{PERIODS[0]:g} to {PERIODS[1]:g} s."
         )
     return SA.at(period)
+
+
+def read_level(text: str, measure: IntensityMeasure) -> float:
+    """Read a level with its unit, such as ``0.25 g``; return it in the unit of the measure."""
+    if measure.openquake == "PGV":
+        return quantity(text, "m_s", None) * CENTIMETRES_PER_METRE
+    return quantity(text, "m_s2", None) / GRAVITY
