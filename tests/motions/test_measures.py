@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rockfrag import motions as m
 from rockfrag.errors import InputError
 from rockfrag.files import write_table
-from rockfrag.motions import intensity, scaling
+from rockfrag.motions import intensity, processing
 from rockfrag.motions.intensity import housner_and_average
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY as G
@@ -188,7 +188,7 @@ def test_rocking_measures_have_no_dimension(harmonic):
     alpha, p = 0.2, 2.5
     # a block four times as large under a motion that lasts twice as long: the same measures
     measures = m.measure_rocking([harmonic], {"block": (alpha, p)}).iloc[0]
-    faster = m.measure_rocking([scaling.compress_time(harmonic, 0.5)], {"block": (alpha, p / 2)})
+    faster = m.measure_rocking([processing.compress_time(harmonic, 0.5)], {"block": (alpha, p / 2)})
     assert faster.iloc[0, 2:].tolist() == pytest.approx(measures[2:].tolist(), rel=2e-3)
     assert measures["velocity_ratio"] == pytest.approx(p * m.pgv(harmonic) / (G * math.tan(alpha)))
     pulse = m.strongest_pulse(harmonic)
@@ -213,7 +213,7 @@ def test_measures_grow_with_amplitude_as_they_should(noise, seed, factor):
 @given(st.integers(0, 10_000), st.floats(0.2, 5.0))
 def test_compressed_time_follows_similitude(noise, seed, factor):
     motion = noise(seed, tapered=True)
-    model = scaling.compress_time(motion, factor)
+    model = processing.compress_time(motion, factor)
     assert m.pga(model) == m.pga(motion)
     assert m.pgv(model) == pytest.approx(m.pgv(motion) / factor, rel=1e-9)
     assert intensity.pgd(model) == pytest.approx(intensity.pgd(motion) / factor**2, rel=1e-9)

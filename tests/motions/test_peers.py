@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rockfrag import motions as m
-from rockfrag.motions import conditioning, filtering, intensity, spectra
+from rockfrag.motions import intensity, processing, spectra
 from rockfrag.records.motion import Motion, integrate
 
 
@@ -67,7 +67,7 @@ def test_spectra_are_pyrotds_once_both_see_the_same_function_of_time(motion, per
     pyrotd = peer("pyrotd")
     # pyrotd repeats the record for ever and joins samples by sines: give it a finely sampled one with
     # enough silence behind it
-    fine = filtering.interpolate(conditioning.pad(motion, 0.0, 60.0), 0.0005)
+    fine = processing.interpolate(processing.pad(motion, 0.0, 60.0), 0.0005)
     theirs = pyrotd.calc_spec_accels(fine.dt, fine.acceleration, np.array([1 / period]), 0.05)
     ours = intensity.spectral_acceleration(motion, period)
     assert ours == pytest.approx(float(theirs["spec_accel"][0]), rel=1e-4)
@@ -78,7 +78,7 @@ def test_rotated_spectra_are_pyrotds(motion):
     pyrotd = peer("pyrotd")
     other = Motion(np.roll(motion.acceleration, 37) * 0.8, motion.dt)
     fine = [
-        filtering.interpolate(conditioning.pad(x, 0.0, 60.0), 0.002).acceleration
+        processing.interpolate(processing.pad(x, 0.0, 60.0), 0.002).acceleration
         for x in (motion, other)
     ]
     theirs = pyrotd.calc_rotated_spec_accels(

@@ -17,8 +17,7 @@ from rockfrag.engines.records import body_record
 from rockfrag.errors import InputError
 from rockfrag.laws import law_names
 from rockfrag.rocking import MeasuredRestitution
-from rockfrag.rocking.measured_restitution import largest_restitution
-from rockfrag.rocking.options import system_of
+from rockfrag.rocking.options import largest_restitution, system_of
 
 from ..oracle.rocking_model import Model
 from ..oracle.standing import upper_on_contact

@@ -26,7 +26,7 @@ from rockfrag.assess.sources import SPACE
 from rockfrag.campaign.standing import Unknown, body_of, unknowns_of, ways_to_stand
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions import scale_to_pga
-from rockfrag.motions.filtering import bandpass
+from rockfrag.motions.processing import bandpass
 from rockfrag.records.motion import Motion
 from rockfrag.system.mesh import Shape
 

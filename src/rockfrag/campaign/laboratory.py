@@ -16,9 +16,8 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.fragility.tests_file import product_of, read_columns, read_titles
-from rockfrag.motions.filtering import highpass
 from rockfrag.motions.intensity import pga, pgv
-from rockfrag.motions.processing import process
+from rockfrag.motions.processing import highpass, process
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit
 from rockfrag.records.read import read_motion

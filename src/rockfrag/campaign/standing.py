@@ -24,8 +24,7 @@ from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
 from rockfrag.rocking.inputs import checked_threads
-from rockfrag.rocking.measured_restitution import largest_restitution
-from rockfrag.rocking.options import system_of
+from rockfrag.rocking.options import largest_restitution, system_of
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block, Column
 from rockfrag.system.contact import Contact, Friction

@@ -332,7 +332,7 @@ def predominant_period(motion: Motion) -> float:
 
     Rathje, Abrahamson & Bray (1998); searched from 0.02 to 10 s, periods 1.2 % apart.
     """
-    from rockfrag.motions.side_by_side import peak_displacements
+    from rockfrag.motions.spectra import peak_displacements
 
     if motion.pga == 0:
         return math.nan
@@ -362,7 +362,7 @@ def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, f
     Lignos, 2015, Earthquake Eng. Struct. Dyn. 44: 2057-2073); a rocking body has no period of its own, so the
     periods are those from which its overturning threshold feels the motion.
     """
-    from rockfrag.motions.side_by_side import peak_displacements
+    from rockfrag.motions.spectra import peak_displacements
 
     periods = np.concatenate([HOUSNER_PERIODS, AVERAGE_PERIODS])
     peaks = np.split(peak_displacements(motion, periods, damping), [HOUSNER_PERIODS.size])

@@ -14,9 +14,8 @@ from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.fragility.vector_tables import VectorTables, vector_tables
-from rockfrag.motions.processing import process
+from rockfrag.motions.processing import process, scale_to_pga
 from rockfrag.motions.pulses import commanded_cosine
-from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.records.sources.wheel import fetch_url
 from rockfrag.stages.job import Job, Results

@@ -124,7 +124,7 @@ def ida_table(
     contact), ``slip_contact_1_m`` and on (at the end), ``peak_slip_contact_1_m`` and on, ``flights`` and
     ``overturned_without_sliding``, the outcome if nothing could slide or fly.
     """
-    from rockfrag.motions.scaling import factors_to_pga
+    from rockfrag.motions.processing import factors_to_pga
 
     scales = np.array([factors_to_pga(motion, amplitudes_g) for motion in motions])
     result = _shaken(configuration, motions, scales, threads, vertical)
