@@ -11,7 +11,7 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.motions import scale_to_pga
-from rockfrag.motions.filtering import bandpass
+from rockfrag.motions.processing import bandpass
 from rockfrag.records.motion import Motion
 from rockfrag.records.read import read_motion
 from rockfrag.records.sources.wheel import fetch_wheel

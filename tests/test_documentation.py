@@ -230,7 +230,7 @@ def test_the_route_to_ones_own_statue_ends_in_a_report(checkout, typed, noise):
     mine = checkout / "mine"
     (mine / "records").mkdir(parents=True)
     from rockfrag.motions import scale_to_pga
-    from rockfrag.motions.filtering import bandpass
+    from rockfrag.motions.processing import bandpass
 
     for seed in range(3):
         motion = scale_to_pga(bandpass(noise(seed, 1200, tapered=True), 0.3, 5.0), 0.3)

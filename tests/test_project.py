@@ -196,7 +196,7 @@ def test_what_an_addition_costs_stands_where_the_table_says():
         assert resolve_name(name).name
     # a declaration a measure, beside its function
     source = (ROOT / "src/rockfrag/motions/intensity.py").read_text(encoding="utf-8")
-    declared = importlib.import_module("rockfrag.motions.declared").declared()
+    declared = importlib.import_module("rockfrag.motions.intensity").declared()
     declarations = re.findall(r"^@?intensity_measure\(", source, re.MULTILINE)
     assert len(declarations) == len(declared) > 15
     states = (ROOT / "src/rockfrag/outcomes/limit_states.py").read_text(encoding="utf-8")

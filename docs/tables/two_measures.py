@@ -16,7 +16,7 @@ from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import make_request
 from rockfrag.assess.risk import Estimate
 from rockfrag.assess.words import estimate_words
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "assess.md"

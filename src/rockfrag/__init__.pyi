@@ -26,7 +26,7 @@ from .records.motion import GroundMotion as GroundMotion, Motion as Motion
 from .records.read import read_motion as read_motion
 from .records.write import write_motion as write_motion
 from .rocking.ensemble import overturns as overturns
-from .rocking.measured_restitution import MeasuredRestitution as MeasuredRestitution
+from .rocking.options import MeasuredRestitution as MeasuredRestitution
 from .rocking.simulation import simulate as simulate
 from .rocking.spectra import rocking_spectrum as rocking_spectrum
 from .rocking.robustness import find_step_size_sensitive as find_step_size_sensitive

@@ -81,7 +81,7 @@ def _validator(name: str) -> Draft202012Validator:
 def registered(kind: str) -> tuple[str, ...]:
     """Return the names that a registry has: what a file may name grows with what is declared."""
     from rockfrag.laws import law_names
-    from rockfrag.motions.declared import measure_columns
+    from rockfrag.motions.intensity import measure_columns
 
     names: dict[str, Callable[[], tuple[str, ...]]] = {
         "law of impacts": law_names,

@@ -12,7 +12,7 @@ from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.inventory import assess_inventory, inventory_table, joint_lines
 from rockfrag.assess.mitigations import mitigations_of, on_plate, with_ballast
 from rockfrag.assess.motions import motion_set
-from rockfrag.assess.outcomes import make_intensity_levels, on_pad, outcomes_of
+from rockfrag.assess.outcomes import make_intensity_levels, on_pad, outcomes_of_all
 from rockfrag.assess.request import make_request
 from rockfrag.cli import main
 from rockfrag.errors import InputError
@@ -134,7 +134,7 @@ def test_a_pad_lets_it_slide_instead(motions):
     assert not smooth.overturned[intensity_levels.allowed].any()
     assert slip[intensity_levels.allowed].max() > 0.01
     rough, _ = on_pad(request.objects, 2.0, few, intensity_levels)
-    bare = outcomes_of(request.objects, {"": request.objects.body}, few, intensity_levels)[""]
+    (bare,) = outcomes_of_all([request.objects], few, intensity_levels)
     differs = rough.overturned != bare.overturned
     assert differs[intensity_levels.allowed].mean() < 0.05
 

@@ -18,72 +18,73 @@ KEYS = {"Tab": (9, "", "\ue004"), "Enter": (13, "\r", "\ue007"), "Space": (32, "
 """Keys by name: their number and text in Chromium, and their letter in WebDriver."""
 
 
-class Chromium:
-    """Chromium by its DevTools protocol, over two pipes."""
+class Driven:
+    """A browser that is told by messages in JSON what to do, in a folder of its own that goes with it."""
 
-    name = "chromium"
+    name: str
 
     def __init__(self) -> None:
         self.console: list[str] = []
-        self._folder = tempfile.TemporaryDirectory(prefix="chromium", ignore_cleanup_errors=True)
-        here, there = os.pipe(), os.pipe()
-        self._write, self._read = here[1], os.fdopen(there[0], "rb")
-        command = [
-            *(
-                _chromium() or "",
-                "--headless=new",
-                "--no-sandbox",
-                "--disable-gpu",
-                "--no-first-run",
-            ),
-            *("--remote-debugging-pipe", "--hide-scrollbars", "--proxy-server=127.0.0.1:9"),
-            f"--user-data-dir={self._folder.name}",
-        ]
-
-        def take_pipes() -> None:
-            first, second = os.dup(here[0]), os.dup(there[1])
-            os.dup2(first, 3)
-            os.dup2(second, 4)
-
-        self._process = subprocess.Popen(
-            command,
-            preexec_fn=take_pipes,
-            close_fds=False,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-        os.close(here[0])
-        os.close(there[1])
-        self._number, self._session = 0, ""
-        self._buffer = b""
-        target = self._ask("Target.createTarget", url="about:blank")["targetId"]
-        self._session = self._ask("Target.attachToTarget", targetId=target, flatten=True)[
-            "sessionId"
-        ]
-        for domain in ("Page", "Runtime", "Log"):
-            self._ask(f"{domain}.enable")
+        self._number, self._buffer = 0, b""
+        self._folder = tempfile.TemporaryDirectory(prefix=self.name, ignore_cleanup_errors=True)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._process.terminate()
-        self._process.wait(20)
-        self._read.close()
-        os.close(self._write)
+        self._process.communicate(timeout=20)
         self._folder.cleanup()
+
+    def _start(self, *command: str, **pipes: int) -> None:
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL} | pipes
+        self._process: subprocess.Popen[bytes] = subprocess.Popen(command, **quiet)  # type: ignore[call-overload]
+
+    def _before(self, mark: bytes) -> bytes:
+        """What comes until a mark."""
+        while mark not in self._buffer:
+            self._receive()
+        text, _, self._buffer = self._buffer.partition(mark)
+        return text
+
+    def _receive(self) -> None:
+        part = self._more()
+        assert part, f"{self.name} ended"
+        self._buffer += part
+
+    def _more(self) -> bytes:
+        raise NotImplementedError
+
+
+class Chromium(Driven):
+    """Chromium by its DevTools protocol, over two pipes."""
+
+    name = "chromium"
+
+    def __init__(self) -> None:
+        super().__init__()
+        # the browser reads from descriptor 3 and writes to 4
+        self._start(
+            *("sh", "-c", 'exec "$@" 3<&0 4>&1 >/dev/null', "sh", _chromium() or ""),
+            *("--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run"),
+            *("--remote-debugging-pipe", "--hide-scrollbars", "--proxy-server=127.0.0.1:9"),
+            f"--user-data-dir={self._folder.name}",
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+        )
+        self._session: dict[str, str] = {}
+        target = self._ask("Target.createTarget", url="about:blank")["targetId"]
+        about = self._ask("Target.attachToTarget", targetId=target, flatten=True)
+        self._session = {"sessionId": about["sessionId"]}
+        for domain in ("Page", "Runtime", "Log"):
+            self._ask(f"{domain}.enable")
 
     def open(
         self, page: Path, width: int = 1400, height: int = 1000, *, dark: bool = False
     ) -> None:
         self.console.clear()
-        self._ask(
-            "Emulation.setDeviceMetricsOverride",
-            width=width,
-            height=height,
-            deviceScaleFactor=1,
-            mobile=False,
-        )
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self._ask("Emulation.setDeviceMetricsOverride", **size)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self._ask("Emulation.setEmulatedMedia", media="", features=[scheme])
         self._ask("Page.navigate", url=page.resolve().as_uri())
@@ -92,11 +93,9 @@ class Chromium:
         )
 
     def run(self, script: str) -> Any:
-        found = self._ask(
-            "Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True
-        )
-        if "exceptionDetails" in found:
-            raise AssertionError(str(found["exceptionDetails"]))
+        how = {"awaitPromise": True, "returnByValue": True}
+        found = self._ask("Runtime.evaluate", expression=script, **how)
+        assert "exceptionDetails" not in found, str(found["exceptionDetails"])
         return found["result"].get("value")
 
     def press(self, *keys: str) -> None:
@@ -115,46 +114,37 @@ class Chromium:
 
     def _ask(self, method: str, **params: Any) -> Any:
         self._number += 1
-        message = {"id": self._number, "method": method, "params": params}
-        if self._session:
-            message["sessionId"] = self._session
-        os.write(self._write, json.dumps(message).encode() + b"\0")
-        while True:
-            answer = self._next()
-            if answer.get("id") == self._number:
-                if "error" in answer:
-                    raise AssertionError(f"{method}: {answer['error']}")
-                return answer["result"]
-            self._note(answer)
+        message = {"id": self._number, "method": method, "params": params} | self._session
+        pipe = self._process.stdin
+        assert pipe is not None
+        pipe.write(json.dumps(message).encode() + b"\0")
+        pipe.flush()
+        while (answer := json.loads(self._before(b"\0"))).get("id") != self._number:
+            self._note(answer.get("method"), answer.get("params", {}))
+        assert "error" not in answer, f"{method}: {answer['error']}"
+        return answer["result"]
 
-    def _next(self) -> Any:
-        while b"\0" not in self._buffer:
-            part = os.read(self._read.fileno(), 1 << 20)
-            if not part:
-                raise AssertionError("Chromium ended")
-            self._buffer += part
-        text, _, self._buffer = self._buffer.partition(b"\0")
-        return json.loads(text)
+    def _more(self) -> bytes:
+        assert self._process.stdout is not None
+        return os.read(self._process.stdout.fileno(), 1 << 20)
 
-    def _note(self, message: Any) -> None:
-        params = message.get("params", {})
-        if message.get("method") == "Runtime.exceptionThrown":
+    def _note(self, method: str | None, params: Any) -> None:
+        if method == "Runtime.exceptionThrown":
             thrown = params["exceptionDetails"]
             self.console.append(str(thrown.get("exception", {}).get("description", thrown["text"])))
-        elif message.get("method") == "Runtime.consoleAPICalled":
+        elif method == "Runtime.consoleAPICalled":
             self.console.append(str([argument.get("value") for argument in params["args"]]))
-        elif message.get("method") == "Log.entryAdded":
+        elif method == "Log.entryAdded":
             self.console.append(params["entry"]["text"])
 
 
-class Firefox:
+class Firefox(Driven):
     """Firefox by Marionette, over a socket."""
 
     name = "firefox"
 
     def __init__(self) -> None:
-        self.console: list[str] = []
-        self._folder = tempfile.TemporaryDirectory(prefix="firefox", ignore_cleanup_errors=True)
+        super().__init__()
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
@@ -172,34 +162,19 @@ class Firefox:
             for key, value in preferences.items()
         ]
         (Path(self._folder.name) / "user.js").write_text("\n".join(lines))
-        command = [
-            _firefox() or "",
-            "--headless",
-            "--marionette",
-            "--remote-allow-system-access",
-            "--profile",
-            self._folder.name,
-            "--no-remote",
-        ]
-        self._process = subprocess.Popen(
-            command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        self._start(
+            *(_firefox() or "", "--headless", "--marionette", "--remote-allow-system-access"),
+            *("--profile", self._folder.name, "--no-remote"),
         )
         self._socket = _connected(port)
-        self._buffer, self._number = b"", 0
         self._next()
-        self._ask(
-            "WebDriver:NewSession", capabilities={"alwaysMatch": {"acceptInsecureCerts": True}}
-        )
+        capabilities = {"alwaysMatch": {"acceptInsecureCerts": True}}
+        self._ask("WebDriver:NewSession", capabilities=capabilities)
         self._ask("WebDriver:SetTimeouts", script=120000)
 
-    def __enter__(self) -> Self:
-        return self
-
     def __exit__(self, *_: object) -> None:
-        self._process.terminate()
-        self._process.wait(20)
+        super().__exit__()
         self._socket.close()
-        self._folder.cleanup()
 
     def open(
         self, page: Path, width: int = 1400, height: int = 1000, *, dark: bool = False
@@ -213,56 +188,46 @@ class Firefox:
         self._ask("WebDriver:Navigate", url=page.resolve().as_uri())
 
     def run(self, script: str) -> Any:
-        found = self._ask(
-            "WebDriver:ExecuteScript", script=f"return ({script})", args=[], newSandbox=False
-        )["value"]
-        errors = self._in_chrome(
+        found = self._execute(f"return ({script})", newSandbox=False)
+        self.console = self._in_chrome(
             "return Services.console.getMessageArray().map(m => m.message || '').filter(m => m.includes('file://'));"
         )
-        self.console = list(errors)
         return found
 
     def press(self, *keys: str) -> None:
         letters = [letter for key in keys for letter in (KEYS[key][2] if key in KEYS else key)]
-        both = ({"type": kind, "value": a} for a in letters for kind in ("keyDown", "keyUp"))
-        self._ask(
-            "WebDriver:PerformActions",
-            actions=[{"type": "key", "id": "keyboard", "actions": list(both)}],
-        )
+        both = [{"type": kind, "value": a} for a in letters for kind in ("keyDown", "keyUp")]
+        keyboard = {"type": "key", "id": "keyboard", "actions": both}
+        self._ask("WebDriver:PerformActions", actions=[keyboard])
 
     def _in_chrome(self, script: str, *arguments: Any) -> Any:
         self._ask("Marionette:SetContext", value="chrome")
         try:
-            return self._ask("WebDriver:ExecuteScript", script=script, args=list(arguments))[
-                "value"
-            ]
+            return self._execute(script, *arguments)
         finally:
             self._ask("Marionette:SetContext", value="content")
+
+    def _execute(self, script: str, *arguments: Any, **how: bool) -> Any:
+        about = {"script": script, "args": list(arguments)} | how
+        return self._ask("WebDriver:ExecuteScript", **about)["value"]
 
     def _ask(self, method: str, **params: Any) -> Any:
         self._number += 1
         text = json.dumps([0, self._number, method, params]).encode()
         self._socket.sendall(str(len(text)).encode() + b":" + text)
         _, _, error, result = self._next()
-        if error:
-            raise AssertionError(f"{method}: {error['message']}")
+        assert not error, f"{method}: {error['message']}"
         return result
 
     def _next(self) -> Any:
-        while b":" not in self._buffer:
+        length = int(self._before(b":"))
+        while len(self._buffer) < length:
             self._receive()
-        length, _, rest = self._buffer.partition(b":")
-        while len(rest) < int(length):
-            self._receive()
-            rest = self._buffer.partition(b":")[2]
-        self._buffer = rest[int(length) :]
-        return json.loads(rest[: int(length)])
+        text, self._buffer = self._buffer[:length], self._buffer[length:]
+        return json.loads(text)
 
-    def _receive(self) -> None:
-        part = self._socket.recv(1 << 20)
-        if not part:
-            raise AssertionError("Firefox ended")
-        self._buffer += part
+    def _more(self) -> bytes:
+        return self._socket.recv(1 << 20)
 
 
 Browser = Chromium | Firefox

@@ -10,7 +10,7 @@ import pytest
 from rockfrag import Block, MeasuredRestitution, laws, simulate
 from rockfrag.engines.contract import Support, by_wishes, engines, forget_engine, register_engine
 from rockfrag.laws import ratio
-from rockfrag.motions.declared import forget_intensity_measure, intensity_measure
+from rockfrag.motions.intensity import forget_intensity_measure, intensity_measure
 from rockfrag.outcomes.limit_states import forget_limit_state, limit_state
 from rockfrag.outcomes.outcomes import empty_outcomes
 

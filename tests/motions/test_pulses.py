@@ -11,7 +11,7 @@ from scipy.signal import correlate
 
 from rockfrag import motions as m
 from rockfrag.errors import InputError
-from rockfrag.motions import conditioning, filtering, spectra
+from rockfrag.motions import processing, spectra
 from rockfrag.motions import pulse_extraction as searched
 from rockfrag.records.motion import Motion, integrate
 
@@ -134,7 +134,7 @@ def test_impossible_pulses_are_refused(pulse, message):
     cycles=st.sampled_from([1.0, 1.5, 2.0, 3.0]),
 )
 def test_pulse_alone_is_recovered(period, phase, cycles):
-    motion = conditioning.pad(m.mavroeidis_papageorgiou(0.5, period, cycles, phase, 0.01), 2.0, 3.0)
+    motion = processing.pad(m.mavroeidis_papageorgiou(0.5, period, cycles, phase, 0.01), 2.0, 3.0)
     pulse = m.strongest_pulse(motion)
     assert pulse.explained > 0.999
     # near one cycle, period, cycles and phase can make up for one another
@@ -194,11 +194,11 @@ def test_search_finds_what_trying_everything_finds(noise, kind, seed):
     shaking = noise(seed, 900, 0.01 if seed else 0.005, tapered=True)
     motion = {
         "random walk": lambda: shaking,
-        "high-passed": lambda: filtering.highpass(shaking, 2.0, 4),
+        "high-passed": lambda: processing.highpass(shaking, 2.0, 4),
         "short": lambda: noise(seed, 40),
         "with a pulse": lambda: Motion(
             0.2 * shaking.acceleration
-            + conditioning.pad(
+            + processing.pad(
                 m.mavroeidis_papageorgiou(0.3, 1.0, 2.5, 30.0, shaking.dt), 0.0, 9.0
             ).acceleration[:900],
             shaking.dt,

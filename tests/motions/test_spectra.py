@@ -10,16 +10,15 @@ from scipy.signal import StateSpace, lsim
 
 from rockfrag import motions as m
 from rockfrag.errors import InputError
-from rockfrag.motions import conditioning, half_sine, intensity, pga, response_spectrum, sine
-from rockfrag.motions.filtering import interpolate
+from rockfrag.motions import half_sine, intensity, pga, processing, response_spectrum, sine
 from rockfrag.motions.intensity import (
     HOUSNER_PERIODS,
     PREDOMINANT_PERIODS,
     housner_and_average,
     pgd,
 )
-from rockfrag.motions.side_by_side import peak_displacements
-from rockfrag.motions.spectra import fourier_amplitude, oscillator_response
+from rockfrag.motions.processing import interpolate
+from rockfrag.motions.spectra import fourier_amplitude, oscillator_response, peak_displacements
 from rockfrag.records.motion import Motion
 
 
@@ -145,7 +144,7 @@ def motion(request, noise) -> Motion:
         "noise to the end": lambda: noise(2, 700),
         "0.5 s sine": lambda: m.sine(2.0, 0.5, 10, dt=0.01),
         "jump": lambda: m.rectangular(1.0, 0.3, dt=0.01),
-        "quiet end": lambda: conditioning.pad(noise(3, 300), 5.0, 30.0),
+        "quiet end": lambda: processing.pad(noise(3, 300), 5.0, 30.0),
         "0.005 s": lambda: noise(4, 900, 0.005, tapered=True),
     }
     return made[request.param]()

@@ -144,17 +144,16 @@ def validity(friction: list[float], force: list[float], sides: str = "") -> pd.D
 
 
 def test_friction_counts_the_tests_that_need_more_than_a_usual_surface_has():
-    (found,) = model_allowed(validity([0.3, 0.5, 1.3, math.inf], [5, 5, 5, -1]))
+    found = model_allowed(validity([0.3, 0.5, 1.3, math.inf], [5, 5, 5, -1]))
     assert found.headline == "2 of 4 tests require a friction coefficient above 0.6"
     assert "0.30 to 1.30" in found.numbers
     assert "No friction would be enough in 1 of 4 tests" in found.numbers
     assert "would have lifted off in 1 of 4 tests" in found.numbers
     assert "inf" not in found.said
-    assert model_allowed(validity([], [])) == []
 
 
 def test_what_friction_says_of_the_pedestal_is_said_where_both_sides_were_tested():
-    (found,) = model_allowed(validity([0.2, 0.3, 0.7, 1.4], [5, 5, 5, 5], "NNPP"))
+    found = model_allowed(validity([0.2, 0.3, 0.7, 1.4], [5, 5, 5, 5], "NNPP"))
     assert found.headline == (
         "All 2 tests with the pedestal require a friction coefficient above 0.6, and none of 2 tests without"
     )

@@ -16,7 +16,8 @@ from rockfrag.survival.evidence import (
     lognormal_coefficients,
     shaking_rates,
 )
-from rockfrag.survival.reweight import reweight, scaled
+from rockfrag.survival.reweight import SAMPLES, Reweighted, reweight, scaled
+from rockfrag.survival.site import Site
 
 SLOPE = 2.5
 
@@ -40,9 +41,13 @@ def rock(years: float, theta: float = 0.4, beta: float = 0.3, sd: float = 0.0, n
     return StandingObject(name, PGA, lognormal_coefficients(theta, beta), sd, age)
 
 
+def weighed(branches, objects, samples=SAMPLES, **more) -> Reweighted:
+    return reweight(Site("here", tuple(branches), tuple(objects), **more), samples)
+
+
 def test_rate_of_toppling_under_a_power_law_is_the_closed_form():
     years = 100.0
-    found = reweight(made_branches(1.0, 3.0), [rock(years, 0.4, 0.3)])
+    found = weighed(made_branches(1.0, 3.0), [rock(years, 0.4, 0.3)])
     # λ = k0 θ^-k exp(k² β² / 2) (Cornell and others 2002)
     of_one = 1e-4 * 0.4**-SLOPE * math.exp((SLOPE * 0.3) ** 2 / 2)
     expected = [-years * factor * of_one for factor in (1.0, 3.0)]
@@ -60,37 +65,37 @@ def test_weights_integrate_what_is_linear_in_the_logarithm_exactly():
 
 
 def test_no_time_leaves_the_weights_as_do_equal_branches_and_long_time_leaves_the_gentlest():
-    found = reweight(made_branches(1.0, 1.0, 1.0), [rock(3000, sd=0.3)])
+    found = weighed(made_branches(1.0, 1.0, 1.0), [rock(3000, sd=0.3)])
     assert found.weights == pytest.approx([1 / 3] * 3)
     assert found.information == pytest.approx(0.0, abs=1e-12)
     branches = made_branches(0.5, 1.0, 2.0, weights=[0.2, 0.5, 0.3])
-    assert reweight(branches, [rock(1e-9)]).weights == pytest.approx([0.2, 0.5, 0.3])
-    assert reweight(branches, [rock(1e6)]).weights == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+    assert weighed(branches, [rock(1e-9)]).weights == pytest.approx([0.2, 0.5, 0.3])
+    assert weighed(branches, [rock(1e6)]).weights == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
 
 
 def test_independent_objects_multiply_and_identical_ones_with_shared_error_do_not():
     branches = made_branches(0.5, 1.0, 2.0)
     first, other = rock(2000, sd=0.4, name="one"), rock(2000, sd=0.4, name="other")
-    alone = reweight(branches, [first]).log_survival
-    apart = reweight(branches, [first, other], shared_error=0.0, same_earthquakes=False)
+    alone = weighed(branches, [first]).log_survival
+    apart = weighed(branches, [first, other], shared_error=0.0, same_earthquakes=False)
     assert apart.log_survival == pytest.approx(2 * alone, rel=5e-3)
-    together = reweight(branches, [first, other], shared_error=1.0, same_earthquakes=False)
+    together = weighed(branches, [first, other], shared_error=1.0, same_earthquakes=False)
     assert (together.log_survival > 2 * alone + 0.02).all()
 
 
 def test_a_twin_that_topples_with_its_brother_says_nothing_new():
     branches = made_branches(0.5, 2.0)
     sharp = [rock(2000, beta=0.05, name=name) for name in ("one", "other")]
-    alone = reweight(branches, sharp[:1]).log_survival
+    alone = weighed(branches, sharp[:1]).log_survival
     # the weaker of two normal capacities lies 0.5642 standard deviations below the mean
     expected = alone * math.exp(SLOPE * 0.5642 * 0.05)
-    assert reweight(branches, sharp).log_survival == pytest.approx(expected, rel=5e-3)
+    assert weighed(branches, sharp).log_survival == pytest.approx(expected, rel=5e-3)
 
 
 def test_an_object_that_came_later_is_exposed_to_fewer_earthquakes():
     branches = made_branches(1.0, 2.0)
     old, young = rock(2000, theta=0.4, name="old"), rock(500, theta=0.3, name="young")
-    found = reweight(branches, [old, young])
+    found = weighed(branches, [old, young])
     for k0, value in zip((1e-4, 2e-4), found.log_survival, strict=True):
         x = np.geomspace(1e-3, 50, 20_001)
         fall = -np.diff(k0 * x**-SLOPE)
@@ -108,14 +113,14 @@ def test_velocity_that_scatters_widens_a_fragility_in_two_measures_as_normal_the
     one = ((10.0 + 3.0 * m) / root, 4.0 / root)
     merged = StandingObject("merged", PGA, one, 0.0, Age(1000, 1000))
     branches = made_branches(0.1, 0.3)
-    found = reweight(branches, [body], velocity=VelocityRelation(0.08, s))
-    assert found.log_survival == pytest.approx(reweight(branches, [merged]).log_survival, rel=2e-3)
+    found = weighed(branches, [body], velocity=VelocityRelation(0.08, s))
+    assert found.log_survival == pytest.approx(weighed(branches, [merged]).log_survival, rel=2e-3)
 
 
 def test_fragility_in_velocity_needs_a_curve_or_a_relation():
     body = StandingObject("rock", PGV, lognormal_coefficients(40.0, 0.4), 0.0, Age(1000, 1000))
     with pytest.raises(InputError, match="needs PGV"):
-        reweight(made_branches(1.0), [body])
+        weighed(made_branches(1.0), [body])
     shaking = shaking_rates([{PGA: power_law(1e-4)}], {PGV}, VelocityRelation(0.1, 0.5), (0.1, 1.0))
     assert shaking.rates.sum() == pytest.approx(
         power_law(1e-4).rate(shaking.values[PGA].min()).item()
@@ -126,7 +131,7 @@ def test_drawn_histories_of_sites_recover_the_weights():
     """Draw a branch, then a history of T years, and keep the histories in which the object stands."""
     rng = np.random.default_rng(12)
     factors, weights, years = np.array([0.3, 1.0, 3.0]), [0.3, 0.4, 0.3], 2000.0
-    found = reweight(made_branches(*factors, weights=weights), [rock(years, sd=0.3)], samples=8192)
+    found = weighed(made_branches(*factors, weights=weights), [rock(years, sd=0.3)], samples=8192)
     n = 20_000
     branch = rng.choice(3, n, p=weights)
     theta = 0.4 * np.exp(rng.normal(0, 0.3, n))
@@ -144,22 +149,22 @@ def test_drawn_histories_of_sites_recover_the_weights():
 
 def test_curves_before_are_the_weighted_mean_and_ratios_follow_from_the_curves():
     branches = made_branches(0.5, 1.0, 2.0, weights=[0.25, 0.5, 0.25])
-    found = reweight(branches, [rock(3000)])
-    curves = found.curves(PGA)
+    found = weighed(branches, [rock(3000)])
+    curves = found.curves()
     mean = sum(b.weight * b.curves[PGA].rate(curves["level"].to_numpy()) for b in branches)
     assert curves["mean_before"].to_numpy() == pytest.approx(mean)
     fractiles = curves.filter(regex="fractile.*before").to_numpy()
     assert (np.diff(fractiles, axis=1) >= 0).all()
-    row = found.ratios(PGA).set_index("annual_rate").loc[1e-3]
+    row = found.ratios().set_index("annual_rate").loc[1e-3]
     assert row["rate_ratio"] == pytest.approx(row["level_ratio"] ** SLOPE, rel=1e-3)
     assert row["level_after"] < row["level_before"]
 
 
 def test_more_capacity_or_less_age_tells_less():
     branches, body = made_branches(0.5, 1.0, 2.0), rock(3000)
-    base = reweight(branches, [body]).information
-    assert reweight(branches, scaled([body], capacity=1.5)).information < base
-    assert reweight(branches, scaled([body], age=0.5)).information < base
+    base = weighed(branches, [body]).information
+    assert weighed(branches, scaled([body], capacity=1.5)).information < base
+    assert weighed(branches, scaled([body], age=0.5)).information < base
 
 
 def test_ages_are_certain_uniform_or_lognormal_and_end_with_fragility():

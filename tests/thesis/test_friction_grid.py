@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Stack, overturns
-from rockfrag.motions.scaling import factors_to_pga
+from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag_thesis.sensitivity_analysis.friction_grid import (

@@ -23,68 +23,50 @@ from rockfrag.assess.sources import SPACE
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import ROCKS
 from rockfrag.short_repr import short_repr
 
-RECORDS = "resources/records"
-"""Folder of fetched records."""
+RECORDS = "resources/records"  # Folder of fetched records
 
 
 @dataclass(frozen=True, eq=False)
 class Assessment:
-    """All that is known of one object at one place.
+    """All that is known of one object at one place."""
 
-    Attributes
-    ----------
-    request : what was asked
-    motions : the motions
-    level : level of shaking at the site; None if neither level nor hazard was given
-    hazard : the hazard curve that was used; None if none was given
-    counted : what each motion as recorded does to the object as it stands
-    arrangements : outcomes of each way to stand, its own first, under motions with the velocity of the site
-    rocking : fraction of the motions at the level that make it rock; None without a level
-    rocks_from : least level at which any motion makes it rock, in the measure's unit; infinite where none does
-    fraction : fraction of the motions at the level that topple it; None without a level
-    probability : probability of toppling in the years asked for; None without a hazard
-    counts : motions that reach the level, that rock and that topple it there; None where none can be
-        scaled to it
-    amplitudes : levels at which a tenth and half of the motions topple it, by fraction
-    by_arrangement : what is estimated of each arrangement
-    curve : lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
-    conversion : what hazard in another measure than PGV leaves open; None in PGV
-    planar : what is estimated in one plane, beside the answer in space, which counts; None where there is none
-    directions : the worst direction; None where no record has two components
-    mitigations : what helps, most helpful first
-    effects : what is estimated with each property smaller and larger
-    rules : engineers' rules held against the outcomes
-    sliding_fraction : fraction of the motions at the level that topple it if it may slide [-]; NaN without
-        friction or level
-    flip_rate : fraction of outcomes in space at the level that differ if the base does by a millionth [-]; or
-        NaN
-    """
-
-    request: Request
-    motions: MotionSet
-    level: Level | None
-    hazard: HazardCurve | None
-    counted: ObjectOutcomes
+    request: Request  #: What was asked
+    motions: MotionSet  #: The motions
+    level: Level | None  #: Level of shaking at the site; None if neither level nor hazard was given
+    hazard: HazardCurve | None  #: The hazard curve that was used; None if none was given
+    counted: ObjectOutcomes  #: What each motion as recorded does to the object as it stands
+    #: Outcomes of each way to stand, its own first, under motions with the velocity of the site
     arrangements: Mapping[str, ObjectOutcomes]
-    rocking: Estimate | None
+    rocking: Estimate | None  #: Fraction of the motions at the level that make it rock
+    #: Least level at which any motion makes it rock, in the measure's unit; infinite where none does
     rocks_from: float
-    fraction: Estimate | None
-    probability: Estimate | None
+    fraction: Estimate | None  #: Fraction of the motions at the level that topple it
+    probability: Estimate | None  #: Probability of toppling in the years asked for
+    #: Motions that reach the level, that rock and that topple it there; None where none can be scaled to it
     counts: tuple[int, int, int] | None
-    amplitudes: Mapping[float, Estimate]
-    by_arrangement: Mapping[str, float]
+    amplitudes: Mapping[
+        float, Estimate
+    ]  #: Levels at which a tenth and half of the motions topple it
+    by_arrangement: Mapping[str, float]  #: What is estimated of each arrangement
+    #: Lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
     curve: Fragility | None
-    conversion: Conversion | None
-    planar: float | None
-    directions: Directions | None
-    mitigations: tuple[Mitigation, ...]
-    effects: tuple[Moved[float], ...]
-    rules: tuple[RuleCheck, ...]
+    conversion: (
+        Conversion | None
+    )  #: What hazard in another measure than PGV leaves open; None in PGV
+    planar: (
+        float | None
+    )  #: What is estimated in one plane, beside the answer in space, which counts
+    directions: Directions | None  #: The worst direction; None where no record has two components
+    mitigations: tuple[Mitigation, ...]  #: What helps, most helpful first
+    effects: tuple[Moved[float], ...]  #: What is estimated with each property smaller and larger
+    rules: tuple[RuleCheck, ...]  #: Engineers' rules held against the outcomes
+    #: Fraction of the motions at the level that topple it if it may slide [-]; NaN without friction or level
     sliding_fraction: float
+    #: Fraction of outcomes in space at the level that differ if the base does by a millionth [-]; or NaN
     flip_rate: float = math.nan
 
     __repr__ = short_repr
@@ -121,6 +103,11 @@ class Plan:
     # Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space
     compares_few: bool
 
+    @property
+    def hazard(self) -> HazardCurve | None:
+        """The hazard curve that counts."""
+        return self.curves[0] if self.curves else None
+
 
 @dataclass(frozen=True, eq=False)
 class Shaken:
@@ -139,21 +126,12 @@ class Shaken:
 
 
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
-    """Assess one object at one place.
+    """Assess one object at one place, with the folder of fetched records.
 
-    Parameters
-    ----------
-    request : what is asked
-    records : folder of fetched records
-    brief : leave out directions and mitigations, as for one line of an inventory
-
-    Returns
-    -------
-    The :class:`Assessment`.
+    ``brief`` leaves out directions and mitigations, as for one line of an inventory.
     """
-    return assess_with(
-        request, motion_set(request.records, request.place, Path(records)), brief=brief
-    )
+    motions = motion_set(request.records, request.place, Path(records))
+    return assess_with(request, motions, brief=brief)
 
 
 def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) -> Assessment:
@@ -212,10 +190,8 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
             change[_pad_words(object_.pad_friction, slip, plan, under[1])] = on_it
         planar = None
         if plan.motions.both and not plan.brief:
-            flat = object_.in_plane()
-            planar = outcomes.outcomes_of(
-                flat, {"": object_.body}, plan.motions, plan.intensity_levels
-            )[""]
+            flat = [object_.in_plane()]
+            (planar,) = outcomes.outcomes_of_all(flat, plan.motions, plan.intensity_levels)
         found.append(Shaken(way, sides, before, planar, change, known))
     return found
 
@@ -227,10 +203,7 @@ def _pad_words(
     words = f"a pad of friction {friction:g}"
     if plan.level is None:
         return words
-    at = min(
-        int(intensity_levels.levels.searchsorted(plan.level.value)),
-        intensity_levels.levels.size - 1,
-    )
+    at = intensity_levels.place_of(plan.level.value)
     here = slip[intensity_levels.allowed[:, at], at]
     if not here.size:
         return words
@@ -240,22 +213,15 @@ def _pad_words(
 def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     """Say what follows from what the motions of a plan do to an object."""
     objects, motions, level = request.objects, plan.motions, plan.level
-    hazard = plan.curves[0] if plan.curves else None
+    hazard = plan.hazard
     measure = plan.intensity_levels.measure
     counted = next(iter(shaken.arrangements.values()))
     target = _target(level, hazard, request.years)
     exact = _starts_by_statics(request, measure) and not motions.both
     conversion = None
     if level:
-        conversion = find_conversion(
-            counted,
-            motions,
-            request.records,
-            level=level,
-            curves=plan.curves,
-            by_statics=exact,
-            brief=plan.brief,
-        )
+        about = (request.records, level, plan.curves)
+        conversion = find_conversion(counted, motions, *about, by_statics=exact, brief=plan.brief)
     shaken = _at_site(shaken, plan, conversion)
     arrangements, moved = shaken.arrangements, shaken.moved
     both_sides = {change.name: change.sides for change in moved}
@@ -279,8 +245,13 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     rocks_from = _rocks_from(request, counted, exact=exact)
     if level:
         rocking = risk.estimate_rocking(level.value, now, both_sides, exact=exact)
-        fraction = _no_more_than(estimated(risk.fraction_target(level.value)), rocking)
-        rocking = _no_less_than(rocking, fraction)
+        fraction = estimated(risk.fraction_target(level.value))
+        if rocking.value == 0:
+            # what does not rock cannot topple
+            fraction = replace(fraction, upper=min(fraction.upper, rocking.upper))
+        # what topples rocks: limits of rocking are at least those of toppling
+        limits = (max(rocking.lower, fraction.lower), max(rocking.upper, fraction.upper))
+        rocking = replace(rocking, lower=limits[0], upper=limits[1])
     at = level.value if level else None
     brief = plan.brief
     return Assessment(
@@ -356,14 +327,11 @@ def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
         return tuple(velocity)
     if len(others) == 1:
         return (*others, *velocity)
-    objects = request.objects
-    name, body = next(iter(objects.arrangements.items()))
 
     def scatter(curve: HazardCurve) -> float:
         intensity_levels = outcomes.make_intensity_levels(motions, curve.measure)
-        first = outcomes.outcomes_of(objects, {name: body}, motions, intensity_levels)[
-            name
-        ].first_levels()
+        (found,) = outcomes.outcomes_of_all([request.objects], motions, intensity_levels)
+        first = found.first_levels()
         known = np.log(first[np.isfinite(first)])
         return float(known.std()) if known.size > 1 else math.inf
 
@@ -395,25 +363,11 @@ def _rocks_from(request: Request, now: ObjectOutcomes, *, exact: bool) -> float:
     return float(now.intensity_levels.levels[rocked[0]]) if rocked.size else math.inf
 
 
-def _no_more_than(fraction: Estimate, rocking: Estimate) -> Estimate:
-    """What does not rock cannot topple."""
-    if rocking.value > 0:
-        return fraction
-    return replace(fraction, upper=min(fraction.upper, rocking.upper))
-
-
-def _no_less_than(rocking: Estimate, fraction: Estimate) -> Estimate:
-    """What topples rocks: limits of rocking are at least those of toppling."""
-    return replace(
-        rocking, lower=max(rocking.lower, fraction.lower), upper=max(rocking.upper, fraction.upper)
-    )
-
-
 def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | None:
     if level is None:
         return None
-    at = int(now.intensity_levels.levels.searchsorted(level.value))
-    if at == now.intensity_levels.levels.size or now.intensity_levels.levels[at] != level.value:
+    at = now.intensity_levels.place_of(level.value)
+    if now.intensity_levels.levels[at] != level.value:
         return None
     allowed = now.intensity_levels.allowed[:, at]
     if not allowed.any():

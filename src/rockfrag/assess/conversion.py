@@ -22,7 +22,7 @@ from rockfrag.assess.request import Level, Records
 from rockfrag.errors import InputError
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.fragility.vector import VectorFragility, fit_vector
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 
 Floats = NDArray[np.float64]
 
@@ -40,23 +40,54 @@ TOGETHER = 0.25
 """Relative standard deviation of the spread of ln PGV at a given level, which two hazard curves do not say: of
 ours."""
 
-NODES = 11
-"""Values of equal probability that stand for the spread of ln PGV/IM."""
+NODES = 11  # Values of equal probability that stand for the spread of ln PGV/IM
 
 OF_DISPLACEMENT = 2.0
 """Largest weight of ln PGV/IM [-]: a motion stretched in time by r at a given PGA has a PGV larger by r and a
 displacement larger by r²."""
 
-MOST_LEVELS = 8
-"""Levels of a motion that are fitted; tests under one motion depend on each other."""
+MOST_LEVELS = 8  # Levels of a motion that are fitted; tests under one motion depend on each other
 
 
 @dataclass(frozen=True)
 class SiteVelocity:
     """PGV that comes with levels of another measure at a site: ln of their ratio [s] is normal."""
 
-    log_ratio: Callable[[Floats], Floats]  # Mean of ln ratio at levels of the measure
+    # Mean of ln ratio at levels of the measure, with the spread
+    mean: Callable[[Floats, float], Floats]
     spread: float  # Its standard deviation from one earthquake to the next [-]
+    is_open: bool = False  # Whether the spread at a given level is not known
+
+    def log_ratio(self, levels: Floats) -> Floats:
+        """Mean of ln ratio at levels of the measure, of their shape."""
+        return self.mean(levels, self.spread)
+
+    @classmethod
+    def constant(cls, log_ratio: float, spread: float) -> "SiteVelocity":
+        """The same at all levels."""
+        return cls(lambda levels, _: np.full(levels.shape, log_ratio), spread)
+
+    @classmethod
+    def of_two_curves(
+        cls, first: HazardCurve, velocity: HazardCurve, spread: float
+    ) -> "SiteVelocity":
+        """What agrees with the hazard curves of a measure and of PGV, with a standard deviation of ln PGV.
+
+        If ln PGV is normal about a line in ln measure with the standard deviation s, and the rate of PGV falls
+        with the exponent k, the level of PGV at a rate lies k s²/2 above the mean of ln PGV at the measure's level
+        of that rate.
+        """
+
+        def mean(levels: Floats, spread: float) -> Floats:
+            rates = first.rate(levels)
+            logs = [
+                np.log([velocity.level(rate * factor) for rate in rates])
+                for factor in (1.0, math.exp(-1), math.e)
+            ]
+            slope = 2.0 / (logs[1] - logs[2])
+            return np.asarray(logs[0] - slope * spread**2 / 2 - np.log(levels * VELOCITY_PER_G))
+
+        return cls(mean, spread, is_open=True)
 
 
 @dataclass(frozen=True)
@@ -105,11 +136,11 @@ class Conversion:
 
     def sides(self, outcomes: ObjectOutcomes) -> tuple[ObjectOutcomes, ObjectOutcomes] | None:
         """The same with less and more spread of velocities at a given level; None where that is not open."""
-        if not isinstance(self.known, OfTwoCurves):
+        known = self.known
+        if known is None or not known.is_open:
             return None
-        first, velocity, spread = self.known.first, self.known.velocity, self.known.spread
         lower, upper = (
-            self._moved(outcomes, OfTwoCurves.of(first, velocity, spread * factor))
+            self._moved(outcomes, replace(known, spread=known.spread * factor))
             for factor in (1 - TOGETHER, 1 + TOGETHER)
         )
         return lower, upper
@@ -151,12 +182,12 @@ class Conversion:
 def find_conversion(
     outcomes: ObjectOutcomes,
     motions: MotionSet,
-    given: Records | None = None,
+    given: Records,
+    level: Level | None,
+    curves: Sequence[HazardCurve],
     *,
-    level: Level | None = None,
-    curves: Sequence[HazardCurve] = (),
-    by_statics: bool = False,
-    brief: bool = False,
+    by_statics: bool,
+    brief: bool,
 ) -> Conversion | None:
     """Fit the fragility in two measures, and gather what is known of the velocity at the site.
 
@@ -170,24 +201,16 @@ def find_conversion(
     fit = _fitted(outcomes, logs, brief)
     if fit is None:
         return None
-    weight, error = _weight(fit, float(np.median(logs)))
+    middle = float(np.median(logs))
+    weight, error = _weight(fit, middle)
     if not math.isfinite(weight):
         return None
-    known, spread = _known(measure, motions, given or Records(), level, curves)
+    known, spread = _known(measure, motions, given, level, curves)
     away = 0.0
     if known is not None:
-        x = outcomes.intensity_levels.levels
-        away = float(np.abs(known.log_ratio(x) - np.median(logs)).mean())
-    return Conversion(
-        measure,
-        fit,
-        weight,
-        logs,
-        known,
-        spread,
-        math.hypot(weight * spread, error * away),
-        by_statics,
-    )
+        away = float(np.abs(known.log_ratio(outcomes.intensity_levels.levels) - middle).mean())
+    shift = math.hypot(weight * spread, error * away)
+    return Conversion(measure, fit, weight, logs, known, spread, shift, by_statics)
 
 
 def _fitted(outcomes: ObjectOutcomes, logs: Floats, brief: bool) -> VectorFragility | None:
@@ -236,49 +259,15 @@ def _known(
     relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
     own = math.sqrt(1 - OF_THE_SITE) * relation.scatter
     if len(curves) > 1:
-        return OfTwoCurves.of(curves[0], curves[1], relation.scatter), 0.0
+        return SiteVelocity.of_two_curves(curves[0], curves[1], relation.scatter), 0.0
     if level is not None and math.isfinite(level.pgv):
         ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
         # of a hazard curve other levels count too, with velocities of their own
-        return _constant(ratio, own if curves else 0.0), 0.0
+        return SiteVelocity.constant(ratio, own if curves else 0.0), 0.0
     spread = relation.unknown(given)
     if math.isnan(given.magnitude) and math.isnan(given.distance_km):
         return None, spread
-    return _constant(relation.mean(given), own), spread
-
-
-def _constant(log_ratio: float, spread: float) -> SiteVelocity:
-    return SiteVelocity(lambda levels: np.full(levels.shape, log_ratio), spread)
-
-
-@dataclass(frozen=True)
-class OfTwoCurves(SiteVelocity):
-    """PGV at levels of a measure that agrees with the hazard curves of both.
-
-    If ln PGV is normal about a line in ln measure with the standard deviation s, and the rate of PGV falls with
-    the exponent k, the level of PGV at a rate lies k s²/2 above the mean of ln PGV at the measure's level of that
-    rate.
-    """
-
-    # Hazard curves of the measure and of PGV
-    first: HazardCurve
-    velocity: HazardCurve
-
-    @classmethod
-    def of(cls, first: HazardCurve, velocity: HazardCurve, spread: float) -> "OfTwoCurves":
-        """What two curves say with a standard deviation of ln PGV at a given level."""
-
-        def log_ratio(levels: Floats) -> Floats:
-            rates = first.rate(levels)
-            logs = [
-                np.log([velocity.level(rate * factor) for rate in rates])
-                for factor in (1.0, math.exp(-1), math.e)
-            ]
-            slope = 2.0 / (logs[1] - logs[2])
-            mean = logs[0] - slope * spread**2 / 2
-            return np.asarray(mean - np.log(levels * VELOCITY_PER_G))
-
-        return cls(log_ratio, spread, first, velocity)
+    return SiteVelocity.constant(relation.mean(given), own), spread
 
 
 @dataclass(frozen=True)

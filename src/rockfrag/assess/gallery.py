@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, NullFormatter
 
@@ -19,7 +20,7 @@ from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, one_panel, plain_log
 from rockfrag.files import write_table, write_text
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import (
     Answer,
     FigureSpec,
@@ -30,9 +31,9 @@ from rockfrag.report.part import (
     section_of,
 )
 from rockfrag.report.study_report import page_text
+from rockfrag.report.wording import number
 
-MOST_DRAWN = 40
-"""Objects of which the correlation is drawn: those that add most."""
+MOST_DRAWN = 40  # Objects of which the correlation is drawn: those that add most
 
 RANKING = (
     Column("name", "Object"),
@@ -108,26 +109,18 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
     return section_of(text, "ranking", [table])
 
 
-_NUMBERS = (
-    Column("at_least", "At least so many", 0),
-    Column(
-        "annual_rate",
-        "Earthquakes that topple so many [1/year]",
-        lambda table: map("{:.2g}".format, table["annual_rate"]),
-    ),
-    Column("probability", "Probability [%]", 2),
-    Column("probability_lower", "Lower limit [%]", 2),
-    Column("probability_upper", "Upper limit [%]", 2),
-)
-
-
 def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
-    numbers = joint.numbers.copy()
-    numbers[[column.name for column in _NUMBERS[2:]]] *= 100
-    most = int(joint.numbers["at_least"].max())
-    rate = joint.numbers["annual_rate"].iloc[-1]
+    numbers = joint.numbers
+    most, rate = int(numbers["at_least"].max()), numbers["annual_rate"].iloc[-1]
     years = float(f"{1 / rate:.2g}") if rate else 0.0
-    table = table_html(numbers, _NUMBERS, "How many objects topple in one earthquake.")
+    shown = {
+        "At least so many": [number(n, 0) for n in numbers["at_least"]],
+        "Earthquakes that topple so many [1/year]": [f"{x:.2g}" for x in numbers["annual_rate"]],
+        "Probability [%]": [number(100 * p, 2) for p in numbers["probability"]],
+        "Lower limit [%]": [number(100 * p, 2) for p in numbers["probability_lower"]],
+        "Upper limit [%]": [number(100 * p, 2) for p in numbers["probability_upper"]],
+    }
+    table = text_table(shown, "How many objects topple in one earthquake.", list(shown))
     return section_of(gallery_says.numbers(most, years), "numbers", [table, *figures])
 
 
@@ -151,15 +144,9 @@ def numbers_figure(joint: JointRisk, years: float) -> Figure:
     bars = [np.maximum(middle - low, 0), np.maximum(high - middle, 0)]
     with one_panel(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.errorbar(at, middle, yerr=bars, fmt="o", color=BLUE, capsize=2)
-        axes.set(
-            xscale="log",
-            yscale="log",
-            xlabel="Objects that topple in one earthquake, at least",
-            ylabel=f"Probability in {years:g} years [%]",
-        )
+        _set_logarithmic(axes, "Objects that topple in one earthquake, at least", years)
         axes.set_xticks(at, [f"{n:g}" for n in at])
         axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
-        plain_log(axes, "y")
     return figure
 
 
@@ -169,16 +156,17 @@ def losses_figure(joint: JointRisk, years: float) -> Figure:
     chance = [100 * probability_in(rate, years) for rate in losses["annual_rate"]]
     with one_panel(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.step(losses["loss"], chance, where="pre", color=BLUE)
-        axes.set(
-            xscale="log",
-            yscale="log",
-            xlabel="Loss in one earthquake [unit of the values]",
-            ylabel=f"Probability in {years:g} years [%]",
-        )
+        _set_logarithmic(axes, "Loss in one earthquake [unit of the values]", years)
         axes.xaxis.set_major_formatter(EngFormatter(sep=""))
         axes.xaxis.set_minor_formatter(NullFormatter())
-        plain_log(axes, "y")
     return figure
+
+
+def _set_logarithmic(axes: Axes, words: str, years: float) -> None:
+    """Both axes by the logarithm: across what the words say, upwards the probability in some years."""
+    label = f"Probability in {years:g} years [%]"
+    axes.set(xscale="log", yscale="log", xlabel=words, ylabel=label)
+    plain_log(axes, "y")
 
 
 def correlation_figure(joint: JointRisk) -> Figure:

@@ -3,7 +3,7 @@
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,12 +23,10 @@ from rockfrag.tabular import Row, read_rows
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
 PEDESTAL = ("pedestal_width_m", "pedestal_height_m", "pedestal_depth_m", "pedestal_mass_kg")
-OTHERS = ("floor", "restitution", "round", "value")
 YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
 """What a cell may say to whether a base is round."""
 
-MOST_OBJECTS = 10_000
-"""Rows of an inventory."""
+MOST_OBJECTS = 10_000  # Rows of an inventory
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +68,7 @@ def assess_inventory(
         raise FaultyRows(faults)
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
     found = _all_assessed(requests, motions)
-    values = {
-        request.name: request.value if math.isfinite(request.value) else 1.0 for request in requests
-    }
-    joint = joint_risk(found, values)
+    joint = joint_risk(found)
     order = {}
     if joint is not None:
         order = dict(zip(joint.objects["name"], joint.objects["annual_loss"], strict=True))
@@ -151,13 +146,8 @@ def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
     pedestals = _pedestals(row)
     if pedestals:
         own["pedestal"] = pedestals if len(pedestals) > 1 else pedestals[0]
-    if row.has("floor"):
-        own["floor"] = row.text("floor")
-    if row.has("restitution"):
-        own["restitution"] = row.positive("restitution")
-    if row.has("round"):
-        own["round"] = _yes(row, "round")
-    worth = row.positive("value") if row.has("value") else math.nan
+    own |= {key: read(row, key) for key, read in OTHERS.items() if row.has(key)}
+    worth = own.pop("value", math.nan)
     where = f"{row.path}, line {row.line}"
     try:
         return replace(make_request({**shared, **own}, where), value=worth)
@@ -189,6 +179,12 @@ def _yes(row: Row, column: str) -> bool:
     if said not in YES + NO:
         raise row.error(column, f"expected yes or no, found {said[:40]!r}")
     return said in YES
+
+
+OTHERS: Mapping[str, Callable[[Row, str], Any]] = {
+    "floor": Row.text, "restitution": Row.positive, "round": _yes, "value": Row.positive
+}  # fmt: skip
+"""What else a column may say, and how it is read."""
 
 
 def _risk(found: Assessment) -> tuple[float, float, float]:

@@ -5,7 +5,7 @@ earthquake is counted and not assumed.  Rates follow from fractions of motions a
 object do (:mod:`rockfrag.assess.risk`).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,8 +21,7 @@ from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 NUMBERS = (1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000, 2000, 5000, 10_000)
 """Numbers of objects of which it is said how often so many topple together."""
 
-LOSSES = 24
-"""Losses of which it is said how often they are exceeded."""
+LOSSES = 24  # Losses of which it is said how often they are exceeded
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -46,8 +45,11 @@ class JointRisk:
     correlation: pd.DataFrame
 
 
-def joint_risk(found: Sequence[Assessment], values: Mapping[str, float]) -> JointRisk | None:
-    """Count what topples together; None without a hazard, or where objects are counted in different measures."""
+def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
+    """Count what topples together; an object of no given value counts as 1.
+
+    None without a hazard, or where objects are counted in different measures.
+    """
     hazard = found[0].hazard
     if hazard is None or any(assessment.measure != found[0].measure for assessment in found):
         return None
@@ -57,7 +59,8 @@ def joint_risk(found: Sequence[Assessment], values: Mapping[str, float]) -> Join
     fell = np.array([outcome.overturned for outcome in outcomes])
     allowed = np.logical_and.reduce([outcome.intensity_levels.allowed for outcome in outcomes])
     together = replace(outcomes[0], intensity_levels=replace(intensity_levels, allowed=allowed))
-    worth = np.array([values[assessment.request.name] for assessment in found])
+    values = np.array([assessment.request.value for assessment in found])
+    worth = np.where(np.isfinite(values), values, 1.0)
     levels = intensity_levels.levels
     per_level = np.array([toppling_rate(levels, unit, hazard) for unit in np.eye(levels.size)])
     rates = np.array([toppling_rate(levels, each.fractions(), hazard) for each in outcomes])
@@ -87,7 +90,7 @@ def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int6
     target = risk_target(first.hazard, years)
     # what is not known of one body says nothing about the others; these two are common to all
     shifts = {"model": MODEL_ERRORS[CUT].blind, "space": SPACE}
-    at = int(together.intensity_levels.levels.searchsorted(first.level.value))
+    at = together.intensity_levels.place_of(first.level.value)
     rows = []
     for least in [n for n in NUMBERS if n <= count.max()] or [1]:
         many = replace(together, overturned=count >= least, rocked=np.ones_like(together.rocked))
@@ -101,7 +104,7 @@ def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int6
                 "probability": probability_in(rate, years),
                 "probability_lower": found.lower,
                 "probability_upper": found.upper,
-                "at_the_site": fractions[min(at, fractions.size - 1)],
+                "at_the_site": fractions[at],
             }
         )
     return pd.DataFrame(rows)

@@ -1,7 +1,7 @@
 """The motions of an assessment: a default set of ordinary and pulse-like ones, or the user's own."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +13,7 @@ from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.rotation import common_time, rotate
 from rockfrag.records.catalogue import load_motion, load_motions
 from rockfrag.records.make_catalogue import make_catalogue
@@ -22,14 +22,12 @@ from rockfrag.records.sources.fema_p695 import SETS, read_set
 from rockfrag.records.sources.wheel import fetch_wheel
 from rockfrag.report.wording import counted
 
-NEAREST = 40
-"""Components of the default set that are kept where magnitude and distance are given."""
+NEAREST = 40  # Components of the default set that are kept where magnitude and distance are given
 
 MAGNITUDE_SCALE, DISTANCE_SCALE = 0.5, 0.7
 """Differences of magnitude and of ln distance that count alike when records are chosen."""
 
-FEWEST_EARTHQUAKES = 4
-"""Earthquakes below which an interval over motions was not validated."""
+FEWEST_EARTHQUAKES = 4  # Earthquakes below which an interval over motions was not validated
 
 Floats = NDArray[np.float64]
 
@@ -100,17 +98,28 @@ class MotionSet:
             words += f", {len(self.pairs)} records each with both components"
         return replace(self, both=True, words=words)
 
-    def turned(self, step_deg: int) -> list[tuple[int, list[Motion]]]:
-        """Records at the object's base turned through all directions, each with the place of its first component.
-
-        Half a turn is enough: a round body falls either way alike.
-        """
-        found = []
-        for pair in self.pairs:
-            first, other = common_pair(self, pair)
-            found.append((pair[0], [rotate(first, other, a) for a in range(0, 180, step_deg)]))
+    @property
+    def records(self) -> list[tuple[int, ...]]:
+        """Positions of the components of each record, those of two components first."""
         paired = {i for pair in self.pairs for i in pair}
-        return found + [(i, [m]) for i, m in enumerate(self.base) if i not in paired]
+        return [*self.pairs, *((i,) for i in range(len(self.ground)) if i not in paired)]
+
+    def place_of_record(self) -> NDArray[np.intp]:
+        """Place of the record of each motion in :attr:`records`, shape (n,)."""
+        place = np.zeros(len(self.ground), dtype=np.intp)
+        for n, record in enumerate(self.records):
+            place[list(record)] = n
+        return place
+
+    def components(self, record: Sequence[int]) -> list[Motion]:
+        """Components of a record at the object's base, two of them sampled at the same times."""
+        found = [self.base[i] for i in record]
+        return common_time(found) if len(found) > 1 else found
+
+    def turned(self, record: Sequence[int], angles: Iterable[float]) -> list[Motion]:
+        """A record at the object's base turned by angles [degrees]; one component as it is."""
+        first, *others = self.components(record)
+        return [rotate(first, other, angle) for other in others for angle in angles] or [first]
 
     @cached_property
     def _values(self) -> dict[IntensityMeasure, Floats]:
@@ -123,9 +132,9 @@ class MotionSet:
         """
         kept, pairs = list(range(0, len(self.ground), 2)), self.pairs[:0]
         if self.both:
-            paired = {i for pair in self.pairs for i in pair}
-            kept = [i for pair in self.pairs[::2] for i in pair]
-            kept += [i for i in range(len(self.ground)) if i not in paired]
+            count = len(self.pairs)
+            kept = [i for record in self.records[:count:2] for i in record]
+            kept += [i for (i,) in self.records[count:]]
             pairs = tuple((2 * n, 2 * n + 1) for n in range(len(self.pairs[::2])))
         ground, base = (tuple(motions[i] for i in kept) for motions in (self.ground, self.base))
         floors = self.halves.setdefault((self.both, len(ground)), {})
@@ -257,9 +266,3 @@ def _pairs(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
         if all(key):
             places.setdefault(key, []).append(i)
     return tuple((both[0], both[1]) for both in places.values() if len(both) == 2)
-
-
-def common_pair(found: MotionSet, pair: tuple[int, int]) -> tuple[Motion, Motion]:
-    """The two components of a record at the object's base, sampled at the same times."""
-    first, other = common_time([found.base[pair[0]], found.base[pair[1]]])
-    return first, other

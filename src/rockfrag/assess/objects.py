@@ -1,7 +1,7 @@
 """The object and what it stands on as blocks, what was assumed of them, and what is not known to the digit."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,7 @@ import numpy as np
 
 from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides
 from rockfrag.assess.scan import Scan, make_scan
-from rockfrag.errors import InputError
+from rockfrag.errors import InputError, errors_of
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.rocking.options import system_of
 from rockfrag.system import geometry
@@ -37,17 +37,13 @@ ON_POINTS = {"livelier": 0.85, "restitution": 0.1}
 """Middle and relative standard deviation of the restitution of a scanned body over that of momentum, which is
 uniform from 0.7 to 1 (:mod:`rockfrag.campaign.standing`)."""
 
-ROLLING = 1.0
-"""Restitution of a round base: its rim rolls from edge to edge and loses nothing."""
-
-HIGHER = 1.0 + 1e-9
-"""Height of a body that is another one than the object, over that of the object."""
+ROLLING = 1.0  # Restitution of a round base: its rim rolls from edge to edge and loses nothing
+HIGHER = 1.0 + 1e-9  # Height of a body that is another one than the object, over that of the object
 
 ASIDE = 45.0
 """Angle to both sides of how it faces the shaking, where nobody said it [degrees]: two at a right angle."""
 
-ALONE = "on the floor"
-"""How an object stands without a pedestal."""
+ALONE = "on the floor"  # How an object stands without a pedestal
 
 
 @dataclass(frozen=True)
@@ -107,15 +103,11 @@ class Objects:
     @property
     def arrangements(self) -> dict[str, Body]:
         """The ways in which it can stand, as it stands now first."""
-        body = self.body
-        if len(body.blocks) == 1:
+        body, under = self.body, f"its {self.stand}"
+        if not self.pedestals:
             return {ALONE: body}
         joined = body.rigidly_joined()
-        return {
-            f"on its {self.stand}": body,
-            f"fixed to its {self.stand}": joined,
-            ALONE: self.block,
-        }
+        return {f"on {under}": body, f"fixed to {under}": joined, ALONE: self.block}
 
     @property
     def least_uplift(self) -> float:
@@ -196,11 +188,14 @@ class Objects:
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
-        moves = {"width": self._wider, "cg_height": self._higher}
+        moves: dict[str, Callable[[float], Objects]] = {
+            "width": lambda factor: self._stretched(width=factor),
+            "cg_height": lambda factor: self._stretched(height=factor),
+        }
         if not self.round:  # of a body in space that of the planar answer
             moves["restitution"] = lambda factor: replace(self, livelier=self.livelier * factor)
         if self.pedestals:
-            moves["mass"] = self._heavier
+            moves["mass"] = lambda factor: self._stretched(mass=factor)
         found = moved_to_both_sides(moves, self.tolerances)
         if self.scan is not None:
             found += _standing(self, self.scan)
@@ -209,28 +204,15 @@ class Objects:
             found.append(Moved("facing", 0.0, *turned))
         return found
 
-    def _stretched(self, *factors: float) -> RigidBody | None:
-        """The scan in space, if there is one, by the factors of :func:`stretched`."""
-        return None if self.scanned is None else stretched(self.scanned, *factors)
-
-    def _wider(self, factor: float) -> "Objects":
+    def _stretched(self, width: float = 1.0, height: float = 1.0, mass: float = 1.0) -> "Objects":
         """Move all edges: what carries is uncertain at the foot of a pedestal as at that of a statue."""
         return replace(
             self,
-            depth=None if self.depth is None else self.depth * factor,
-            block=wider(self.block, factor),
-            scanned=self._stretched(factor, 1.0, 1.0),
-            pedestals=tuple(wider(block, factor) for block in self.pedestals),
+            depth=self.depth and self.depth * width,
+            block=stretched_block(self.block, width, height, mass),
+            scanned=self.scanned and stretched(self.scanned, width, height, mass),
+            pedestals=tuple(stretched_block(block, width) for block in self.pedestals),
         )
-
-    def _higher(self, factor: float) -> "Objects":
-        scanned = self._stretched(1.0, factor, 1.0)
-        return replace(self, block=higher(self.block, factor), scanned=scanned)
-
-    def _heavier(self, factor: float) -> "Objects":
-        mass, inertia = self.block.mass * factor, self.block.centroidal_inertia * factor
-        heavier = replace(self.block, mass=mass, inertia=inertia)
-        return replace(self, block=heavier, scanned=self._stretched(1.0, 1.0, factor))
 
 
 def _standing(objects: Objects, scan: Scan) -> list[Moved[Objects]]:
@@ -267,15 +249,16 @@ def stretched(body: RigidBody, width: float, height: float, mass: float) -> Rigi
     )
 
 
-def wider(block: Block, factor: float) -> Block:
-    """A block whose edges are further apart; mass, centre of gravity and inertia stay."""
-    return replace(block, width=block.width * factor, inertia=block.centroidal_inertia)
-
-
-def higher(block: Block, factor: float) -> Block:
-    """A block whose centre of gravity is higher; its inertia about it stays."""
+def stretched_block(
+    block: Block, width: float = 1.0, height: float = 1.0, mass: float = 1.0
+) -> Block:
+    """A block with edges further apart, a higher centre of gravity and more mass, by factors."""
     return replace(
-        block, cg_height=min(block.h * factor, block.height), inertia=block.centroidal_inertia
+        block,
+        width=block.width * width,
+        mass=block.mass * mass,
+        inertia=block.centroidal_inertia * mass,
+        cg_height=min(block.h * height, block.height),
     )
 
 
@@ -292,10 +275,8 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         block, plane = _from_dimensions(settings, assumed, quality_flags)
     depth, facing = _in_plan(settings)
     pedestals = _pedestals(settings, assumed)
-    try:
+    with errors_of("key pedestal"):
         stacked((*pedestals, block))
-    except InputError as error:
-        raise InputError(f"key pedestal: {error}") from None
     for each in (block, *pedestals):
         if quality_flag := size_warning(each.width, each.height):
             quality_flags.append(quality_flag + ".")
@@ -416,10 +397,11 @@ def _from_dimensions(
         mass = STONE * width * depth * height * (math.pi / 4 if is_round else 1.0)
         solid = "cylinder" if is_round else "box"
         assumed.append(assume("mass", "mass", mass=mass, solid=solid, density=STONE))
-    check_density(width, height, float(mass))
+    mass = float(mass)
+    check_density(width, height, mass)
     if "depth_m" in settings:
         volume = width * depth * height
-        density = float(mass) / volume
+        density = mass / volume
         words = f"{mass:g} kg in a box of {volume:.3g} m³ are {density:.3g} kg/m³"
         if not DENSITIES[0] <= density <= DENSITIES[1]:
             raise InputError(f"key mass: {words}, a density that no solid has; check the units.")
@@ -432,17 +414,10 @@ def _from_dimensions(
         raise InputError(
             f"key cg_height: {cg_height:g} m is not below the top, at {height:g} m; check the unit."
         )
-    block = Block(
-        width=width,
-        height=height,
-        mass=float(mass),
-        inertia=settings.get("inertia_kg_m2", round_inertia(width, height, float(mass)))
-        if is_round
-        else settings.get("inertia_kg_m2"),
-        cg_height=cg_height,
-        cg_offset=float(settings.get("cg_offset_m", 0.0)),
-    )
-    return block, plane
+    usual = round_inertia(width, height, mass) if is_round else None
+    inertia = settings.get("inertia_kg_m2", usual)
+    offset = float(settings.get("cg_offset_m", 0.0))
+    return Block(width, height, mass, inertia, cg_height=cg_height, cg_offset=offset), plane
 
 
 _FROM_MESH = ("width_m", "height_m", "depth_m", "cg_height_m", "cg_offset_m", "inertia_kg_m2")
@@ -495,30 +470,20 @@ def _in_keys(words: str) -> str:
 
 
 def _pedestals(settings: Mapping[str, Any], assumed: list[Assumption]) -> tuple[Block, ...]:
-    """What the object stands on, from below."""
-    given = settings.get("pedestal", [])
-    found = [
-        _pedestal(block, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
-        for i, block in enumerate(given, start=1)
-    ]
-    return tuple(reversed(found))
-
-
-def _pedestal(
-    given: Mapping[str, Any], settings: Mapping[str, Any], assumed: list[Assumption], name: str
-) -> Block:
-    """A pedestal, called by a name, in the plane in which the statue rocks."""
-    width, height = float(given["width_m"]), float(given["height_m"])
-    depth = float(given.get("depth_m", width))
+    """What the object stands on, from below, in the plane in which it rocks."""
+    given, found = settings.get("pedestal", []), []
     across = settings.get("depth_m", math.inf) < settings.get("width_m", math.inf)
-    if across:
-        width, depth = depth, width
-    mass = given.get("mass_kg")
-    if mass is None:
-        mass = STONE * width * depth * height
-        assumed.append(assume("pedestal", "mass", name=name, mass=mass, density=STONE))
-    try:
-        check_density(width, height, float(mass))
-    except InputError as error:
-        raise InputError(f"key pedestal: {error}") from None
-    return Block(width, height, float(mass))
+    for i, block in enumerate(given, start=1):
+        width, height = float(block["width_m"]), float(block["height_m"])
+        depth = float(block.get("depth_m", width))
+        if across:
+            width, depth = depth, width
+        mass = block.get("mass_kg")
+        if mass is None:
+            mass = STONE * width * depth * height
+            name = f"pedestal {i}" if len(given) > 1 else "the pedestal"
+            assumed.append(assume("pedestal", "mass", name=name, mass=mass, density=STONE))
+        with errors_of("key pedestal"):
+            check_density(width, height, float(mass))
+        found.append(Block(width, height, float(mass)))
+    return tuple(reversed(found))

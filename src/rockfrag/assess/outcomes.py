@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from rockfrag.assess.motions import MotionSet, common_pair
+from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.fragility.observations import Observations
-from rockfrag.motions.declared import IntensityMeasure
-from rockfrag.motions.rotation import rotate
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion, Motion
@@ -29,27 +28,16 @@ from rockfrag.units import LARGEST_PEAK
 
 Floats = NDArray[np.float64]
 
-LEVELS = 80
-"""Levels of shaking that are tried, a constant factor apart."""
-
-FEW_LEVELS = 28
-"""Levels for what is only compared, and for many objects."""
-
-FEWEST_LEVELS = 14
-"""Levels for what is only compared of many objects."""
-
-MOST_TESTS = 400_000
-"""Tests that are simulated at once, which bounds the memory of their results."""
-
-RANGE = (0.05, 8.0)
-"""Lowest and highest level over the median of the motions as recorded."""
+LEVELS = 80  # Levels of shaking that are tried, a constant factor apart
+FEW_LEVELS = 28  # Levels for what is only compared, and for many objects
+FEWEST_LEVELS = 14  # Levels for what is only compared of many objects
+MOST_TESTS = 400_000  # Tests that are simulated at once, which bounds the memory of their results
+RANGE = (0.05, 8.0)  # Lowest and highest level over the median of the motions as recorded
 
 LARGEST_FACTOR = 10.0
 """Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
 
-
-WORST_STEP_DEG = 15
-"""Angle between directions of which the worst is taken [degrees]."""
+STEP_DEG = 15  # Angle between directions that are tried [degrees]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,9 +51,12 @@ class IntensityLevels:
     # feel, shape (motions, levels)
     allowed: NDArray[np.bool_]
 
+    def place_of(self, level: float) -> int:
+        """Place of the first level that is not below one that is given; of the last one where all are."""
+        return min(int(self.levels.searchsorted(level)), self.levels.size - 1)
 
-AT_REST = 1e-9
-"""Factor of motions that are not counted: at rest costs nothing."""
+
+AT_REST = 1e-9  # Factor of motions that are not counted: at rest costs nothing
 
 
 def believable_scales(base: Sequence[Motion]) -> Floats:
@@ -85,13 +76,16 @@ def make_intensity_levels(
     motions: MotionSet, measure: IntensityMeasure, asked: Sequence[float] = (), count: int = LEVELS
 ) -> IntensityLevels:
     """Make ``count`` levels for a set of motions, and those that are asked for exactly, in the measure's unit."""
-    values = motions.values(measure)
     middle = motions.median(measure)
     levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
     levels = np.unique(np.append(levels, list(asked)))
-    scales = levels / values[:, np.newaxis]
+    found = _scaled_to(levels, motions, measure)
+    return replace(found, allowed=found.allowed & (found.scales <= believable_scales(motions.base)))
+
+
+def _scaled_to(levels: Floats, motions: MotionSet, measure: IntensityMeasure) -> IntensityLevels:
+    scales = levels / motions.values(measure)[:, np.newaxis]
     allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
-    allowed &= scales <= believable_scales(motions.base)
     return IntensityLevels(measure, levels, scales, allowed)
 
 
@@ -174,16 +168,6 @@ class ObjectOutcomes:
             name=self.intensity_levels.measure.imt,
             unit=self.intensity_levels.measure.unit,
         )
-
-
-def outcomes_of(
-    objects: Objects,
-    bodies: Mapping[str, Body],
-    motions: MotionSet,
-    intensity_levels: IntensityLevels,
-) -> dict[str, ObjectOutcomes]:
-    """Shake bodies of one object, by name, by every motion at every level."""
-    return outcomes_of_each([objects], [bodies], motions, intensity_levels)[0]
 
 
 def outcomes_of_all(
@@ -273,7 +257,7 @@ def flip_rate(
 ) -> float:
     """Fraction of the outcomes in space at a level that a perturbation turns round [-]; NaN without any."""
     solid = objects.solid(objects.body)
-    here = _one_level(motions, measure, level)
+    here = _scaled_to(np.array([level]), motions, measure)
     if solid is None or not here.allowed.any():
         return math.nan
     first, other = (
@@ -321,40 +305,35 @@ def in_space(
 
     Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
     """
-    paired = {i for pair in motions.pairs for i in pair}
-    shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]
-    shaking += [GroundMotion(m) for i, m in enumerate(motions.base) if i not in paired]
-    first = [pair[0] for pair in motions.pairs]
-    first += [i for i in range(len(motions.base)) if i not in paired]
+    shaking = [GroundMotion(*motions.components(record)) for record in motions.records]
+    first = [record[0] for record in motions.records]
     scales = _factors(intensity_levels, [motions.base[i] for i in first], first)
     result = run_in_space([body], shaking, scales, spread=spread, threads=checked_threads(None))
-    place = np.zeros(len(motions.base), dtype=np.intp)
-    place[first] = np.arange(len(first))
-    for own, other in motions.pairs:
-        place[other] = place[own]
+    place = motions.place_of_record()
     return _each_system(_reached(result), motions, intensity_levels, place=place)[0]
 
 
 def _shaken_from_all_sides(
     systems: Sequence[System], motions: MotionSet, intensity_levels: IntensityLevels
 ) -> list[ObjectOutcomes]:
-    """Outcomes by records, each in its worst direction; both components get that of the record."""
+    """Outcomes by records, each in its worst direction; both components get that of the record.
+
+    Half a turn is enough: a round body falls either way alike.
+    """
     if not systems:
         return []
-    records = motions.turned(WORST_STEP_DEG)
-    shaking = [motion for _, turned in records for motion in turned]
-    of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])
-    result, light = simulated(systems, shaking, _factors(intensity_levels, shaking, of_row))
-    # the place of the record that stands for each motion
-    place = np.arange(len(motions.base))
-    for first, second in motions.pairs:
-        place[second] = first
+    records = [motions.turned(record, range(0, 180, STEP_DEG)) for record in motions.records]
+    shaking = [motion for turned in records for motion in turned]
+    of_row = np.repeat(np.arange(len(records)), [len(turned) for turned in records])
+    first = [record[0] for record in motions.records]
+    scales = _factors(intensity_levels, shaking, np.take(first, of_row))
+    result, light = simulated(systems, shaking, scales)
     # what happens from one side happens
-    states = {}
+    shape, states = (len(systems), len(records), scales.shape[1]), {}
     for name, cases in _reached(result).items():
-        states[name] = np.zeros((len(systems), *intensity_levels.scales.shape), dtype=bool)
+        states[name] = np.zeros(shape, dtype=bool)
         np.logical_or.at(states[name].swapaxes(0, 1), of_row, cases.swapaxes(0, 1))
-    return _each_system(states, motions, intensity_levels, light, place)
+    return _each_system(states, motions, intensity_levels, light, motions.place_of_record())
 
 
 def on_pad(
@@ -371,12 +350,6 @@ def on_pad(
     return outcomes, result.peak_slip[0, ..., -1]
 
 
-def _one_level(motions: MotionSet, measure: IntensityMeasure, level: float) -> IntensityLevels:
-    scales = level / motions.values(measure)[:, np.newaxis]
-    allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
-    return IntensityLevels(measure, np.array([level]), scales, allowed)
-
-
 def fraction_with_sliding(
     objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float
 ) -> float:
@@ -385,7 +358,7 @@ def fraction_with_sliding(
     Simulations with friction take some hundred times as long as those without, so that they are made for one
     level.
     """
-    at_level = _one_level(motions, measure, level)
+    at_level = _scaled_to(np.array([level]), motions, measure)
     allowed, scales = at_level.allowed[:, 0], at_level.scales[:, 0]
     solid = objects.solid(objects.body) if motions.both else None
     if solid is not None and objects.friction is not None and not objects.pedestals:
@@ -399,10 +372,6 @@ def fraction_with_sliding(
         friction=objects.friction,
     ).overturned[0, :, 0]
     return float(fallen[allowed].mean())
-
-
-STEP_DEG = 15
-"""Angle between directions that are tried [degrees]."""
 
 
 @dataclass(frozen=True)
@@ -436,13 +405,12 @@ def find_directions(
     symmetric = upright and all(shape.x == 0 for shape in system.shapes)
     angles = range(0, 180 if symmetric else 360, STEP_DEG)
     values = motions.values(measure)
-    shaking, scales = [], []
+    shaking: list[Motion] = []
+    scales: list[Floats] = []
     for pair in motions.pairs:
-        first, other = common_pair(motions, pair)
         middle = float(np.sqrt(values[pair[0]] * values[pair[1]]))
-        for angle in angles:
-            shaking.append(rotate(first, other, angle))
-            scales.append(levels / middle)
+        shaking += motions.turned(pair, angles)
+        scales += [levels / middle] * len(angles)
     believable = np.minimum(np.array(scales), believable_scales(shaking))
     found, _ = simulated([system], shaking, believable)
     fallen = found.overturned[0]

@@ -6,13 +6,12 @@ from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.export import as_json, as_nrml
 from rockfrag.assess.figures import fractions_figure, sources_figure
-from rockfrag.assess.motions import MotionSet, common_pair
+from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.words import (
@@ -28,13 +27,12 @@ from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.live.space import Standing, live_in_space
-from rockfrag.report.page import Column, by_row, table_html, text_table
+from rockfrag.report.page import text_table
 from rockfrag.report.part import Answer, FigureSpec, Section, figure_of, finding_of, section_of
 from rockfrag.report.study_report import page_text
-from rockfrag.report.wording import PART, one_line, said, sentence
+from rockfrag.report.wording import PART, number, one_line, said, sentence
 
-MOTIONS_SHOWN = 15
-"""Rows of the table of motions that topple the object first."""
+MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
 
 FURTHEST = 3.0
 """Return periods are given up to so many times what the hazard curve reaches; beyond, its slope is a guess."""
@@ -163,62 +161,43 @@ def _effects(found: Assessment) -> Markup:
 
 
 def _rules(found: Assessment) -> Section:
-    columns = (
-        Column("rule", "Rule"),
-        Column("bias", "Its amplitude over the simulated one (median)", 2),
-        Column("scatter", "Scatter (ln)", 2),
-        Column(
-            "unsafe",
-            "Motions that topple it earlier",
-            by_row(lambda row: fraction_words(row["unsafe"])),
-        ),
-    )
-    table = pd.DataFrame([vars(rule) for rule in found.rules])
+    rules = found.rules
+    numbers = {
+        "Its amplitude over the simulated one (median)": [number(rule.bias, 2) for rule in rules],
+        "Scatter (ln)": [number(rule.scatter, 2) for rule in rules],
+        "Motions that topple it earlier": [fraction_words(rule.unsafe) for rule in rules],
+    }
     caption = "Rules held against every motion that topples the object."
-    return section_of(page_says.rules(), "rules", [table_html(table, columns, caption)])
+    table = text_table({"Rule": [rule.rule for rule in rules], **numbers}, caption, list(numbers))
+    return section_of(page_says.rules(), "rules", [table])
 
 
 def _levels(found: Assessment) -> Section:
-    outcomes = found.outcomes
-    fractions = outcomes.fractions()
+    outcomes, levels = found.outcomes, found.outcomes.intensity_levels.levels
+    fractions, (low, high) = outcomes.fractions(), outcomes.band()
+    reached = {ROCKS: "Motions that make it rock"}
+    for state in limit_states():
+        if state.name in outcomes.others:
+            reached[state.name] = f"Motions: {state.label}"
     rocks = outcomes.fractions(state=ROCKS)
-    others = [state for state in limit_states() if state.name in outcomes.others]
     shown = np.flatnonzero((rocks > 0) & (np.append(0, fractions[:-1]) < 0.99))[::4]
-    low, high = outcomes.band()
-    table = pd.DataFrame(
-        {
-            "level": outcomes.intensity_levels.levels[shown],
-            "rocks": [f"{100 * value:.0f} %" for value in rocks[shown]],
-            **{
-                state.name: [
-                    f"{100 * value:.0f} %" for value in outcomes.fractions(state=state.name)[shown]
-                ]
-                for state in others
-            },
-            "topples": [
-                f"{100 * fractions[i]:.0f} % ({100 * low[i]:.0f} to {100 * high[i]:.0f} %)"
-                for i in shown
-            ],
-        }
-    )
-    columns = [
-        Column("level", f"{found.measure.imt} [{found.measure.unit}]", 3),
-        Column("rocks", "Motions that make it rock", numeric=True),
-        *(Column(state.name, f"Motions: {state.label}", numeric=True) for state in others),
-        Column("topples", "Motions that topple it (90 % interval)", numeric=True),
+    table = {f"{found.measure.imt} [{found.measure.unit}]": [number(levels[i], 3) for i in shown]}
+    for name, title in reached.items():
+        parts = outcomes.fractions(state=name)
+        table[title] = [f"{100 * parts[i]:.0f} %" for i in shown]
+    table["Motions that topple it (90 % interval)"] = [
+        f"{100 * fractions[i]:.0f} % ({100 * low[i]:.0f} to {100 * high[i]:.0f} %)" for i in shown
     ]
     if found.hazard is not None:
-        levels = table["level"].to_numpy()
         reach = FURTHEST * found.hazard.levels[-1]
         if found.request.level is not None and not found.request.hazard[0].is_read:
             reach = FURTHEST * found.request.level.value
-        table["rate"] = [
+        table["Return period [years]"] = [
             _years(1 / float(found.hazard.rate(level))) if level <= reach else "beyond the hazard"
-            for level in levels
+            for level in levels[shown]
         ]
-        columns.append(Column("rate", "Return period [years]", numeric=True))
     caption = "Motions that make it rock, and that topple it, by the level of shaking."
-    return section_of(page_says.levels(found), "levels", [table_html(table, columns, caption)])
+    return section_of(page_says.levels(found), "levels", [text_table(table, caption, list(table))])
 
 
 def _years(period: float) -> str:
@@ -242,22 +221,21 @@ def _motions(found: Assessment) -> Section:
     shaking = [found.motions.ground[i] for i in order]
     stations = [str(motion.metadata.get("station", "")) for motion in shaking]
     places = zip(found.motions.earthquakes[order], stations, strict=True)
-    table = pd.DataFrame(
+    unit, recorded = found.measure.unit, found.motions.values(found.measure)
+    numbers = {
+        f"As recorded [{unit}]": [number(recorded[i], 2) for i in order],
+        f"Topples it from [{unit}]": [number(first[i], 2) for i in order],
+    }
+    table = text_table(
         {
-            "name": [motion.name for motion in shaking],
-            "earthquake": [", ".join(dict.fromkeys(place)).strip(", ") for place in places],
-            "recorded": found.motions.values(found.measure)[order],
-            "first": first[order],
-        }
+            "Motion": [motion.name for motion in shaking],
+            "Earthquake and station": [", ".join(dict.fromkeys(at)).strip(", ") for at in places],
+            **numbers,
+        },
+        "The motions that need the least shaking.",
+        list(numbers),
     )
-    columns = (
-        Column("name", "Motion"),
-        Column("earthquake", "Earthquake and station"),
-        Column("recorded", f"As recorded [{found.measure.unit}]", 2),
-        Column("first", f"Topples it from [{found.measure.unit}]", 2),
-    )
-    caption = "The motions that need the least shaking."
-    return section_of(page_says.motions(found), "motions", [table_html(table, columns, caption)])
+    return section_of(page_says.motions(found), "motions", [table])
 
 
 LIVE = (0.0, 0.1, 0.25, 0.5, 0.75)
@@ -288,10 +266,10 @@ def _in_space(objects: Objects, motions: MotionSet, chosen: list[int]) -> Markup
             continue
         tall = sum(block.height for block in pedestals)
         bodies[name] = Standing(solid, replace(pedestals[-1], height=tall) if pedestals else None)
-    records = dict.fromkeys(next((p for p in motions.pairs if i in p), (i,)) for i in chosen)
+    records, place = motions.records, motions.place_of_record()
     shaking = []
-    for record in records:
-        x, *others = common_pair(motions, record) if len(record) > 1 else [motions.base[record[0]]]
+    for record in dict.fromkeys(records[place[i]] for i in chosen):
+        x, *others = motions.components(record)
         shaking.append(GroundMotion(_named(motions, x, record[0]), *others))
     return live_in_space(bodies, shaking, left_out)
 

@@ -14,22 +14,20 @@ from rockfrag.assess.hazard.curve import (
     PGV,
     HazardCurve,
     curve_of_one_level,
+    read_level,
     read_measure,
 )
 from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
 from rockfrag.errors import InputError, errors_of
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.schema import checked
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
+from rockfrag.units import quantity
 from rockfrag.yaml_file import read_yaml
 
-LONGEST_PERIOD = 1e6
-"""Longest return period of a level [year]."""
-
-YEARS = 50.0
-"""Time for which the probability is given unless another is asked for [year]."""
+LONGEST_PERIOD = 1e6  # Longest return period of a level [year]
+YEARS = 50.0  # Time for which the probability is given unless another is asked for [year]
 
 
 @dataclass(frozen=True)
@@ -64,41 +62,20 @@ class Records:
 
 @dataclass(frozen=True)
 class Request:
-    """An object at a place, ready to be assessed.
+    """An object at a place, ready to be assessed."""
 
-    Attributes
-    ----------
-    name : what the object is called
-    objects : the object, its pedestal, and what is not known of them
-    place : the floor on which it stands
-    level : the level of shaking asked about
-    hazard : hazard curves of the site, one a measure
-    years : time for the probability [year]
-    records : where the motions come from
-    value : what the object is worth, in any unit; NaN if not given
-    """
-
-    name: str
-    objects: Objects
-    place: Place
-    level: Level | None = None
-    hazard: tuple[HazardCurve, ...] = ()
-    years: float = YEARS
-    records: Records = field(default_factory=Records)
-    value: float = math.nan
+    name: str  #: What the object is called
+    objects: Objects  #: The object, its pedestal, and what is not known of them
+    place: Place  #: The floor on which it stands
+    level: Level | None = None  #: The level of shaking asked about
+    hazard: tuple[HazardCurve, ...] = ()  #: Hazard curves of the site, one a measure
+    years: float = YEARS  #: Time for the probability [year]
+    records: Records = field(default_factory=Records)  #: Where the motions come from
+    value: float = math.nan  #: What the object is worth, in any unit; NaN if not given
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:
-    """Read a request from a YAML file.
-
-    Parameters
-    ----------
-    path : file such as ``statue.yaml``; paths in it are relative to it
-
-    Returns
-    -------
-    The :class:`Request`.
-    """
+    """Read a request from a YAML file such as ``statue.yaml``; paths in it are relative to it."""
     return make_request(read_yaml(path), str(path), Path(path).parent)
 
 
@@ -139,39 +116,31 @@ def _level(settings: Mapping[str, Any]) -> Level | None:
         raise InputError(
             "key pga and key sa are both given; give one of them, and key pgv beside it where it is known."
         )
-    velocity = None
-    if "pgv" in settings:
-        value = _of("pgv", settings["pgv"], "m_s") * CENTIMETRES_PER_METRE
-        velocity = _sensible("pgv", Level(PGV, value))
-    found = velocity
-    if "pga" in settings:
-        found = _sensible("pga", Level(PGA, _of("pga", settings["pga"], "m_s2") / GRAVITY))
-    if "sa" in settings:
-        period, acceleration = settings["sa"]
-        measure = read_measure(f"SA({_of('sa', period, 's'):g})", "key sa")
-        found = _sensible("sa", Level(measure, _of("sa", acceleration, "m_s2") / GRAVITY))
-    if found is None or velocity is None or found is velocity:
-        return found
-    return replace(found, pgv=velocity.value)
+    found = None
+    for key in [key for key in ("pgv", "pga", "sa") if key in settings]:
+        level = _level_of(key, settings[key])
+        found = level if found is None else replace(level, pgv=found.value)
+    return found
 
 
-def _of(key: str, given: str, unit: str) -> float:
-    try:
-        return quantity(given, unit, None)
-    except InputError as error:
-        raise InputError(f"key {key}: {error}") from None
-
-
-def _sensible(key: str, level: Level) -> Level:
-    if not 0 < level.value <= HIGHEST[level.measure.openquake]:
-        raise InputError(
-            f"key {key}: {level.words} is no shaking of an earthquake; expected more than 0 and at most "
-            f"{HIGHEST[level.measure.openquake]:g} {level.measure.unit}."
-        )
+def _level_of(key: str, given: Any) -> Level:
+    measure = {"pga": PGA, "pgv": PGV}.get(key)
+    if measure is None:
+        period, given = given
+        with errors_of("key sa"):
+            seconds = quantity(period, "s", None)
+        measure = read_measure(f"SA({seconds:g})", "key sa")
+    with errors_of(f"key {key}"):
+        level = Level(measure, read_level(given, measure))
+        if not 0 < level.value <= HIGHEST[measure.openquake]:
+            raise InputError(
+                f"{level.words} is no shaking of an earthquake; expected more than 0 and at most "
+                f"{HIGHEST[measure.openquake]:g} {measure.unit}."
+            )
     return level
 
 
-_PERIOD = re.compile(r"\s*([\d.]+(?:[eE][+-]?\d+)?)\s*(?:years?|yrs?|a|anni)?\s*")
+_PERIOD = re.compile(r"\s*((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?:years?|yrs?|a|anni)?\s*")
 
 
 def _return_period(settings: Mapping[str, Any]) -> float | None:
@@ -185,10 +154,7 @@ def _return_period(settings: Mapping[str, Any]) -> float | None:
         )
     given = settings["return_period"]
     found = _PERIOD.fullmatch(str(given))
-    try:
-        years = float(found[1]) if found else math.nan
-    except ValueError:
-        years = math.nan
+    years = float(found[1]) if found else math.nan
     if not 0 < years <= LONGEST_PERIOD:
         raise InputError(
             f"key return_period: expected more than 0 and at most {LONGEST_PERIOD:g} years such as 475 years, "

@@ -26,8 +26,7 @@ Floats = NDArray[np.float64]
 Sides = Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]]
 """Outcomes with each property moved to both sides by its standard deviation."""
 
-LEVEL = 0.90
-"""Confidence of the intervals."""
+LEVEL = 0.90  # Confidence of the intervals
 
 HALF = 0.5
 """Part of an earthquake that is added on either side of counted fractions (Haldane 1956, Anscombe 1956)."""
@@ -65,20 +64,13 @@ def probability_in(rate: float, years: float) -> float:
 
 @dataclass(frozen=True)
 class Estimate:
-    """A probability with its interval, or a bound where no motion toppled the object.
+    """A probability with its interval, or a bound where no motion toppled the object."""
 
-    Attributes
-    ----------
-    value : probability [-]
-    lower : lower limit of the interval [-]
-    upper : upper limit [-]
-    sources : standard deviation on the scale of the interval by source [-]
-    """
-
-    value: float
+    value: float  #: Probability [-]
+    #: Limits of the interval [-]
     lower: float
     upper: float
-    sources: Mapping[str, float]
+    sources: Mapping[str, float]  #: Standard deviation on the scale of the interval by source [-]
 
 
 @dataclass(frozen=True)
@@ -312,8 +304,7 @@ def estimate_rocking(
     return Estimate(1.0, min([1 - hidden, *sides]), 1.0, {})
 
 
-REFERENCE_YEARS = 50.0
-"""Time for which the steps hold [year]."""
+REFERENCE_YEARS = 50.0  # Time for which the steps hold [year]
 
 
 @dataclass(frozen=True)

@@ -37,8 +37,7 @@ SOURCE_OF = {
 }
 """Sources of uncertainty by the unknown."""
 
-WAYS = 256
-"""Ways to stand that are drawn."""
+WAYS = 256  # Ways to stand that are drawn
 
 KNOWN_CONTACT_SPREAD = 0.2
 """Relative standard deviation of a contact tolerance that was given: of ours."""
@@ -66,7 +65,7 @@ class Scan:
 
     def block(self, fraction: float = 0.5) -> Block:
         """The planar block of such a way."""
-        return body_of(self.shape, self.row_at(fraction))
+        return body_of(self.shape, self.row_at(fraction)).blocks[-1]
 
     def body(self, fraction: float = 0.5, turned_deg: float = 0.0) -> RigidBody:
         """The body in space of such a way."""

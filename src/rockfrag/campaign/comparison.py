@@ -22,6 +22,8 @@ STANDARD_ERRORS = 2.0
 
 FEWEST_VOTERS = 10  # plausible trials below which votes say little: with ten they are tenths
 
+HALF = 0.5  # an object overturns where at least so many of the votes say so
+
 NEAR_CRITICAL = (0.1, 0.9)
 """A test is near-critical if plausible trials disagree: this fraction of votes or more says each outcome."""
 
@@ -32,32 +34,6 @@ REPLICATES = 400
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class Validated:
-    """What cross-validation says of each test."""
-
-    # fraction of plausible trials under which the object overturns in each test, chosen by tests with other
-    # motions, shape (repeats, tests)
-    votes: Floats
-
-    __repr__ = short_repr
-
-    @property
-    def outcomes(self) -> Bools:
-        """Overturned where at least half of the votes say so, shape (repeats, tests)."""
-        return self.votes >= 0.5
-
-    @property
-    def mean_votes(self) -> Floats:
-        """Votes averaged over the repeats, shape (tests,)."""
-        return np.asarray(self.votes.mean(axis=0))
-
-    @property
-    def outcome(self) -> Bools:
-        """One outcome a test: by the votes averaged over the repeats, shape (tests,)."""
-        return self.mean_votes >= 0.5
 
 
 @dataclass(frozen=True)
@@ -86,11 +62,12 @@ class MeasuredTests:
             for number in range(self.folds):
                 yield repeat, fold != number
 
-    def cross_validate(self, simulated: Bools, asked: Bools | None = None) -> Validated:
+    def cross_validate(self, simulated: Bools, asked: Bools | None = None) -> Floats:
         """Let trials that are plausible by the tests of other motions vote on each test.
 
         ``simulated`` are outcomes, shape (trials, tests). ``asked`` is what the plausible trials vote on, if not
-        the outcomes that they are chosen by.
+        the outcomes that they are chosen by. Returned is the fraction of plausible trials that say so of each
+        test, shape (repeats, tests).
         """
         right = simulated == self.overturned
         answers = simulated if asked is None else asked
@@ -98,7 +75,7 @@ class MeasuredTests:
         for repeat, chosen_by in self.divisions():
             voters = plausible_trials(right[:, chosen_by], self.groups[chosen_by])
             votes[repeat, ~chosen_by] = answers[voters][:, ~chosen_by].mean(axis=0)
-        return Validated(votes)
+        return votes
 
     def by_threshold(self, measures: Floats) -> Bools:
         """Outcomes by thresholds on one or two measures that other motions' tests chose, shape (repeats, tests).
@@ -235,13 +212,12 @@ def curves_of(measure: Floats, outcomes: Bools | Floats, weights: Floats) -> Flo
     return np.column_stack([np.exp(-coefficients[:, 0] / slope), 1 / slope])
 
 
-def judged_tests(tests: pd.DataFrame, validated: Validated) -> pd.DataFrame:
+def judged_tests(tests: pd.DataFrame, votes: Floats) -> pd.DataFrame:
     """Each test with its votes, its outcome, whether that is right, and whether it is near-critical."""
-    votes = validated.mean_votes
     return tests.assign(
         votes_to_overturn=votes,
-        simulated=validated.outcome,
-        right=validated.outcome == tests["overturned"],
+        simulated=votes >= HALF,
+        right=(votes >= HALF) == tests["overturned"],
         near_critical=(votes > NEAR_CRITICAL[0]) & (votes < NEAR_CRITICAL[1]),
     )
 

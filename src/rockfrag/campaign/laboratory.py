@@ -16,9 +16,8 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.fragility.tests_file import product_of, read_columns, read_titles
-from rockfrag.motions.filtering import highpass
 from rockfrag.motions.intensity import pga, pgv
-from rockfrag.motions.processing import process
+from rockfrag.motions.processing import highpass, process
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit
 from rockfrag.records.read import read_motion
@@ -78,13 +77,8 @@ def read_campaign(
     }
     kinds = {columns[key]: kind for kind, some in keys.items() for key in some if key in columns}
     raw = read_columns(path, dict.fromkeys(factors, "positive") | kinds)
-    tests = pd.DataFrame(
-        {
-            "test": raw[columns["test"]],
-            "motion": raw[columns["motion"]] if "motion" in columns else "",
-        }
-    )
-    tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
+    motion = raw[columns["motion"]] if "motion" in columns else ""
+    tests = pd.DataFrame({"test": raw[columns["test"]], "motion": motion, "group": ""})
     doubled = tests["test"][tests["test"].duplicated()]
     if len(doubled):
         raise InputError(f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test.")
@@ -96,7 +90,7 @@ def read_campaign(
         tests["motion"] = [
             ", ".join(f"{m} {v:g}" for m, v in zip(measures, row, strict=True)) for row in rows
         ]
-        tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
+    tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
     for key in NOTED:
         if key in columns:
             tests[key] = raw[columns[key]].astype(bool)

@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -24,8 +24,7 @@ from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
 from rockfrag.rocking.inputs import checked_threads
-from rockfrag.rocking.measured_restitution import largest_restitution
-from rockfrag.rocking.options import system_of
+from rockfrag.rocking.options import largest_restitution, system_of
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block, Column
 from rockfrag.system.contact import Contact, Friction
@@ -168,14 +167,6 @@ def preferred_edges(
     return found
 
 
-@overload
-def body_of(thing: Shape | Block, guess: Mapping[str, float]) -> Block: ...
-
-
-@overload
-def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block | Column: ...
-
-
 def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block | Column:
     """The planar block of a guess at the unknowns of a shape or block, or blocks on each other."""
     retreat = guess["edge_retreat_mm"] / 1e3
@@ -270,7 +261,7 @@ def ways_to_stand(
     for guess in even_guesses(quantiles, count, seed):
         way = dict(known or {}) | guess
         try:
-            block = body_of(thing, way)
+            block = body_of(thing, way).blocks[-1]
         except InputError:
             continue
         angle = math.degrees(block.alpha)

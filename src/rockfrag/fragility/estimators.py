@@ -151,13 +151,8 @@ def fit_incremental(
     fraction = (
         float((resurrections.loc[fell, "resurrections"] > 0).mean()) if fell.any() else float("nan")
     )
-    return IncrementalFragility(
-        first,
-        always,
-        fragility_of(data.outcomes(amplitude), level=level),
-        resurrections,
-        fraction,
-    )
+    probability = fragility_of(data.outcomes(amplitude), level=level)
+    return IncrementalFragility(first, always, probability, resurrections, fraction)
 
 
 def fit_step_tests(
@@ -182,10 +177,8 @@ def fit_step_tests(
 
 def fragility_of_brackets(brackets: censored.Brackets, level: float) -> Fragility:
     """Fit a curve to bracketed amplitudes and give it limits over motions, or earthquakes where known."""
-    fit, interval = (
-        censored.fit_brackets(brackets),
-        censored.bracket_interval(brackets, level=level),
-    )
+    fit = censored.fit_brackets(brackets)
+    interval = censored.bracket_interval(brackets, level=level)
     return Fragility(fit, interval, checks_of_brackets(brackets, fit, interval))
 
 

@@ -13,7 +13,7 @@ from rockfrag.fragility.curve_facts import total_beta
 from rockfrag.fragility.empirical import TableIda, fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
 from rockfrag.fragility.observations import Observations, positive
-from rockfrag.motions.declared import declared, measure_of
+from rockfrag.motions.intensity import declared, measure_of
 from rockfrag.records.motion import Motion
 
 
@@ -81,6 +81,7 @@ def fragility_row(
     fractions = checks.fractions
     of_fit = ("se_log_theta", "se_beta", "log_likelihood", "aic", "link", "method")
     counted = ("n", "n_overturned", "n_motions")
+    of_checks = ("largest_residual", "influential", "influence")
     return {
         **labels,
         "im": fit.im,
@@ -96,9 +97,7 @@ def fragility_row(
         "n_earthquakes": interval.groups if interval.over == "earthquake" else fit.n_motions,
         "p_fit": checks.p_fit,
         "fit_test": checks.test,
-        **{
-            name: getattr(checks, name) for name in ("largest_residual", "influential", "influence")
-        },
+        **{name: getattr(checks, name) for name in of_checks},
         **_limited("theta_isotonic", fractions.theta, fractions.theta_limits),
         **_limited("beta_isotonic", fractions.beta, fractions.beta_limits),
         "beta_statistical": fragility.beta_statistical,
@@ -185,12 +184,8 @@ def tables_of_ida_curves(
             for name, fragility in definitions.items():
                 rows.append(fragility_row(fragility, labels, name, record_set))
                 fractions.append(fraction_points({**labels, "estimator": name}, fragility))
-    return FragilityTables(
-        pd.DataFrame(rows),
-        pd.concat(bands, ignore_index=True),
-        pd.concat(bins, ignore_index=True),
-        pd.concat(fractions, ignore_index=True),
-    )
+    points = (pd.concat(parts, ignore_index=True) for parts in (bands, bins, fractions))
+    return FragilityTables(pd.DataFrame(rows), *points)
 
 
 POINTS = 120  # points of a curve, in equal ratios

@@ -122,12 +122,8 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
         found = fit_lognormal(outcomes, link=link)
         # cells are not tests: which of a cell's tests overturned is known
         likelihood = found.log_likelihood + float(whole.ways().sum() - outcomes.ways().sum())
-        return replace(
-            found,
-            n_motions=whole.n_motions,
-            log_likelihood=likelihood,
-            warnings=(*notes, *found.warnings),
-        )
+        said = (*notes, *found.warnings)
+        return replace(found, n_motions=whole.n_motions, log_likelihood=likelihood, warnings=said)
     curve, log_likelihood = NO_CURVE, 0.0
     if outcomes.n_overturned in (0, outcomes.n):
         method = "none: all tests agree"
@@ -145,17 +141,9 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
             notes += SAY("falling", outcomes)
         else:
             curve = curve_parameters(coefficients, np.asarray(np.linalg.inv(information)))
+    counted = (outcomes.n, outcomes.n_overturned, outcomes.n_motions)
     return FragilityFit(
-        *curve,
-        log_likelihood,
-        outcomes.n,
-        outcomes.n_overturned,
-        outcomes.n_motions,
-        method,
-        outcomes.name,
-        outcomes.unit,
-        link,
-        tuple(notes),
+        *curve, log_likelihood, *counted, method, outcomes.name, outcomes.unit, link, tuple(notes)
     )
 
 

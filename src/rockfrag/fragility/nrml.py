@@ -15,7 +15,7 @@ from rockfrag.files import write_text
 from rockfrag.fragility.checks import REJECTION
 from rockfrag.fragility.curve_facts import StateCurve, curve_facts, curves_by_name
 from rockfrag.fragility.observations import Floats
-from rockfrag.motions.declared import declared, measure_labelled
+from rockfrag.motions.intensity import declared, measure_labelled
 from rockfrag.outcomes.limit_states import limit_states
 from rockfrag.sentences import environment
 

@@ -10,7 +10,7 @@ from scipy import special
 
 from rockfrag.errors import InputError
 from rockfrag.keywords import check_names
-from rockfrag.motions.declared import measure_of, split_column
+from rockfrag.motions.intensity import measure_of, split_column
 from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]  # an array of floating-point numbers

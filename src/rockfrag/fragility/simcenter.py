@@ -11,7 +11,7 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_table, write_text
 from rockfrag.fragility.curve_facts import StateCurve, curve_facts, curves_by_name
 from rockfrag.fragility.observations import Floats
-from rockfrag.motions.declared import declared
+from rockfrag.motions.intensity import declared
 from rockfrag.outcomes.limit_states import limit_state_named
 
 _UNITS = {"g": {"g": "g", "m/s²": "mps2"}, "cm/s": {"cm/s": "cmps", "m/s": "mps"}}

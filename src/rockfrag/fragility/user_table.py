@@ -99,12 +99,5 @@ def fit_user_table(
             level=level,
             seed=seed,
         )
-    return UserFragility(
-        tests,
-        outcomes,
-        fits,
-        choice,
-        both,
-        pd.DataFrame(rows),
-        pd.concat(bins, ignore_index=True),
-    )
+    tables = pd.DataFrame(rows), pd.concat(bins, ignore_index=True)
+    return UserFragility(tests, outcomes, fits, choice, both, *tables)

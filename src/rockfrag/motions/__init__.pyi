@@ -30,7 +30,7 @@ from .rotation import (
     rotate as rotate,
     rotd as rotd,
 )
-from .scaling import (
+from .processing import (
     scale as scale,
     scale_to_pga as scale_to_pga,
     scale_to_pgv as scale_to_pgv,

@@ -9,10 +9,9 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.keywords import named_keywords
 from rockfrag.motions import intensity
-from rockfrag.motions.declared import SPECTRAL_PERIODS, declared, intensity_measures
+from rockfrag.motions.intensity import SPECTRAL_PERIODS, intensity_measures
 from rockfrag.motions.pulse_extraction import strongest_pulse
 from rockfrag.motions.rotation import DIRECTIONS_DEG, rotate
-from rockfrag.motions.spectra import response_spectrum
 from rockfrag.processes import in_processes
 from rockfrag.records.motion import Motion
 
@@ -43,14 +42,11 @@ def measure_motion(
         "earthquake": str(motion.metadata.get("earthquake", "")),
         "floor": str(motion.metadata.get("floor", "")),
     }
-    spectral = _spectral(motion, periods, damping)
     shared: dict[Any, Any] = {None: motion}
     for measure in intensity_measures(periods):
         if measure.shared not in shared:
             shared[measure.shared] = measure.shared(motion, damping)  # type: ignore[misc]
-        known = measure.period is not None
-        column = measure.column
-        values[column] = spectral[column] if known else measure.of(shared[measure.shared])
+        values[measure.column] = measure.of(shared[measure.shared])
     return values
 
 
@@ -126,28 +122,18 @@ def measure_pair(
     ``rotd50_pga_g``, ``rotd100_pga_g``, ``rotd50_pgv_cm_s``, ``rotd100_pgv_cm_s`` and for each
     period such as 0.3 s ``rotd50_sa_0_3s_g``, ``rotd100_sa_0_3s_g``; Boore (2010).
     """
-    peaks = [measure for measure in declared() if measure.name in ("pga", "pgv")]
-    rows = []
-    for angle in DIRECTIONS_DEG:
-        motion = rotate(first, second, angle)
-        spectral = _spectral(motion, periods, damping)
-        row = {measure.column: measure.of(motion) for measure in peaks}
-        rows.append(row | {name: spectral[name] for name in spectral if name.startswith("sa_")})
-    directions = pd.DataFrame(rows)
+    measured = [
+        measure
+        for measure in intensity_measures(periods)
+        if measure.name in ("pga", "pgv") or measure.name.startswith("sa_")
+    ]
+    turned = (rotate(first, second, angle) for angle in DIRECTIONS_DEG)
+    directions = pd.DataFrame(
+        {measure.column: measure.of_motion(motion, damping) for measure in measured}
+        for motion in turned
+    )
     return {
         f"rotd{percentile}_{name}": float(np.percentile(directions[name], percentile))
         for name in directions
         for percentile in (50, 100)
-    }
-
-
-def _spectral(motion: Motion, periods: Sequence[float], damping: float) -> dict[str, float]:
-    if not periods:
-        return {}
-    spectrum = response_spectrum(motion, periods, damping)
-    families = [measure for measure in declared() if measure.spectral]
-    return {
-        family.at(period).column: float(family.of(spectrum)[i])
-        for i, period in enumerate(spectrum.period.tolist())
-        for family in families
     }

@@ -9,6 +9,7 @@ side.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -80,9 +81,7 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
         raise InputError("Table of tests: it has no rows; give at least one test per line.")
     clean = tests.reset_index(drop=True).copy()
     for name in ("object", "pedestal", "earthquake", "floor"):
-        bad = clean.index[clean[name].isna()]
-        if len(bad):
-            raise InputError(f"Table of tests, row {bad[0] + 1}: {name} is empty; fill it in.")
+        _refuse(clean, clean[name].isna(), name, "is empty; fill it in.")
         clean[name] = clean[name].astype(str)
     if "motion" not in clean:
         clean["motion"] = clean["earthquake"] + "/" + clean["floor"]
@@ -92,12 +91,8 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     if "repetition" not in clean:
         clean["repetition"] = 1
     for name, allowed in (("pedestal", ("P", "NP")), ("censored", ("none", "right", "left"))):
-        bad = clean.index[~clean[name].isin(allowed)]
-        if len(bad):
-            raise InputError(
-                f"Table of tests, row {bad[0] + 1}: {name} is {clean.loc[bad[0], name]!r}; "
-                f"it must be one of {', '.join(allowed)}."
-            )
+        known = ", ".join(allowed)
+        _refuse(clean, ~clean[name].isin(allowed), name, f"is {{!r}}; it must be one of {known}.")
     if "definition" in clean and len(set(clean["definition"].astype(str))) > 1:
         raise InputError(
             "Table of tests: several definitions of the same IDA curve are mixed "
@@ -117,17 +112,21 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     return clean.sort_values(test, kind="stable", ignore_index=True)
 
 
+def _refuse(tests: pd.DataFrame, bad: "pd.Series[bool]", column: str, what: str) -> None:
+    """Refuse the first bad row of a table of tests; the text may name the value in the column."""
+    for row in np.flatnonzero(bad):
+        value = tests[column].iloc[row]
+        raise InputError(f"Table of tests, row {row + 1}: {column} {what.format(value)}")
+
+
 def _check_amplitudes(clean: pd.DataFrame) -> None:
     """Fill bounds in and refuse amplitudes that are no positive numbers."""
     for name in ("amplitude_g", "lower_g", "upper_g"):
         if name not in clean:
             clean[name] = clean["amplitude_g"]
         numbers = pd.to_numeric(clean[name], errors="coerce")
-        bad = clean.index[numbers.isna() & clean[name].notna()]
-        if len(bad):
-            raise InputError(
-                f"Table of tests, row {bad[0] + 1}: {name} is {clean.loc[bad[0], name]!r}, not a number of g."
-            )
+        bad = numbers.isna() & clean[name].notna()
+        _refuse(clean, bad, name, "is {!r}, not a number of g.")
         clean[name] = numbers.astype(float)
     at_once = clean["amplitude_g"].isna() & (clean["lower_g"] == 0) & (clean["upper_g"] > 0)
     clean.loc[at_once & (clean["censored"] == "none"), "censored"] = "left"
@@ -205,7 +204,7 @@ def slenderness_of(clean: pd.DataFrame, slenderness: Mapping[str, float]) -> pd.
 
 
 def _sides(clean: pd.DataFrame) -> pd.DataFrame:
-    """One row per object, motion and side; repetitions averaged in ln a.
+    """One row per object and motion, columns by figure and side; repetitions averaged in ln a.
 
     The mean of repetitions of which one never overturned is only known to lie above the mean of
     what was survived, so such a side counts as censored; likewise below, where one overturned at its
@@ -221,10 +220,9 @@ def _sides(clean: pd.DataFrame) -> pd.DataFrame:
         left=left,
     )
     work["width"] = work["width"].where(exact)
-    grouped = work.groupby([*KEY, "pedestal"], sort=False)
-    return grouped.agg(
-        ln_a=("ln_a", "mean"), width=("width", "mean"), right=("right", "any"), left=("left", "any")
-    ).reset_index()
+    how: dict[str, Any] = {"ln_a": "mean", "width": "mean", "right": "any", "left": "any"}
+    sides = work.pivot_table(list(how), KEY, "pedestal", how)
+    return sides.reindex(columns=pd.MultiIndex.from_product([how, ("P", "NP")]))
 
 
 def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = None) -> Pairs:
@@ -242,45 +240,33 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = No
     }
     slenderness_of(clean, slenderness)
     sides = _sides(clean)
-    cells = pd.MultiIndex.from_frame(sides[KEY].drop_duplicates())
-    by_side = {side: rows.set_index(KEY).reindex(cells) for side, rows in sides.groupby("pedestal")}
-    nothing = pd.DataFrame(
-        {"ln_a": np.nan, "width": np.nan, "right": False, "left": False}, index=cells
-    )
-    with_p, without = by_side.get("P", nothing), by_side.get("NP", nothing)
-    ln_p, ln_np = with_p["ln_a"].astype(float), without["ln_a"].astype(float)
-    above_p, above_np = with_p["right"].eq(True), without["right"].eq(True)
-    below_p, below_np = with_p["left"].eq(True), without["left"].eq(True)
-    # d is open upwards where P lies above its figure or NP below, and downwards likewise
-    upward, downward = above_p | below_np, above_np | below_p
-    both = ln_p.notna() & ln_np.notna()
+    ln_a, width = (pd.DataFrame(sides[name]).astype(float) for name in ("ln_a", "width"))
+    above, below = (pd.DataFrame(sides[name]).eq(True).to_numpy().T for name in ("right", "left"))
+    # d is open upwards where P (the first side) lies above its figure or NP below, and downwards likewise
+    upward, downward = above[0] | below[1], above[1] | below[0]
+    both = ln_a.notna().all(axis=1).to_numpy()
     if not both.any():
         raise InputError(
             "Table of tests: no object was tested under the same motion with and without pedestal; "
             "check the columns object, motion and pedestal."
         )
-    d = ln_p - ln_np
-    # a censored side takes its partner's step; without any step the figures count as exact
-    width_p = with_p["width"].astype(float).fillna(without["width"].astype(float))
-    width_np = without["width"].astype(float).fillna(with_p["width"].astype(float))
-    frame = pd.DataFrame({"a_np_g": np.exp(ln_np), "a_p_g": np.exp(ln_p), "d": d}).assign(
-        resolution=((width_p + width_np) / 2).fillna(0.0),
+    frame = pd.DataFrame({"a_np_g": np.exp(ln_a["NP"]), "a_p_g": np.exp(ln_a["P"])}).assign(
+        d=ln_a["P"] - ln_a["NP"],
+        # a censored side takes its partner's step; without any step the figures count as exact
+        resolution=width.mean(axis=1).fillna(0.0),
         bound=np.select([upward & ~downward, downward & ~upward], ["at least", "at most"], ""),
     )
     frame = frame.reset_index()
     frame.insert(4, "slenderness", slenderness_of(frame, slenderness))
     centre = float(np.mean([slenderness[name] for name in sorted(frame["object"].unique())]))
     frame.insert(5, "s_c", frame["slenderness"] - centre)
+    alone = frame.loc[~both, KEY].assign(missing=np.where(ln_a["P"].isna(), "P", "NP")[~both])
     limits = frame[KEY].assign(
-        d_lower=np.where(downward, -np.inf, d), d_upper=np.where(upward, np.inf, d)
-    )
-    known = (both & ~(upward & downward)).to_numpy()
-    partly = (both & (upward | downward)).to_numpy()
-    alone = frame.loc[~both.to_numpy(), KEY].assign(
-        missing=np.where(ln_p.isna(), "P", "NP")[~both.to_numpy()]
+        d_lower=np.where(downward, -np.inf, frame["d"]),
+        d_upper=np.where(upward, np.inf, frame["d"]),
     )
     return Pairs(
-        table=frame[known].reset_index(drop=True),
-        censored=limits[partly].reset_index(drop=True),
+        table=frame[both & ~(upward & downward)].reset_index(drop=True),
+        censored=limits[both & (upward | downward)].reset_index(drop=True),
         unpaired=alone.reset_index(drop=True),
     )

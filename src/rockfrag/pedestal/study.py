@@ -113,7 +113,7 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
 def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     effect = cluster_means.mean_effect(table)
     unit = "earthquake" if len(set(table["earthquake"])) > 1 else "motion"
-    flips = cluster_means.sign_flip_test(cluster_means.unit_means(table, "earthquake"), seed)
+    flips = cluster_means.sign_flip_test(cluster_means.earthquake_means(table), seed)
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:
         remark += STEPS_DECIDE

@@ -1,13 +1,14 @@
 """A catalogue from what there is: a folder, an archive or a download of PEER's database."""
 
 import csv
+import hashlib
 import math
 import os
 import re
-from collections.abc import Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -15,6 +16,8 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import COLUMNS, is_catalogue
+from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
@@ -38,45 +41,25 @@ _SUFFIXES = tuple(
 )
 """How names of files end that name the component: ``CLS000``, ``E10050``, ``ISE-WE``, ``_N``, ``120111``."""
 
+_OF_KNET = re.compile(r"\.(?:EW|NS|UD)\d?$")
 _AMERICAN_DATE = re.compile(r"\b(?P<m>\d{1,2})/(?P<d>\d{1,2})/(?P<y>\d{4}|\d{2})\b")
 _ISO_DATE = re.compile(r"\b(\d{4})[-/](\d{2})[-/](\d{2})(?!\d)")
 
 
 SEARCH_RESULTS = "_SearchResults.csv"  # name of PEER's file in every download
 _SECTION = re.compile(r"Summary of Metadata of Selected Records", re.I)
-_PEER_TITLES = {
-    "record sequence number": "number",
-    "scale factor": "scale_factor",
-    "earthquake name": "earthquake",
-    "year": "year",
-    "station name": "station",
-    "magnitude": "magnitude",
-    "rjb": "rjb",
-    "rrup": "rrup",
-    "horizontal-1 acc. filename": "first",
-    "horizontal-2 acc. filename": "second",
-    "vertical acc. filename": "vertical",
-}
-_PEER_NEEDED = ("number", "earthquake", "first")
+_NUMBER, _EARTHQUAKE = "record sequence number", "earthquake name"
+_FILES = tuple(f"{which} acc. filename" for which in ("horizontal-1", "horizontal-2", "vertical"))
 
 
 @dataclass(frozen=True)
 class PeerRecord:
-    """One record of a download; files are empty where the download has none, numbers None."""
+    """One record of a download: its number there, its files, and what columns of a catalogue hold of it."""
 
     number: str  # record sequence number, such as ``753``
-    # earthquake, year, station: as the database names them
-    earthquake: str
-    year: str
-    station: str
-    magnitude: float | None  # moment magnitude
-    # closest distance to the rupture [km], else the Joyner-Boore distance
-    distance_km: float | None
-    scale_factor: float | None  # factor of the search's target spectrum
-    # first, second, vertical: names of the acceleration files
-    first: str
-    second: str
-    vertical: str
+    # acceleration files of both horizontal components and the vertical one, empty where there is none
+    files: tuple[str, ...]
+    facts: dict[str, Any]  # moment magnitude, distance closest to the rupture, else Joyner-Boore's
 
 
 def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
@@ -95,6 +78,7 @@ def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
     titles: list[str] = []
     records: list[PeerRecord] = []
     for number, line in enumerate(lines[start + 1 :], start=start + 2):
+        where = f"{path}, line {number}"
         if not line.strip(" ,"):
             if titles:
                 break
@@ -102,38 +86,37 @@ def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
         try:
             cells = [cell.strip() for cell in next(csv.reader([line]))]
         except csv.Error as error:
-            raise InputError(f"{path}, line {number}: not a row of a table ({error}).") from None
-        if not titles:
-            titles = [
-                _PEER_TITLES.get(re.sub(r"\s*\(.*?\)", "", cell).lower(), "") for cell in cells
-            ]
-            missing = [title for title in _PEER_NEEDED if title not in titles]
-            if missing:
-                raise InputError(f"{path}, line {number}: no column of the record's {missing[0]}.")
+            raise InputError(f"{where}: not a row of a table ({error}).") from None
+        if titles:
+            records.append(_peer_record(dict(zip(titles, cells, strict=False)), where))
             continue
-        records.append(
-            _peer_record(dict(zip(titles, cells, strict=False)), f"{path}, line {number}")
-        )
+        titles = [re.sub(r"\s*\(.*?\)", "", cell).lower() for cell in cells]
+        needed = {"number": _NUMBER, "earthquake": _EARTHQUAKE, "first": _FILES[0]}
+        missing = [what for what, title in needed.items() if title not in titles]
+        if missing:
+            raise InputError(f"{where}: no column of the record's {missing[0]}.")
     if not records:
         raise InputError(f"{path}: the section of records has no row; the file is cut short.")
     return records
 
 
-def _peer_record(cells: dict[str, str], where: str) -> PeerRecord:
-    files = {key: cells.get(key, "") for key in ("first", "second", "vertical")}
-    files = {key: "" if set(name) <= {"-", " "} else name for key, name in files.items()}
-    if not cells.get("number", "").isdigit() or not files["first"]:
+def _peer_record(row: dict[str, str], where: str) -> PeerRecord:
+    cells = defaultdict(str, row)
+    files = tuple("" if set(cells[key]) <= {"-", " "} else cells[key] for key in _FILES)
+    if not cells[_NUMBER].isdigit() or not files[0]:
         raise InputError(f"{where}: no record sequence number, or no file of the first component.")
-    return PeerRecord(
-        number=cells["number"],
-        earthquake=cells.get("earthquake", "").strip('"'),
-        year=cells.get("year", ""),
-        station=cells.get("station", "").strip('"'),
-        magnitude=_number(cells.get("magnitude", "")),
-        distance_km=_number(cells.get("rrup", "")) or _number(cells.get("rjb", "")),
-        scale_factor=_number(cells.get("scale_factor", "")),
-        **files,
-    )
+    name, year = cells[_EARTHQUAKE].strip('"'), cells["year"]
+    factor = _number(cells["scale factor"])
+    facts = {
+        "earthquake": f"{name} {year}".strip(),
+        "date": year if re.fullmatch(r"\d{4}", year) else "",
+        "station": cells["station name"].strip('"'),
+        "magnitude": _number(cells["magnitude"]),
+        "distance_km": _number(cells["rrup"]) or _number(cells["rjb"]),
+        "scale_factor": factor if factor != 1 else None,
+    }
+    known = {key: value for key, value in facts.items() if value not in ("", None)}
+    return PeerRecord(cells[_NUMBER], files, known)
 
 
 def _number(words: str) -> float | None:
@@ -147,49 +130,24 @@ def _number(words: str) -> float | None:
 class Component:
     """One component found: where it is, what its file says, and what is doubtful in it."""
 
-    file: str
-    name: str
+    row: dict[str, Any]  # its row of a catalogue, but for the other components of its record
     stem: str  # name of the file without what names the component
     suffix: str  # component that ends the name of its file, as in ``A-TMZ000``; empty if none does
     path: str
-    facts: dict[str, Any]
+    packed: bool
     npts: int
     dt: float
-    sha256: str
-    several: bool
-    unit: str
-    dt_given: float | None
-    container: str
     digest: str
     quality_flags: tuple[str, ...]
+    azimuth: float | None
+    is_vertical: bool
+    # what the components of one record share: file, name, or station and time; None where it has none
+    shared_by_a_record: tuple[tuple[object, ...] | None, ...]
 
     @property
-    def azimuth(self) -> float | None:
-        """Azimuth [degrees], None where it is not known."""
-        stated = self.facts.get("azimuth_deg")
-        return float(stated) if stated is not None else azimuth_of(self.orientation)
-
-    @property
-    def orientation(self) -> str:
-        """Name of the component, by its file where the header does not say."""
-        named = str(self.facts.get("component") or "")
-        return named or ("" if self.suffix in {"1", "2", "3"} else self.suffix)
-
-    @property
-    def is_vertical(self) -> bool:
-        """Whether it is named as a vertical one."""
-        return is_vertical(self.orientation)
-
-    @property
-    def shared_by_a_record(self) -> tuple[tuple[object, ...] | None, ...]:
-        """What the components of one record share: file, name, or station and time; None where it has none."""
-        time = self.facts.get("network"), self.facts.get("station"), self.facts.get("start_time")
-        folder = str(Path(self.path).parent)
-        return (
-            (self.container, self.path, self.sha256) if self.several else None,
-            (self.container, folder, self.stem) if self.suffix else None,
-            time if all(time[1:]) else None,
-        )
+    def file(self) -> str:
+        """File, member of an archive and channel, as a catalogue names them."""
+        return str(self.row["file"])
 
 
 @dataclass
@@ -234,13 +192,12 @@ class CatalogueDraft:
         components = [component for file in files for component in self._components(file)]
         listed: list[PeerRecord] = []
         try:
-            if inside:
-                for file in sorted(path.rglob(SEARCH_RESULTS)):
-                    listed += read_search_results(file)
-            elif path.name == SEARCH_RESULTS:
+            if path.name == SEARCH_RESULTS and not inside:
                 raise InputError(
                     f"{path}: give the folder that this file lies in, with its records."
                 )
+            for file in sorted(path.rglob(SEARCH_RESULTS)) if inside else []:
+                listed += read_search_results(file)
             for file in filter(is_archive, files):
                 with unpacked(file) as members:
                     for member in members:
@@ -268,67 +225,36 @@ class CatalogueDraft:
             return []
         found = []
         for number, channel in enumerate(record.channels, start=1):
-            own = [c for c in record.channels if c.member == channel.member]
-            label = channel.code or channel.component
-            unique = label and [c.code or c.component for c in own].count(label) == 1
-            chosen = (label if unique else str(number)) if len(own) > 1 else ""
             unit = None if channel.unit else self.unit
             try:
                 motion = motion_of(record, channel, unit)
             except InputError as error:
                 self.errors.append(str(error))
                 continue
-            samples = motion.acceleration.tobytes() + repr(motion.dt).encode()
-            name = _stem(PurePosixPath(channel.member or file.name).name)
-            stem, suffix = _parts(name) if len(own) == 1 else (name, "")
-            component = Component(
-                file="#".join(filter(None, (relative, channel.member, chosen))),
-                name=name,
-                stem=stem,
-                suffix=suffix,
-                path=channel.member or str(file),
-                facts=dict(motion.metadata),
-                npts=channel.npts,
-                dt=channel.dt,
-                sha256=record.sha256,
-                several=len(own) > 1,
-                unit=unit or "",
-                dt_given=dt_given,
-                container=str(file) if channel.member else "",
-                digest=sha256(samples).hexdigest(),
-                quality_flags=tuple(quality_flags(motion)),
-            )
-            found.append(component)
+            own = [c.code or c.component for c in record.channels if c.member == channel.member]
+            label = channel.code or channel.component
+            chosen = label if label and own.count(label) == 1 else str(number)
+            parts = [relative, channel.member, chosen if len(own) > 1 else ""]
+            own_row = {"file": "#".join(filter(None, parts)), "unit": unit or "", "dt": dt_given}
+            found.append(_component(file, channel, motion, own_row, len(own) > 1))
         return found
 
     def peer_rows(
         self, listed: PeerRecord, found: Sequence[Component], used: set[str]
     ) -> list[dict[str, Any]]:
         """Return the rows of one record of a download."""
-
-        def component(name: str) -> Component | None:
-            """Find the component of a file; names may have the folder of PEER's disk before them."""
-            own = PurePosixPath(name.replace("\\", "/")).name.lower()
-            named = (c for c in found if Path(c.path).name.lower() == own)
-            return next(named, None) if own else None
-
-        horizontal = [component(listed.first), component(listed.second)]
-        vertical = component(listed.vertical)
-        for name, side in zip((listed.first, listed.second), horizontal, strict=True):
+        by_name: dict[str, Component] = {}
+        for component in found:
+            by_name.setdefault(Path(component.path).name.lower(), component)
+        # names may have the folder of PEER's disk before them
+        own = [PurePosixPath(name.replace("\\", "/")).name.lower() for name in listed.files]
+        first, second, vertical = (by_name.get(name) for name in own)
+        for name, side in zip(listed.files, (first, second), strict=False):
             if name and side is None:
                 self.note(f"RSN{listed.number}", f"{name} is listed but not among the files")
-        facts = {
-            "earthquake": f"{listed.earthquake} {listed.year}".strip(),
-            "date": listed.year if re.fullmatch(r"\d{4}", listed.year) else "",
-            "station": listed.station,
-            "magnitude": listed.magnitude,
-            "distance_km": listed.distance_km,
-            "scale_factor": listed.scale_factor if listed.scale_factor != 1 else None,
-        }
-        known = {key: value for key, value in facts.items() if value not in ("", None)}
-        there = [component for component in horizontal if component is not None]
-        used.update(component.file for component in (*there, *([vertical] if vertical else [])))
-        return [self._row(component, there, vertical) | known for component in there]
+        there = [component for component in (first, second) if component is not None]
+        used.update(component.file for component in (*there, vertical) if component is not None)
+        return [self._row(component, there, vertical) | listed.facts for component in there]
 
     def rows_of(self, group: Sequence[Component]) -> list[dict[str, Any]]:
         """Return the rows of the components of one record."""
@@ -345,33 +271,20 @@ class CatalogueDraft:
     ) -> dict[str, Any]:
         """Return the row of one component of a pair, and note what looks wrong in it."""
         other = next((other for other in pair if other is not component), None)
-        file, facts = component.file, component.facts
+        file, npts = component.file, component.npts
         self.notes += [(file, quality_flag) for quality_flag in component.quality_flags]
-        npts = component.npts
         if other and file < other.file and abs(npts - other.npts) > 0.1 * npts:
             unlike = f"{npts} samples, but {other.npts} in {other.file} of the same record"
             self.note(file, unlike)
-        earthquake = str(facts.get("earthquake") or "")
+        earthquake = component.row["earthquake"]
         if not earthquake:
             earthquake = component.stem
             column = f"the column earthquake has {earthquake!r}"
             self.note(file, f"its earthquake is not stated; {column}")
-        channel = facts.get("channel", "") if component.several else ""
-        return {
-            "name": f"{component.name} {channel}".strip() if component.several else component.name,
+        return component.row | {
             "earthquake": earthquake,
-            "date": _date(facts),
-            "station": facts.get("station", ""),
-            "component": component.orientation,
-            "magnitude": facts.get("magnitude"),
-            "distance_km": facts.get("distance_km"),
-            "source": "folder",
-            "file": file,
             "second": other.file if other else "",
             "vertical": vertical.file if vertical else "",
-            "sha256": component.sha256,
-            "unit": component.unit,
-            "dt": component.dt_given,
         }
 
     def without_copies(
@@ -384,7 +297,7 @@ class CatalogueDraft:
 
         def worth(number: int) -> tuple[int, bool, int]:
             group = groups[number]
-            return -len(_horizontal(group)), any(component.container for component in group), number
+            return -len(_horizontal(group)), any(component.packed for component in group), number
 
         kept = []
         for number in sorted(range(len(groups)), key=worth):
@@ -413,6 +326,47 @@ class CatalogueDraft:
                     f"its earthquake is {other!r}, that of {earthquakes[first]} on the same day ({day}) "
                     f"{first!r}; if they are one, give it one name in the column earthquake",
                 )
+
+
+def _component(
+    file: Path, channel: Channel, motion: Motion, own_row: dict[str, Any], several: bool
+) -> Component:
+    """Return what a catalogue needs of one channel of a file, of ``several`` or alone."""
+    facts = motion.metadata
+    path = channel.member or str(file)
+    plain = PurePosixPath(path if channel.member else file.name).name.removesuffix(".gz")
+    # K-NET's endings name the component
+    name = plain if _OF_KNET.search(plain) else plain.rsplit(".", 1)[0] or plain
+    stem, suffix = (name, "") if several else _parts(name)
+    orientation = str(facts.get("component") or ("" if suffix in {"1", "2", "3"} else suffix))
+    azimuth = facts.get("azimuth_deg")
+    container = str(file) if channel.member else ""
+    time = facts.get("network"), facts.get("station"), facts.get("start_time")
+    row = {
+        **own_row,
+        "name": f"{name} {facts.get('channel', '')}".strip() if several else name,
+        "earthquake": str(facts.get("earthquake") or ""),
+        "date": _date(facts),
+        "station": facts.get("station", ""),
+        "component": orientation,
+        "magnitude": facts.get("magnitude"),
+        "distance_km": facts.get("distance_km"),
+        "source": "folder",
+        "sha256": motion.provenance[0]["sha256"],
+    }
+    samples = motion.acceleration.tobytes() + repr(motion.dt).encode()
+    return Component(
+        row, stem, suffix, path, bool(container), motion.acceleration.size, motion.dt,
+        digest=hashlib.sha256(samples).hexdigest(),
+        quality_flags=tuple(quality_flags(motion)),
+        azimuth=azimuth_of(orientation) if azimuth is None else float(azimuth),
+        is_vertical=is_vertical(orientation),
+        shared_by_a_record=(
+            (container, path) if several else None,
+            (container, str(Path(path).parent), stem) if suffix else None,
+            time if all(time[1:]) else None,
+        ),
+    )  # fmt: skip
 
 
 def make_catalogue(
@@ -465,14 +419,6 @@ def _read(file: Path, dt: float | None) -> tuple[Record, float | None]:
     return read_record(file, dt), dt
 
 
-def _stem(name: str) -> str:
-    """Return the name of a file without its ending; K-NET's endings name the component."""
-    plain = name.removesuffix(".gz")
-    if re.search(r"\.(?:EW|NS|UD)\d?$", plain):
-        return plain
-    return plain.rsplit(".", 1)[0] or plain
-
-
 def _parts(name: str) -> tuple[str, str]:
     """Return the name of a file without the component that ends it, and that component."""
     found = next(filter(None, (pattern.match(name) for pattern in _SUFFIXES)), None)
@@ -515,7 +461,7 @@ def _is_record(group: Sequence[Component]) -> bool:
     return abs(apart - 90) <= _PERPENDICULAR
 
 
-def _date(facts: dict[str, Any]) -> str:
+def _date(facts: Mapping[str, Any]) -> str:
     """Return the day of the start of the record, else of the earthquake, else nothing."""
     for words in (str(facts.get("start_time") or ""), str(facts.get("earthquake") or "")):
         iso = _ISO_DATE.search(words)

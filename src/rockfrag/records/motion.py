@@ -164,23 +164,21 @@ def read_motion_set(
         first, last = number * total // parts, (number + 1) * total // parts
         if most is not None:
             last = min(last, first + most)
-        found, begin = [], 0
-        for group in range(file.num_row_groups):
-            end = begin + file.metadata.row_group(group).num_rows
-            if begin < last and end > first:
-                rows = file.read_row_group(group).slice(max(first - begin, 0))
-                table = rows.slice(0, last - max(first, begin)).to_pandas()
-                found += [
-                    Motion(
-                        acceleration=np.asarray(row["acceleration_m_s2"], dtype=np.float64),
-                        dt=row["dt_s"],
-                        name=row["name"],
-                        metadata=json.loads(row["metadata"]),
-                        provenance=tuple(json.loads(row["provenance"])),
-                    )
-                    for row in table.to_dict("records")
-                ]
-            begin = end
+        found, size = [], file.metadata.row_group(0).num_rows if total else 1
+        for group in range(first // size, -(-last // size)):
+            begin = group * size
+            rows = file.read_row_group(group).slice(max(first - begin, 0))
+            table = rows.slice(0, last - max(first, begin)).to_pandas()
+            found += [
+                Motion(
+                    acceleration=np.asarray(row["acceleration_m_s2"], dtype=np.float64),
+                    dt=row["dt_s"],
+                    name=row["name"],
+                    metadata=json.loads(row["metadata"]),
+                    provenance=tuple(json.loads(row["provenance"])),
+                )
+                for row in table.to_dict("records")
+            ]
     return found
 
 
@@ -245,9 +243,9 @@ class GroundMotion:
     def accelerations(self) -> NDArray[np.float64]:
         """Accelerations along x, y and z [m/s²], shape (n, 3); zero where a component is not given."""
         found = np.zeros((self.x.acceleration.size, 3))
-        for k, motion in enumerate((self.x, self.y, self.z)):
+        for column, motion in zip(found.T, (self.x, self.y, self.z), strict=True):
             if motion is not None:
-                found[:, k] = motion.acceleration
+                column[:] = motion.acceleration
         return found
 
 

@@ -16,16 +16,6 @@ from rockfrag.report.wording import Macros, said, sentence, shortened
 FEW = 10
 """Intervals over fewer earthquakes than this rest on little."""
 
-QUESTIONS = (
-    ("As recorded?", "as_recorded"),
-    ("With pedestal?", "pedestal"),
-    ("How strong?", "fragility"),
-    ("How sure?", "grounds"),
-    ("Try it", "live"),
-)
-"""What a keeper asks, and the chapter with the answer; a study without pairs is not asked the second."""
-
-
 MOST_NAMED = 4
 """So many objects are named in the question."""
 
@@ -47,15 +37,16 @@ def study_answer(results: Results) -> Answer:
 
 
 def questions(results: Results) -> list[tuple[str, str]]:
-    """Questions that a study's page answers."""
+    """What a keeper asks, and the chapter with the answer; a study without pairs is not asked the second."""
     study = results.study
-    answered = {"pedestal": study.has_pairs, "live": study.simulated_in_page}
-    asked = [question for question in QUESTIONS if answered.get(question[1], True)]
-    if study.counterparts:
-        return [
-            ("Compared?" if section == "pedestal" else words, section) for words, section in asked
-        ]
-    return asked
+    pair = "Compared?" if study.counterparts else "With pedestal?"
+    return [
+        ("As recorded?", "as_recorded"),
+        *([(pair, "pedestal")] if study.has_pairs else []),
+        ("How strong?", "fragility"),
+        ("How sure?", "grounds"),
+        *([("Try it", "live")] if study.simulated_in_page else []),
+    ]
 
 
 def has_one_record(results: Results) -> bool:
@@ -65,53 +56,41 @@ def has_one_record(results: Results) -> bool:
 
 def sentences(results: Results) -> list[Finding]:
     """How strong the shaking must be, what the motions do as recorded, and what the pedestal changes."""
-    recorded = findings.recorded_found(results.table("as_recorded"))
-    found = [_strength(results), recorded]
+    table, about = results.table, findings.sides_of(results.study)
+    amplitudes = findings.amplitudes_found(results.tests)
+    recorded = findings.recorded_found(table("as_recorded"))
     if has_one_record(results):
-        return [findings.amplitudes_found(results.tests), recorded, findings.ONE_MOTION]
+        return [amplitudes, recorded, findings.ONE_MOTION]
+    curves = table("fragility").dropna(subset=["theta"])
+    found = [findings.strength_found(curves, results.level) or amplitudes, recorded]
     if results.study.has_pairs:
-        return [
-            *found,
-            findings.pedestal_effect(
-                results.table("pedestal/effects"), findings.sides_of(results.study)
-            )[0],
-        ]
-
-    resurrections = findings.resurrections_found(
-        results.table("resurrections"), results.table("tests")
-    )
-    return [
-        *found,
-        *findings.objects_compared(results.table("mean_amplitudes"), results.slenderness),
-        resurrections,
-    ][:3]
-
-
-def _strength(results: Results) -> Finding:
-    curves = results.table("fragility")
-    known = curves[curves["theta"].notna()]
-    return findings.strength_found(known, results.level) or findings.amplitudes_found(results.tests)
+        return [*found, findings.pedestal_effect(table("pedestal/effects"), about)[0]]
+    compared = findings.objects_compared(table("mean_amplitudes"), results.slenderness)
+    resurrections = findings.resurrections_found(table("resurrections"), table("tests"))
+    return [*found, *compared, resurrections][:3]
 
 
 def advice(results: Results) -> list[str]:
     """What to do: the weakest first, and what would make the result more robust."""
-    weakest: list[str] = []
-    if not has_one_record(results):
-        curves = findings.headline_curves(results.table("fragility")).rows
-        curves = curves[curves["theta"].notna()]
-        if len(curves) > 1 and curves["theta"].min() < curves["theta"].max():
-            # within what three digits tell
-            least = 1.005 * curves["theta"].min()
-            weakest = curves.loc[curves["theta"] < least, "configuration"].tolist()
+    curves, weakest = _headline_curves(results), []
+    theta = curves["theta"]
+    if theta.min() < theta.max():
+        # within what three digits tell
+        weakest = list(curves.loc[theta < 1.005 * theta.min(), "configuration"])
     may_slide = not results.study.slides and _needs_friction(results)
     return said(says.advice(weakest, may_slide, _earthquakes(results)))
 
 
+def _headline_curves(results: Results) -> pd.DataFrame:
+    """Curves that the first page compares, none of a single record."""
+    curves = findings.headline_curves(results.table("fragility")).rows.dropna(subset=["theta"])
+    return curves.iloc[:0] if has_one_record(results) else curves
+
+
 def _needs_friction(results: Results) -> bool:
     """Whether any test needs more friction than dry stone has."""
-    return bool(
-        (~(results.table("validity")["friction_demand"].astype(float) <= findings.FRICTION)).any()
-    )
+    demand = results.table("validity")["friction_demand"].astype(float)
+    return bool((~(demand <= findings.FRICTION)).any())
 
 
 def _earthquakes(results: Results) -> int:
@@ -119,11 +98,9 @@ def _earthquakes(results: Results) -> int:
 
 
 def _figure(results: Results) -> FigureSpec:
-    curves = findings.headline_curves(results.table("fragility")).rows
+    curves = _headline_curves(results)
     # amplitudes are peaks of acceleration; a median in another measure has no place beside them
-    curves = curves[(curves["unit"] == "g") & curves["theta"].notna()]
-    if has_one_record(results):
-        curves = curves.iloc[:0]
+    curves = curves[curves["unit"] == "g"]
     names = [configuration.name for configuration in results.study.configurations]
     text = says.answer_figure(sentences(results)[0], results.level if len(curves) else "")
     return figure_of(text, "answer", lambda: strength_figure(results.tests, curves, names))
@@ -185,37 +162,22 @@ def rests_on(results: Results) -> list[str]:
 
 def could_change(results: Results) -> list[str]:
     """What could change the answer, each with the numbers that say how likely that is."""
-    resurrections, curves = results.table("resurrections"), results.table("fragility")
-    fallen = resurrections[resurrections["first_upper"].notna()]
-    rejected = curves[curves["p_fit"] < 0.05]["configuration"].nunique()
-    words = [
-        *_friction_words(results),
-        *_flight_words(results),
-        *said(says.few(_earthquakes(results))),
-        *said(says.resurrections(int((fallen["resurrections"] > 0).sum()), len(fallen))),
-        *said(says.shape(rejected, curves["configuration"].nunique())),
-    ]
-    return [sentence(word) for word in words]
-
-
-def _friction_words(results: Results) -> list[str]:
-    """What friction could change, of bodies that slide and of bodies that are assumed not to."""
-    if results.study.slides:
-        sliding = results.table("sliding")
-        other = int(sliding[["saved", "felled"]].to_numpy().sum())
-        return said(says.assumed_friction(other, int(sliding["cases"].sum())))
-    validity = results.table("validity")
-    if validity.empty:
-        return []
-    needed = findings.friction_sentence(validity) if _needs_friction(results) else ""
-    return said(says.sliding(needed))
-
-
-def _flight_words(results: Results) -> list[str]:
-    """In how many analyses the ground falls away so fast that bodies may leave it."""
     from rockfrag.rocking.ensemble import LIGHT
 
-    if not results.study.vertical or results.study.slides:
-        return []
-    light = int((results.least_gravity_ratio < LIGHT).sum())
-    return said(says.flight(light, np.size(results.least_gravity_ratio)))
+    study, curves = results.study, results.table("fragility")
+    friction = results.table("sliding" if study.slides else "validity")
+    needed = ""
+    if not study.slides and _needs_friction(results):
+        needed = findings.friction_sentence(friction)
+    lifts = study.vertical and not study.slides
+    ratios = results.least_gravity_ratio if lifts else np.ones(0)
+    fallen = results.table("resurrections").dropna(subset=["first_upper"])
+    rejected = curves.loc[curves["p_fit"] < 0.05, "configuration"]
+    words = [
+        *said(says.sliding(study.slides, friction, needed)),
+        *said(says.flight(int((ratios < LIGHT).sum()), ratios.size)),
+        *said(says.few(_earthquakes(results))),
+        *said(says.resurrections(int((fallen["resurrections"] > 0).sum()), len(fallen))),
+        *said(says.shape(rejected.nunique(), curves["configuration"].nunique())),
+    ]
+    return [sentence(word) for word in words]

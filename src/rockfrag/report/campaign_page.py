@@ -59,14 +59,9 @@ def run(job: Job[CampaignStudy]) -> Results:
     # whether the motions were measured on the table, or follow from what it was told
     motion = "commanded of" if study.pulse_cycles else "measured on"
     found, level = _findings(tables), f"{100 * study.confidence:g} %"
-    sections = [
-        _agreement(tables, found[0], level),
-        _fragility(tables, level),
-        *([both] if both else []),
-        _tests(study, tables),
-        _object(study, tables),
-        _conditioning(study, tables),
-    ]
+    sections = [_agreement(tables, found[0], level), _fragility(tables, level)]
+    sections += [both] if both else []
+    sections += [part(study, tables) for part in (_tests, _object, _conditioning)]
     tests = tables["tests"]
     lead, about = one_line(says.lead(tests, motion)), {"Tests": study.tests.name}
     answer = _answer(found, tests, motion, sections)
@@ -80,12 +75,8 @@ def _percent(row: Row) -> str:
 
 def _better(row: Row) -> str:
     """By how many percentage points the simulation is better, with limits; a dash for itself."""
-    if math.isnan(row["better"]):
-        return "–"
-    middle, low, high = (
-        number(100 * row[name], 1) for name in ("better", "better_lower", "better_upper")
-    )
-    return f"{middle} [{low}, {high}]"
+    limits = (number(100 * row[f"better{end}"], 1) for end in ("", "_lower", "_upper"))
+    return "–" if math.isnan(row["better"]) else "{} [{}, {}]".format(*limits)
 
 
 LEVEL = 0.05  # a difference between programs is stated below this adjusted p value [-]
@@ -374,17 +365,15 @@ def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label
     edges = np.unique(np.quantile(values, np.linspace(0, 1, _BINS + 1)))
     bins = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
     with style.one_panel(style.COLUMN_WIDTH, 2.4) as (figure, axes):
-        styles = (
-            ("measured", "overturned", style.BLACK, "o"),
-            ("rockfrag", "simulated", style.BLUE, "s"),
-        )
-        for who, column, colour, marker in styles:
-            middle = [np.exp(np.log(values[bins == k]).mean()) for k in range(len(edges) - 1)]
+        middle = [np.exp(np.log(values[bins == k]).mean()) for k in range(len(edges) - 1)]
+        for who, column, name, colour, marker, line in (
+            ("measured", "overturned", "measured", style.BLACK, "o", "-"),
+            (OURS, "simulated", "simulated", style.BLUE, "s", "--"),
+        ):
             fraction = [tests[column].to_numpy()[bins == k].mean() for k in range(len(edges) - 1)]
             axes.plot(middle, fraction, ls="", marker=marker, mfc="white", color=colour)
             row = curves[curves["who"] == who].iloc[0]
             if np.isfinite(row["theta"]):
-                name, line = ("measured", "-") if who == "measured" else ("simulated", "--")
                 curve = norm.cdf(np.log(x / row["theta"]) / row["beta"])
                 axes.plot(x, curve, color=colour, label=name, ls=line)
         style.plain_log(axes, "x")
@@ -396,16 +385,15 @@ def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label
 def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -> Figure:
     """Draw every test in two measures: what happened by colour, wrong predictions as crosses."""
     with style.one_panel(style.COLUMN_WIDTH, 2.8) as (figure, axes):
-        for fell, colour, word in ((False, _GREY, "survived"), (True, style.ORANGE, "overturned")):
-            rows = tests[(tests["overturned"] == fell) & tests["right"]]
-            axes.plot(rows[x], rows[y], ls="", marker="o", ms=2.6, color=colour, label=word)
-        wrong = tests[~tests["right"]]
-        for fell, colour, word in (
-            (True, style.RED, "overturned only in the laboratory"),
-            (False, style.BLACK, "overturned only in the simulation"),
+        for right, fell, colour, word in (
+            (True, False, _GREY, "survived"),
+            (True, True, style.ORANGE, "overturned"),
+            (False, True, style.RED, "overturned only in the laboratory"),
+            (False, False, style.BLACK, "overturned only in the simulation"),
         ):
-            rows = wrong[wrong["overturned"] == fell]
-            axes.plot(rows[x], rows[y], ls="", marker="x", ms=4.5, color=colour, label=word)
+            rows = tests[(tests["overturned"] == fell) & (tests["right"] == right)]
+            marker, size = ("o", 2.6) if right else ("x", 4.5)
+            axes.plot(rows[x], rows[y], ls="", marker=marker, ms=size, color=colour, label=word)
         style.plain_log(axes, "xy")
         axes.set(xlabel=labels[0], ylabel=labels[1])
         figure.legend(loc="outside upper center", ncols=2)
@@ -425,7 +413,7 @@ def footprint_figure(footprint: pd.DataFrame, trials: pd.DataFrame) -> Figure:
             corners = footprint[footprint["what"] == what]
             if corners.empty:
                 continue
-            closed = np.vstack([corners[["x_m", "y_m"]], corners[["x_m", "y_m"]].iloc[:1]])
+            closed = corners[["x_m", "y_m"]].to_numpy()[[*range(len(corners)), 0]]
             tolerance = corners["contact_tolerance_mm"].iloc[0]
             label = word if not np.isfinite(tolerance) else f"contact within {tolerance:.1f} mm"
             axes.plot(closed[:, 0], closed[:, 1], ls=line, color=colour, label=label)

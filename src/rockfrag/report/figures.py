@@ -207,15 +207,11 @@ def box_at(
     axes: Axes, part: pd.DataFrame, by: str, levels: Sequence[Any], width: float, colour: str
 ) -> None:
     """Draw the distribution of amplitudes at each level of a column."""
+    values = [part.loc[part[by] == level, "a"].to_numpy(dtype=float) for level in levels]
+    lines: dict[str, Any] = {
+        f"{name}props": {"color": colour} for name in ("box", "whisker", "cap")
+    }
+    lines |= {"medianprops": {"color": colour, "linewidth": 1.6}, "whis": (5, 95)}
     axes.boxplot(
-        [part.loc[part[by] == level, "a"].to_numpy(dtype=float) for level in levels],
-        positions=levels,
-        widths=width,
-        whis=(5, 95),
-        showfliers=False,
-        manage_ticks=False,
-        boxprops={"color": colour},
-        whiskerprops={"color": colour},
-        capprops={"color": colour},
-        medianprops={"color": colour, "linewidth": 1.6},
+        values, positions=levels, widths=width, showfliers=False, manage_ticks=False, **lines
     )

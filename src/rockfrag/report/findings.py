@@ -67,11 +67,6 @@ def sides_of(study: Study) -> Sides:
     return Sides(f"{name} instead of {other}", f"{name}/{other}", f"of {name}", f"of {other}")
 
 
-def _finding(name: str, **about: Any) -> Finding:
-    """What a macro says."""
-    return finding_of(getattr(says, name)(**about))
-
-
 def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     """Say at which peak each configuration overturns with a probability of one half; None without a curve."""
     if curves.empty:
@@ -81,29 +76,13 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     if rows.empty:
         return None
     decimals = min(max(wording.decimals_of(value, 2) for value in rows["theta"]), 3)
-    texts = wording.estimates(rows, "theta", decimals)
-    printed = [wording.number(value, decimals) for value in rows["theta"]]
-    least, most = (
-        printed[int(place)] for place in (rows["theta"].argmin(), rows["theta"].argmax())
-    )
+    named = rows["configuration"] + " " + wording.estimates(rows, "theta", decimals)
+    printed = rows["theta"].map(lambda value: wording.number(value, decimals))
+    ends = [wording.number(value, decimals) for value in (rows["theta"].min(), rows["theta"].max())]
     # what differs in no digit that is shown is named together
-    low, high = (
-        [name for name, text in zip(rows["configuration"], printed, strict=True) if text == end]
-        for end in (least, most)
-    )
-    return _finding(
-        "strength",
-        measure=rows["im"].iloc[0],
-        unit=rows["unit"].iloc[0],
-        low=low,
-        high=high,
-        least=least,
-        most=most,
-        named=[f"{name} {text}" for name, text in zip(rows["configuration"], texts, strict=True)],
-        level=level,
-        rejected=found.rejected,
-        nonparametric=found.nonparametric,
-    )
+    low, high = (list(rows.loc[printed == end, "configuration"]) for end in ends)
+    about = (low, high, *ends, list(named), level, found.rejected, found.nonparametric)
+    return finding_of(says.strength(rows["im"].iloc[0], rows["unit"].iloc[0], *about))
 
 
 def headline_curves(curves: pd.DataFrame) -> Compared:
@@ -122,35 +101,22 @@ ONE_MOTION = Finding(
 
 def recorded_found(recorded: pd.DataFrame) -> Finding:
     """Say what the motions as recorded overturn, and how much that depends on their exact strength."""
-    by_name = recorded.groupby("configuration", sort=False)["overturned"].agg(["sum", "size"])
-    counts = {str(name): int(n) for name, n in by_name["sum"].items()}
-    return _finding(
-        "recorded",
-        counts=counts,
-        low=min(counts, key=counts.__getitem__),
-        high=max(counts, key=counts.__getitem__),
-        motions=int(by_name["size"].max()),
-        fallen=int(recorded["overturned"].sum()),
-        total=len(recorded),
-        near=int(recorded["fraction_near"].between(0, 1, inclusive="neither").sum()),
-    )
+    counts = recorded.groupby("configuration", sort=False)["overturned"].sum().astype(int).to_dict()
+    low, high = (end(counts, key=counts.__getitem__) for end in (min, max))
+    motions, fallen = recorded["configuration"].value_counts().max(), sum(counts.values())
+    near = recorded["fraction_near"].between(0, 1, inclusive="neither").sum()
+    return finding_of(says.recorded(counts, low, high, motions, fallen, len(recorded), near))
 
 
 def amplitudes_found(tests: pd.DataFrame) -> Finding:
     """Say how many tests overturn, at which amplitudes, and what fell."""
-    known = tests["amplitude_g"].notna()
+    known, unknown = tests["amplitude_g"].dropna(), tests[tests["amplitude_g"].isna()]
+    survived = unknown["upper_g"].isna()
+    first, never = (list(unknown.loc[which, "test"]) for which in (~survived, survived))
     on_pedestal = tests[(tests["pedestal"] == "P") & (tests["overturned_body"] != "")]
     fell = on_pedestal["overturned_body"]
-    itself = fell.isin(["statue"]) | (fell == on_pedestal["object"])
-    return _finding(
-        "amplitudes",
-        tests=tests,
-        known=tests.loc[known, "amplitude_g"],
-        first=list(tests.loc[~known & tests["upper_g"].notna(), "test"]),
-        never=list(tests.loc[~known & tests["upper_g"].isna(), "test"]),
-        below=int((~itself).sum()),
-        on_pedestal=len(on_pedestal),
-    )
+    below = int((~fell.isin(["statue"]) & (fell != on_pedestal["object"])).sum())
+    return finding_of(says.amplitudes(tests, known, first, never, below, len(on_pedestal)))
 
 
 def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> list[Finding]:
@@ -163,18 +129,13 @@ def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> l
         own = own.sort_values("slenderness", kind="stable")
         if own["slenderness"].nunique() < 2:
             continue
-        each = wording.listed(
-            [
-                f"{row['configuration']} {wording.number(row['mean_g'], 3)} g"
-                for row in own.to_dict("records")
-            ]
-        )
-        parts.append(f"{words} {each}")
-        falling.append(bool((np.diff(own["mean_g"].to_numpy(dtype=float)) < 0).all()))
+        each = own["configuration"] + own["mean_g"].map(" {:.3f} g".format)
+        parts.append(f"{words} {wording.listed(list(each))}")
+        falling.append(bool((own["mean_g"].diff().iloc[1:] < 0).all()))
         most = max(most, int(own["motions"].max()))
     if not parts:
         return []
-    return [_finding("slenderness", falling=all(falling), most=most, parts=parts)]
+    return [finding_of(says.slenderness(all(falling), most, parts))]
 
 
 def mean_sentence(means: pd.DataFrame) -> str:
@@ -189,14 +150,9 @@ def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Fin
     fallen = resurrections[resurrections["first_upper"].notna()]
     wide = tests.pivot_table(index="test", columns="definition", values="amplitude_g")
     both = wide.reindex(columns=["first_overturning", "always_overturning"]).dropna().astype(float)
-    factor = np.log(both["always_overturning"] / both["first_overturning"]).mean()
-    return _finding(
-        "resurrections",
-        fallen=len(fallen),
-        survived=int((fallen["resurrections"] > 0).sum()),
-        factor=float(np.exp(factor)),
-        both=len(both),
-    )
+    factor = np.exp(np.log(both["always_overturning"] / both["first_overturning"]).mean())
+    survived = int((fallen["resurrections"] > 0).sum())
+    return finding_of(says.resurrections(len(fallen), survived, float(factor), len(both)))
 
 
 def ratio_text(row: Mapping[Any, Any]) -> str:
@@ -237,11 +193,11 @@ def pedestal_effect(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> list
     whole = effects[effects["scope"] == "whole"]
     here = whole[whole["definition"] == DEFINITION]
     if here.empty:
-        return [_finding("no_effect", about=about)]
+        return [finding_of(says.no_effect(about))]
     row = here.to_dict("records")[0]
     others = whole[whole["definition"] != DEFINITION].to_dict("records")
     floors = effects[(effects["scope"] == "floor") & (effects["definition"] == DEFINITION)]
-    return [_finding("effect", row=row, about=about, others=others), *_by_floor(floors, about)]
+    return [finding_of(says.effect(row, about, others)), *_by_floor(floors, about)]
 
 
 def _by_floor(rows: pd.DataFrame, about: Sides) -> list[Finding]:
@@ -251,60 +207,35 @@ def _by_floor(rows: pd.DataFrame, about: Sides) -> list[Finding]:
     known = np.array([wording.has_interval(low, high, _RATIO_DECIMALS) for low, high in limits])
     clear = known & ((rows["lower"] > 1) | (rows["upper"] < 1))
     each = rows.to_dict("records")
-    return [_finding("floors", rows=each, known=known.any(), clear=int(clear.sum()), about=about)]
+    return [finding_of(says.floors(each, known.any(), int(clear.sum()), about))]
 
 
-def model_allowed(validity: pd.DataFrame) -> list[Finding]:
+def model_allowed(validity: pd.DataFrame) -> Finding:
     """Say how much friction rocking without sliding needs, and whether a block would have jumped."""
-    if validity.empty:
-        return []
-    found = _finding(
-        "model",
-        headline=friction_sentence(validity),
-        demands=_demands(validity),
-        beyond=int((~np.isfinite(validity["friction_demand"].astype(float))).sum()),
-        lifted=int((validity["least_normal_force_n"] <= 0).sum()),
-        tests=len(validity),
-    )
-    return [found]
+    demands = {where: part[np.isfinite(part)] for where, part in _demands(validity).items()}
+    beyond = len(validity) - sum(map(len, demands.values()))
+    lifted = int((validity["least_normal_force_n"] <= 0).sum())
+    headline = friction_sentence(validity)
+    return finding_of(says.model(headline, demands, beyond, lifted, len(validity)))
 
 
-_WHERE = {"P": "with the pedestal", "NP": "without"}
-
-
-def _sides(validity: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    """Tests by where they were made, where both sides were tested; else all of them."""
-    sides = {where: validity[validity["pedestal"] == side] for side, where in _WHERE.items()}
-    return {"": validity} if any(part.empty for part in sides.values()) else sides
+def _demands(validity: pd.DataFrame) -> dict[str, pd.Series]:
+    """Friction that tests need, with and without a pedestal where both were tested."""
+    demand, on_pedestal = validity["friction_demand"].astype(float), validity["pedestal"] == "P"
+    if on_pedestal.nunique() < 2:
+        return {"": demand}
+    return {"with the pedestal": demand[on_pedestal], "without": demand[~on_pedestal]}
 
 
 def friction_sentence(validity: pd.DataFrame) -> str:
     """Say how many tests need more friction than dry stone has, with and without a pedestal; no full stop."""
-    beyond = [
-        (int((~(part["friction_demand"].astype(float) <= FRICTION)).sum()), len(part), where)
-        for where, part in _sides(validity).items()
-    ]
+    parts = _demands(validity).items()
+    beyond = [(int((~(part <= FRICTION)).sum()), len(part), where) for where, part in parts]
     return wording.one_line(says.friction(beyond))
-
-
-def _demands(validity: pd.DataFrame) -> list[str]:
-    """Range and median of the friction needed, with and without a pedestal where both were tested."""
-    words = []
-    for where, part in _sides(validity).items():
-        demand = part["friction_demand"].to_numpy(dtype=float)
-        known = demand[np.isfinite(demand)]
-        if known.size == 0:
-            continue
-        span = f"{known.min():.2f} to {known.max():.2f} (median {np.median(known):.2f})"
-        words.append(f"{where} {span if known.size > 1 else f'{known[0]:.2f}'}".strip())
-    return words or ["none known"]
 
 
 def sliding_found(sliding: pd.DataFrame) -> Finding:
     """Say in how many analyses bodies slid and flew, how far, and how many outcomes that changed."""
-    counts = {
-        name: int(sliding[name].sum()) for name in ("cases", "slid", "flew", "saved", "felled")
-    }
-    where = max(sliding.to_dict("records"), key=lambda row: float(row["largest_slip_m"]))
-    slip = 100 * where["largest_slip_m"]
-    return _finding("sliding", **counts, slip_cm=slip, where=where["configuration"])
+    counts = sliding[["cases", "slid", "flew", "saved", "felled"]].sum()
+    where = sliding.iloc[int(sliding["largest_slip_m"].argmax())]
+    return finding_of(says.sliding(*counts, 100 * where["largest_slip_m"], where["configuration"]))

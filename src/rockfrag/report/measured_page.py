@@ -1,7 +1,8 @@
 """The report of a measured table: its curves, the intensity-measure selection, and how well they fit."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
+from itertools import cycle
 
 import numpy as np
 import pandas as pd
@@ -11,7 +12,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
 from rockfrag import figure_style as style
-from rockfrag.errors import InputError
 from rockfrag.fragility.checks import GoodnessOfFit
 from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility
@@ -31,13 +31,6 @@ from rockfrag.report.wording import Macros, estimates, one_line, said
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.measured_table import MeasuredTable
 
-_CAPTIONS = {
-    "measures": "Probability of overturning over each measure: tests in bins with binomial limits, a local "
-    "average (dashed), and the lognormal curve with its band.",
-    "calibration": "Observed against fitted fractions of overturned tests; the diagonal is a perfect fit.",
-}
-
-
 says = Macros("rockfrag.report", "measured_page.j2")
 
 
@@ -55,57 +48,48 @@ def run(job: Job[MeasuredTable]) -> Results:
         replicates=study.replicates,
         seed=study.seed,
     )
-    tables, specs = result_tables(found), figure_specs(found)
-    yield from tables.items()
-    answer = _answer(study, found, specs)
+    goodness = pd.DataFrame(
+        [(name, g.deviance, g.p_value, g.brier, g.words) for name, g in found.goodness.items()],
+        columns=["measure", "deviance", "p_value", "brier", "finding"],
+    )
+    yield "tests", found.tests
+    yield "fragility", found.table
+    yield "recommendation", found.choice.table
+    yield "bins", found.bins
+    yield "goodness", goodness
+    measures, calibration = _figures(found)
+    answer = _answer(study, found, measures)
     sections = [
-        _choice(tables["recommendation"], answer.sentences[0]),
-        _curves(study, tables, specs),
+        _choice(found.choice.table, answer.sentences[0]),
+        _curves(study, found.table, goodness, calibration),
     ]
     both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
     if both:
         sections.append(both)
-    digest = tables["fragility"]["record_set_sha256"].iloc[0]
+    digest = found.table["record_set_sha256"].iloc[0]
     values = f"{study.table.name}, SHA-256 of the values used {digest}"
     lead = one_line(says.lead(found.tests))
     write_page(job, answer, sections, {"Table": values}, lead=lead, basis="measured")
     job.log.info("%s", found.choice.words)
 
 
-def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
-    """Return the tables by their names."""
-    columns = ["measure", "deviance", "p_value", "brier", "finding"]
-    goodness = [
-        (measure, fit.deviance, fit.p_value, fit.brier, fit.words)
-        for measure, fit in found.goodness.items()
-    ]
-    return {
-        "tests": found.tests,
-        "fragility": found.table,
-        "recommendation": found.choice.table,
-        "bins": found.bins,
-        "goodness": pd.DataFrame(goodness, columns=columns),
-    }
-
-
-def figure_specs(found: UserFragility) -> dict[str, FigureSpec]:
-    """Figures by name; one that its data cannot carry says so in words."""
-    curves = {name: fit for name, fit in found.fits.items() if np.isfinite(fit.fit.theta)}
-    outcomes = {name: found.outcomes[name] for name in curves}
-    drawings: dict[str, Callable[[], Figure]] = {}
-    if curves:
-        drawings["measures"] = lambda: measures_figure(curves, outcomes)
-    if found.goodness:
-        drawings["calibration"] = lambda: calibration_figure(found.goodness)
+def _figures(found: UserFragility) -> list[FigureSpec]:
+    """Curves over each measure and how well they fit; what the data cannot carry says so in words."""
     words = "No curve: the tests show no measure with which overturning becomes more frequent."
     nothing = partial(style.note_figure, words)
-    return {
-        name: FigureSpec(name, f"{text} {found.choice.words}", text, drawings.get(name, nothing))
-        for name, text in _CAPTIONS.items()
-    }
+    curves = {name: fit for name, fit in found.fits.items() if np.isfinite(fit.fit.theta)}
+    drawings = (
+        ("measures", partial(measures_figure, curves, found.outcomes) if curves else nothing),
+        ("calibration", partial(calibration_figure, found.goodness) if found.goodness else nothing),
+    )
+    text, best = said(says.captions()), found.choice.words
+    return [
+        FigureSpec(name, f"{caption} {best}", caption, draw)
+        for (name, draw), caption in zip(drawings, text, strict=True)
+    ]
 
 
-def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, FigureSpec]) -> Answer:
+def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) -> Answer:
     """What stands first: which measure, how strong it must be, and whether the curve fits."""
     name = found.choice.name
     sentences = [finding_of(says.choice(found.choice))]
@@ -125,7 +109,7 @@ def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, Figu
     return Answer(
         asked="How strong must shaking be to overturn the tested object, and which measure predicts it best?",
         sentences=sentences,
-        figure=specs["measures"],
+        figure=measures,
         rests_on=said(says.rests_on(found.tests)),
         could_change=list(dict.fromkeys(note for note in found.table["warnings"] if note)),
     )
@@ -168,15 +152,14 @@ def _choice(choice: pd.DataFrame, best: Finding) -> Section:
 
 
 def _curves(
-    study: MeasuredTable, tables: Mapping[str, pd.DataFrame], figures: Mapping[str, FigureSpec]
+    study: MeasuredTable, fitted: pd.DataFrame, goodness: pd.DataFrame, calibration: FigureSpec
 ) -> Section:
-    fitted, goodness = tables["fragility"], tables["goodness"]
     warnings = dict.fromkeys(note for note in fitted["warnings"] if note)
     level, notes = _level(study), [*goodness["finding"], *warnings]
     parts: list[Markup | FigureSpec] = [
         table_html(fitted, _CURVES, f"Medians and dispersions, {level} intervals."),
         table_html(goodness, _FITS, "Goodness of fit."),
-        figures["calibration"],
+        calibration,
     ]
     return section_of(says.curves(len(goodness), level, notes), "fragility", parts)
 
@@ -185,18 +168,15 @@ def measures_figure(
     curves: Mapping[str, Fragility], outcomes: Mapping[str, Observations]
 ) -> Figure:
     """Draw the curve of each measure in a panel of its own, with AIC and β, to compare measures."""
-    labels = [label for label, curve in curves.items() if np.isfinite(curve.fit.theta)]
-    if not labels:
-        raise InputError("measures figure: none of the measures has a curve.")
-    columns = min(len(labels), 2)
-    rows = -(-len(labels) // columns)
+    columns = min(len(curves), 2)
+    rows = -(-len(curves) // columns)
     with style.figure_style():
         figure = style.new_figure(style.COLUMN_WIDTH if columns == 1 else style.WIDEST, 2.4 * rows)
         grid_of_axes = figure.subplots(rows, columns, squeeze=False, sharey=True)
-        for axes in grid_of_axes.flat[len(labels) :]:
+        for axes in grid_of_axes.flat[len(curves) :]:
             axes.set_visible(False)
-        for axes, label in zip(grid_of_axes.flat, labels, strict=False):
-            curve, data = curves[label], outcomes[label]
+        for axes, (label, curve) in zip(grid_of_axes.flat, curves.items(), strict=False):
+            data = outcomes[label]
             grid = _grid(curve, data)
             _outcomes(axes, data, grid)
             lower, upper = curve.interval.band(grid)
@@ -210,7 +190,7 @@ def measures_figure(
             axes.set_xlabel(axis_label(curve.fit.im, curve.fit.unit))
         for axes in grid_of_axes[:, 0]:
             axes.set_ylabel("Probability of overturning")
-        style.letter_panels(grid_of_axes.flat[: len(labels)])
+        style.letter_panels(grid_of_axes.flat[: len(curves)])
         return figure
 
 
@@ -218,19 +198,13 @@ def calibration_figure(judged: Mapping[str, GoodnessOfFit]) -> Figure:
     """Draw observed against fitted fractions in bins; points on the diagonal are well calibrated."""
     with style.one_panel(style.COLUMN_WIDTH, 3.0) as (figure, axes):
         axes.plot([0, 1], [0, 1], color=GREY, linewidth=0.8)
-        for k, (label, fit) in enumerate(judged.items()):
+        marks = zip(judged.items(), cycle("os^Dv"), cycle(style.OKABE_ITO))
+        for (label, fit), mark, colour in marks:
             names = ("predicted", "observed", "observed_lower", "observed_upper")
             x, y, lower, upper = (fit.calibration[name].to_numpy() for name in names)
-            axes.errorbar(
-                x,
-                y,
-                yerr=[np.maximum(y - lower, 0.0), np.maximum(upper - y, 0.0)],
-                fmt="os^Dv"[k % 5],
-                color=style.OKABE_ITO[k % len(style.OKABE_ITO)],
-                markersize=3.5,
-                elinewidth=0.8,
-                label=f"{label} (p = {fit.p_value:.2g})",
-            )
+            reach = [np.maximum(y - lower, 0.0), np.maximum(upper - y, 0.0)]
+            words = f"{label} (p = {fit.p_value:.2g})"
+            axes.errorbar(x, y, reach, fmt=mark, color=colour, ms=3.5, elinewidth=0.8, label=words)
         axes.set(aspect="equal", xlim=(-0.02, 1.02), ylim=(-0.02, 1.02))
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_formatter(PercentFormatter(1.0, decimals=0, symbol=" %"))

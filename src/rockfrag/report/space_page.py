@@ -64,7 +64,6 @@ def _finding(base: str, medians: pd.DataFrame) -> Finding:
 
 
 def _table(medians: pd.DataFrame) -> Markup:
-    shown = medians.assign(body=[_words_of(row) for _, row in medians.iterrows()])
     columns = [
         Column("body", "Base"),
         Column("slenderness", "Height over width", 1),
@@ -73,6 +72,7 @@ def _table(medians: pd.DataFrame) -> Markup:
         *(estimated(name, f"Over {WORDS[name]}", 2) for name in PLANAR),
         Column("flip_rate", "Flip rate", 2),
     ]
+    shown = medians.assign(body=_bases(medians))
     return table_html(shown, columns, "Medians in space over planar ones, with 90 % intervals.")
 
 
@@ -84,10 +84,9 @@ WORDS = {
 COLOURS = dict(zip(PLANAR, (style.BLUE, style.ORANGE, style.GREEN), strict=True))
 
 
-def _words_of(row: pd.Series) -> str:
-    """Return the base of a row in words, and that planar impacts lose nothing where they do not."""
-    without = ", no loss" if row["planar_impacts"] == NO_LOSS else ""
-    return f"{row['base']}{without}"
+def _bases(medians: pd.DataFrame) -> pd.Series:
+    """Return the base of each row in words, and that planar impacts lose nothing where they do not."""
+    return medians["base"] + np.where(medians["planar_impacts"] == NO_LOSS, ", no loss", "")
 
 
 def ratios_figure(medians: pd.DataFrame) -> Figure:
@@ -95,17 +94,18 @@ def ratios_figure(medians: pd.DataFrame) -> Figure:
     with style.one_panel(style.PAGE_WIDTH, 0.6 + 0.2 * len(medians)) as (figure, panel):
         places = -np.arange(len(medians), dtype=float)
         for k, name in enumerate(PLANAR):
-            value = medians[name].to_numpy()
-            limits = medians[[f"{name}_lower", f"{name}_upper"]].to_numpy()
-            off = places + 0.2 * (1 - k)
-            panel.hlines(off, *limits.T, color=COLOURS[name], lw=1.0)
-            panel.plot(value, off, "os^"[k], color=COLOURS[name], ms=3.5, label=WORDS[name])
+            low, high, off = (
+                medians[f"{name}_lower"],
+                medians[f"{name}_upper"],
+                places + 0.2 * (1 - k),
+            )
+            panel.hlines(off, low, high, color=COLOURS[name], lw=1.0)
+            panel.plot(medians[name], off, "os^"[k], color=COLOURS[name], ms=3.5, label=WORDS[name])
         panel.axvline(1.0, color=style.BLACK, lw=0.8, ls="--")
-        names = [
-            f"{_words_of(r)}, {r['slenderness']:g}, {r['height_m']:g} m"
-            for _, r in medians.iterrows()
-        ]
-        panel.set_yticks(places, names)
+        sizes = medians["slenderness"].map(", {:g}".format) + medians["height_m"].map(
+            ", {:g} m".format
+        )
+        panel.set_yticks(places, _bases(medians) + sizes)
         panel.set_ylim(places[-1] - 0.6, 0.6)
         panel.set_xlabel("Median level in space over that of planar rocking [-]; unsafe below 1")
         panel.set_ylabel("Base, height over width, height")
@@ -121,13 +121,12 @@ def fractions_figure(fractions: pd.DataFrame) -> Figure:
     with style.figure_style():
         figure = style.new_figure(style.PAGE_WIDTH, 0.6 + 1.35 * rows)
         panels = figure.subplots(rows, columns, sharey=True, squeeze=False)
-        for panel, (about, part) in zip(panels.flat, bodies, strict=False):
-            base, slenderness, height = about
+        for panel, ((base, slenderness, height), part) in zip(panels.flat, bodies, strict=False):
             first = part[part["planar_impacts"] == part["planar_impacts"].iloc[0]]
             panel.plot(first["level_g"], first["space"], color=style.RED, label="in space")
             for name in PLANAR:
-                line = {"color": COLOURS[name], "label": WORDS[name]}
-                panel.plot(first["level_g"], first[name], lw=0.9, **line)
+                curve = panel.plot(first["level_g"], first[name], color=COLOURS[name], lw=0.9)
+                curve[0].set_label(WORDS[name])
             style.plain_log(panel, "x")
             panel.set_title(f"{base}\n{slenderness:g}, {height:g} m", loc="left")
         for panel in list(panels.flat)[len(bodies) :]:

@@ -92,9 +92,14 @@ def write_page(
     Its last section says what a reader needs to get the same results again, also what is in ``about`` and
     ``libraries``; no dates, no names of machines. What else it shows goes to :func:`rockfrag.report.page.render`.
     """
-    study, figures = job.study, job.folder / "figures"
-    pictures = draw_all(figures_of(answer, sections), figures, job.threads)
-    write_captions(answer, sections, figures)
+    study, folder = job.study, job.folder / "figures"
+    figures = figures_of(answer, sections)
+    pictures = draw_all([spec for spec, _ in figures], folder, job.threads)
+    # chapter and caption of each figure, for Snakemake's report
+    captions = {
+        spec.name: {"chapter": chapter, "caption": spec.caption} for spec, chapter in figures
+    }
+    write_text(json.dumps(captions, ensure_ascii=False, indent=1) + "\n", folder / "captions.json")
     digest = package_digest(*(plugin.rules.parent for plugin in plugins_of(study)))
     provenance = {
         "Configuration": study.source.name,
@@ -119,29 +124,19 @@ def write_page(
 def page_text(answer: Answer, sections: Sequence[Section], **page: Any) -> str:
     """Return a page with its figures as HTML, which loads nothing from outside; see :func:`write_page`."""
     with TemporaryDirectory(prefix="rockfrag.") as scratch:
-        pictures = draw_all(figures_of(answer, sections), Path(scratch))
+        pictures = draw_all([spec for spec, _ in figures_of(answer, sections)], Path(scratch))
         return render(answer=answer, sections=sections, pictures=pictures, **page)
 
 
-def figures_of(answer: Answer, sections: Sequence[Section]) -> list[FigureSpec]:
-    """Return the figures of a page, each once."""
-    parts = [answer.figure, *(part for section in sections for part in section.parts)]
-    return list({part.name: part for part in parts if isinstance(part, FigureSpec)}.values())
-
-
-def write_captions(answer: Answer, sections: Sequence[Section], folder: Path) -> None:
-    """Write chapter and caption of each figure by name, ``captions.json``, for Snakemake's report."""
-    found = [(answer.figure, "The answer")] if answer.figure else []
-    found += [
-        (part, section.title)
-        for section in sections
-        for part in section.parts
-        if isinstance(part, FigureSpec) and part is not answer.figure
-    ]
-    captions = {
-        figure.name: {"chapter": chapter, "caption": figure.caption} for figure, chapter in found
-    }
-    write_text(json.dumps(captions, ensure_ascii=False, indent=1) + "\n", folder / "captions.json")
+def figures_of(answer: Answer, sections: Sequence[Section]) -> list[tuple[FigureSpec, str]]:
+    """Return the figures of a page, each once, with the title of the chapter where it stands."""
+    parts: list[tuple[Any, str]] = [(answer.figure, "The answer")]
+    parts += [(part, section.title) for section in sections for part in section.parts]
+    found: dict[str, tuple[FigureSpec, str]] = {}
+    for part, chapter in parts:
+        if isinstance(part, FigureSpec):
+            found.setdefault(part.name, (part, chapter))
+    return list(found.values())
 
 
 def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int = 1) -> dict[str, Picture]:

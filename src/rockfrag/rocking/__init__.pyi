@@ -3,7 +3,7 @@ from .ensemble import (
     LightBodies as LightBodies,
     overturns as overturns,
 )
-from .measured_restitution import MeasuredRestitution as MeasuredRestitution
+from .options import MeasuredRestitution as MeasuredRestitution
 from .parquet import (
     stream_histories as stream_histories,
     stream_overturns as stream_overturns,

@@ -17,8 +17,7 @@ from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.rocking import inputs
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.options import FrictionInput, StartInput, systems_of
+from rockfrag.rocking.options import FrictionInput, Restitution, StartInput, systems_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import SystemLike
 from rockfrag.system.system import System

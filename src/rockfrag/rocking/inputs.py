@@ -16,7 +16,7 @@ from rockfrag.engines.steps import MOST_SAMPLES, STEP, step_count
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_array, shown, whole_number
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.system.blocks import SystemLike, as_system, is_system
+from rockfrag.system.blocks import SystemLike, is_system
 from rockfrag.system.system import uplift_ratios
 
 MOST_CASES = 50_000_000  # cases of an ensemble whose results are held in memory
@@ -71,19 +71,6 @@ def _checked_vertical(vertical: MotionLike, horizontal: Motion, name: str) -> Mo
             f"{name}: {values.size} samples for {samples} horizontal ones; cut or pad one of them."
         )
     return Motion(values, interval)
-
-
-def checked_start(body: SystemLike, value: object, name: str) -> tuple[float, ...]:
-    """Return rotations or angular velocities at the start, one for each block; zeros for None."""
-    blocks = as_system(body).count
-    if value is None:
-        return (0.0,) * blocks
-    values = np.atleast_1d(real_array(name, value))
-    if values.shape != (blocks,) or not np.isfinite(values).all():
-        raise InputError(f"{name}: expected {blocks} finite number(s), got {shown(value)}.")
-    if name == "theta0" and (np.abs(values) >= math.pi / 2).any():
-        raise InputError("theta0: a block turned by π/2 or more lies on its side already.")
-    return tuple(values.tolist())
 
 
 def listed_bodies(bodies: object) -> list[SystemLike]:

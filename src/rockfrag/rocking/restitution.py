@@ -106,12 +106,9 @@ def restitution_from_peaks(
     speeds = [speed_before(block, peak, pivot) for peak, pivot in zip(values, pivots, strict=True)]
     start = (speeds[-1] / speeds[0]) ** (1 / (len(values) - 1))
     ceiling = min(block.critical_angle(pivot) for pivot in pivots)
-    fit = _least_squares(
-        lambda q: model(q) - values,
-        [values[0], start],
-        ([1e-9 * ceiling, 1e-3], [ceiling * (1 - 1e-9), 1.0]),
-    )
-    return _summary(block, fit, 1, len(values) - 1, confidence)
+    bounds = [(1e-9 * ceiling, ceiling * (1 - 1e-9))]
+    fit = _least_squares(model, values, [values[0], start], bounds)
+    return _summary(block, fit, len(values) - 1, confidence)
 
 
 def restitution_from_impacts(
@@ -165,12 +162,9 @@ def restitution_from_impacts(
 
     speeds = [speed_of(float(T), pivot) for T, pivot in zip(intervals, pivots, strict=True)]
     start = min(max((speeds[-1] / speeds[0]) ** (1 / (len(speeds) - 1)), 0.01), 0.9999)
-    fit = _least_squares(
-        lambda q: model(q) - values,
-        [values[0], speeds[0], start],
-        ([-np.inf, 1e-9 * largest, 1e-3], [np.inf, largest, 1.0]),
-    )
-    return _summary(block, fit, 2, len(intervals) - 1, confidence)
+    bounds = [(-np.inf, np.inf), (1e-9 * largest, largest)]
+    fit = _least_squares(model, values, [values[0], speeds[0], start], bounds)
+    return _summary(block, fit, len(intervals) - 1, confidence)
 
 
 def restitution_from_history(
@@ -216,13 +210,9 @@ def restitution_from_history(
     top = block.critical_angle(1 if peaks[0] > 0 else -1)
     # a first sample near the base must not start on the wrong side of it
     begin = float(np.clip(values[0], -0.999 * top, 0.999 * top))
-    fit = _least_squares(
-        lambda q: model(q) - values,
-        [begin, slope, min(guess, 0.999)],
-        ([-top, -np.inf, 1e-3], [top, np.inf, 1.0]),
-        scale=[top, top * block.frequency(), 1.0],
-    )
-    return _summary(block, fit, 2, len(peaks) - 1, confidence)
+    scale, bounds = [top, top * block.frequency(), 1.0], [(-top, top), (-np.inf, np.inf)]
+    fit = _least_squares(model, values, [begin, slope, min(guess, 0.999)], bounds, scale)
+    return _summary(block, fit, len(peaks) - 1, confidence)
 
 
 def _numbers(name: str, data: ArrayLike, least: int) -> Floats:
@@ -273,38 +263,38 @@ def _peaks_of(theta: Floats) -> list[float]:
 
 
 def _least_squares(
-    residual: Callable[[Floats], Floats],
+    model: Callable[[Floats], Floats],
+    values: Floats,
     start: list[float],
-    bounds: tuple[list[float], list[float]],
-    scale: list[float] | None = None,
+    bounds: list[tuple[float, float]],
+    scale: list[float] | str = "jac",
 ) -> OptimizeResult:
-    low, high = (np.array(side) for side in bounds)
+    """Fit a model's parameters, of which e is the last; ``bounds`` are those of the others."""
+    low, high = np.transpose([*bounds, (1e-3, 1.0)])
     inside = np.clip(start, np.nextafter(low, high), np.nextafter(high, low))
 
     def finite(q: Floats) -> Floats:
         # parameters with which the block would go over explain nothing
-        return np.nan_to_num(residual(q), nan=1e3)
+        return np.nan_to_num(model(q) - values, nan=1e3)
 
+    tolerances = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-13)
     return least_squares(
-        finite, inside, bounds=(low, high), jac="3-point", x_scale="jac" if scale is None else scale,
-        xtol=1e-13, ftol=1e-13, gtol=1e-13,
-    )  # fmt: skip
+        finite, inside, bounds=(low, high), jac="3-point", x_scale=scale, **tolerances
+    )
 
 
-def _summary(
-    block: Block, fit: OptimizeResult, at: int, impacts: int, confidence: float
-) -> RestitutionFit:
-    """Interval of parameter ``at`` by Student's t and the curvature of the sum of squares."""
+def _summary(block: Block, fit: OptimizeResult, impacts: int, confidence: float) -> RestitutionFit:
+    """Interval of e by Student's t and the curvature of the sum of squares."""
     if not 0 < confidence < 1:
         raise InputError(f"confidence: expected a level between 0 and 1, got {confidence}.")
     n, k = fit.jac.shape
-    e = float(fit.x[at])
+    e = float(fit.x[-1])
     computed = block.momentum_restitution()
     if n <= k:
         return RestitutionFit(e, math.nan, math.nan, impacts, math.nan, computed)
     variance = 2 * fit.cost / (n - k)
     covariance = variance * np.linalg.pinv(fit.jac.T @ fit.jac)
-    half = float(student.ppf((1 + confidence) / 2, n - k)) * math.sqrt(covariance[at, at])
+    half = float(student.ppf((1 + confidence) / 2, n - k)) * math.sqrt(covariance[-1, -1])
     return RestitutionFit(
         e, max(e - half, 0.0), min(e + half, 1.0), impacts, math.sqrt(variance), computed
     )

@@ -13,8 +13,7 @@ from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.rocking.inputs import MotionLike, checked_switch, ground_motion, warn_of_units
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.options import FrictionInput, StartInput, system_of
+from rockfrag.rocking.options import FrictionInput, Restitution, StartInput, system_of
 from rockfrag.system.blocks import SystemLike
 from rockfrag.units import GRAVITY
 

@@ -21,8 +21,7 @@ from rockfrag.keywords import named_keywords
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import MotionLike
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.options import FrictionInput
+from rockfrag.rocking.options import FrictionInput, Restitution
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY

@@ -15,9 +15,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError, errors_of
 from rockfrag.input_checks import number_from_zero, positive_number
-from rockfrag.motions.conditioning import pad
-from rockfrag.motions.filtering import highpass
-from rockfrag.motions.scaling import scale_to_pga
+from rockfrag.motions.processing import highpass, pad, scale_to_pga
 from rockfrag.records.motion import Motion, integrate
 from rockfrag.schema import checked
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY

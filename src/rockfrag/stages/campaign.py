@@ -9,14 +9,13 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.campaign import comparison, laboratory
-from rockfrag.campaign.comparison import Bools, Floats, MeasuredTests, Validated
+from rockfrag.campaign.comparison import HALF, Bools, Floats, MeasuredTests
 from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.fragility.vector_tables import VectorTables, vector_tables
-from rockfrag.motions.processing import process
+from rockfrag.motions.processing import process, scale_to_pga
 from rockfrag.motions.pulses import commanded_cosine
-from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.records.sources.wheel import fetch_url
 from rockfrag.stages.job import Job, Results
@@ -48,14 +47,14 @@ def run(job: Job[CampaignStudy]) -> Results:
     trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
     outcomes, rocked = simulate_tests(trials.systems, motions, job.threads)
     measured = measured_tests(study, campaign)
-    validated = measured.cross_validate(outcomes)
+    votes = measured.cross_validate(outcomes)
     job.log.info(
         "%d tests under %d motions: %.1f %% of the outcomes right",
         len(campaign.tests), measured.groups.max() + 1,
-        100 * (validated.outcomes == measured.overturned).mean(),
+        100 * ((votes >= HALF) == measured.overturned).mean(),
     )  # fmt: skip
-    judged = comparison.judged_tests(campaign.tests, validated)
-    found = _Simulated(job, campaign, motions, thing, trials, outcomes, rocked, measured, validated)
+    judged = comparison.judged_tests(campaign.tests, votes.mean(axis=0))
+    found = _Simulated(job, campaign, motions, thing, trials, outcomes, rocked, measured, votes)
     yield "tests", judged
     yield "trials", found.judged_trials()
     yield "agreement", found.agreement()
@@ -77,7 +76,7 @@ def campaign_with_motions(
 ) -> tuple[Campaign, list[Motion]]:
     """Read the tests and the motion of each, scaled where the table says so; log how many are left out."""
     for public in study.fetch:
-        fetch_url(public.url, public.sha256, public.path)
+        fetch_url(*public)
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
     if study.leave_out:
         absent = laboratory.missing_motions(study.motions, list(campaign.tests["motion"]))
@@ -180,7 +179,7 @@ class _Simulated:
     outcomes: Bools
     rocked: Bools
     measured: MeasuredTests
-    validated: Validated
+    votes: Floats  # of plausible trials, chosen by tests with other motions, shape (repeats, tests)
 
     @property
     def plausible(self) -> Bools:
@@ -202,7 +201,7 @@ class _Simulated:
         rivals = {}
         if self.trials.planar:
             flat, _ = simulate_tests(self.trials.planar, self.motions, self.job.threads)
-            rivals[IN_PLANE] = self.measured.cross_validate(flat).outcomes
+            rivals[IN_PLANE] = self.measured.cross_validate(flat) >= HALF
         for name in measures:
             rivals[f"threshold on {name}"] = self.measured.by_threshold(tests[name].to_numpy())
         if len(measures) > 1:
@@ -214,7 +213,7 @@ class _Simulated:
         if majority is not None:
             rivals[comparison.REPEATS] = majority
         codes = {f"code {name}": given.to_numpy() for name, given in self.campaign.codes.items()}
-        rows = [self.measured.agreement(OURS, self.validated.outcomes)]
+        rows = [self.measured.agreement(OURS, self.votes >= HALF)]
         rows += [self._beside(name, given) for name, given in {**rivals, **codes}.items()]
         judged = dict.fromkeys(codes, "as given")
         judged[comparison.REPEATS] = "by repeats of the same test"
@@ -230,7 +229,7 @@ class _Simulated:
             raise InputError(
                 f"{name}: its tests are of a single input motion; give those of two or more."
             )
-        lead = measured.lead(self.validated.outcomes[:, given], theirs)
+        lead = measured.lead(self.votes[:, given] >= HALF, theirs)
         return measured.agreement(name, theirs) | lead
 
     def rocking(self) -> pd.DataFrame:
@@ -239,28 +238,25 @@ class _Simulated:
         if noted is None:
             columns = ["who", "right", "lower", "upper", "false_alarms", "missed", "tests"]
             return pd.DataFrame(columns=columns)
-        found = self.measured.cross_validate(self.outcomes, self.rocked)
+        votes = self.measured.cross_validate(self.outcomes, self.rocked)
         seen = replace(self.measured, overturned=noted.to_numpy())
-        return pd.DataFrame([seen.agreement(OURS, found.outcomes)])
+        return pd.DataFrame([seen.agreement(OURS, votes >= HALF)])
 
     def fragility(self) -> pd.DataFrame:
         """Lognormal curves of measured and simulated outcomes in every measure."""
-        simulated: dict[str, Bools | Floats] = {
-            OURS: self.validated.outcome,
-            VOTES: self.validated.mean_votes,
-        }
-        parts = [
-            self.measured.fragility(self.campaign.tests[name].to_numpy(), simulated).assign(
-                measure=name
-            )
-            for name in self.campaign.measures
-        ]
+        votes = self.votes.mean(axis=0)
+        parts = []
+        for name in self.campaign.measures:
+            measure = self.campaign.tests[name].to_numpy()
+            curves = self.measured.fragility(measure, {OURS: votes >= HALF, VOTES: votes})
+            parts.append(curves.assign(measure=name))
         return pd.concat(parts, ignore_index=True)
 
     def two_measures(self) -> VectorTables:
         """Fragility in the first two measures, of the outcomes measured and simulated."""
         tests = self.campaign.tests
-        outcomes = {"measured": self.measured.overturned, OURS: self.validated.outcome}
+        ours = self.votes.mean(axis=0) >= HALF
+        outcomes = {"measured": self.measured.overturned, OURS: ours}
         pair = self.campaign.measures[:2]
         return vector_tables(
             {name: tests.assign(**{MEASURED: fell * 1.0}) for name, fell in outcomes.items()},
@@ -275,7 +271,7 @@ class _Simulated:
     def conditioning(self) -> pd.DataFrame:
         """What other ways of conditioning the motions would have given, with a part of the trials."""
         study, measured = self.job.study, self.measured
-        as_configured = measured.agreement("as configured", self.validated.outcomes)
+        as_configured = measured.agreement("as configured", self.votes >= HALF)
         rows = [as_configured | {"trials": study.trials}]
         fewer = max(16, study.trials // VARIED_FRACTION)
         trials = sample_trials(self.thing, study.unknowns, fewer, study.seed)
@@ -285,15 +281,17 @@ class _Simulated:
         }.items():
             motions = _motions(study, self.campaign, steps)
             outcomes, _ = simulate_tests(trials.systems, motions, self.job.threads)
-            found = measured.cross_validate(outcomes)
-            rows.append(measured.agreement(name, found.outcomes) | {"trials": fewer})
+            votes = measured.cross_validate(outcomes)
+            rows.append(measured.agreement(name, votes >= HALF) | {"trials": fewer})
             self.job.log.info("conditioning %s", name)
         return pd.DataFrame(rows).rename(columns={"who": "conditioning"})
 
     def contact(self) -> pd.DataFrame:
         """How base and outcomes depend on the contact tolerance; the critical angle with scans repeated."""
-        columns = ["contact_tolerance_mm", "worst_direction_deg", "alpha_deg", "alpha_lower_deg"]
-        columns += ["alpha_upper_deg", "trials", "width_m", "overturned", "right"]
+        columns = [
+            *("contact_tolerance_mm", "worst_direction_deg", "alpha_deg", "alpha_lower_deg"),
+            *("alpha_upper_deg", "trials", "width_m", "overturned", "right"),
+        ]
         thing, study, trials = self.thing, self.job.study, self.trials.table
         if not isinstance(thing, Shape):
             return pd.DataFrame(columns=columns, dtype=float)

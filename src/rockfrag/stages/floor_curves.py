@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.files import file_name
-from rockfrag.motions.declared import intensity_measures
+from rockfrag.motions.intensity import intensity_measures
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.system.system import System, uplift_ratios
 

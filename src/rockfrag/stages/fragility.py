@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from rockfrag.motions.declared import declared, intensity_measures
+from rockfrag.motions.intensity import declared, intensity_measures
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.shaketable.swept import Swept
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures

@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -27,14 +28,11 @@ NEAR = 1 + 0.01 * np.arange(-10, 11)
 RECORDED = ("overturning_time", "certain_time", "impacts", "unstable_distance", "peak_rotation")
 """Columns of outcomes in every IDA curve."""
 
-SLID = ("flights", "slip", "peak_slip")
-"""Columns of outcomes in IDA curves with friction."""
+SLID = ("flights", "slip", "peak_slip")  # Columns of outcomes in IDA curves with friction
 
-ROWS_AT_ONCE = 131_072
-"""Histories in memory at a time, and of a row group of a file."""
+ROWS_AT_ONCE = 131_072  # Histories in memory at a time, and of a row group of a file
 
-FEWEST_AT_ONCE = 12
-"""Motions shaken at a time are no fewer, to keep every core busy."""
+FEWEST_AT_ONCE = 12  # Motions shaken at a time are no fewer, to keep every core busy
 
 
 def run(job: Job[Study]) -> Results:
@@ -126,20 +124,19 @@ def ida_table(
     contact), ``slip_contact_1_m`` and on (at the end), ``peak_slip_contact_1_m`` and on, ``flights`` and
     ``overturned_without_sliding``, the outcome if nothing could slide or fly.
     """
-    from rockfrag.motions.scaling import factors_to_pga
+    from rockfrag.motions.processing import factors_to_pga
 
     scales = np.array([factors_to_pga(motion, amplitudes_g) for motion in motions])
     result = _shaken(configuration, motions, scales, threads, vertical)
     each = len(amplitudes_g)
 
-    def of_all(text: str) -> pa.DictionaryArray:
-        return _texts([text], np.zeros(each * len(motions), dtype=np.int32))
-
     def of_motions(texts: Sequence[str]) -> pa.DictionaryArray:
-        return _texts(texts, np.repeat(np.arange(len(motions), dtype=np.int32), each))
+        return _texts(texts, np.repeat(np.arange(len(motions)), each))
 
     made = {
-        **{key: of_all(text) for key, text in labels_of(configuration).items()},
+        **{
+            key: of_motions([text] * len(motions)) for key, text in labels_of(configuration).items()
+        },
         "motion": of_motions([motion.name for motion in motions]),
         "earthquake": of_motions(
             [motion.metadata.get("earthquake") or motion.name for motion in motions]
@@ -151,9 +148,7 @@ def ida_table(
             for state in limit_states()
             if state.counted(configuration)
         },
-        "overturned_body": _texts(
-            fallen_names(configuration), result.overturned_body[0].ravel().astype(np.int32)
-        ),
+        "overturned_body": _texts(fallen_names(configuration), result.overturned_body[0].ravel()),
         **result.wide(0, RECORDED),
     }
     if configuration.loose:
@@ -166,11 +161,9 @@ def ida_table(
     return pa.table(made)
 
 
-def _texts(texts: Sequence[str], which: NDArray[np.int32]) -> pa.DictionaryArray:
-    different = list(dict.fromkeys(texts))
-    place = {text: number for number, text in enumerate(different)}
-    numbers = np.array([place[text] for text in texts], dtype=np.int32)
-    return pa.DictionaryArray.from_arrays(numbers[which], pa.array(different, pa.string()))
+def _texts(texts: Sequence[str], which: NDArray[np.integer[Any]]) -> pa.DictionaryArray:
+    """The text of each number, of which a file holds the different ones once."""
+    return pa.array(texts, pa.string()).dictionary_encode().take(pa.array(which))
 
 
 def _shaken(

@@ -20,8 +20,7 @@ S = TypeVar("S")
 Results = Iterator[tuple[str, "pd.DataFrame | list[Motion]"]]
 """What a stage yields: each of its results by name, as soon as it is there."""
 
-_LIBRARIES_MB = 1500
-"""Memory of a process that has loaded and compiled all that a stage uses [MiB]."""
+_LIBRARIES_MB = 1500  # Memory of a process that has loaded and compiled all that a stage uses [MiB]
 
 _BYTES_A_IDA = 20_000
 """Memory for what statistics know of a configuration under a motion, whatever the number of amplitudes."""

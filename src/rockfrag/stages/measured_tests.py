@@ -71,11 +71,12 @@ def beside(measured: pd.DataFrame, simulated: pd.DataFrame) -> pd.DataFrame:
     Adds ``simulated_g``, the simulated amplitude (NaN without a counterpart or where it is censored), and
     ``ratio``, measured over simulated amplitude.
     """
-    known = simulated.drop_duplicates(list(_KEY)).set_index(list(_KEY))["amplitude_g"]
-    keys = measured[list(_KEY)].itertuples(index=False, name=None)
-    values = [float(known.get(key, float("nan"))) for key in keys]
-    columns = [*_KEY, "repetition", "lower_g", "upper_g", "amplitude_g", "censored"]
-    table = measured[columns].assign(simulated_g=values)
+    key = list(_KEY)
+    known = simulated.drop_duplicates(key)[[*key, "amplitude_g"]]
+    columns = [*key, "repetition", "lower_g", "upper_g", "amplitude_g", "censored"]
+    table = measured[columns].merge(
+        known.rename(columns={"amplitude_g": "simulated_g"}), how="left", on=key
+    )
     return table.assign(ratio=table["amplitude_g"] / table["simulated_g"])
 
 

@@ -11,8 +11,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import GROUND, RECORDS_FOLDER, Study
 
-LEFT_OUT = "left_out"
-"""Table of what a study that keeps going has left out."""
+LEFT_OUT = "left_out"  # Table of what a study that keeps going has left out
 
 WRITTEN = "motions/written"
 """Folder of the motions of all floors in the format that a study asks for."""

@@ -29,8 +29,7 @@ OWNER = "configuration.txt"
 LOCK = ".run"
 """File in a study's folder that its run holds locked, and that says which process it is."""
 
-RUN = "ROCKFRAG_RUN"
-"""Variable of the environment: the process of the run, with which its jobs end."""
+RUN = "ROCKFRAG_RUN"  # Variable of the environment: the process of the run, with which its jobs end
 
 
 def prepared(content: Mapping[str, Any], path: str | os.PathLike[str]) -> tuple[AnyStudy, Path]:

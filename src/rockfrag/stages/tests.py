@@ -14,8 +14,7 @@ from rockfrag.system import geometry
 from rockfrag.system.system import System, uplift_ratios
 from rockfrag.units import GRAVITY
 
-LIMITED = "step_protocol_shaker"
-"""Reading of the step protocol that stops at the shaker's limit."""
+LIMITED = "step_protocol_shaker"  # Reading of the step protocol that stops at the shaker's limit
 
 
 def run(job: Job[Study]) -> Results:

@@ -60,7 +60,7 @@ def _shaken(
     tests: pd.DataFrame, motions: Mapping[str, Motion], vertical: Mapping[str, Motion] | None
 ) -> tuple[list[Motion], list[NDArray[np.float64]] | None]:
     """Motion of each test as scaled, and the vertical acceleration beside it [m/s²]."""
-    from rockfrag.motions.scaling import scale_to_pga
+    from rockfrag.motions.processing import scale_to_pga
 
     names = list(tests["motion"])
     scaled = [

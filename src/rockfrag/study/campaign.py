@@ -17,19 +17,11 @@ CAMPAIGN_KEY = "campaign"  # key that only a study of a campaign has
 
 
 @dataclass(frozen=True)
-class PublicFile:
-    """A file that anybody can fetch: address, SHA-256, and where it is kept."""
-
-    url: str
-    sha256: str
-    path: Path
-
-
-@dataclass(frozen=True)
 class CampaignStudy(Heading):
     """Everything that the configuration of a campaign says, checked."""
 
-    fetch: tuple[PublicFile, ...]  # Public files that are fetched if they are not there
+    # Address, SHA-256 and place of public files that are fetched if they are not there
+    fetch: tuple[tuple[str, str, Path], ...]
     # Table of tests, its columns, and a table of other programs' outcomes or None
     tests: Path
     columns: Mapping[str, str]
@@ -70,7 +62,7 @@ class CampaignStudy(Heading):
         named = (self.tests, self.other_codes, self.mesh)
         paths = [path for path in named if path is not None]
         paths += [Path(self.motions)] if self.motions.endswith(".npz") else []
-        fetched = {source.path for source in self.fetch}
+        fetched = {path for *_, path in self.fetch}
         return [str(path) for path in paths if path not in fetched]
 
 
@@ -78,10 +70,10 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
     """Make the study of a campaign from a checked configuration that was read from ``source``."""
     campaign, thing = content[CAMPAIGN_KEY], content["object"]
     fetch = tuple(
-        PublicFile(wanted["url"], wanted["sha256"], _kept(source, i, wanted["file"]))
+        (wanted["url"], wanted["sha256"], _kept(source, i, wanted["file"]))
         for i, wanted in enumerate(content.get("fetch", ()))
     )
-    fetched = {source.path for source in fetch}
+    fetched = {path for *_, path in fetch}
 
     def existing(key: str, name: str) -> Path:
         path = beside(source, name)

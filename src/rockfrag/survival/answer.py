@@ -1,21 +1,16 @@
 """What survival says about the hazard of a site: weights, curves, which object decides, and what it hangs on."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.survival.evidence import StandingObject
 from rockfrag.survival.reweight import Reweighted, reweight, scaled
 from rockfrag.survival.site import Site
 
 LEAST_SURVIVAL = 1e-9
 """Probability that all objects stand below which, in every branch, hazard, fragility or age must be wrong."""
-
-DECISION_RATE = 1e-4
-"""Annual rate at which sensitivities are compared [1/year]."""
 
 RULED_OUT = 0.01
 """A branch whose weight falls below this fraction of what it was counts as ruled out."""
@@ -48,15 +43,10 @@ class Constrained:
     sensitivity: pd.DataFrame  #: A row an assumption: ``assumption`` and ``level_ratio``
 
     @property
-    def level_ratio(self) -> float:
-        """Level of the mean hazard at ``DECISION_RATE`` after over before [-]."""
-        return _level_ratio(self.site, self.result)
-
-    @property
     def ruled_out(self) -> list[str]:
         """Branches whose weight fell below ``RULED_OUT`` of what it was."""
         kept = self.result.weights >= RULED_OUT * self.result.prior
-        return [b.name for b, stays in zip(self.result.branches, kept, strict=True) if not stays]
+        return [b.name for b, stays in zip(self.site.branches, kept, strict=True) if not stays]
 
 
 def constrain(site: Site) -> Constrained:
@@ -65,9 +55,11 @@ def constrain(site: Site) -> Constrained:
     Returns weights, curves, contributions of objects and sensitivities; that no branch lets all of them stand is
     an InputError.
     """
-    result = _reweighted(site, site.objects)
+    result = reweight(site)
     if float(result.log_survival.max()) < np.log(LEAST_SURVIVAL):
-        alone = {body.name: _reweighted(site, [body]).log_survival.max() for body in site.objects}
+        alone = {}
+        for body in site.objects:
+            alone[body.name] = reweight(replace(site, objects=(body,))).log_survival.max()
         worst = min(alone, key=alone.__getitem__)
         raise InputError(
             "objects: in no branch of the hazard do all of them stand with a probability above "
@@ -77,31 +69,13 @@ def constrain(site: Site) -> Constrained:
     return Constrained(site, result, _by_object(site), _sensitivity(site))
 
 
-def _reweighted(
-    site: Site, objects: Sequence[StandingObject], shared: float | None = None
-) -> Reweighted:
-    return reweight(
-        site.branches,
-        objects,
-        shared_error=site.shared_error if shared is None else shared,
-        same_earthquakes=site.same_earthquakes,
-        velocity=site.velocity,
-    )
-
-
-def _level_ratio(site: Site, result: Reweighted) -> float:
-    ratios = result.ratios(site.measure)
-    row = ratios[np.isclose(ratios["annual_rate"], DECISION_RATE)]
-    return float(row["level_ratio"].iloc[0])
-
-
 def _by_object(site: Site) -> pd.DataFrame:
     rows = []
     for body in site.objects:
-        alone = _reweighted(site, [body])
-        others = [other for other in site.objects if other is not body]
-        without = _level_ratio(site, _reweighted(site, others)) if others else 1.0
-        rows.append((body.name, alone.information, _level_ratio(site, alone), without))
+        alone = reweight(replace(site, objects=(body,)))
+        others = tuple(other for other in site.objects if other is not body)
+        without = reweight(replace(site, objects=others)).level_ratio if others else 1.0
+        rows.append((body.name, alone.information, alone.level_ratio, without))
     columns = ["object", "information_bit", "level_ratio_alone", "level_ratio_without"]
     table = pd.DataFrame(rows, columns=columns)
     return table.sort_values("information_bit", ascending=False, ignore_index=True)
@@ -121,9 +95,9 @@ def _sensitivity(site: Site) -> pd.DataFrame:
             objects, capacity=IN_SPACE
         ),
     }
-    found = {name: _reweighted(site, moved) for name, moved in cases.items()}
+    sites = {name: replace(site, objects=moved) for name, moved in cases.items()}
     if len(objects) > 1:
-        found["errors of fragilities independent"] = _reweighted(site, objects, 0.0)
-        found["errors of fragilities all the same"] = _reweighted(site, objects, 1.0)
-    rows = [(name, _level_ratio(site, result)) for name, result in found.items()]
+        sites["errors of fragilities independent"] = replace(site, shared_error=0.0)
+        sites["errors of fragilities all the same"] = replace(site, shared_error=1.0)
+    rows = [(name, reweight(other).level_ratio) for name, other in sites.items()]
     return pd.DataFrame(rows, columns=["assumption", "level_ratio"])

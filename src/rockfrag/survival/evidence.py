@@ -10,15 +10,12 @@ from scipy import special, stats
 
 from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G, HazardCurve, rate_weights
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 
 Floats = NDArray[np.float64]
 
-GRID = 600
-"""Levels on which a hazard curve is integrated."""
-
-NODES = 15
-"""Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration."""
+GRID = 600  # Levels on which a hazard curve is integrated
+NODES = 15  # Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration
 
 
 @dataclass(frozen=True)
@@ -99,8 +96,7 @@ def quantile_weights(values: Floats, weights: Floats, quantiles: Floats) -> Floa
     return np.array([np.interp(quantiles, c, v) for c, v in columns]).T
 
 
-TAIL = 6.0
-"""Standard deviations from the median beyond which a fragility no longer changes."""
+TAIL = 6.0  # Standard deviations from the median beyond which a fragility no longer changes
 
 
 @dataclass(frozen=True)
@@ -145,14 +141,10 @@ class StandingObject:
     @property
     def reach(self) -> tuple[float, float]:
         """Lowest and highest level of ``measure`` between which its fragility changes."""
-        c0, c1 = self.coefficients[:2]
+        c0, c1, *others = self.coefficients
         wide = TAIL * (1 / c1 + self.sd_ln)
         # the second measure moves the median by as much as PGV/PGA of 0.02 to 0.5 s may
-        aside = (
-            [self.coefficients[2] * math.log(r) for r in (0.02, 0.5)]
-            if len(self.coefficients) > 2
-            else [0.0]
-        )
+        aside = [c * math.log(ratio) for c in others for ratio in (0.02, 0.5)] or [0.0]
         middle = [-(c0 + shift) / c1 for shift in aside]
         return math.exp(min(middle) - wide), math.exp(max(middle) + wide)
 

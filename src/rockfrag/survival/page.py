@@ -13,11 +13,13 @@ from matplotlib.figure import Figure
 
 from rockfrag import figure_style as style
 from rockfrag.files import file_name, write_table, write_text
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import page_text
+from rockfrag.report.wording import number
 from rockfrag.sentences import sayer
-from rockfrag.survival.answer import DECISION_RATE, LIMITS, RULED_OUT, Constrained
+from rockfrag.survival.answer import LIMITS, RULED_OUT, Constrained
+from rockfrag.survival.reweight import DECISION_RATE
 
 BRANCHES = (
     Column("branch", "Branch"),
@@ -45,7 +47,7 @@ def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Pat
     """
     stem = Path(folder) / file_name(found.site.name)
     write_table(weights_table(found), Path(f"{stem}-weights.csv"))
-    write_table(found.result.curves(found.site.measure), Path(f"{stem}-curves.csv"))
+    write_table(found.result.curves(), Path(f"{stem}-curves.csv"))
     write_text(json_of(found), f"{stem}.json")
     page = Path(f"{stem}.html")
     write_text(page_of(found), page)
@@ -72,7 +74,7 @@ def json_of(found: Constrained) -> str:
     """All numbers of the answer as JSON."""
     tables = {
         "branches": found.result.table(),
-        "mean_hazard": found.result.ratios(found.site.measure),
+        "mean_hazard": found.result.ratios(),
         "objects": found.by_object,
         "sensitivity": found.sensitivity,
     }
@@ -93,12 +95,12 @@ _say = sayer("rockfrag.survival", "page.j2", {"RULED_OUT": RULED_OUT, "LIMITS": 
 
 def _sentences(found: Constrained) -> list[str]:
     """Hazard, branches, evidence and what the answer hangs on, a sentence each."""
-    hazard = found.result.ratios(found.site.measure).set_index("annual_rate")
+    hazard = found.result.ratios().set_index("annual_rate")
     moved = found.sensitivity.iloc[1:]
     moved = moved[moved["level_ratio"] > 0]
     worst = None
-    if len(moved) and found.level_ratio > 0:
-        away = np.log(moved["level_ratio"] / found.level_ratio).abs()
+    if len(moved) and found.result.level_ratio > 0:
+        away = np.log(moved["level_ratio"] / found.result.level_ratio).abs()
         worst = moved.iloc[int(away.to_numpy().argmax())].to_dict()
     return _say("sentences", found, hazard.loc[DECISION_RATE].to_dict(), worst)
 
@@ -110,16 +112,12 @@ def lines_of(found: Constrained) -> list[str]:
 
 def page_of(found: Constrained) -> str:
     """Return the page as HTML, which loads nothing from outside."""
-    hazard, branches, evidence, hangs_on = _sentences(found)
+    hazard, branches, *told = _sentences(found)
+    evidence, hangs_on = told
     names = ", ".join(body.name for body in found.site.objects)
     title, lead = _say("head", found, names)
-    curves = FigureSpec(
-        "curves",
-        f"Mean hazard before and after survival. {hazard}",
-        "Mean hazard before (dashed) and after survival (solid); shaded from the 16th to the 84th percentile "
-        "of the branches.",
-        lambda: curves_figure(found),
-    )
+    alt, below = _say("curves", hazard)
+    curves = FigureSpec("curves", alt, below, lambda: curves_figure(found))
     caption = "What each object says by itself, and what is left without it."
     objects = table_html(found.by_object, OBJECTS, caption)
     caption = "One assumption at a time taken otherwise."
@@ -129,11 +127,7 @@ def page_of(found: Constrained) -> str:
         lead=lead,
         answer=Answer(
             asked="How strong can shaking have been, since these objects stand?",
-            sentences=[
-                Finding("Hazard", hazard),
-                Finding("Evidence", evidence),
-                Finding("It hangs on", hangs_on),
-            ],
+            sentences=list(map(Finding, ("Hazard", "Evidence", "It hangs on"), (hazard, *told))),
             figure=curves,
             rests_on=LIMITS,
         ),
@@ -148,60 +142,43 @@ def page_of(found: Constrained) -> str:
 
 
 def _hazard(found: Constrained) -> Markup:
-    unit = found.site.measure.unit
-    columns = (
-        Column("annual_rate", "Annual rate [1/year]", numeric=True),
-        Column("level_before", f"Before [{unit}]", 3),
-        Column("level_after", f"After [{unit}]", 3),
-        Column("level_ratio", "Level after / before", 2),
-        Column("rate_ratio", "Rate of the level before, after / before", 2),
-    )
-    table = found.result.ratios(found.site.measure)
-    table["annual_rate"] = [f"{rate:g}" for rate in table["annual_rate"]]
-    return table_html(table, columns, "Mean hazard at annual rates of 1e-2 to 1e-5.")
+    unit, rows = found.site.measure.unit, found.result.ratios().to_dict("list")
+    shown = {
+        "Annual rate [1/year]": [f"{rate:g}" for rate in rows["annual_rate"]],
+        f"Before [{unit}]": [number(level, 3) for level in rows["level_before"]],
+        f"After [{unit}]": [number(level, 3) for level in rows["level_after"]],
+        "Level after / before": [number(ratio, 2) for ratio in rows["level_ratio"]],
+        "Rate of the level before, after / before": [number(r, 2) for r in rows["rate_ratio"]],
+    }
+    return text_table(shown, "Mean hazard at annual rates of 1e-2 to 1e-5.", list(shown))
 
 
 def _branches(found: Constrained) -> list[Markup | FigureSpec]:
-    weights = FigureSpec(
-        "weights",
-        "Weights of the branches before and after survival.",
-        "Weights of the branches that matter most.",
-        lambda: weights_figure(found),
-    )
+    alt, below = _say("weights")
+    weights = FigureSpec("weights", alt, below, lambda: weights_figure(found))
     caption = "Branches of the hazard with their weights."
     file = f"{file_name(found.site.name)}-weights.csv"
     return [weights, table_html(found.result.table(), BRANCHES, caption, file)]
 
 
-MOST_BRANCHES_SHOWN = 20
-"""Branches whose weights are drawn: those that matter most before or after."""
-
-
-LONGEST_LABEL = 34
-"""Characters of a branch's name beside its weights."""
+MOST_BRANCHES_SHOWN = 20  # Branches whose weights are drawn: those that matter most before or after
+LONGEST_LABEL = 34  # Characters of a branch's name beside its weights
 
 
 def curves_figure(found: Constrained) -> Figure:
     """Mean hazard before and after, with the range of the branches from the 16th to the 84th percentile."""
     measure = found.site.measure
-    curves = found.result.curves(measure)
+    curves = found.result.curves()
     level = curves["level"].to_numpy()
     with style.one_panel(style.COLUMN_WIDTH, 2.8) as (figure, axes):
         for when, colour, line, words in (
             ("before", style.ORANGE, "--", "before"),
             ("after", style.BLUE, "-", "after survival"),
         ):
-            axes.fill_between(
-                level,
-                curves[f"fractile_0.16_{when}"],
-                curves[f"fractile_0.84_{when}"],
-                color=colour,
-                alpha=0.2,
-                linewidth=0,
-            )
-            axes.plot(
-                level, curves[f"mean_{when}"], color=colour, linestyle=line, label=f"mean {words}"
-            )
+            low, high = (curves[f"fractile_{part}_{when}"] for part in ("0.16", "0.84"))
+            axes.fill_between(level, low, high, color=colour, alpha=0.2, linewidth=0)
+            mean = curves[f"mean_{when}"]
+            axes.plot(level, mean, color=colour, linestyle=line, label=f"mean {words}")
         rates = curves[["mean_before", "mean_after"]].to_numpy()
         axes.set(
             ylim=(max(rates[-1].min(), 1e-6), min(rates[0].max() * 1.5, 10.0)),
@@ -217,24 +194,13 @@ def weights_figure(found: Constrained) -> Figure:
     """Weights of the branches before and after, those that matter most."""
     table = found.result.table()
     largest = table[["weight_before", "weight_after"]].max(axis=1)
-    table = table.loc[
-        largest.sort_values(ascending=False, kind="stable").index[:MOST_BRANCHES_SHOWN]
-    ]
-    table = table.sort_values("weight_after", kind="stable")
-    place = np.arange(len(table))
+    order = largest.sort_values(ascending=False, kind="stable").index
+    table = table.loc[order[:MOST_BRANCHES_SHOWN]].sort_values("weight_after", kind="stable")
+    before, after, place = table["weight_before"], table["weight_after"], np.arange(len(table))
     with style.one_panel(style.WIDEST, 0.7 + 0.2 * len(table)) as (figure, axes):
-        axes.hlines(
-            place, table["weight_before"], table["weight_after"], color="#999999", linewidth=0.8
-        )
-        axes.plot(
-            table["weight_before"],
-            place,
-            "o",
-            color=style.ORANGE,
-            markerfacecolor="none",
-            label="before",
-        )
-        axes.plot(table["weight_after"], place, "s", color=style.BLUE, label="after survival")
+        axes.hlines(place, before, after, color="#999999", linewidth=0.8)
+        axes.plot(before, place, "o", color=style.ORANGE, markerfacecolor="none", label="before")
+        axes.plot(after, place, "s", color=style.BLUE, label="after survival")
         names = [_short(name, number) for number, name in table["branch"].items()]
         axes.set_yticks(place, names)
         axes.set(xlabel="Weight of the branch [-]", xlim=(0, None))

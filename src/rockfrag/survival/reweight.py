@@ -17,35 +17,31 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import special
 
-from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
-from rockfrag.survival.branches import Branch
 from rockfrag.survival.evidence import (
     ShakingRates,
     StandingObject,
-    VelocityRelation,
     draw_errors,
     quantile_weights,
     shaking_rates,
 )
+from rockfrag.survival.site import Site
 
 Floats = NDArray[np.float64]
 
-SAMPLES = 1024
-"""Draws of ages and errors of fragilities."""
+SAMPLES = 1024  # Draws of ages and errors of fragilities
+DECISION_RATE = 1e-4  # Annual rate at which sensitivities are compared [1/year]
 
 RATES = (1e-2, 1e-3, 1e-4, 1e-5)
 """Annual rates at which curves before and after are compared [1/year]."""
 
-QUANTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
-"""Fractiles of the hazard over the branches."""
+QUANTILES = (0.05, 0.16, 0.5, 0.84, 0.95)  # Fractiles of the hazard over the branches
 
 
 @dataclass(frozen=True)
 class Reweighted:
     """Weights of branches before and after."""
 
-    branches: tuple[Branch, ...]  #: The branches
+    site: Site  #: The site, with its branches
     #: ln S_i, the logarithm of the probability that all objects stand, shape (branches,)
     log_survival: Floats
     weights: Floats  #: Weights afterwards, shape (branches,), of sum 1
@@ -53,7 +49,7 @@ class Reweighted:
     @property
     def prior(self) -> Floats:
         """Weights before, shape (branches,)."""
-        return np.array([branch.weight for branch in self.branches])
+        return np.array([branch.weight for branch in self.site.branches])
 
     @property
     def information(self) -> float:
@@ -64,7 +60,7 @@ class Reweighted:
         """A row a branch: ``branch``, ``weight_before``, ``survival``, ``weight_after``, ``ratio``."""
         return pd.DataFrame(
             {
-                "branch": [branch.name for branch in self.branches],
+                "branch": [branch.name for branch in self.site.branches],
                 "weight_before": self.prior,
                 "survival": np.exp(self.log_survival),
                 "weight_after": self.weights,
@@ -72,14 +68,14 @@ class Reweighted:
             }
         )
 
-    def curves(self, measure: IntensityMeasure) -> pd.DataFrame:
-        """Mean and fractile curves before and after: annual rates by ``level``.
+    def curves(self) -> pd.DataFrame:
+        """Mean and fractile curves before and after in the site's measure: annual rates by ``level``.
 
         Columns such as ``mean_before`` and ``fractile_0.84_after``.
         """
-        stated = [branch.curves[measure].levels for branch in self.branches]
-        levels = np.unique(np.concatenate(stated))
-        rates = np.array([branch.curves[measure].rate(levels) for branch in self.branches])
+        stated = [branch.curves[self.site.measure] for branch in self.site.branches]
+        levels = np.unique(np.concatenate([curve.levels for curve in stated]))
+        rates = np.array([curve.rate(levels) for curve in stated])
         columns = {"level": levels}
         for when, weights in (("before", self.prior), ("after", self.weights)):
             columns[f"mean_{when}"] = weights @ rates
@@ -88,12 +84,12 @@ class Reweighted:
                 columns[f"fractile_{q:g}_{when}"] = values
         return pd.DataFrame(columns)
 
-    def ratios(self, measure: IntensityMeasure) -> pd.DataFrame:
+    def ratios(self) -> pd.DataFrame:
         """Mean hazard before and after at annual rates of 1e-2 to 1e-5; levels beyond the curves are NaN.
 
         ``rate_ratio`` is by how much the rate at the level before has changed.
         """
-        curves = self.curves(measure)
+        curves = self.curves()
         log_level = np.log(curves["level"].to_numpy())
         before, after = (np.log(curves[f"mean_{when}"].to_numpy()) for when in ("before", "after"))
         wanted = np.log(RATES)
@@ -112,42 +108,32 @@ class Reweighted:
             }
         )
 
+    @property
+    def level_ratio(self) -> float:
+        """Level of the mean hazard at ``DECISION_RATE`` after over before [-]."""
+        return float(self.ratios()["level_ratio"][RATES.index(DECISION_RATE)])
 
-def reweight(
-    branches: Sequence[Branch],
-    objects: Sequence[StandingObject],
-    *,
-    shared_error: float = 0.0,
-    same_earthquakes: bool = True,
-    velocity: VelocityRelation | None = None,
-    samples: int = SAMPLES,
-) -> Reweighted:
+
+def reweight(site: Site, samples: int = SAMPLES) -> Reweighted:
     """Weigh branches of the hazard by how probably they let all objects stand.
 
-    ``shared_error`` is the correlation of the errors of the objects' fragilities, 0 (each its own) to 1 (all the
-    same) [-]. Objects so far apart that each feels its own earthquakes do not have the ``same_earthquakes``.
-    ``velocity`` gives the PGV that comes with a PGA, where a fragility asks for both; ``samples`` of errors and
-    ages are a power of two.
+    ``samples`` of errors and ages are a power of two.
     """
-    if not objects:
-        raise InputError("objects: give at least one that stands.")
-    if not 0.0 <= shared_error <= 1.0:
-        raise InputError(
-            f"shared_error: a correlation lies between 0 and 1, found {shared_error:g}."
-        )
+    objects = site.objects
     wanted = set().union(*(body.measures for body in objects))
     reach = (min(b.reach[0] for b in objects), max(b.reach[1] for b in objects))
-    normal, uniform = draw_errors(len(objects), shared_error, samples)
+    normal, uniform = draw_errors(len(objects), site.shared_error, samples)
     errors = normal * [body.sd_ln for body in objects]
     years = np.column_stack(
         [body.age.exposure(u) for body, u in zip(objects, uniform.T, strict=True)]
     )
-    shaking = shaking_rates([branch.curves for branch in branches], wanted, velocity, reach)
-    expected = _expected_topplings(objects, shaking, errors, years, same_earthquakes)
+    curves = [branch.curves for branch in site.branches]
+    shaking = shaking_rates(curves, wanted, site.velocity, reach)
+    expected = _expected_topplings(objects, shaking, errors, years, site.same_earthquakes)
     log_survival = special.logsumexp(-expected, axis=0) - np.log(samples)
-    logs = np.log([branch.weight for branch in branches]) + log_survival
+    logs = np.log([branch.weight for branch in site.branches]) + log_survival
     weights = np.exp(logs - special.logsumexp(logs))
-    return Reweighted(tuple(branches), np.asarray(log_survival), weights)
+    return Reweighted(site, np.asarray(log_survival), weights)
 
 
 def _expected_topplings(
@@ -177,7 +163,7 @@ def _expected_topplings(
 
 def scaled(
     objects: Sequence[StandingObject], capacity: float = 1.0, age: float = 1.0
-) -> list[StandingObject]:
+) -> tuple[StandingObject, ...]:
     """Objects that withstand a factor more shaking, or have stood and been fragile a factor longer."""
     found = []
     for body in objects:
@@ -190,4 +176,4 @@ def scaled(
             fragile_for=body.age.fragile_for * age,
         )
         found.append(replace(body, coefficients=moved, age=ages))
-    return found
+    return tuple(found)

@@ -7,17 +7,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.hazard.curve import PGA, read_measure
-from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.assess.hazard.curve import PGA, read_level, read_measure
+from rockfrag.errors import InputError, errors_of
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.schema import checked
 from rockfrag.survival.branches import Branch, read_branches
 from rockfrag.survival.evidence import Age, StandingObject, VelocityRelation, lognormal_coefficients
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.yaml_file import read_yaml
 
-RECORDS = "resources/records"
-"""Folder of fetched records."""
+RECORDS = "resources/records"  # Folder of fetched records
 
 ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}
 """A level in each measure: only fractions over all levels are used."""
@@ -33,9 +31,10 @@ class Site:
     name: str  #: What the site is called
     branches: tuple[Branch, ...]  #: Branches of its hazard
     objects: tuple[StandingObject, ...]  #: What stands there
-    shared_error: float  #: Correlation of the errors of the objects' fragilities [-]
-    same_earthquakes: bool  #: Whether the objects feel the same earthquakes
-    velocity: VelocityRelation | None  #: PGV that comes with a PGA; None if not stated
+    #: Correlation of the errors of the objects' fragilities, 0 (each its own) to 1 (all the same) [-]
+    shared_error: float = 0.0
+    same_earthquakes: bool = True  #: Whether the objects feel the same earthquakes
+    velocity: VelocityRelation | None = None  #: PGV that comes with a PGA; None if not stated
 
     @property
     def measure(self) -> IntensityMeasure:
@@ -74,9 +73,7 @@ def _site(known: Mapping[str, Any], folder: Path, records: Path) -> Site:
         objects=(),
         shared_error=float(known.get("shared_error", 0.0)),
         same_earthquakes=bool(known.get("same_earthquakes", True)),
-        velocity=None
-        if velocity is None
-        else VelocityRelation(velocity["median_s"], velocity["sd_ln"]),
+        velocity=velocity and VelocityRelation(**velocity),
     )
     return replace(site, objects=tuple(_objects(known["objects"], site, folder, records)))
 
@@ -89,42 +86,21 @@ def _objects(
         name = settings.get("name", f"object {at}")
         if any(body.name == name for body in found):
             raise InputError(f"objects: {name} is given twice; give each its own name.")
-        try:
+        with errors_of(f"objects, {name}"):
+            measure = site.measure if "statue" in settings else PGA
+            if "measure" in settings:
+                measure = read_measure(settings["measure"], "measure")
             if "statue" in settings:
-                found.append(_simulated(name, settings, site, folder, records))
+                coefficients, sd_ln = _simulated(settings, measure, site, folder, records)
             else:
-                found.append(_object(name, settings))
-        except InputError as error:
-            raise InputError(f"objects, {name}: {error}") from None
+                coefficients, sd_ln = _stated(settings, measure), 0.0
+            sd_ln = float(settings.get("median_sd_ln", sd_ln))
+            found.append(StandingObject(name, measure, coefficients, sd_ln, _age(settings)))
     return found
 
 
 def _simulated(
-    name: str, settings: Mapping[str, Any], site: Site, folder: Path, records: Path
-) -> StandingObject:
-    given = [key for key in ("median", "beta", "coefficients") if key in settings]
-    if given:
-        raise InputError(
-            f"{given[0]} follows from the simulation of statue; leave one of them out."
-        )
-    measure = site.measure
-    if "measure" in settings:
-        measure = read_measure(settings["measure"], "measure")
-    with_velocity = measure == PGA and site.velocity is not None
-    coefficients, sd_ln = _fragility_of(
-        settings["statue"], folder, measure, records, with_velocity=with_velocity
-    )
-    spread = float(settings.get("median_sd_ln", sd_ln))
-    return StandingObject(name, measure, coefficients, spread, _age(settings))
-
-
-def _fragility_of(
-    given: str | Mapping[str, Any],
-    folder: Path,
-    measure: IntensityMeasure,
-    records: Path,
-    *,
-    with_velocity: bool,
+    known: Mapping[str, Any], measure: IntensityMeasure, site: Site, folder: Path, records: Path
 ) -> tuple[tuple[float, ...], float]:
     """Coefficients of the fragility, and the spread of what is not known of its median in ln level [-].
 
@@ -133,16 +109,19 @@ def _fragility_of(
     one, topples at all levels that were tried is refused.
     """
     # imported when an object is simulated: others should not wait for numba
-    from rockfrag.assess.answer import assess_with
-    from rockfrag.assess.motions import motion_set
+    from rockfrag.assess.answer import assess
     from rockfrag.assess.request import Level, make_request
     from rockfrag.fragility.estimators import fragility_of
 
-    settings, where = given, "statue"
-    if isinstance(given, str):
-        settings, where = read_yaml(folder / given), given
-        folder = (folder / given).parent
-    assert isinstance(settings, Mapping)
+    given = [key for key in ("median", "beta", "coefficients") if key in known]
+    if given:
+        raise InputError(
+            f"{given[0]} follows from the simulation of statue; leave one of them out."
+        )
+    settings, where = known["statue"], "statue"
+    if isinstance(settings, str):
+        where, path = settings, folder / settings
+        settings, folder = read_yaml(path), path.parent
     unused = [key for key in SHAKING if key in settings]
     if unused:
         raise InputError(
@@ -151,8 +130,8 @@ def _fragility_of(
         )
     request = make_request(settings, where, folder)
     request = replace(request, level=Level(measure, ANY_LEVEL[measure.openquake]))
-    motions = motion_set(request.records, request.place, records)
-    found = assess_with(request, motions, brief=True)
+    found = assess(request, records, brief=True)
+    with_velocity = measure == PGA and site.velocity is not None
     coefficients: tuple[float, ...] | None = None
     if not with_velocity:
         curve = fragility_of(found.counted.outcomes()).fit
@@ -172,8 +151,7 @@ def _fragility_of(
     return coefficients, spread
 
 
-def _object(name: str, settings: Mapping[str, Any]) -> StandingObject:
-    measure = read_measure(settings.get("measure", "PGA"), "measure")
+def _stated(settings: Mapping[str, Any], measure: IntensityMeasure) -> tuple[float, ...]:
     coefficients = settings.get("coefficients")
     if (coefficients is None) == ("median" not in settings):
         raise InputError("give statue, median and beta, or coefficients, of its fragility.")
@@ -182,9 +160,10 @@ def _object(name: str, settings: Mapping[str, Any]) -> StandingObject:
             raise InputError(
                 "beta is missing; give the logarithmic standard deviation of its fragility."
             )
-        coefficients = lognormal_coefficients(
-            _median(settings["median"], measure), settings["beta"]
-        )
+        median = read_level(settings["median"], measure)
+        if not median > 0:
+            raise InputError(f"median: expected more than 0, found {settings['median']}.")
+        coefficients = lognormal_coefficients(median, settings["beta"])
     if coefficients[1] <= 0:
         raise InputError(
             "coefficients: the second one, of ln PGA, must be above 0, or shaking would help it stand."
@@ -193,19 +172,7 @@ def _object(name: str, settings: Mapping[str, Any]) -> StandingObject:
         raise InputError(
             "coefficients: three of them are of 1, ln PGA and ln(PGV/PGA); leave measure out."
         )
-    return StandingObject(
-        name, measure, tuple(coefficients), float(settings.get("median_sd_ln", 0.0)), _age(settings)
-    )
-
-
-def _median(text: str, measure: IntensityMeasure) -> float:
-    """Median of a fragility in the measure's unit."""
-    velocity = measure.openquake == "PGV"
-    value = quantity(text, "m_s" if velocity else "m_s2", None)
-    value = value * CENTIMETRES_PER_METRE if velocity else value / GRAVITY
-    if not value > 0:
-        raise InputError(f"median: expected more than 0, found {text}.")
-    return value
+    return tuple(coefficients)
 
 
 def _age(settings: Mapping[str, Any]) -> Age:

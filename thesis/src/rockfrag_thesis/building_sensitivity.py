@@ -15,7 +15,7 @@ from rockfrag.building.floors import judge_drift, respond, response_motions
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.settings import make_building
 from rockfrag.errors import InputError
-from rockfrag.motions.scaling import scale
+from rockfrag.motions.processing import scale
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.definitions import DEFINITION, mean_amplitudes, tests_from_ida
 from rockfrag.shaketable.protocols import Protocol

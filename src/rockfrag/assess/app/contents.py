@@ -26,14 +26,14 @@ from rockfrag.assess import (
 from rockfrag.assess.conversion import VelocityRelation
 from rockfrag.assess.hazard import curve
 from rockfrag.assess.hazard.curve import PGA, PGV
-from rockfrag.assess.motions import MotionSet, common_pair
+from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
 from rockfrag.fragility import held_out, vector
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
-from rockfrag.motions.declared import IntensityMeasure
+from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.spectra import oscillator_matrix
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.browser import driver_text
@@ -201,7 +201,7 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
     both = motions.with_both_components()
     fewer = both.thinned()
     names = [motion.name for motion in both.ground]
-    turns = [math.radians(angle) for angle in range(0, 180, outcomes.WORST_STEP_DEG)]
+    turns = [math.radians(angle) for angle in range(0, 180, outcomes.STEP_DEG)]
     return {
         "records": [
             {"first": pair[0], "second": pair[1], "times": _times(both, pair)}
@@ -219,7 +219,7 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
 def _times(motions: MotionSet, pair: tuple[int, int]) -> list[dict[str, Any] | None]:
     """Which times of each component are common to both; None where it is all of them."""
     found = []
-    for own, common in zip(pair, common_pair(motions, pair), strict=True):
+    for own, common in zip(pair, motions.components(pair), strict=True):
         found.append(None if common is motions.base[own] else _part(motions.base[own], common))
     return found
 

@@ -9,17 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.motions.declared import IntensityMeasure, declared
+from rockfrag.motions.intensity import IntensityMeasure, declared
 from rockfrag.short_repr import short_repr
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 
 Floats = NDArray[np.float64]
 
 HIGHEST = {"PGA": 10.0, "SA": 30.0, "PGV": 2000.0}
 """Levels beyond which a curve is in another unit: g, g and cm/s."""
 
-HIGHEST_RATE = 100.0
-"""Shaking that is exceeded more often a year is no earthquake hazard [1/year]."""
+HIGHEST_RATE = 100.0  # Shaking that is exceeded more often a year is no earthquake hazard [1/year]
 
 DAMAGING = {"PGA": 0.02, "SA": 0.02, "PGV": 1.0}
 """A curve that ends below this level says nothing about what topples: g, g and cm/s."""
@@ -27,8 +26,7 @@ DAMAGING = {"PGA": 0.02, "SA": 0.02, "PGV": 1.0}
 EC8_SLOPE = 3.0
 """Exponent of a hazard curve H ~ a^-k of which one point is known (EN 1998-1:2004, note to 2.1(4))."""
 
-EC8_SLOPE_SD = 0.6
-"""Standard deviation of that exponent: 2 to 4 are seen in Europe and America."""
+EC8_SLOPE_SD = 0.6  # Standard deviation of that exponent: 2 to 4 are seen in Europe and America
 
 FLANKS = (0.16, 0.84)
 """Quantiles that a level continued with the exponents one standard deviation away stands for."""
@@ -36,24 +34,15 @@ FLANKS = (0.16, 0.84)
 
 @dataclass(frozen=True, eq=False)
 class HazardCurve:
-    """Annual rates with which levels of a measure are exceeded; a power law between the points.
+    """Annual rates with which levels of a measure are exceeded; a power law between the points."""
 
-    Attributes
-    ----------
-    measure : the intensity measure
-    levels : levels in the measure's unit, rising, shape (n,), n ≥ 2
-    rates : annual rates of exceedance [1/year], falling, shape (n,)
-    source : where it comes from, in a few words
-    quantiles : curves of the same measure by their quantile, such as 0.16 and 0.84
-    is_read : whether it was read; False where one level was continued with an assumed slope
-    """
-
-    measure: IntensityMeasure
-    levels: Floats
-    rates: Floats
-    source: str
+    measure: IntensityMeasure  #: The intensity measure
+    levels: Floats  #: Levels in the measure's unit, rising, shape (n,), n ≥ 2
+    rates: Floats  #: Annual rates of exceedance [1/year], falling, shape (n,)
+    source: str  #: Where it comes from, in a few words
+    #: Curves of the same measure by their quantile, such as 0.16 and 0.84
     quantiles: dict[float, "HazardCurve"] = field(default_factory=dict)
-    is_read: bool = True
+    is_read: bool = True  #: Whether it was read; False where one level was continued with a slope
 
     __repr__ = short_repr
 
@@ -165,8 +154,7 @@ def curve_of_one_level(measure: IntensityMeasure, level: float, years: float) ->
     return main
 
 
-PERIODS = (0.01, 10.0)
-"""Periods of Sa that hazard models cover [s]."""
+PERIODS = (0.01, 10.0)  # Periods of Sa that hazard models cover [s]
 
 VELOCITY_PER_G = GRAVITY * CENTIMETRES_PER_METRE
 """PGV over (a measure in g times PGV over it): cm/s for g and s."""
@@ -191,3 +179,10 @@ def read_measure(text: str, where: str) -> IntensityMeasure:
             f"{PERIODS[0]:g} to {PERIODS[1]:g} s."
         )
     return SA.at(period)
+
+
+def read_level(text: str, measure: IntensityMeasure) -> float:
+    """Read a level with its unit, such as ``0.25 g``; return it in the unit of the measure."""
+    if measure.openquake == "PGV":
+        return quantity(text, "m_s", None) * CENTIMETRES_PER_METRE
+    return quantity(text, "m_s2", None) / GRAVITY

@@ -3,14 +3,14 @@
 Read by :mod:`rockfrag.engines.kernels.jit` alone, with versions of numba that it knows.
 """
 
-import operator
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, ClassVar
+from unittest.mock import patch
 
 import llvmlite.binding as llvm
 from numba import _dynfunc  # type: ignore[attr-defined]
-from numba.core import ir, typed_passes, untyped_passes
+from numba.core import typed_passes, untyped_passes
 from numba.core.cgutils import normalize_ir_text
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
@@ -20,11 +20,8 @@ from numba.core.rewrites.static_getitem import RewriteConstGetitems, RewriteCons
 from numba.core.ssa import reconstruct_ssa
 from numba.core.targetconfig import ConfigStack
 from numba.core.transforms import canonicalize_cfg
-from numba.core.types.functions import BaseFunction, Dispatcher
+from numba.core.types.functions import Dispatcher
 from numba.core.types.misc import unliteral
-from numba.core.typing.templates import signature
-from numba.cpython.builtins import do_minmax
-from numba.extending import intrinsic
 
 
 class Part(JITCodeLibrary):
@@ -95,31 +92,6 @@ def _callers_first(libraries: list[Any]) -> list[Any]:
     return order[::-1]
 
 
-@intrinsic
-def _smaller(typing_context, a, b):  # type: ignore[no-untyped-def]
-    return _one_of(typing_context, (a, b), operator.lt)
-
-
-@intrinsic
-def _larger(typing_context, a, b):  # type: ignore[no-untyped-def]
-    return _one_of(typing_context, (a, b), operator.gt)
-
-
-def _one_of(typing_context: Any, pair: Any, comparison: Any) -> Any:
-    """Type and code of ``min`` or ``max`` of two numbers, as numba makes it; nothing of what is no number."""
-    common = typing_context.unify_types(*pair)
-    if common is None:
-        return None
-
-    def generate(context: Any, builder: Any, types: Any, arguments: Any) -> Any:
-        return do_minmax(context, builder, types.args, arguments, comparison)
-
-    return signature(common, *pair), generate
-
-
-_OF_TWO = {min: _smaller, max: _larger}  # what numba would compile a function of a tuple for
-
-
 class _Prepare:
     """Prepares a kernel, as it is translated, for its types to be found."""
 
@@ -133,15 +105,6 @@ class _Prepare:
             for key, block in code.blocks.items():
                 if rewrite.match(code, block, None, None):
                     code.blocks[key] = rewrite.apply()
-        for block in code.blocks.values():
-            for call in block.find_exprs("call"):
-                called = code._definitions[call.func.name][0]
-                if (
-                    isinstance(called, ir.Global)
-                    and called.value in _OF_TWO
-                    and len(call.args) == 2
-                ):
-                    called.value = _OF_TWO[called.value]
         reconstruct_ssa(code)
         code._definitions = build_definitions(code.blocks)
 
@@ -172,49 +135,20 @@ class LowerPart(typed_passes.NativeLowering):
         return True
 
 
-def _remembering_call_types(find: Any) -> Any:
-    """Find only once what a function makes of arguments of some types, among dozens of implementations."""
-    known: dict[Any, Any] = {}
+@contextmanager
+def _plain_types() -> Iterator[None]:
+    """Compile kernels for numbers as such, not anew for each number that is written out where one is called.
 
-    def get_call_type(function: Any, context: Any, args: Any, named: Any) -> Any:
-        key = function, tuple(args), tuple(named.items())
-        if key not in known:
-            found = find(function, context, args, named)
-            if not all(argument.is_precise() for argument in args):
-                return found
-            known[key] = found
-        return known[key]
-
-    return get_call_type
-
-
-def _of_plain_types(find: Any) -> Any:
-    """Find a kernel for numbers as such, not one more for each number that is written out where it is called."""
+    The compiler's lock is held meanwhile.
+    """
+    find = Dispatcher.get_call_type
 
     def get_call_type(kernel: Any, context: Any, args: Any, named: Any) -> Any:
         plain = {name: unliteral(kind) for name, kind in named.items()}
         return find(kernel, context, tuple(map(unliteral, args)), plain)
 
-    return get_call_type
-
-
-@contextmanager
-def _shortcuts() -> Iterator[None]:
-    """Spare numba what it would work out anew for each operation; the compiler's lock is held meanwhile."""
-    kinds: tuple[Any, ...] = (BaseFunction, Dispatcher)
-    before = [kind.get_call_type for kind in kinds]
-    if before[0].__module__ == __name__:
+    with patch.object(Dispatcher, "get_call_type", get_call_type):
         yield
-        return
-    try:
-        for kind, made, find in zip(
-            kinds, (_remembering_call_types, _of_plain_types), before, strict=True
-        ):
-            kind.get_call_type = made(find)
-        yield
-    finally:
-        for kind, find in zip(kinds, before, strict=True):
-            kind.get_call_type = find
 
 
 class _KernelCompiler(CompilerBase):
@@ -229,7 +163,7 @@ class _KernelCompiler(CompilerBase):
         state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
         state.type_annotation = None
-        with _shortcuts(), ConfigStack().enter(state.flags.copy()):
+        with _plain_types(), ConfigStack().enter(state.flags.copy()):
             for kind in (
                 untyped_passes.TranslateByteCode,
                 untyped_passes.FixupArgs,

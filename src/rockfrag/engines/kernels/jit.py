@@ -4,7 +4,6 @@
 for these alone, once per machine, and cached.  Arithmetic is strictly IEEE; kernels may not allocate arrays.
 """
 
-import gc
 import hashlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
@@ -98,17 +97,7 @@ def compiling_alone(entry: Any) -> Iterator[None]:
         return
     lock = locked(Path(folder) / f"{entry.__name__}.lock", PATIENCE_S) if folder else nullcontext()
     with lock:
-        # looking for garbage in what a compiler builds takes a tenth of its time
-        collects = gc.isenabled()
-        gc.disable()
-        try:
-            yield
-        finally:
-            if collects:
-                # what there is counts as old, so it is looked through with the old, not before the first outcome
-                gc.freeze()
-                gc.unfreeze()
-                gc.enable()
+        yield
 
 
 @intrinsic

@@ -49,32 +49,26 @@ _COMPONENT = re.compile(
 )
 
 
-def _size(line: str) -> tuple[str, str, float] | None:
-    """Return the words for number of samples and interval and the seconds of its unit, if a line has both."""
-    pair = _TRAILING.match(line) or _LEADING.search(line)
-    if pair:
-        step_first = pair["names"].upper().startswith("DT")
-        names = ("second", "first") if step_first else ("first", "second")
-        return pair[names[0]], pair[names[1]], 1.0
-    count, step = _COUNT.search(line), _STEP.search(line)
-    if count is None or step is None:
-        return None
-    return count["npts"], step["dt"], 1e-3 if step["milliseconds"] else 1.0
-
-
-def _size_line(lines: list[str]) -> int:
-    """Return the line that has the number of points and the interval, or -1."""
-    return next((i for i, line in enumerate(lines[:_MAX_HEADER]) if _size(line)), -1)
+def _size(lines: list[str]) -> tuple[int, str, str, float] | None:
+    """Return the line that has number of points and interval, their words and the seconds of the latter's unit."""
+    for number, line in enumerate(lines[:_MAX_HEADER]):
+        if pair := _TRAILING.match(line) or _LEADING.search(line):
+            words = pair["first"], pair["second"]
+            count, step = words[::-1] if pair["names"].upper().startswith("DT") else words
+            return number, count, step, 1.0
+        points, interval = _COUNT.search(line), _STEP.search(line)
+        if points and interval:
+            seconds = 1e-3 if interval["milliseconds"] else 1.0
+            return number, points["npts"], interval["dt"], seconds
+    return None
 
 
 def _recognise(lines: list[str], name: str) -> bool:
-    size = _size_line(lines)
-    if size < 0:
-        return False
-    header = "\n".join(lines[: size + 1])
-    return bool(
-        re.search(r"\bPEER\b", header, re.I)
-        or _quantity_and_unit(lines[: size + 1]) != ("", "")
+    size = _size(lines)
+    header = lines[: size[0] + 1] if size else []
+    return size is not None and bool(
+        re.search(r"\bPEER\b", "\n".join(header), re.I)
+        or _quantity_and_unit(header) != ("", "")
         or name.upper().removesuffix(".GZ").endswith((".AT2", ".VT2", ".DT2"))
     )
 
@@ -100,11 +94,11 @@ def _quantity_and_unit(header: list[str]) -> tuple[str, str]:
 
 def _parse(text: TextFile) -> Iterator[Channel]:
     header = text.lines(0, _MAX_HEADER)
-    size = _size_line(header)
-    if size < 0:
+    found = _size(header)
+    if found is None:
         text.fail("no line with NPTS and DT above the data")
+    size, words, step, factor = found
     header = header[: size + 1]
-    words, step, factor = _size(header[-1]) or ("", "", 1.0)
     try:
         points, dt = (float(word.upper().replace("D", "E")) for word in (words, step))
         npts = int(points)
@@ -116,11 +110,8 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     quantity, unit = _quantity_and_unit(header)
     quantity = quantity or _ENDINGS.get(text.name.upper().removesuffix(".GZ")[-4:], "")
     if quantity not in ("", "acceleration"):
-        text.refuse(
-            f"this is a {quantity} history"
-            + (f" in {unit}" if unit else "")
-            + ", not acceleration; give the record's .AT2 file"
-        )
+        held = f"{quantity} history" + (f" in {unit}" if unit else "")
+        text.refuse(f"this is a {held}, not acceleration; give the record's .AT2 file")
     facts = _facts(header[:-1])
     yield Channel(
         npts=npts,

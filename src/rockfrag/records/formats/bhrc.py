@@ -10,14 +10,8 @@ real number, and must agree with the duration.
 import re
 from collections.abc import Iterator
 
-from rockfrag.records.parsing.format import (
-    CHANNEL_END,
-    Channel,
-    Format,
-    headed,
-    leading_number,
-    stated,
-)
+from rockfrag.records.parsing import format as form
+from rockfrag.records.parsing.format import leading_number, stated
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
@@ -37,8 +31,8 @@ _INTEGER_LINES, _REAL_LINES, _WIDTH = 7, 7, 13
 _MAX_HEADER = 30
 
 
-def _parse(text: TextFile) -> Iterator[Channel]:
-    for first, stop in text.parts(_HEAD, CHANNEL_END):
+def _parse(text: TextFile) -> Iterator[form.Channel]:
+    for first, stop in text.parts(_HEAD, form.CHANNEL_END):
         at_units = text.find(_UNITS_LINE, first, min(stop, first + _MAX_HEADER))
         lines = text.lines(first, at_units + 1)
         words = "\n".join(lines)
@@ -51,7 +45,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         at_reals = at_integers + _INTEGER_LINES
         count, component = int(size["count"]), stated(r"^\s*COMP\.?\s+([A-Z]+)", lines).upper()
         station = _STATION.search(words)
-        yield Channel(
+        yield form.Channel(
             npts=count,
             dt=_step(text, at_reals, count, float(size["duration"])),
             samples=text.counted(at_reals + _REAL_LINES, stop, count, _WIDTH).copy,
@@ -83,17 +77,15 @@ def _step(text: TextFile, at_reals: int, count: int, duration: float) -> float:
 
 
 def _details(lines: list[str], station: re.Match[str] | None, component: str) -> dict[str, object]:
-    details: dict[str, object] = {
+    azimuths = (station["azimuths"] or "") if station and component else ""
+    azimuth = re.search(rf"\b{component}\s*(\d{{1,3}})\b", azimuths)
+    return {
         "earthquake": " ".join(stated(r"Origin\s+Time\s*:\s*(.*)", lines).split()),
         "magnitude": leading_number(stated(r"\b(?-i:M[wsblL]?)\s*(\d\.\d)", lines)),
+        "latitude": float(station["north"]) if station else None,
+        "longitude": float(station["east"]) if station else None,
+        "azimuth_deg": float(azimuth[1]) if azimuth else None,
     }
-    if station is None:
-        return details
-    details |= {"latitude": float(station["north"]), "longitude": float(station["east"])}
-    azimuth = re.search(rf"\b{component}\s*(\d{{1,3}})\b", station["azimuths"] or "")
-    if component and azimuth:
-        details["azimuth_deg"] = float(azimuth[1])
-    return details
 
 
-FORMAT = Format("BHRC", headed(_FIRST, _UNIT, within=_MAX_HEADER), _parse)
+FORMAT = form.Format("BHRC", form.headed(_FIRST, _UNIT, within=_MAX_HEADER), _parse)

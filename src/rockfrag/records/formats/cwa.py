@@ -7,15 +7,7 @@ local (UTC+8) where the key says ``GMT+08``.
 
 import re
 
-from rockfrag.records.parsing.format import (
-    Channel,
-    Format,
-    field_width,
-    headed,
-    header_keys,
-    in_columns,
-    stated,
-)
+from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import clock_time, step_of_times
@@ -29,13 +21,13 @@ _MAX_HEADER = 60
 _ORDER = ("U", "N", "E")
 
 
-def _parse(text: TextFile) -> list[Channel]:
+def _parse(text: TextFile) -> list[form.Channel]:
     header = text.lines(0, _MAX_HEADER)
     below = (i for i, x in enumerate(header) if x.strip() and not x.lstrip().startswith("#"))
     start = next(below, len(header))
-    facts = header_keys(line.lstrip(" \t#") for line in header[:start])
+    facts = form.header_keys(line.lstrip(" \t#") for line in header[:start])
     order = re.findall(r"\b([UNEZ])\s*\(", facts["datasequence"]) or list(_ORDER)
-    values = text.numbers(start, None, field_width(f"({facts['data']})") or 10)
+    values = text.numbers(start, None, form.field_width(f"({facts['data']})") or 10)
     table = text.in_rows(values, len(order) + 1, start)
     try:
         rate = float(facts["samplerate"])
@@ -49,8 +41,8 @@ def _parse(text: TextFile) -> list[Channel]:
     _check_length(text, facts["recordlength"], table.shape[0] * dt, start)
     match = _TIME.search(facts["starttime"])
     began = clock_time(*match.groups()) if match else None
-    zone = stated(r"^\s*#\s*starttime\s*\(.*(?:GMT|UTC)\s*([+-]\d+)[^)]*\)\s*:", header)
-    shared = Channel(
+    zone = form.stated(r"^\s*#\s*starttime\s*\(.*(?:GMT|UTC)\s*([+-]\d+)[^)]*\)\s*:", header)
+    shared = form.Channel(
         npts=table.shape[0],
         dt=dt,
         samples=table.copy,
@@ -64,7 +56,7 @@ def _parse(text: TextFile) -> list[Channel]:
             "instrument": facts["instrumentkind"],
         },
     )
-    return in_columns(shared, table[:, 1:], order)
+    return form.in_columns(shared, table[:, 1:], order)
 
 
 def _check_length(text: TextFile, stated: str, length: float, line: int) -> None:
@@ -82,4 +74,4 @@ def _check_length(text: TextFile, stated: str, length: float, line: int) -> None
         )
 
 
-FORMAT = Format("CWA", headed(_FIRST, *_NEEDED, within=_MAX_HEADER), _parse)
+FORMAT = form.Format("CWA", form.headed(_FIRST, *_NEEDED, within=_MAX_HEADER), _parse)

@@ -54,9 +54,8 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
         sections = list(text.parts(_VALUES, _END, first, stop))
         if not sections:
             yield _in_words(text, first, stop)
-            continue
-        words = text.lines(first, min(sections[0][0], first + _MAX_HEADER))
         for line, end in sections:
+            words = text.lines(first, min(sections[0][0], first + _MAX_HEADER))
             channel = _section(text, line, end, words)
             if channel.quantity == "acceleration":
                 _check_peak(text, words, channel.samples(), line)
@@ -81,9 +80,12 @@ def _in_words(text: TextFile, first: int, stop: int) -> form.Channel:
         values = values[:promised]
     text.check_count(promised, values.size, line)
     _check_peak(text, words, values, line)
-    unit = canonical_unit(peak["unit"].upper().replace("CMS", "CM"))
     dt = text.interval(float(step["dt"]), first)
-    return place_of(words, form.Channel(promised, dt, values.copy, unit))
+    return place_of(words, form.Channel(promised, dt, values.copy, _unit(peak["unit"])))
+
+
+def _unit(words: str) -> str:
+    return canonical_unit(words.upper().replace("CMS", "CM"))
 
 
 def _check_peak(text: TextFile, words: list[str], samples: NDArray[np.float64], line: int) -> None:
@@ -103,8 +105,7 @@ def _section(text: TextFile, line: int, stop: int, words: list[str]) -> form.Cha
     if match is None:
         text.fail("number of samples, interval or quantity cannot be read here", line)
     peak = form.first_match(_PEAK, words)
-    unit = match["unit"] or (peak["unit"] if peak else "")
-    unit = canonical_unit(unit.upper().replace("CMS", "CM"))
+    unit = _unit(match["unit"] or (peak["unit"] if peak else ""))
     quantity = form.QUANTITIES[match["quantity"].upper()]
     count, dt = int(match["count"]), float(match["dt"])
     return form.section(text, line, stop, count, dt, unit, _WIDTH, quantity)

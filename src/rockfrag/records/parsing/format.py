@@ -62,7 +62,8 @@ class Channel:
         # what a file says goes to terminals and tables, and may hold anything
         for name in ("network", "station", "location", "code", "component", "member"):
             object.__setattr__(self, name, printable(getattr(self, name)))
-        shown = {k: printable(v) if isinstance(v, str) else v for k, v in self.details.items()}
+        known = {k: v for k, v in self.details.items() if v not in ("", None)}
+        shown = {k: printable(v) if isinstance(v, str) else v for k, v in known.items()}
         object.__setattr__(self, "details", shown)
         if self.start_time is not None and not _FIRST < self.start_time < _LAST:
             object.__setattr__(self, "start_time", None)
@@ -89,22 +90,16 @@ class Channel:
             "quantity": "acceleration",
             "component": self.component,
             "start_time_stated": self.start_time is not None,
-            **{key: value for key, value in self.details.items() if value not in ("", None)},
+            **self.details,
         }
         header = {
-            "network": self.network,
-            "station": self.station,
-            "location": self.location,
+            **{key: getattr(self, key) for key in ("network", "station", "location", "npts")},
             "channel": self.label,
             "delta": self.dt,
-            "npts": self.npts,
             "rockfrag": AttribDict(facts),
+            **({} if self.start_time is None else {"starttime": self.start_time}),
         }
-        if self.start_time is not None:
-            header["starttime"] = self.start_time
-        if headonly:
-            return Trace(header=header)
-        return Trace(data=self.samples(), header=header)
+        return Trace(header=header) if headonly else Trace(self.samples(), header)
 
 
 _LONGEST = 1_000  # characters of a line that are looked at to recognise a format
@@ -143,15 +138,12 @@ class Format:
         text = replace(text_file.read_text(source, self.encoding), asked_dt=dt)
         try:
             channels = self._parsed(text)
-            if cut_short:
-                for channel in channels:
-                    # samples are read on demand, and may be too few
-                    channel.samples()
+            for channel in channels if cut_short else ():
+                # samples are read on demand, and may be too few
+                channel.samples()
             return channels
-        except text_file.NotAcceleration:
-            raise
-        except InputError:
-            if not cut_short:
+        except InputError as error:
+            if not cut_short or isinstance(error, text_file.NotAcceleration):
                 raise
         # without a last line that does not end
         whole = text.data[: text.data.rfind(b"\n") + 1]
@@ -165,12 +157,11 @@ class Format:
             if found and not channels:
                 held = sorted({channel.quantity for channel in found})
                 text.refuse(f"this file holds {' and '.join(held)}, not acceleration")
-            if not text.cut_short:
-                for channel in channels:
-                    channel.check(text.name)
+            for channel in () if text.cut_short else channels:
+                channel.check(text.name)
+        except InputError:
+            raise
         except (ValueError, IndexError, KeyError, ArithmeticError) as error:
-            if isinstance(error, InputError):
-                raise
             raise InputError(f"{text.name}: not a readable {self.name} file ({error}).") from error
         if not channels:
             raise InputError(f"{text.name}: no acceleration in this {self.name} file.")
@@ -217,22 +208,12 @@ def _shortened(channel: Channel) -> Channel:
 
 def head_lines(source: text_file.Source) -> list[str]:
     """Return the first whole lines of a text file; none for a binary file or one it cannot read."""
-    if isinstance(source, (str, os.PathLike)):
-        try:
-            state = os.stat(source)
-        except (OSError, ValueError):
-            return []
-        return list(_lines_of_path(str(source), state.st_mtime_ns, state.st_size))
     return list(_lines_of(text_file.read_head(source)))
 
 
 @lru_cache(maxsize=4)
-def _lines_of_path(path: str, changed: int, size: int) -> tuple[str, ...]:
-    """Return the lines of a file's head; every format looks at them, one after the other."""
-    return _lines_of(text_file.read_head(path))
-
-
 def _lines_of(head: bytes) -> tuple[str, ...]:
+    """Return the lines of a file's head; every format looks at them, one after the other."""
     if not head or b"\x00" in head:
         return ()
     text = head.decode("utf-8", errors="replace").removeprefix("\ufeff")

@@ -57,50 +57,32 @@ def parse_columns(lines: list[bytes], width: int) -> NDArray[np.float64]:
     if not joined:
         return np.empty(0)
     fields = np.frombuffer(joined, dtype=np.uint8).reshape(-1, width)
-    # a blank after every field turns columns into separated numbers
-    separated = np.full((fields.shape[0], width + 1), ord(" "), dtype=np.uint8)
+    # a field a line is what can be parsed as separated numbers
+    separated = np.full((fields.shape[0], width + 1), ord("\n"), dtype=np.uint8)
     separated[:, :width] = fields
     filled = separated > ord(" ")
     starts = filled[:, :-1].astype(np.int8)
     tokens = (np.diff(starts, axis=1) == 1).sum(axis=1) + starts[:, 0]
-    if (tokens != 1).any():
-        ends = np.cumsum([len(line) // width for line in padded])
-        number = int(np.searchsorted(ends, np.flatnonzero(tokens != 1)[0], side="right"))
-        raise NumberError(number, "a field is not one number")
     try:
+        if (tokens != 1).any():
+            raise NumberError(int(np.argmax(tokens != 1)), "a field is not one number")
         return parse_separated(separated.tobytes())
     except NumberError as error:
-        raise NumberError(_line_of_bad_field(padded, width), str(error)) from None
+        ends = np.cumsum([len(line) // width for line in padded])
+        line_of_field = int(np.searchsorted(ends, error.line, side="right"))
+        raise NumberError(line_of_field, str(error)) from None
 
 
 def _number(token: bytes, line: int) -> float:
-    if len(token) > _LONGEST:
-        raise NumberError(line, f"{_shown(token)} is too long for a number")
-    plain = token.translate(_D_EXPONENT)
-    match = _EXPONENT_WITHOUT_LETTER.match(plain)
-    if match:
-        plain = match.group(1) + b"E" + match.group(2)
-    if not _NUMBER.match(plain):
-        raise NumberError(line, f"{_shown(token)} is not a number")
-    value = float(plain)
-    if not np.isfinite(value):
-        raise NumberError(line, f"{_shown(token)} is too large for a number")
-    return value
-
-
-def _shown(token: bytes) -> str:
+    plain = _EXPONENT_WITHOUT_LETTER.sub(rb"\1E\2", token.translate(_D_EXPONENT))
+    value = float(plain) if len(token) <= _LONGEST and _NUMBER.match(plain) else np.nan
+    if np.isfinite(value):
+        return value
     short = token[:_SHOWN].decode("ascii", errors="replace")
-    return repr(short + "…" if len(token) > _SHOWN else short)
-
-
-def _line_of_bad_field(padded: list[bytes], width: int) -> int:
-    for number, line in enumerate(padded):
-        for start in range(0, len(line), width):
-            try:
-                parse_separated(line[start : start + width])
-            except NumberError:
-                return number
-    return 0
+    shown = repr(short + "…" if len(token) > _SHOWN else short)
+    wrong = "not a number" if np.isnan(value) else "too large for a number"
+    wrong = wrong if len(token) <= _LONGEST else "too long for a number"
+    raise NumberError(line, f"{shown} is {wrong}")
 
 
 _NUMERAL = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[EeDd][+-]?\d+)?"
@@ -179,8 +161,8 @@ def first_odd_row(lines: list[str]) -> int | None:
     if table is None:
         return None
     filled = [i for i in range(table.start, len(lines)) if not is_blank(lines[i])]
-    wide = {i: len(numbers_of(lines[i])) == table.columns for i in filled}
-    odd = [i for i in filled if not (wide[i] and is_row(lines[i]))]
+    rows = {i: numbers_of(lines[i]) for i in filled}
+    odd = [i for i in filled if len(rows[i]) != table.columns or not are_numbers(rows[i])]
     return odd[0] if odd and 2 * len(odd) < len(filled) else None
 
 
@@ -196,11 +178,9 @@ def is_comment(line: str) -> bool:
 
 def is_damaged_row(line: str) -> bool:
     """Tell whether a line is a row of numbers of which some are none: ``0.02 nan``, ``*****``."""
-    words = numbers_of(line)
-    return bool(words) and all(
-        are_numbers([word]) or (_NEARLY_A_NUMBER.match(word) and not _DATE.search(word))
-        for word in words
-    )
+    others = [word for word in numbers_of(line) if not are_numbers([word])]
+    nearly = (_NEARLY_A_NUMBER.match(word) and not _DATE.search(word) for word in others)
+    return bool(others) and not is_comment(line) and all(nearly)
 
 
 def is_row(line: str) -> bool:

@@ -80,9 +80,8 @@ class TextFile:
     encoding: str = ""
     # whether fewer samples than the header promises are to be read and not refused
     cut_short: bool = False
-    asked_dt: float | None = (
-        None  # the user's interval [s], for plain text that does not state its own
-    )
+    # the user's interval [s], for plain text that does not state its own
+    asked_dt: float | None = None
 
     @cached_property
     def _ends(self) -> NDArray[np.int64]:
@@ -110,11 +109,12 @@ class TextFile:
 
     def line(self, line: int) -> str:
         """Return one line (from zero) without blanks at its end; empty past the end."""
+        raw = self.raw(line)
         try:
-            return self.raw(line).decode("utf-8").rstrip()
+            return raw.decode("utf-8").rstrip()
         except UnicodeDecodeError as error:
             if self.encoding:
-                return self.raw(line).decode(self.encoding, errors="replace").rstrip()
+                return raw.decode(self.encoding, errors="replace").rstrip()
             self.fail(
                 f"byte {error.object[error.start]:#04x} is not UTF-8 text; save the file as UTF-8",
                 line,
@@ -183,17 +183,15 @@ class TextFile:
         fit it (blanks edited away), as separated numbers.
         """
         body = self._body(start, stop)
-        wrong: NumberError | None = None
-        if width is not None:
+        wrong: list[NumberError] = []
+        for columns in (width, None) if width else (None,):
             try:
-                return parse_columns(body.split(b"\n"), width)
+                return (
+                    parse_columns(body.split(b"\n"), columns) if columns else parse_separated(body)
+                )
             except NumberError as error:
-                wrong = error
-        try:
-            return parse_separated(body)
-        except NumberError as error:
-            wrong = wrong or error
-        self.fail(str(wrong), start + wrong.line)
+                wrong.append(error)
+        self.fail(str(wrong[0]), start + wrong[0].line)
 
     def reals(
         self, start: int, stop: int, width: int, count: int, kind: str = "numbers"
@@ -202,7 +200,7 @@ class TextFile:
         values = self.numbers(start, stop, width)
         if values.size < count:
             self.fail(f"{count} {kind} are expected in this header, not {values.size}", start)
-        return [float(value) for value in values]
+        return [*map(float, values)]
 
     def integers(self, start: int, stop: int, width: int, count: int) -> list[int]:
         """Return the whole numbers of header lines ``start`` up to ``stop`` (columns of ``width``)."""
@@ -303,13 +301,11 @@ class TextFile:
 
 def last_row(text: TextFile, start: int) -> int:
     """Return the line after the last that is no remark, such as ``*** End Data ***``."""
-    stop = len(text)
-    while stop > start:
+    for stop in range(len(text), start, -1):
         line = text.raw(stop - 1).decode("latin-1")
         if line.strip() and not is_remark(line):
-            break
-        stop -= 1
-    return stop
+            return stop
+    return start
 
 
 def is_remark(line: str) -> bool:
@@ -320,12 +316,9 @@ def is_remark(line: str) -> bool:
 def _tokens_by_line(body: bytes) -> NDArray[np.int64]:
     """Return the number of blank-separated tokens of each line, shape (lines,)."""
     characters = np.frombuffer(body, dtype=np.uint8)
-    filled = characters > ord(" ")
-    starts = filled.copy()
-    starts[1:] &= ~filled[:-1]
-    begins = np.append(0, np.flatnonzero(characters == ord("\n")) + 1)
-    begins = begins[begins < characters.size]
-    widths: NDArray[np.int64] = np.add.reduceat(starts.view(np.uint8), begins, dtype=np.int64)
+    starts = np.diff((characters > ord(" ")).view(np.int8), prepend=0) == 1
+    begins = np.append(0, np.flatnonzero(characters[:-1] == ord("\n")) + 1)
+    widths: NDArray[np.int64] = np.add.reduceat(starts, begins, dtype=np.int64)
     return widths
 
 

@@ -38,10 +38,12 @@ def step_of_times(
     if times.size < 2:
         text.fail("one time alone says nothing about the sampling interval", first_line)
     check_rising(times, text, first_line)
-    resolution = resolution_of(times)
-    printed = _printed_resolution(times)
+    resolution, printed = resolution_of(times), _printed_resolution(times)
     mean = float((times[-1] - times[0]) / (times.size - 1))
-    dt = _shortest_decimal(mean, float(printed[-1]) / (times.size - 1))
+    tolerance = max(float(printed[-1]) / (times.size - 1), 1e-12 * mean)
+    # the decimal of fewest digits that it can be
+    decimals = (float(f"{mean:.{digits}g}") for digits in range(1, 16))
+    dt = next((each for each in decimals if abs(each - mean) <= tolerance), mean)
     off = np.abs(times - times[0] - np.arange(times.size) * dt)
     wrong = np.flatnonzero(off > 0.5 * printed * (1 + 1e-9) + _FRACTION_OF_STEP * dt)
     if wrong.size:
@@ -93,15 +95,6 @@ def _printed_resolution(times: NDArray[np.float64]) -> NDArray[np.float64]:
         inside = decades == decade
         resolution[inside] = resolution_of(times[inside])
     return resolution
-
-
-def _shortest_decimal(value: float, tolerance: float) -> float:
-    """Return the decimal of fewest digits within the tolerance of a value."""
-    for digits in range(1, 16):
-        rounded = float(f"{value:.{digits}g}")
-        if abs(rounded - value) <= max(tolerance, 1e-12 * value):
-            return rounded
-    return value
 
 
 def clock_time(

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.motions.scaling import factors_to_pga
+from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.report.live.frames import frames_svg
 from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of

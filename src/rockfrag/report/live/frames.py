@@ -7,7 +7,7 @@ import numpy as np
 from markupsafe import Markup
 
 from rockfrag.engines.response import Response
-from rockfrag.motions.scaling import scale_to_pga
+from rockfrag.motions.processing import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.report.wording import listed, number
 from rockfrag.rocking import simulate
@@ -32,32 +32,24 @@ def outlines(system: System, theta: Sequence[float]) -> list[list[Vector]]:
         side = 1 if second >= first else -1
         foot = Vector(side * pile.upper.b, 0.0).turned(pile.lean)
         upper = _turned_about(Vector(*(pile.right if side > 0 else pile.left)), first, pivot)
-        aside = pile.above.x - pile.upper.x
-        corners.append(
-            [
-                _placed(Vector(at.x - aside, at.y).turned(pile.lean).minus(foot), second, upper)
-                for at in _corners(bodies[1], tilts[1])
-            ]
-        )
+        aside = Vector(pile.above.x - pile.upper.x, 0.0)
+        rest = [at.minus(aside).turned(pile.lean) for at in _corners(bodies[1], tilts[1])]
+        corners.append([_turned_about(at, second, foot, upper) for at in rest])
     return corners
 
 
 def _corners(body: RigidBody, tilt: float) -> list[Vector]:
     """Corners of the box around a body as it stands, from the middle of its base [m]."""
     half, tall = body.width / 2, body.height
-    return [
-        Vector(x, y).turned(tilt)
-        for x, y in ((-half, 0.0), (half, 0.0), (half, tall), (-half, tall))
-    ]
+    box = ((-half, 0.0), (half, 0.0), (half, tall), (-half, tall))
+    return [Vector(*corner).turned(tilt) for corner in box]
 
 
-def _placed(arm: Vector, angle: float, at: Vector) -> Vector:
-    turned = arm.turned(angle)
-    return Vector(at.x + turned.x, at.y + turned.y)
-
-
-def _turned_about(point: Vector, angle: float, pivot: Vector) -> Vector:
-    return _placed(point.minus(pivot), angle, pivot)
+def _turned_about(point: Vector, angle: float, pivot: Vector, to: Vector | None = None) -> Vector:
+    """Turn a point about a pivot, which goes to another place if one is given."""
+    x, y = point.minus(pivot).turned(angle)
+    at = to or pivot
+    return Vector(at.x + x, at.y + y)
 
 
 def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) -> tuple[Markup, str]:
@@ -69,28 +61,21 @@ def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) ->
         response = simulate(system, scale_to_pga(motion, peak))
         theta, outcome = _moment(response)
         shift = (place + 0.5) * _WIDTH
-        for block, colour in zip(
-            outlines(system, theta), ("--red", "--blue")[-len(theta) :], strict=True
-        ):
-            points = " ".join(
-                f"{shift + scale * x:.1f},{_GROUND - scale * y:.1f}" for x, y in block
-            )
-            parts.append(Markup('<polygon points="{}" fill="var({})"/>').format(points, colour))
-        parts.append(
-            Markup('<text x="{:.0f}" y="170">{} g</text><text x="{:.0f}" y="185">{}</text>').format(
-                shift, number(peak, 3), shift, outcome
-            )
-        )
+        colours = ("--red", "--blue")[-len(theta) :]
+        for block, colour in zip(outlines(system, theta), colours, strict=True):
+            places = (f"{shift + scale * x:.1f},{_GROUND - scale * y:.1f}" for x, y in block)
+            polygon = Markup('<polygon points="{}" fill="var({})"/>')
+            parts.append(polygon.format(" ".join(places), colour))
+        text = Markup('<text x="{0:.0f}" y="170">{1} g</text><text x="{0:.0f}" y="185">{2}</text>')
+        parts.append(text.format(shift, number(peak, 3), outcome))
         words.append(f"at {number(peak, 3)} g it {outcome}")
     said = listed(words) + "."
     drawing = Markup(
-        '<svg viewBox="0 0 {} {}" role="img" aria-label="Still frames: {}" font-size="12" text-anchor="middle" '
-        'fill="var(--ink)"><line x1="0" x2="{}" y1="{}" y2="{}" stroke="var(--rule)"/>{}</svg>'
-    ).format(
-        _WIDTH * len(amplitudes_g), _HEIGHT, said, _WIDTH * len(amplitudes_g), _GROUND, _GROUND,
-        Markup("").join(parts),
-    )  # fmt: skip
-    return drawing, said
+        '<svg viewBox="0 0 {0} {1}" role="img" aria-label="Still frames: {2}" font-size="12" text-anchor="middle" '
+        'fill="var(--ink)"><line x1="0" x2="{0}" y1="{3}" y2="{3}" stroke="var(--rule)"/>{4}</svg>'
+    )
+    about = (_WIDTH * len(amplitudes_g), _HEIGHT, said, _GROUND, Markup("").join(parts))
+    return drawing.format(*about), said
 
 
 def _moment(response: Response) -> tuple[list[float], str]:

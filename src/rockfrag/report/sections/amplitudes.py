@@ -55,21 +55,15 @@ def as_recorded(results: Results) -> Section:
 
 
 def _outcome(row: dict[Any, Any]) -> str:
-    if row["overturned"]:
-        words = "overturns"
-    elif row["rocked"]:
-        words = "rocks"
-    else:
-        words = "slides" if row.get("peak_slip_m", 0.0) > 0 else "stays"
+    still = "slides" if row.get("peak_slip_m", 0.0) > 0 else "stays"
+    words = "overturns" if row["overturned"] else "rocks" if row["rocked"] else still
     return f"{words} (sensitive)" if 0 < row["fraction_near"] < 1 else words
 
 
 def amplitudes(results: Results) -> Section:
     """The amplitude of every test, and all amplitudes that overturn."""
-    resurrections = findings.resurrections_found(
-        results.table("resurrections"), results.table("tests")
-    )
-    tests = results.tests
+    survived, tests = results.table("resurrections"), results.tests
+    resurrections = findings.resurrections_found(survived, results.table("tests"))
     tests = tests[tests["repetition"] == tests["repetition"].min()]
     names = tests["configuration"].unique()
     columns = [*_MOTION, *(Column(name, f"{name} [g]", numeric=True) for name in names)]
@@ -100,23 +94,20 @@ def comparisons(results: Results) -> Section | None:
     study, tests, means = results.study, results.tests, results.table("mean_amplitudes")
     if len(tests) < 2:
         return None
-    found, words = (
-        findings.objects_compared(means, results.slenderness),
-        findings.mean_sentence(means),
-    )
+    found = findings.objects_compared(means, results.slenderness)
+    words = findings.mean_sentence(means)
     known = means[means["mean_g"].notna()]
     whole = known[known["by"] == "configuration"].assign(what=lambda t: t["configuration"])
     floors = known[known["by"] == "floor"].assign(
         what=lambda t: t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
     )
-    text = says.by_object_figure(len(results.objects), words, study.has_pairs)
-    draw = partial(figures.amplitudes_by, "object", tests, means)
-    parts: list[Any] = [figure_of(text, "amplitudes_by_object", draw)]
-    of_floors = tests["floor"].nunique()
-    if of_floors > 1:
-        text = says.by_floor_figure(of_floors)
-        draw = partial(figures.amplitudes_by, "floor", tests, means)
-        parts.append(figure_of(text, "amplitudes_by_floor", draw))
+    texts = {"object": says.by_object_figure(len(results.objects), words, study.has_pairs)}
+    if (of_floors := len(set(tests["floor"]))) > 1:
+        texts["floor"] = says.by_floor_figure(of_floors)
+    parts: list[Any] = [
+        figure_of(text, f"amplitudes_by_{by}", partial(figures.amplitudes_by, by, tests, means))
+        for by, text in texts.items()
+    ]
     if study.has_pairs:
         parts.append(_scatter(results))
     if len(whole) > 1:
@@ -151,34 +142,20 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
         motions = motions.nlargest(MOST_MOTIONS, "pga_g")
     rows = list(motions["motion"])
     shown = recorded[recorded["motion"].isin(rows)]
-    rotation = np.where(shown["overturned"], np.inf, shown["peak_rotation"].clip(0.0, 0.999))
+    rotation = np.where(shown["overturned"], 2.0, shown["peak_rotation"].clip(0.0, 0.999))
     table = shown.assign(rotation=rotation).pivot_table(
         index="motion", columns="configuration", values="rotation", aggfunc="first"
     )
-    table = table.reindex(index=rows, columns=names)
+    table = table.reindex(index=rows, columns=names).astype(float)
     sensitive = shown[shown["fraction_near"].between(0, 1, inclusive="neither")]
     with style.one_panel(style.WIDEST, 1.35 + 0.185 * len(rows)) as (figure, axes):
         colours = _SHADES.with_extremes(over=_OVERTURNED, bad="#ffffff")
+        edges = (np.arange(count + 1) - 0.5 for count in (len(names), len(rows)))
         mesh = axes.pcolormesh(
-            np.arange(len(names) + 1) - 0.5,
-            np.arange(len(rows) + 1) - 0.5,
-            np.where(np.isinf(table.to_numpy(dtype=float)), 2.0, table.to_numpy(dtype=float)),
-            cmap=colours,
-            vmin=0.0,
-            vmax=1.0,
-            edgecolors="#cccccc",
-            linewidth=0.4,
+            *edges, table, cmap=colours, vmin=0, vmax=1, edgecolors="#cccccc", linewidth=0.4
         )
-        axes.plot(
-            [names.index(name) for name in sensitive["configuration"]],
-            [rows.index(motion) for motion in sensitive["motion"]],
-            ls="",
-            marker="o",
-            ms=3.4,
-            mfc="white",
-            mec=style.BLACK,
-            mew=0.7,
-        )
+        x, y = sensitive["configuration"].map(names.index), sensitive["motion"].map(rows.index)
+        axes.plot(x, y, "o", ms=3.4, mfc="white", mec=style.BLACK, mew=0.7)
         axes.set_ylim(len(rows) - 0.5, -0.5)
         peaks = dict(zip(motions["motion"], motions["pga_g"], strict=True))
         axes.set_yticks(range(len(rows)), [f"{label(row)}, {peaks[row]:.2f} g" for row in rows])

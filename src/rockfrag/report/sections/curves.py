@@ -297,18 +297,9 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
     first, second = str(cells["first"].iloc[0]), str(cells["second"].iloc[0])
     x, y = cells["at_first"].to_numpy(), cells["at_second"].to_numpy()
     with style.one_panel(style.COLUMN_WIDTH, 3.2) as (figure, axes):
-        shown = axes.scatter(
-            x,
-            y,
-            c=cells["probability"],
-            s=6 + 30 * np.sqrt(cells["tests"] / cells["tests"].max()),
-            cmap="Greys",
-            vmin=0,
-            vmax=1,
-            marker="s",
-            edgecolors="#999999",
-            linewidths=0.3,
-        )
+        size, shades = 6 + 30 * np.sqrt(cells["tests"] / cells["tests"].max()), cells["probability"]
+        shown = axes.scatter(x, y, size, shades, marker="s", cmap="Greys", vmin=0, vmax=1)
+        shown.set(edgecolor="#999999", linewidth=0.3)
         reach, rise = (0.8 * x.min(), 1.25 * x.max()), (0.9 * y.min(), 1.1 * y.max())
         across = bool((contours["of"] == first).all())
         within = reach if across else rise

@@ -1,6 +1,7 @@
 """The effect of the pedestal, ratios of amplitudes with and without it; and tests that were measured."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,14 +16,12 @@ from rockfrag import figure_style as style
 from rockfrag.report import figures, page
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import WITH_PEDESTAL, Sides, pedestal_effect, ratio_of, sides_of
-from rockfrag.report.page import Column, Row, by_row, estimated, table_html
+from rockfrag.report.page import Column, by_row, estimated, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, figure_of, says, section_of
 from rockfrag.report.wording import (
     amplitude,
     counted,
     has_interval,
-    number,
-    probability,
     sentence,
     shortened,
 )
@@ -34,44 +33,30 @@ MOST_ROWS = 45
 _SCOPES = {"whole": "all pairs", "cell": "floor and object"}
 
 
-def _width(row: Row) -> bool:
-    return has_interval(row["lower"], row["upper"], 3)
-
-
 def effect_columns(ratio: str = "With/without pedestal") -> list[Column]:
-    """What is shown of :func:`rockfrag.pedestal.study.effects_table` after :func:`shown_effects`.
-
-    Intervals and p values are shown only where they say something.
-    """
+    """What is shown of :func:`rockfrag.pedestal.study.effects_table` after :func:`shown_effects`."""
     return [
         Column("scope", "Scope"),
         Column("level", "Of"),
         Column("pairs", "Pairs", 0),
         Column("at_bound", "of which bounds", 0),
         estimated("ratio", f"{ratio} [95 % interval]", 3, limits=("lower", "upper")),
-        Column("detectable_ratio", "Detectable ratio", by_row(_detectable)),
+        Column("detectable_ratio", "Detectable ratio", 2),
         Column("within", "Within ±10 %"),
-        Column("p_holm", "p (Holm)", by_row(_p)),
+        page.p_values("p_holm", "p (Holm)"),
     ]
 
 
-def _detectable(row: Row) -> str:
-    return number(row["detectable_ratio"], 2) if _width(row) else "–"
-
-
-def _p(row: Row) -> str:
-    return probability(row["p_holm"]) if _width(row) else "–"
-
-
 def shown_effects(effects: pd.DataFrame) -> pd.DataFrame:
-    """Effects with scopes and levels in words."""
-    within = (
-        "yes" if _width(row) and row["equivalent"] else "–" for row in effects.to_dict("records")
-    )
+    """Effects with scopes and levels in words, and without what says nothing where an interval has no width."""
+    limits = zip(effects["lower"], effects["upper"], strict=True)
+    known = np.array([has_interval(*ends, 3) for ends in limits], dtype=bool)
     return effects.assign(
         scope=effects["scope"].replace(_SCOPES),
         level=effects["level"].str.replace("/", ", "),
-        within=list(within),
+        within=np.where(known & effects["equivalent"].astype(bool), "yes", "–"),
+        detectable_ratio=effects["detectable_ratio"].where(known),
+        p_holm=effects["p_holm"].where(known),
     )
 
 
@@ -145,10 +130,8 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
     labels = [_label(*row) for row in effects[names].itertuples(index=False, name=None)]
     columns = ["lower", "ratio", "upper", "p_holm"]
     figures = effects[columns].to_numpy(dtype=float)
-    with style.one_panel(style.COLUMN_WIDTH + 1.1, 0.9 + 0.19 * float(place[-1] + 1)) as (
-        figure,
-        axes,
-    ):
+    height = 0.9 + 0.19 * float(place[-1] + 1)
+    with style.one_panel(style.COLUMN_WIDTH + 1.1, height) as (figure, axes):
         axes.axvspan(*NONE, color=BAND, lw=0)
         axes.axvline(1.0, color=GREY, lw=0.8)
         for y, (lower, ratio, upper, p) in zip(place, figures, strict=True):
@@ -159,16 +142,10 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
         axes.invert_yaxis()
         axes.tick_params(axis="y", length=0)
         ratio_axis(axes, figures[:, :3].ravel(), sides)
+        mark = partial(Line2D, [], [], color=style.BLUE, marker="o")
         handles = [
-            Line2D(
-                [],
-                [],
-                color=style.BLUE,
-                marker="o",
-                mfc=style.BLUE,
-                label="differs from 1 (Holm, 5 %)",
-            ),
-            Line2D([], [], color=style.BLUE, marker="o", mfc="white", label="does not"),
+            mark(mfc=style.BLUE, label="differs from 1 (Holm, 5 %)"),
+            mark(mfc="white", label="does not"),
             Line2D([], [], color=BAND, lw=6, label="±10 %"),
         ]
         figure.legend(handles=handles, loc="outside upper center", ncols=3, handlelength=1.4)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import cycle
 
 import numpy as np
 import pandas as pd
@@ -10,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from rockfrag import figure_style as style
-from rockfrag.motions.declared import intensity_measures
+from rockfrag.motions.intensity import intensity_measures
 from rockfrag.records.motion import Motion
 from rockfrag.report.figures import GREY, MARKERS, drawn_tests
 from rockfrag.report.findings import model_allowed, sliding_found
@@ -151,7 +152,7 @@ def validity(results: Results) -> Section | None:
         beyond=shown["tests"] - shown["known"],
     )
     caption = "Friction coefficient needed, and tests with lift-off."
-    text = says.validity(model_allowed(tests)[0], shown["tests"].max() < MOST_TESTED)
+    text = says.validity(model_allowed(tests), shown["tests"].max() < MOST_TESTED)
     return section_of(text, "validity", [table_html(shown, _VALIDITY, caption)])
 
 
@@ -169,11 +170,7 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
         handles: list[Artist] = [
             Patch(color="#dddddd", label="up to the table's limit of the stated quantity")
         ]
-        for number, name in enumerate(names):
-            marker, colour = (
-                MARKERS[number % len(MARKERS)],
-                style.OKABE_ITO[number % len(style.OKABE_ITO)],
-            )
+        for name, marker, colour in zip(names, cycle(MARKERS), cycle(style.OKABE_ITO)):
             own = rows[rows["configuration"] == name]
             y = own["motion"].map(place).to_numpy(dtype=float)
             (line,) = axes.plot(own["a"], y, ls="", marker=marker, mfc="none", mec=colour, ms=4)
@@ -182,15 +179,9 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
             bounds = own["up"].to_numpy(dtype=bool)
             axes.plot(own["a"].to_numpy()[bounds], y[bounds], ls="", marker=">", color=colour, ms=3)
         reasons = limits.set_index("motion")["limited_by"]
-        for place_of, motion in enumerate(motions):
-            axes.text(
-                largest[motion],
-                place_of,
-                f" {reasons[motion]}",
-                va="center",
-                fontsize=6.5,
-                color=GREY,
-            )
+        for y, motion in enumerate(motions):
+            words = axes.text(largest[motion], y, f" {reasons[motion]}", color=GREY)
+            words.set(va="center", fontsize=6.5)
         axes.set_xlim(0, 1.2 * float(largest[motions].max()))
         axes.set_yticks(range(len(motions)), [label(name) for name in motions])
         axes.tick_params(axis="y", length=0)

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from rockfrag.motions.scaling import factors_to_pga
+from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns, simulate
 from rockfrag.rocking.restitution import RestitutionFit, quarter_period, restitution_from_history

@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.engines.response import Response
-from rockfrag.motions.scaling import scale_to_pga
+from rockfrag.motions.processing import scale_to_pga
 from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns, simulate

@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.laws import BUILT_IN
-from rockfrag.motions.scaling import factors_to_pga
+from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.measured_restitution import MeasuredRestitution
-from rockfrag.rocking.options import system_of
+from rockfrag.rocking.options import MeasuredRestitution, system_of
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
 
