@@ -3,7 +3,7 @@
 from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pandas as pd
 
@@ -65,8 +65,7 @@ def _felt(
     felt: dict[str, list[Motion]] = defaultdict(list)
     rows, left_out = [], []
     unfetched: dict[str, NotFetched] = {}
-    for row in study.catalogue.to_dict("records"):
-        named = {str(key): value for key, value in row.items()}
+    for named in cast("list[dict[str, Any]]", study.catalogue.to_dict("records")):
         source = str(named["source"])
         try:
             if source in unfetched:
