@@ -69,7 +69,7 @@ def assess_inventory(
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
     found = _all_assessed(requests, motions)
     joint = joint_risk(found)
-    losses: dict[str, float] = {}
+    losses: dict[Any, float] = {}
     if joint is not None:
         losses = joint.objects.set_index("name")["annual_loss"].to_dict()
     found.sort(key=lambda each: (losses.get(each.request.name, 0.0), *_risk(each)), reverse=True)
