@@ -67,22 +67,18 @@ def make_parser() -> argparse.ArgumentParser:
         "--friction", nargs="+", type=float, metavar="MU",
         help="coefficient of friction of all contacts, or of each from the ground up",
     )  # fmt: skip
-    command.add_argument(
-        "--vertical", metavar="RECORD", help="file with the vertical component of the record"
-    )
+    words = "file with the vertical component of the record"
+    command.add_argument("--vertical", metavar="RECORD", help=words)
     command.add_argument("--plot", metavar="IMAGE", help="draw the response, as .png or .svg")
-    command.add_argument(
-        "--all-contact-events", action="store_true", help="print the whole history of rocking modes"
-    )
+    words = "print the whole history of rocking modes"
+    command.add_argument("--all-contact-events", action="store_true", help=words)
     command.set_defaults(run=_simulate)
 
-    play = commands.add_parser(
-        "play", help="write a page in which one body rocks under one record, live, in any browser"
-    )
+    words = "write a page in which one body rocks under one record, live, in any browser"
+    play = commands.add_parser("play", help=words)
     _add_case(play)
-    play.add_argument(
-        "--output", metavar="PAGE", default="rocking.html", help="where to write it, as .html"
-    )
+    words = "where to write it, as .html"
+    play.add_argument("--output", metavar="PAGE", default="rocking.html", help=words)
     play.set_defaults(run=_play)
 
     check = commands.add_parser("check-config", help="check the configuration of a study")
@@ -138,13 +134,11 @@ def _simulate(options: argparse.Namespace) -> int:
     restitution = options.restitution
     if restitution is not None and options.pedestal:
         restitution = (restitution,) * len(body.blocks)
+    told = {"restitution": restitution, "friction": _friction(options), "vertical": up}
     with warnings.catch_warnings():
         # what `simulate` doubts of the acceleration has been said
         warnings.simplefilter("ignore", UserWarning)
-        response = simulate(
-            body, acceleration, motion.dt,
-            restitution=restitution, friction=_friction(options), vertical=up,
-        )  # fmt: skip
+        response = simulate(body, acceleration, motion.dt, **told)
     peak = abs(acceleration).max() / GRAVITY
     print(
         f"{options.record}: peak {peak:.4f} g, {motion.acceleration.size} samples of {motion.dt} s"
@@ -223,15 +217,14 @@ def _contacts(response: "Response", loose: bool) -> list[str]:
     if loose:
         slips = ", ".join(f"{1000 * value:.1f}" for value in abs(response.slip).max(axis=0))
         return [f"largest slip [mm]: {slips}"]
-    demand = response.friction_demand
-    lines = ["friction needed: " + ", ".join(f"{value:.3f}" for value in demand)]
+    needed = ", ".join(f"{value:.3f}" for value in response.friction_demand)
     said = "on smoother ground it slides first; give --friction to let it"
     if not math.isnan(response.lost_contact):
         said = (
             f"at {response.lost_contact:.3f} s a real body would have left the ground, and what follows is no "
             "answer; give --friction to let it fly"
         )
-    return [*lines, said]
+    return [f"friction needed: {needed}", said]
 
 
 def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
@@ -241,9 +234,9 @@ def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
     based = options.depth is not None or options.round
     if based and options.second is None:
         raise InputError("--depth and --round are of a body in space; give --second as well.")
-    if options.second is not None and not based:
+    if not based and options.second is not None:
         raise InputError("--second: a body in space has --depth or is --round; give either.")
-    if options.second is not None and options.pedestal:
+    if based and options.pedestal:
         raise InputError("--second: a body in space stands on the ground; leave out --pedestal.")
     below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
     body = stacked([*below, _block("--body", options.body)])
@@ -314,14 +307,12 @@ def _history(contact_events, everything: bool) -> str:  # type: ignore[no-untype
     if contact_events.empty:
         return "it never rocked"
     shown = contact_events if everything else contact_events.head(MOST_CONTACT_EVENTS)
-    lines = [
-        f"{row['time']:9.4f} s  {row['kind']:<10} {row['from']:>4} → {row['to']}"
-        for row in shown.to_dict("records")
-    ]
-    hidden = len(contact_events) - len(shown)
-    if hidden:
+    lines = ["pattern history:"]
+    for row in shown.to_dict("records"):
+        lines.append(f"{row['time']:9.4f} s  {row['kind']:<10} {row['from']:>4} → {row['to']}")
+    if hidden := len(contact_events) - len(shown):
         lines.append(f"… and {hidden} more (--all-contact-events)")
-    return "\n".join(["pattern history:", *lines])
+    return "\n".join(lines)
 
 
 def _check_config(options: argparse.Namespace) -> int:

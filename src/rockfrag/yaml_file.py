@@ -27,13 +27,10 @@ class _StrictLoader(yaml.SafeLoader):
         coming = self.peek_event()
         if self.values > MOST_VALUES or self.depth > DEEPEST:
             much = "nested too deeply" if self.depth > DEEPEST else f"more than {MOST_VALUES}"
-            raise yaml.MarkedYAMLError(
-                problem=f"values are {much}; simplify it", problem_mark=coming.start_mark
-            )
+            raise _wrong(coming, f"values are {much}; simplify it")
         if self.check_event(yaml.AliasEvent):
-            raise yaml.MarkedYAMLError(
-                problem=f"the alias *{coming.anchor} is not understood; write its value out",
-                problem_mark=coming.start_mark,
+            raise _wrong(
+                coming, f"the alias *{coming.anchor} is not understood; write its value out"
             )
         self.depth += 1
         node = super().compose_node(parent, index)
@@ -41,18 +38,18 @@ class _StrictLoader(yaml.SafeLoader):
         return node
 
 
+def _wrong(place: Any, problem: str) -> yaml.MarkedYAMLError:
+    return yaml.MarkedYAMLError(problem=problem, problem_mark=place.start_mark)
+
+
 def _mapping(loader: _StrictLoader, node: yaml.MappingNode) -> dict[str, Any]:
     seen: set[str] = set()
     for key, _ in node.value:
         if not isinstance(key, yaml.ScalarNode):
-            raise yaml.MarkedYAMLError(
-                problem="a key must be a word, not a list or a mapping", problem_mark=key.start_mark
-            )
+            raise _wrong(key, "a key must be a word, not a list or a mapping")
         _text(loader, key)
         if key.value in seen:
-            raise yaml.MarkedYAMLError(
-                problem=f"key {key.value!r} is given twice", problem_mark=key.start_mark
-            )
+            raise _wrong(key, f"key {key.value!r} is given twice")
         seen.add(key.value)
     # a floor may be called 1 or 3.5, and is called by that text
     return {key.value: loader.construct_object(value, deep=True) for key, value in node.value}
@@ -61,10 +58,7 @@ def _mapping(loader: _StrictLoader, node: yaml.MappingNode) -> dict[str, Any]:
 def _text(loader: _StrictLoader, node: yaml.ScalarNode) -> str:
     # an escape such as "\x07" can write what the file itself must not hold
     if unfit := unfit_character(node.value):
-        raise yaml.MarkedYAMLError(
-            problem=f"holds the character {unfit!r}, which no text shows; remove it",
-            problem_mark=node.start_mark,
-        )
+        raise _wrong(node, f"holds the character {unfit!r}, which no text shows; remove it")
     return str(node.value)
 
 

@@ -1,6 +1,6 @@
 """Random requests of `rockfrag assess`, and what an answer may not say of itself.
 
-Used by ``test_answer.py`` for some dozens of requests, by ``tests/fuzz/draws.py`` for thousands.
+Used by ``test_answer.py`` for some dozens of requests, by ``tests/fuzz/inputs.py`` for thousands.
 """
 
 import contextlib

@@ -10,7 +10,7 @@ from rockfrag.errors import InputError
 from rockfrag.rocking import overturns, simulate
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.shaketable.swept import fallen_names, labels_of
-from rockfrag.study.configurations import read_configurations, read_counterparts, read_specimens
+from rockfrag.study.configurations import read_configurations, read_specimens
 from rockfrag.system import Block, Column, Stack
 
 from .cases import DT
@@ -60,7 +60,8 @@ def arrangements(folder: Path, row: str) -> list:
         "name,width_m,height_m,mass_kg\nplinth,0.8,0.4,500\nbase,0.5,0.3,150\nvenus,0.3,1.0,100\n"
     )
     (folder / "arrangements.csv").write_text(f"name,object,pedestal\n{row}\n")
-    return read_configurations(folder / "arrangements.csv", read_specimens(folder / "blocks.csv"))
+    blocks = read_specimens(folder / "blocks.csv")
+    return read_configurations(folder / "arrangements.csv", blocks)[0]
 
 
 def test_an_arrangement_names_another_one_as_its_counterpart(tmp_path: Path) -> None:
@@ -70,12 +71,12 @@ def test_an_arrangement_names_another_one_as_its_counterpart(tmp_path: Path) -> 
     table, blocks = tmp_path / "arrangements.csv", read_specimens(tmp_path / "blocks.csv")
     head = "name,object,pedestal,counterpart\nalone,venus,,\n"
     table.write_text(head + "on,venus,plinth,alone\n")
-    assert len(read_configurations(table, blocks)) == 2
-    assert read_counterparts(table) == {"on": "alone"}
+    systems, counterparts = read_configurations(table, blocks)
+    assert len(systems) == 2 and counterparts == {"on": "alone"}
     for wrong in ("on", "elsewhere"):
         table.write_text(head + f"on,venus,plinth,{wrong}\n")
         with pytest.raises(InputError, match="expected another arrangement"):
-            read_counterparts(table)
+            read_configurations(table, blocks)
 
 
 @pytest.mark.parametrize("row", ["all,venus,base|plinth", "all,venus | base | plinth,"])

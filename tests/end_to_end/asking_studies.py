@@ -1,6 +1,6 @@
 """Random small studies, and what the results of one may not say.
 
-Used by ``test_foreign_studies.py`` for a few studies, by ``tests/fuzz/draws.py`` for hundreds.
+Used by ``test_foreign_studies.py`` for a few studies, by ``tests/fuzz/inputs.py`` for hundreds.
 """
 
 import random

@@ -30,10 +30,8 @@ from pathlib import Path
 from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.processes import in_processes
 
-from .assess import hazard_files, objects
+from . import inputs
 from .damage import Attempt
-from .draws import requests, studies
-from .inputs import configurations, numbers, tables
 from .records import records
 
 LONGEST_WAIT_S = 120.0
@@ -56,13 +54,13 @@ class Kind:
 
 KINDS: Mapping[str, Kind] = {
     "records, archives and catalogues": Kind(records, 0.3),
-    "configurations": Kind(configurations, 0.15),
-    "tables": Kind(tables, 0.2),
-    "hazard files": Kind(hazard_files, 0.15),
-    "statues and inventories": Kind(objects, 0.1),
-    "numbers": Kind(numbers, 0.1),
-    "requests": Kind(requests, most_seconds=60, most_bytes=2**33, chunk=50, least_used=0.25),
-    "studies": Kind(studies, most_seconds=60, most_bytes=2**33, chunk=10, least_used=0.4),
+    "configurations": Kind(inputs.configurations, 0.15),
+    "tables": Kind(inputs.tables, 0.2),
+    "hazard files": Kind(inputs.hazard_files, 0.15),
+    "statues and inventories": Kind(inputs.objects, 0.1),
+    "numbers": Kind(inputs.numbers, 0.1),
+    "requests": Kind(inputs.requests, most_seconds=60, most_bytes=2**33, chunk=50, least_used=0.25),
+    "studies": Kind(inputs.studies, most_seconds=60, most_bytes=2**33, chunk=10, least_used=0.4),
 }
 
 
@@ -125,9 +123,9 @@ def main() -> int:
         )
         for what, count in tally.wrong.most_common():
             print(f"{count:8d}  {what}")
-    inputs = sum(tally.fates.total() for tally in tallies.values())
+    total = sum(tally.fates.total() for tally in tallies.values())
     wrong = sum(tally.wrong.total() for tally in tallies.values())
-    print(f"{inputs} inputs (seed {options.seed}), {wrong} wrong, {time.monotonic() - begin:.0f} s")
+    print(f"{total} inputs (seed {options.seed}), {wrong} wrong, {time.monotonic() - begin:.0f} s")
     return 1 if wrong else 0
 
 

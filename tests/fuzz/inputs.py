@@ -1,21 +1,30 @@
-"""Damaged configurations and tables of a study, and numbers that no simulation can use."""
+"""Damaged configurations, tables, hazard files and statues; numbers, requests and studies at random."""
 
 import random
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any
 
 import numpy as np
 import yaml
 
 from rockfrag import Block, Stack, overturns, simulate
+from rockfrag.assess.hazard.reading import read_hazard
+from rockfrag.assess.inventory import read_inventory
+from rockfrag.assess.request import read_request
+from rockfrag.errors import InputError
 from rockfrag.fragility.tests_file import read_tests
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.shaketable.tests_table import read_measured
 from rockfrag.study.configurations import read_configurations, read_specimens
 from rockfrag.study.loading import load_any
 
+from ..assess import asking
+from ..assess.samples import SAMPLES, table_csv
+from ..conftest import write_records
+from ..end_to_end import asking_studies
 from .damage import Attempt, changed, damage, damaged
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -41,14 +50,17 @@ def configurations(folder: Path) -> Callable[[random.Random], Attempt]:
         if rng.random() < 1 / 3:
             path.write_bytes(damage(sources[name], sources["thesis.yaml"], rng))
         else:
-            content = parsed[name]
-            for _ in range(rng.randint(1, 3)):
-                content = changed(content, rng)
-            text = yaml.dump(content, Dumper=DUMPER, allow_unicode=True, sort_keys=False)
-            path.write_text(text, encoding="utf-8")
+            _write_changed(path, parsed[name], rng)
         return path, lambda: _load(_used(parsed["smoke.yaml"], name, path))
 
     return one
+
+
+def _write_changed(path: Path, content: Any, rng: random.Random) -> None:
+    for _ in range(rng.randint(1, 3)):
+        content = changed(content, rng)
+    text = yaml.dump(content, Dumper=DUMPER, allow_unicode=True, sort_keys=False)
+    path.write_text(text, encoding="utf-8")
 
 
 def tables(folder: Path) -> Callable[[random.Random], Attempt]:
@@ -117,3 +129,90 @@ def _used(smoke: dict[str, Any], name: str, damaged: Path) -> Path:
     path = damaged.with_name("whole.yaml")
     path.write_text(yaml.dump({**smoke, key: damaged.name}, Dumper=DUMPER))
     return path
+
+
+STATUES: tuple[dict[str, Any], ...] = (
+    {
+        "name": "A saint", "width": "35 cm", "height": "1.6 m", "depth": "30 cm", "mass_kg": 310,
+        "restitution": 0.9, "floor": "2/4", "pga": "0.25 g", "return_period_years": 475,
+        "pedestal": {"width": "50 cm", "height": "90 cm", "mass_kg": 400},
+        "tolerances": {"width": 0.02, "cg_height": 0.1}, "years": 50, "magnitude": 6.5,
+        "distance_km": 12.0,
+    },
+    {
+        "width_m": 0.3, "height_m": 1.1, "cg_height_m": 0.5, "cg_offset_m": 0.01, "friction": 0.6,
+        "inertia_kg_m2": 20.0, "mass_kg": 200.0, "building": "building.yaml", "floor": 2,
+        "hazard": ["table.csv"], "sa": ["0.3 s", "0.6 g"],
+        "records": {"paths": ["records"], "recorded_on": "floor", "unit": "g", "dt_s": 0.01},
+    },
+)  # fmt: skip
+INVENTORY = """name,width_cm,height_cm,depth,mass_kg,cg_height_cm,pedestal_width,pedestal_height,floor,restitution
+saint,35,160,30 cm,310,70,50 cm,0.9 m,2/4,0.9
+vase,20,55,,12,,,,,
+Größe,12.5,90,0.12 m,,40,,,1/4,0.85
+"""
+
+
+def hazard_files(folder: Path) -> Callable[[random.Random], Attempt]:
+    """Return what makes a hazard file with damaged bytes."""
+    return damaged(
+        folder,
+        [(name, text.encode(), lambda path: read_hazard([path])) for name, text in SAMPLES.items()],
+    )
+
+
+def objects(folder: Path) -> Callable[[random.Random], Attempt]:
+    """Return what makes a statue, with other values or damaged bytes, or an inventory."""
+    (folder / "table.csv").write_text(SAMPLES["table.csv"])
+    (folder / "building.yaml").write_bytes((ROOT / "config" / "building.yaml").read_bytes())
+    texts = [yaml.dump(statue, Dumper=DUMPER, sort_keys=False).encode() for statue in STATUES]
+    path, table = folder / "statue.yaml", folder / "inventory.csv"
+
+    def one(rng: random.Random) -> Attempt:
+        kind = rng.randrange(3)
+        if kind == 0:
+            _write_changed(path, rng.choice(STATUES), rng)
+        elif kind == 1:
+            path.write_bytes(damage(rng.choice(texts), rng.choice(texts), rng))
+        if kind < 2:
+            return path, lambda: read_request(path)
+        table.write_bytes(damage(INVENTORY.encode(), texts[0], rng))
+        return table, lambda: read_inventory(table, {"pga": "0.3 g"})
+
+    return one
+
+
+def requests(folder: Path) -> Callable[[random.Random], Attempt]:
+    """Return what asks `rockfrag assess` at random (``tests/assess/asking.py``)."""
+    records, hazard = write_records(folder, 6), folder / "hazard.csv"
+    hazard.write_text(table_csv())
+
+    def draw(rng: random.Random) -> Attempt:
+        asked = asking.request(rng, records, hazard)
+
+        def attempt() -> None:
+            status, out, err = asking.answered(asked, folder / "answer")
+            settle(" ".join(asked), status, asking.contradictions(status, out, err))
+
+        return folder / "request", attempt
+
+    return draw
+
+
+def studies(folder: Path) -> Callable[[random.Random], Attempt]:
+    """Return what runs small studies at random, to their reports (``tests/end_to_end/asking_studies.py``)."""
+
+    def draw(rng: random.Random) -> Attempt:
+        study = asking_studies.draw(rng)
+        return folder / "study", lambda: settle(
+            repr(study), *asking_studies.fate(study, Path(mkdtemp(dir=folder)))
+        )
+
+    return draw
+
+
+def settle(drawn: str, status: int, wrong: list[str]) -> None:
+    """Raise what became of a draw: contradictions, or a refusal."""
+    assert not wrong, f"{'; '.join(wrong)} of {drawn}"
+    if status == 2:
+        raise InputError("It is refused.")

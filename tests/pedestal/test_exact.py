@@ -12,13 +12,13 @@ from rockfrag.pedestal.cluster_means import (
     Estimate,
     benjamini_hochberg,
     detectable_ratio,
+    earthquake_means,
     equivalence,
     holm,
     leave_one_earthquake_out,
     mean_effect,
     sign_flip_test,
     t_estimate,
-    unit_means,
 )
 from rockfrag.pedestal.paired_tests import pair_tests
 from rockfrag.pedestal.study import rank_probabilities
@@ -73,7 +73,7 @@ def test_effect_is_mean_of_pairs_and_its_units_are_earthquakes(tests_table):
 def test_earthquake_with_more_motions_counts_once(tests_table):
     table = pair_tests(tests_table(3)).table
     fewer = table[~((table["earthquake"] == "Kobe") & (table["floor"] == "F5"))]
-    means = unit_means(fewer, "earthquake")
+    means = earthquake_means(fewer)
     assert mean_effect(fewer).mean == pytest.approx(means.mean())
     assert len(means) == 4
 

@@ -27,8 +27,7 @@ from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import ROCKS
 from rockfrag.short_repr import short_repr
 
-RECORDS = "resources/records"
-"""Folder of fetched records."""
+RECORDS = "resources/records"  # Folder of fetched records
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,10 +5,10 @@ import re
 import shutil
 import sys
 import textwrap
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rockfrag.errors import InputError, errors_of
 
@@ -72,90 +72,98 @@ def add_assess_commands(commands: Any) -> None:
     rules.set_defaults(run=_rules)
 
 
+class _Option(NamedTuple):
+    """An option that tells of an object, its place or its motions."""
+
+    name: str
+    metavar: str | tuple[str, str] | None  # word for its value
+    help: str
+    reads: Mapping[str, Any] = {}  # how a parser reads it, if not as one word
+    key: str = ""  # of ``statue.yaml``, if it is called otherwise there
+
+    def add_to(self, group: Any) -> None:
+        """Add it to a group of options, to be given once."""
+        shown = {"metavar": self.metavar} if self.metavar else {}
+        group.add_argument(
+            f"--{self.name}", help=self.help, **{"action": _Once, **shown, **self.reads}
+        )
+
+
+_NUMBER = {"type": float}
+_SEVERAL = {"nargs": "+"}
 _OPTIONS = {
-    "the object": """
-name NAME | what it is called
-width SIZE | of the base, or the diameter of a round one
-height SIZE | of the whole
-depth SIZE | of the base, as the width if not given
-mass MASS | of stone if not given
-cg-height SIZE | of the centre of gravity, half the height if not given
-cg-offset SIZE | of the centre of gravity from the middle of the base
-facing number DEGREES | facing_deg | direction of the width, or of a mesh's x axis,
-  from the first component of each record
-base-spread number FRACTION | by how much corners of the base lie elsewhere in space, over its size,
-  and it is turned: 0.001
-round | the base is round
-mesh FILE | mesh.file | mesh of it (OBJ, PLY, STL, GLB) instead
-up x,y,z | mesh.up | axis of the mesh that points up
-hull | mesh.hull | take the convex hull of a mesh that is not closed
-mesh-unit m,cm,mm,in,ft | mesh.metres_per_unit | unit of the mesh, m if not given
-contact-tolerance SIZE | mesh.contact_tolerance | height up to which points of the mesh carry, 2mm if not given
-restitution number | measured ratio of angular velocities
-friction number | coefficient: it may slide at that level
-pad-friction number | coefficient of a pad under the object, tried as a mitigation
-pedestal SIZE… | width, height and, if known, mass of the block it stands on; again for what that stands on
-""",
-    "the place": """
-floor LEVEL/STOREYS | such as 2/4, with 0 for the ground: level 2 is the second floor in Europe,
-  the third in America
-building FILE | YAML file with the building
-storey-height SIZE… | building.storey_height | of every storey, or of each from below; 3.5m if not given
-period TIME | building.first_period_s | first period of the building: 0.4s
-material masonry,concrete,steel | building.material | of the building: its period follows from that and its height
-pga ACCELERATION | of the ground: 0.25g
-pgv VELOCITY | of the ground, alone or beside the other: 20cm/s
-sa PERIOD ACCELERATION | 0.3s 0.6g
-return-period YEARS | of that level
-hazard FILE… | hazard curves of the site
-years number | time of the probability, 50 if not given
-magnitude number | of the earthquakes that matter most there
-distance number KM | distance_km | of these earthquakes
-""",
-    "the motions": """
-record PATH… | records.paths | own records, folders or catalogues instead of the default set
-on-floor | records.recorded_on | they were recorded on that floor
-unit UNIT | records.unit | unit of records that do not state theirs: g, m/s2, cm/s2
-dt number S | records.dt_s | sampling interval of records without one
-""",
-}
-"""Options by their group: name and what it takes (nothing, one value or more, ``…`` for any number of them, a
-number, or one of several words), the key of ``statue.yaml`` if it is called otherwise, and help."""
+    "the object": (
+        _Option("name", "NAME", "what it is called"),
+        _Option("width", "SIZE", "of the base, or the diameter of a round one"),
+        _Option("height", "SIZE", "of the whole"),
+        _Option("depth", "SIZE", "of the base, as the width if not given"),
+        _Option("mass", "MASS", "of stone if not given"),
+        _Option("cg-height", "SIZE", "of the centre of gravity, half the height if not given"),
+        _Option("cg-offset", "SIZE", "of the centre of gravity from the middle of the base"),
+        _Option("facing", "DEGREES", "direction of the width, or of a mesh's x axis, from the first component "
+            "of each record", _NUMBER, key="facing_deg"),
+        _Option("base-spread", "FRACTION", "by how much corners of the base lie elsewhere in space, over its "
+            "size, and it is turned: 0.001", _NUMBER),
+        _Option("round", None, "the base is round", {"action": "store_true"}),
+        _Option("mesh", "FILE", "mesh of it (OBJ, PLY, STL, GLB) instead", key="mesh.file"),
+        _Option("up", None, "axis of the mesh that points up", {"choices": ["x", "y", "z"]}, key="mesh.up"),
+        _Option("hull", None, "take the convex hull of a mesh that is not closed",
+            {"action": "store_true"}, key="mesh.hull"),
+        _Option("mesh-unit", None, "unit of the mesh, m if not given",
+            {"choices": list(_METRES)}, key="mesh.metres_per_unit"),
+        _Option("contact-tolerance", "SIZE", "height up to which points of the mesh carry, 2mm if not given",
+            key="mesh.contact_tolerance"),
+        _Option("restitution", None, "measured ratio of angular velocities", _NUMBER),
+        _Option("friction", None, "coefficient: it may slide at that level", _NUMBER),
+        _Option("pad-friction", None, "coefficient of a pad under the object, tried as a mitigation", _NUMBER),
+        _Option("pedestal", "SIZE", "width, height and, if known, mass of the block it stands on; again for "
+            "what that stands on", {"nargs": "+", "action": "append"}),
+    ),
+    "the place": (
+        _Option("floor", "LEVEL/STOREYS", "such as 2/4, with 0 for the ground: level 2 is the second floor in "
+            "Europe, the third in America"),
+        _Option("building", "FILE", "YAML file with the building"),
+        _Option("storey-height", "SIZE", "of every storey, or of each from below; 3.5m if not given",
+            _SEVERAL, key="building.storey_height"),
+        _Option("period", "TIME", "first period of the building: 0.4s", key="building.first_period_s"),
+        _Option("material", None, "of the building: its period follows from that and its height",
+            {"choices": ["masonry", "concrete", "steel"]}, key="building.material"),
+        _Option("pga", "ACCELERATION", "of the ground: 0.25g"),
+        _Option("pgv", "VELOCITY", "of the ground, alone or beside the other: 20cm/s"),
+        _Option("sa", ("PERIOD", "ACCELERATION"), "0.3s 0.6g", {"nargs": 2}),
+        _Option("return-period", "YEARS", "of that level"),
+        _Option("hazard", "FILE", "hazard curves of the site", _SEVERAL),
+        _Option("years", None, "time of the probability, 50 if not given", _NUMBER),
+        _Option("magnitude", None, "of the earthquakes that matter most there", _NUMBER),
+        _Option("distance", "KM", "of these earthquakes", _NUMBER, key="distance_km"),
+    ),
+    "the motions": (
+        _Option("record", "PATH", "own records, folders or catalogues instead of the default set",
+            _SEVERAL, key="records.paths"),
+        _Option("on-floor", None, "they were recorded on that floor",
+            {"action": "store_true"}, key="records.recorded_on"),
+        _Option("unit", "UNIT", "unit of records that do not state theirs: g, m/s2, cm/s2", key="records.unit"),
+        _Option("dt", "S", "sampling interval of records without one", _NUMBER, key="records.dt_s"),
+    ),
+}  # fmt: skip
+"""Options by their group."""
 
 
-def _options(group: str) -> Iterator[tuple[str, str, str, str]]:
-    """Name of each option of a group, what it takes, its key, and help."""
-    for line in _OPTIONS[group].strip().replace("\n  ", " ").split("\n"):
-        first, *key, words = line.split(" | ")
-        name, _, takes = first.partition(" ")
-        yield name, takes, key[0] if key else name.replace("-", "_"), words
+def _all_options() -> list[tuple[str, str]]:
+    """Name of each option and its key of ``statue.yaml``."""
+    options = chain.from_iterable(_OPTIONS.values())
+    return [(option.name, option.key or option.name.replace("-", "_")) for option in options]
 
 
 def add_request_options(parser: argparse.ArgumentParser) -> None:
     """Add what an object, its place and its motions are told by."""
-    for title in _OPTIONS:
+    for title, options in _OPTIONS.items():
         group = parser.add_argument_group(title)
-        for name, takes, _, words in _options(title):
-            group.add_argument(f"--{name}", help=words, **_taken(name, takes))
+        for option in options:
+            option.add_to(group)
     group.add_argument(
         "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
     )
-
-
-def _taken(name: str, takes: str) -> dict[str, Any]:
-    """What a parser is told of the values that an option takes."""
-    if not takes:
-        return {"action": "store_true"}
-    action = "append" if name == "pedestal" else _Once
-    if "," in takes:
-        return {"action": action, "choices": takes.split(",")}
-    kind, *words = takes.split()
-    if kind == "number":
-        return {"action": action, "type": float, "metavar": words[0] if words else None}
-    if words:
-        return {"action": action, "nargs": 2, "metavar": (kind, *words)}
-    nargs = "+" if kind.endswith("…") else None
-    return {"action": action, "nargs": nargs, "metavar": kind.rstrip("…")}
 
 
 # imported when it runs: `rockfrag --help` should not wait for numba
@@ -241,7 +249,7 @@ def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:
 def settings_of(options: argparse.Namespace) -> dict[str, Any]:
     """What the command line says, with the keys of ``statue.yaml``; options without effect are refused."""
     found: dict[str, Any] = {}
-    for name, _, key, _ in chain.from_iterable(map(_options, _OPTIONS)):
+    for name, key in _all_options():
         value = getattr(options, name.replace("-", "_"))
         if value is None or value is False:
             continue
@@ -331,8 +339,7 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
 
     All of them are taken as given if None.
     """
-    options = chain.from_iterable(map(_options, _OPTIONS))
-    names = {_UNITS.sub("", key): name for name, _, key, _ in options}
+    names = {_UNITS.sub("", key): name for name, key in _all_options()}
     names |= {"records": "record", "building.storey_heights": "storey-height"}
 
     def option(found: re.Match[str]) -> str:

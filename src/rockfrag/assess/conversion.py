@@ -40,15 +40,13 @@ TOGETHER = 0.25
 """Relative standard deviation of the spread of ln PGV at a given level, which two hazard curves do not say: of
 ours."""
 
-NODES = 11
-"""Values of equal probability that stand for the spread of ln PGV/IM."""
+NODES = 11  # Values of equal probability that stand for the spread of ln PGV/IM
 
 OF_DISPLACEMENT = 2.0
 """Largest weight of ln PGV/IM [-]: a motion stretched in time by r at a given PGA has a PGV larger by r and a
 displacement larger by r²."""
 
-MOST_LEVELS = 8
-"""Levels of a motion that are fitted; tests under one motion depend on each other."""
+MOST_LEVELS = 8  # Levels of a motion that are fitted; tests under one motion depend on each other
 
 
 @dataclass(frozen=True)

@@ -26,8 +26,7 @@ PEDESTAL = ("pedestal_width_m", "pedestal_height_m", "pedestal_depth_m", "pedest
 YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
 """What a cell may say to whether a base is round."""
 
-MOST_OBJECTS = 10_000
-"""Rows of an inventory."""
+MOST_OBJECTS = 10_000  # Rows of an inventory
 
 
 @dataclass(frozen=True, eq=False)

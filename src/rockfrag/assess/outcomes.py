@@ -28,26 +28,16 @@ from rockfrag.units import LARGEST_PEAK
 
 Floats = NDArray[np.float64]
 
-LEVELS = 80
-"""Levels of shaking that are tried, a constant factor apart."""
-
-FEW_LEVELS = 28
-"""Levels for what is only compared, and for many objects."""
-
-FEWEST_LEVELS = 14
-"""Levels for what is only compared of many objects."""
-
-MOST_TESTS = 400_000
-"""Tests that are simulated at once, which bounds the memory of their results."""
-
-RANGE = (0.05, 8.0)
-"""Lowest and highest level over the median of the motions as recorded."""
+LEVELS = 80  # Levels of shaking that are tried, a constant factor apart
+FEW_LEVELS = 28  # Levels for what is only compared, and for many objects
+FEWEST_LEVELS = 14  # Levels for what is only compared of many objects
+MOST_TESTS = 400_000  # Tests that are simulated at once, which bounds the memory of their results
+RANGE = (0.05, 8.0)  # Lowest and highest level over the median of the motions as recorded
 
 LARGEST_FACTOR = 10.0
 """Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
 
-STEP_DEG = 15
-"""Angle between directions that are tried [degrees]."""
+STEP_DEG = 15  # Angle between directions that are tried [degrees]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,8 +56,7 @@ class IntensityLevels:
         return min(int(self.levels.searchsorted(level)), self.levels.size - 1)
 
 
-AT_REST = 1e-9
-"""Factor of motions that are not counted: at rest costs nothing."""
+AT_REST = 1e-9  # Factor of motions that are not counted: at rest costs nothing
 
 
 def believable_scales(base: Sequence[Motion]) -> Floats:

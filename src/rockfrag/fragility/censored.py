@@ -14,14 +14,8 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.errors import InputError
-from rockfrag.fragility import lognormal
-from rockfrag.fragility.intervals import (
-    MOST_BLOCKS,
-    Interval,
-    population,
-    resampled_interval,
-    step_limits,
-)
+from rockfrag.fragility import intervals, lognormal
+from rockfrag.fragility.intervals import MOST_BLOCKS, Interval
 from rockfrag.fragility.observations import Floats, Grouped, Over, labels, name_and_unit, numbers
 from rockfrag.short_repr import short_repr
 
@@ -128,7 +122,7 @@ def bracket_interval(
     brackets: Brackets, *, over: Over | None = None, level: float = 0.90
 ) -> Interval:
     """Confidence limits of a curve fitted to brackets, by leaving out whole motions or earthquakes."""
-    over, notes = population(brackets, over)
+    over, notes = intervals.population(brackets, over)
     codes, names = pd.factorize(pd.Series(brackets.groups(over)))
     low, high = _logs(brackets)
     groups = len(names)
@@ -139,10 +133,11 @@ def bracket_interval(
             return _without_a_block(low, high, each)
         return _fit_weighted(low, high, each)[0]
 
-    found = resampled_interval(refit, groups, over=over, notes=notes, level=level)
+    found = intervals.resampled_interval(refit, groups, over=over, notes=notes, level=level)
     if found.method == "none" and groups > 1 and brackets.n_overturned:
         # neighbouring steps touch, so the brackets may share no more than a point: all of them count
-        return step_limits(found, float(brackets.lower.min()), float(brackets.upper.max()))
+        lowest, highest = float(brackets.lower.min()), float(brackets.upper.max())
+        return intervals.step_limits(found, lowest, highest)
     return found
 
 

@@ -6,7 +6,7 @@ goodness of fit needs the motions' own scales as well. Cells are a two-thousandt
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
@@ -26,23 +26,17 @@ CELLS = 2000  # cells of equal width in the logarithm of a measure
 class CountedObservations(Observations):
     """Outcomes whose rows are the cells of each block of motions (earthquakes), see :class:`Observations`."""
 
-    # motions, earthquakes: how many there are
-    motions: int
-    earthquakes: int
-    block: NDArray[np.intp]  # of each motion or earthquake, whichever is resampled, shape (groups,)
-    edges: Floats  # ends of the cells in ln IM, shape (cells + 1,)
-    scale: Floats  # ln IM of each motion at an amplitude of 1 g, shape (motions,)
-    rise: Floats  # what each amplitude adds to it, rising, shape (n,)
+    of: "_Counts" = field(repr=False)
 
     @property
     def n_motions(self) -> int:
         """Number of different motions."""
-        return self.motions
+        return self.of.here.size
 
     @property
     def n_earthquakes(self) -> int:
         """Number of different earthquakes."""
-        return self.earthquakes
+        return self.of.earthquakes
 
     @property
     def is_swept(self) -> bool:
@@ -60,17 +54,19 @@ class CountedObservations(Observations):
 
     def group_weights(self, weights: Floats) -> Floats:
         """Weights of the blocks of motions, all of whose motions or earthquakes must weigh the same."""
-        first = np.unique(self.block, return_index=True)[1]
+        block = self.of.block
+        first = np.unique(block, return_index=True)[1]
         found = weights[:, first]
-        if not np.array_equal(found[:, self.block], weights):
+        if not np.array_equal(found[:, block], weights):
             raise ValueError("counts are kept by block, whose motions cannot be weighted apart")
         return found
 
     def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:
         """Motions with a test in the rows ``inside``, which are neighbours."""
         low = self._edge_below(self.im[inside].min())
-        high = self.edges[np.searchsorted(self.edges, np.log(self.im[inside].max()), side="right")]
-        first, after = (np.searchsorted(self.rise, end - self.scale) for end in (low, high))
+        edges, rise, scale = self.of.edges, self.of.rise, self.of.scale
+        high = edges[np.searchsorted(edges, np.log(self.im[inside].max()), side="right")]
+        first, after = (np.searchsorted(rise, end - scale) for end in (low, high))
         count = int((after > first).sum())
         return count, float(count)
 
@@ -79,17 +75,15 @@ class CountedObservations(Observations):
         values, first = np.unique(self.im, return_index=True)
         starts = np.flatnonzero(np.diff(cell[first], prepend=-1))
         ends = np.append(self._edge_below(values[starts[1:]]), np.inf)
-        below = np.column_stack(
-            [
-                np.zeros(self.scale.size, dtype=np.int64),
-                *(np.searchsorted(self.rise, end - self.scale) for end in ends),
-            ]
-        )
-        return np.asarray(_fallen(capacity - self.scale, self.rise, below))
+        rise, scale = self.of.rise, self.of.scale
+        before = [np.searchsorted(rise, end - scale) for end in ends]
+        below = np.column_stack([np.zeros(scale.size, dtype=np.int64), *before])
+        return np.asarray(_fallen(capacity - scale, rise, below))
 
     def _edge_below(self, im: ArrayLike) -> Floats:
         """Lower end of the cell that holds each value [ln IM]."""
-        return np.asarray(self.edges[np.searchsorted(self.edges, np.log(im), side="right") - 1])
+        edges = self.of.edges
+        return np.asarray(edges[np.searchsorted(edges, np.log(im), side="right") - 1])
 
 
 @cached_njit(error_model="numpy")
@@ -179,7 +173,12 @@ def count_ida(
 
 
 class _Counts:
-    """Tests and those that overturned, by block and cell of one measure."""
+    """Tests and those that overturned, by block and cell of one measure.
+
+    ``block`` is of each motion or earthquake, whichever is resampled, shape (groups,); ``edges`` are the ends of
+    the cells in ln IM, (cells + 1,); ``scale`` is ln IM of each motion at 1 g, (motions,), to which each amplitude
+    adds its ``rise``, (n,).
+    """
 
     def __init__(
         self,
@@ -212,11 +211,8 @@ class _Counts:
         self.trials, self.fell, self.total = np.zeros(shape), np.zeros(shape), np.zeros(CELLS)
 
     def add(self, rows: NDArray[np.intp], overturned: NDArray[np.bool_]) -> None:
-        own = self.of_motion[rows]
-        used = own >= 0
-        if not used.any():
-            return
-        own, fell = own[used], overturned[used]
+        used = self.of_motion[rows] >= 0
+        own, fell = self.of_motion[rows][used], overturned[used]
         _count(
             *(self.scale[own], self.rise, fell, self.row[own], self.edges),
             *(self.trials, self.fell, self.total),
@@ -228,17 +224,5 @@ class _Counts:
             middle = np.exp(self.total / self.trials.sum(axis=0))
         names = [f"block {number + 1}" for number in range(len(self.trials))]
         labels = np.array(names, dtype=object)[block]
-        return CountedObservations(
-            middle[cell],
-            self.fell[block, cell],
-            self.trials[block, cell],
-            labels,
-            labels,
-            *name_and_unit(self.column),
-            motions=self.here.size,
-            earthquakes=self.earthquakes,
-            block=self.block,
-            edges=self.edges,
-            scale=self.scale,
-            rise=self.rise,
-        )
+        tests = (middle[cell], self.fell[block, cell], self.trials[block, cell], labels, labels)
+        return CountedObservations(*tests, *name_and_unit(self.column), of=self)

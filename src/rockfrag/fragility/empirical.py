@@ -14,15 +14,9 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.fragility import observations
 from rockfrag.fragility.censored import Brackets, brackets_from_table
-from rockfrag.fragility.observations import (
-    Floats,
-    Observations,
-    cells,
-    observations_from_table,
-    positive,
-    read_observations,
-)
+from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.shaketable.swept import Swept
 
 
@@ -41,7 +35,7 @@ def fraction_in_bins(outcomes: Observations, bins: int = 10, level: float = 0.90
 
     ``im`` is the geometric mean of a bin. In the binomial limits several rows of one motion in a bin count once.
     """
-    code = cells(outcomes.im, bins, outcomes.trials)[0]
+    code = observations.cells(outcomes.im, bins, outcomes.trials)[0]
     rows, independent = [], []
     for k in np.unique(code):
         inside = code == k
@@ -104,8 +98,9 @@ def find_resurrections(
     nothing lower was tried, upper ones NaN where nothing overturned.
     """
     keys = [by] if isinstance(by, str) else by
-    values = positive(ida, amplitude)
-    table = ida[keys].assign(amplitude=values, overturned=read_observations(ida, "overturned") == 1)
+    values = observations.positive(ida, amplitude)
+    fell = observations.read_observations(ida, "overturned") == 1
+    table = ida[keys].assign(amplitude=values, overturned=fell)
     doubled = table.duplicated([*keys, "amplitude"])
     if doubled.any():
         row = int(np.flatnonzero(doubled)[0])
@@ -187,7 +182,7 @@ class TableIda:
 
     def outcomes(self, column: str) -> Observations:
         """All outcomes with a measure."""
-        return observations_from_table(
+        return observations.observations_from_table(
             self.table, column, motion=self.motion, earthquake=self.earthquake, source="ida"
         )
 

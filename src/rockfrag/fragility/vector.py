@@ -13,16 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import optimize, special, stats
 
 from rockfrag.errors import InputError
+from rockfrag.fragility import observations
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.held_out import outcome_scores
 from rockfrag.fragility.intervals import FEWEST_GROUPS, all_but_one, jackknife_error, student
-from rockfrag.fragility.observations import (
-    Floats,
-    labels,
-    name_and_unit,
-    positive,
-    read_observations,
-)
+from rockfrag.fragility.observations import Floats
 from rockfrag.sentences import sayer
 
 MOST_FOR_THE_PLANE = 20_000
@@ -155,8 +150,8 @@ def fit_vector(
     """
     if not 0.0 < level < 1.0:
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
-    logs = [np.log(positive(table, column, source)) for column in measures]
-    outcome = read_observations(table, overturned, source)
+    logs = [np.log(observations.positive(table, column, source)) for column in measures]
+    outcome = observations.read_observations(table, overturned, source)
     if outcome.min() == outcome.max():
         raise InputError(
             f"{source}, column {overturned!r}: all {outcome.size} tests have the outcome "
@@ -168,7 +163,7 @@ def fit_vector(
             f"{source}: the measures {', '.join(measures)} are proportional to each other (or "
             "constant) in these tests; choose fewer."
         )
-    group = pd.factorize(pd.Series(labels(table, earthquake, source)))[0]
+    group = pd.factorize(pd.Series(observations.labels(table, earthquake, source)))[0]
     fit, interaction = _fitted(design, outcome), NOT_TRIED
     product = design_of(logs, interaction=True)
     if try_interaction and np.linalg.matrix_rank(product) == 4 and "penalised" not in fit.method:
@@ -178,7 +173,7 @@ def fit_vector(
             fit, design = full, product
     groups = int(group.max()) + 1
     replicates = _replicates(design, outcome, group, fit.coefficients)
-    names = [name_and_unit(column)[0] for column in measures]
+    names = [observations.name_and_unit(column)[0] for column in measures]
     notes = tuple(_say("notes", names, fit, replicates, groups))
     covariance = tuple(tuple(row) for row in np.linalg.inv(fit.information).tolist())
     found = (tuple(fit.coefficients.tolist()), covariance, fit.log_likelihood, fit.method)

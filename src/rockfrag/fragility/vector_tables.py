@@ -8,16 +8,10 @@ import pandas as pd
 from scipy import optimize, special
 
 from rockfrag.errors import InputError
+from rockfrag.fragility import observations
 from rockfrag.fragility.checks import binned_deviance, refitted_deviance
 from rockfrag.fragility.curve_facts import REJECTED
-from rockfrag.fragility.observations import (
-    Floats,
-    cells,
-    labels,
-    name_and_unit,
-    positive,
-    read_observations,
-)
+from rockfrag.fragility.observations import Floats
 from rockfrag.fragility.vector import VectorFragility, design_of, fit_vector
 
 BINS = 10  # bins of the fitted probability in which observed and fitted numbers are compared
@@ -64,14 +58,14 @@ def check_vector(
     each motion has one capacity, so that its tests depend on each other as in an incremental dynamic analysis.
     ``replicates`` and ``seed`` are of the parametric bootstrap.
     """
-    logs = [np.log(positive(table, column)) for column in fit.measures]
-    outcome = read_observations(table, overturned)
+    logs = [np.log(observations.positive(table, column)) for column in fit.measures]
+    outcome = observations.read_observations(table, overturned)
     design = design_of(logs, fit.interaction.kept)
     eta = design @ np.array(fit.coefficients)
     # bins with about equally many tests, in order of the fitted probability
-    bins, values = cells(eta, BINS)
+    bins, values = observations.cells(eta, BINS)
     bins = bins if values.size > 1 else np.zeros(eta.size, dtype=np.intp)
-    motions = pd.factorize(pd.Series(labels(table, motion, "table")))[0]
+    motions = pd.factorize(pd.Series(observations.labels(table, motion, "table")))[0]
     capacity = np.random.default_rng(seed).normal(size=(replicates, int(motions.max()) + 1))
     fell, expected, trials = (
         np.asarray(np.bincount(bins, values), dtype=np.float64)
@@ -90,7 +84,7 @@ def check_vector(
 
 
 def _surface_table(fit: VectorFragility, logs: list[Floats], outcome: Floats) -> pd.DataFrame:
-    (row, first), (column, second) = (cells(values, MOST_CELLS) for values in logs)
+    (row, first), (column, second) = (observations.cells(values, MOST_CELLS) for values in logs)
     shape = (first.size, second.size)
     flat = row * shape[1] + column
     tests = np.bincount(flat, minlength=first.size * second.size).reshape(shape)
@@ -235,4 +229,4 @@ def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:
 
 def describe_pair(first: str, second: str) -> str:
     """Two measures in words: ``PGA and PGV/PGA``."""
-    return f"{name_and_unit(first)[0]} and {name_and_unit(second)[0]}"
+    return f"{observations.name_and_unit(first)[0]} and {observations.name_and_unit(second)[0]}"

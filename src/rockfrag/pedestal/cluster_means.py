@@ -11,7 +11,6 @@ import math
 from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -147,11 +146,9 @@ def resolution_of(table: pd.DataFrame) -> Array:
     return table["resolution"].to_numpy(dtype=float)
 
 
-def unit_means(table: pd.DataFrame, unit: str) -> pd.Series:
-    """Means of d by sampled unit (``earthquake`` or ``motion``): over the pairs of a motion, then over motions."""
-    by = ["motion"] if unit == "motion" else [unit, "motion"]
-    means = table.groupby(by)["d"].mean()
-    return means if unit == "motion" else means.groupby(level=unit).mean()
+def earthquake_means(table: pd.DataFrame) -> pd.Series:
+    """Means of d by earthquake: over the pairs of a motion, then over motions."""
+    return table.groupby(["earthquake", "motion"])["d"].mean().groupby(level="earthquake").mean()
 
 
 def mean_effect(table: pd.DataFrame) -> Estimate:
@@ -190,19 +187,13 @@ def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
         hidden[rows] = tied_resolution(d[rows], known[rows])
     work = table[[by, "earthquake", "motion", "d"]].assign(hidden=hidden)
     motions = work.groupby([by, "earthquake", "motion"])[["d", "hidden"]].mean()
-    earthquakes = motions.groupby(level=[by, "earthquake"]).mean()
-    of_motions, of_earthquakes = (
-        means.groupby(level=by).indices for means in (motions, earthquakes)
-    )
+    earthquakes = motions.groupby(level=[by, "earthquake"]).mean().reset_index()
     # what was sampled of a single earthquake are its motions
-    by_motion, by_earthquake = (
-        Units(means["d"].to_numpy(), means["hidden"].to_numpy()) for means in (motions, earthquakes)
-    )
-    found = {}
-    for name, places in of_earthquakes.items():
-        chosen, rows = (by_earthquake, places) if len(places) > 1 else (by_motion, of_motions[name])
-        found[name] = Units(chosen.d[rows], chosen.hidden[rows])
-    return found
+    several = earthquakes[earthquakes.duplicated(by, keep=False)]
+    motions = motions.reset_index()
+    units = pd.concat([several, motions[~motions[by].isin(several[by])]])
+    d, hidden = units["d"].to_numpy(), units["hidden"].to_numpy()
+    return {name: Units(d[rows], hidden[rows]) for name, rows in units.groupby(by).indices.items()}
 
 
 def equivalence(effect: Estimate, margin: float = MARGIN) -> float:
@@ -306,9 +297,6 @@ def sign_flip_test(values: npt.ArrayLike, seed: int = 0) -> SignFlips:
         return SignFlips(p, units=k, exact=False)
     # sums that agree to rounding are equal, so the values are taken on a grid of integers
     grid = np.rint(x / np.abs(x).max() * 1e12)
-    if 2**k <= DRAWS:
-        sums = np.abs(_sign_patterns(k) @ grid)
-        return SignFlips(float((sums >= abs(grid.sum())).mean()), k, exact=True)
     found = stats.permutation_test(
         (grid,),
         lambda flipped, axis: np.abs(flipped.sum(axis=axis)),
@@ -318,13 +306,7 @@ def sign_flip_test(values: npt.ArrayLike, seed: int = 0) -> SignFlips:
         alternative="greater",
         rng=np.random.default_rng(seed),
     )
-    return SignFlips(float(found.pvalue), units=k, exact=False)
-
-
-@lru_cache
-def _sign_patterns(units: int) -> Array:
-    """All patterns of signs, shape (2^units, units)."""
-    return np.array(list(product((1.0, -1.0), repeat=units)))
+    return SignFlips(float(found.pvalue), units=k, exact=2**k <= DRAWS)
 
 
 def leave_one_earthquake_out(table: pd.DataFrame) -> pd.DataFrame:

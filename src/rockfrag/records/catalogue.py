@@ -1,5 +1,6 @@
 """The motions of a study: a table that says where they are and what is known of them."""
 
+import itertools
 import math
 import os
 import re
@@ -131,11 +132,12 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
 
         checks.append(("file", lambda words: parse_request(words.partition("#")[0])))
     for column, check in checks:
-        if row[column]:
-            try:
-                check(row[column])
-            except InputError as error:
-                wrong.append((column, str(error).rstrip(".")))
+        if not row[column]:
+            continue
+        try:
+            check(row[column])
+        except InputError as error:
+            wrong.append((column, str(error).rstrip(".")))
     for column, (least, most) in _NUMBERS.items():
         number = math.nan
         with suppress(ValueError):
@@ -170,8 +172,7 @@ def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
     motion = load_component(row, row["file"], folder, records)
     facts = {key: value for key in _FACTS if (value := row.get(key, "")) != "" and pd.notna(value)}
     facts |= {"source": row["source"], "file": row["file"]}
-    named = replace(motion, name=row["name"], metadata={**motion.metadata, **facts})
-    return scaled(named, row)
+    return scaled(replace(motion, name=row["name"], metadata={**motion.metadata, **facts}), row)
 
 
 def scaled(motion: Motion, row: dict[str, Any]) -> Motion:
@@ -239,12 +240,7 @@ def is_catalogue(path: Path) -> bool:
 
 def _listed(problems: list[str]) -> str:
     """Join what is wrong, as much of it as a message holds, and count the rest."""
-    shown: list[str] = []
-    size = 0
-    for problem in problems:
-        size += len(problem)
-        if shown and size > _MOST_SHOWN:
-            break
-        shown.append(problem)
-    more = len(problems) - len(shown)
-    return "; ".join(shown) + (f"; and {more} more" if more else "")
+    sizes = itertools.accumulate(map(len, problems))
+    shown = max(1, sum(size <= _MOST_SHOWN for size in sizes))
+    more = len(problems) - shown
+    return "; ".join(problems[:shown]) + (f"; and {more} more" if more else "")

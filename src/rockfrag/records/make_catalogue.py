@@ -340,7 +340,6 @@ def _component(
     stem, suffix = (name, "") if several else _parts(name)
     orientation = str(facts.get("component") or ("" if suffix in {"1", "2", "3"} else suffix))
     azimuth = facts.get("azimuth_deg")
-    sha256 = motion.provenance[0]["sha256"]
     container = str(file) if channel.member else ""
     time = facts.get("network"), facts.get("station"), facts.get("start_time")
     row = {
@@ -353,19 +352,17 @@ def _component(
         "magnitude": facts.get("magnitude"),
         "distance_km": facts.get("distance_km"),
         "source": "folder",
-        "sha256": sha256,
+        "sha256": motion.provenance[0]["sha256"],
     }
+    samples = motion.acceleration.tobytes() + repr(motion.dt).encode()
     return Component(
-        row, stem, suffix, path,
-        packed=bool(container),
-        npts=motion.acceleration.size,
-        dt=motion.dt,
-        digest=hashlib.sha256(motion.acceleration.tobytes() + repr(motion.dt).encode()).hexdigest(),
+        row, stem, suffix, path, bool(container), motion.acceleration.size, motion.dt,
+        digest=hashlib.sha256(samples).hexdigest(),
         quality_flags=tuple(quality_flags(motion)),
         azimuth=azimuth_of(orientation) if azimuth is None else float(azimuth),
         is_vertical=is_vertical(orientation),
         shared_by_a_record=(
-            (container, path, sha256) if several else None,
+            (container, path) if several else None,
             (container, str(Path(path).parent), stem) if suffix else None,
             time if all(time[1:]) else None,
         ),

@@ -75,15 +75,13 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
     records: list[tuple[str, str, list[Channel]]] = []
     left_out: list[tuple[str, InputError]] = []
     with unpacked(file) as members:
-        chosen = [m for m in members if wanted in ("", m.name, Path(m.name).name)]
+        chosen = [m for m in members if wanted in (m.name, Path(m.name).name)]
         if wanted and len(chosen) != 1:
             raise InputError(
                 f"{file}: {'no member is' if not chosen else 'several members are'} called "
                 f"{wanted!r}; there are {', '.join(m.name for m in members)}."
             )
-        for member in chosen:
-            if not wanted and is_no_record(member.name):
-                continue
+        for member in chosen or (m for m in members if not is_no_record(m.name)):
             try:
                 name, channels = _channels(member.path, dt, cut_short)
                 # read before the folder goes, and to know which members are damaged
@@ -188,23 +186,19 @@ def motion_of(
     stored = _settled_unit(record, channel, samples, unit)
     factor = quantities.TO_SI[stored]
     acceleration = _in_si(record, samples, factor)
-    archived: dict[str, Any] = {"member": channel.member} if channel.member else {}
-    if record.left_out:
-        archived["left_out"] = [name for name, _ in record.left_out]
-    steps: list[dict[str, Any]] = [
-        {
-            "step": "read",
-            "file": printable(Path(record.name).name),
-            "sha256": record.sha256,
-            "format": record.format,
-            "channel": channel.label,
-            "unit": stored,
-            "unit_stated": bool(channel.unit),
-            "factor_to_m_s2": factor,
-            **archived,
-        },
-        *channel.details.get("steps", ()),
-    ]
+    read = {
+        "step": "read",
+        "file": printable(Path(record.name).name),
+        "sha256": record.sha256,
+        "format": record.format,
+        "channel": channel.label,
+        "unit": stored,
+        "unit_stated": bool(channel.unit),
+        "factor_to_m_s2": factor,
+        **({"member": channel.member} if channel.member else {}),
+        **({"left_out": [name for name, _ in record.left_out]} if record.left_out else {}),
+    }
+    steps: list[dict[str, Any]] = [read, *channel.details.get("steps", ())]
     mean = float(acceleration.mean())
     # the sensor's zero, or the weight of its mass, which is not motion
     if mean and (channel.raw or abs(abs(mean) - GRAVITY) < _GRAVITY_FRACTION * GRAVITY):
@@ -262,8 +256,7 @@ def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
         "format": record.format,
         "unit": unit,
     }
-    more = {k: v for k, v in channel.details.items() if k != "steps" and v not in ("", None)}
-    return {**more, **facts}
+    return {**{k: v for k, v in channel.details.items() if k != "steps"}, **facts}
 
 
 def _settled_unit(
@@ -294,20 +287,16 @@ def _settled_unit(
 
 
 def _listed(record: Record) -> str:
-    names = []
-    for number, channel in enumerate(record.channels, start=1):
-        words = (channel.member, channel.code, channel.component)
-        both = " ".join(dict.fromkeys(word for word in words if word))
-        names.append(f"{number}: {both}" if both else str(number))
-    return "; ".join(names)
+    named = ((c.member, c.code, c.component) for c in record.channels)
+    words = (" ".join(dict.fromkeys(filter(None, names))) for names in named)
+    return "; ".join(f"{k}: {both}" if both else str(k) for k, both in enumerate(words, start=1))
 
 
 def _names_of(channel: Channel) -> set[str]:
     """Return all names of a channel, plain ones."""
-    bare = {channel.code, channel.component, f"{channel.code} {channel.component}"}
-    names = {name.strip() for name in bare if name.strip()} | {
-        str(channel.details.get("title", ""))
-    }
+    bare = (channel.code, channel.component, f"{channel.code} {channel.component}")
+    names = {name.strip() for name in bare if name.strip()}
+    names.add(str(channel.details.get("title", "")))
     if channel.member:
         files = {channel.member, Path(channel.member).name}
         names |= files | {f"{file} {name}" for file in files for name in names}

@@ -87,8 +87,8 @@ def _read(path: Path, dt: float | None) -> Record:
 def _files(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
     found: list[Path] = []
     for path in map(Path, paths):
-        inside = files_of(path) if path.is_dir() else [path]
-        found += [file for file in inside if not (path.is_dir() and is_catalogue(file))]
+        inside = path.is_dir()
+        found += [f for f in files_of(path) if not is_catalogue(f)] if inside else [path]
     return found
 
 
@@ -112,8 +112,7 @@ def _row(record: Record, channel: Channel, unit: str | None, force: bool) -> dic
         "status": READ,
     }
     try:
-        # the named unit is for files that do not state theirs
-        motion = motion_of(record, channel, None if channel.unit else unit, force)
+        motion = _motion(record, channel, unit, force)
     except InputError as error:
         return row | {"error": str(error), "status": UNREADABLE}
     return row | {
@@ -138,21 +137,22 @@ def draw_files(
     for path in _files(paths):
         try:
             record = _read(path, dt)
-            motions = [
-                motion_of(record, channel, None if channel.unit else unit, force)
-                for channel in record.channels
-            ]
+            motions = [_motion(record, channel, unit, force) for channel in record.channels]
         except InputError:
             continue
         for motion in motions:
             stem = file_name(motion.name)
-            names = itertools.chain([stem], (f"{stem}-{number}" for number in itertools.count(2)))
-            pictures = (Path(folder) / f"{name}.png" for name in names)
+            endings = itertools.chain([""], (f"-{number}" for number in itertools.count(2)))
+            pictures = (Path(folder) / f"{stem}{ending}.png" for ending in endings)
             picture = next(picture for picture in pictures if picture not in drawn)
-            picture.parent.mkdir(parents=True, exist_ok=True)
             draw_record(motion, picture)
             drawn.append(picture)
     return drawn
+
+
+def _motion(record: Record, channel: Channel, unit: str | None, force: bool) -> Motion:
+    """Return a channel as a motion; the named unit is for files that do not state theirs."""
+    return motion_of(record, channel, None if channel.unit else unit, force)
 
 
 def draw_record(motion: Motion, path: str | os.PathLike[str]) -> None:
@@ -166,22 +166,18 @@ def record_figure(motion: Motion) -> Figure:
     """Return the figure of :func:`draw_record`."""
     velocity, displacement = integrate(motion.acceleration, motion.dt)
     cm = CENTIMETRES_PER_METRE
+    pga, peaks = motion.pga / GRAVITY, (pgv(motion) * cm, pgd(motion) * cm)
     histories = (
-        (motion.acceleration / GRAVITY, "Acceleration [g]", style.BLUE),
-        (velocity * cm, "Velocity [cm/s]", style.GREEN),
-        (displacement * cm, "Displacement [cm]", style.ORANGE),
-    )
-    peaks = (
-        f"{motion.pga / GRAVITY:.3f} g",
-        f"{pgv(motion) * cm:.2f} cm/s",
-        f"{pgd(motion) * cm:.2f} cm",
+        (motion.acceleration / GRAVITY, "Acceleration [g]", style.BLUE, f"{pga:.3f} g"),
+        (velocity * cm, "Velocity [cm/s]", style.GREEN, f"{peaks[0]:.2f} cm/s"),
+        (displacement * cm, "Displacement [cm]", style.ORANGE, f"{peaks[1]:.2f} cm"),
     )
     with style.figure_style():
         figure = style.new_figure(style.PAGE_WIDTH, 4.2)
         left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.7, 1))[0]
         panels = left.subplots(3, 1, sharex=True)
-        for panel, (values, label, colour), peak in zip(panels, histories, peaks, strict=True):
-            _history(panel, motion, values, label, colour, peak)
+        for panel, history in zip(panels, histories, strict=True):
+            _history(panel, motion, *history)
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1], motion.dt))
         upper, lower = right.subplots(2, 1)
@@ -219,9 +215,7 @@ def _logarithmic(panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], co
 
 
 def _title(motion: Motion) -> str:
-    facts = motion.metadata
-    words = [str(facts.get(key) or "") for key in ("station", "component", "earthquake")]
-    if facts.get("station_name"):
-        words[0] = f"{words[0]} {facts['station_name']}".strip()
-    found = ", ".join(word for word in words if word)
+    told = {key: str(value or "") for key, value in motion.metadata.items()}
+    station = f"{told.get('station', '')} {told.get('station_name', '')}".strip()
+    found = ", ".join(filter(None, (station, told.get("component"), told.get("earthquake"))))
     return "\n".join(shorten(line, 100, placeholder="…") for line in (motion.name, found) if line)

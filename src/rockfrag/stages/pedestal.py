@@ -50,14 +50,9 @@ def pedestal_tables(
         if rows["pedestal"].nunique() < 2:
             continue
         found = study_pedestal(rows, seed=seed, slenderness=slenderness)
-        for name, table in {
-            "pairs": found.pairs.table,
-            "effects": found.effects,
-            "whole": found.whole,
-            "without_earthquake": found.without_earthquake,
-            "ranks": found.ranks,
-            "notes": pd.DataFrame({"note": list(found.notes)}),
-        }.items():
+        tables = (found.pairs.table, found.effects, found.whole, found.without_earthquake)
+        notes = pd.DataFrame({"note": list(found.notes)})
+        for name, table in zip(PEDESTAL_TABLES, (*tables, found.ranks, notes), strict=True):
             labelled = table.copy()
             labelled.insert(0, "definition", definition)
             parts[name].append(labelled)

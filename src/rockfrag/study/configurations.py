@@ -52,16 +52,21 @@ def _block(row: Row) -> Block:
         return Block(**values)
 
 
-def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) -> list[System]:
+def read_configurations(
+    path: str | os.PathLike[str], blocks: Mapping[str, Block]
+) -> tuple[list[System], dict[str, str]]:
     """Read which block stands on which; a system has the configuration's name, and its bodies those of the blocks.
 
     Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none. Several blocks
     under an object are named from above, ``base|plinth``; they may stand behind the object too,
-    ``venus|base|plinth``. Of ``counterpart`` see :func:`read_counterparts`.
+    ``venus|base|plinth``. ``counterpart`` is the arrangement with which one is compared, where that is not its
+    object alone on the floor; these are returned by name behind the systems.
     """
     found: dict[str, System] = {}
     checked: dict[str, str] = {}
-    for row in read_rows(path, *_COLUMNS):
+    counterparts: dict[str, str] = {}
+    rows = read_rows(path, ["name", "object"], ["pedestal", "counterpart"])
+    for row in rows:
         name = row.text("name")
         object_name, *behind = names_from_above(row.text("object")) or ("",)
         under = names_from_above(row.cells.get("pedestal", ""))
@@ -77,22 +82,11 @@ def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) 
         with errors_of(f"{row.path}, line {row.line}"):
             found[name] = configuration_of(name, (*reversed(below), object_name), blocks)
             distinct_file_names([name], checked)
-    return list(found.values())
-
-
-_COLUMNS = (["name", "object"], ["pedestal", "counterpart"])
-
-
-def read_counterparts(path: str | os.PathLike[str]) -> dict[str, str]:
-    """Read with which arrangement one is compared, by name, where that is not its object alone on the floor."""
-    rows = read_rows(path, *_COLUMNS)
-    names = {row.cells["name"] for row in rows}
-    found = {row.text("name"): row.text("counterpart") for row in rows if row.has("counterpart")}
-    for row in rows:
-        other = found.get(row.cells["name"])
-        if other is not None and other not in names - {row.cells["name"]}:
-            raise row.error("counterpart", f"expected another arrangement, found {other}")
-    return found
+        if row.has("counterpart"):
+            counterparts[name] = other = row.text("counterpart")
+            if other == name or all(other != row.cells["name"] for row in rows):
+                raise row.error("counterpart", f"expected another arrangement, found {other}")
+    return list(found.values()), counterparts
 
 
 def names_from_above(text: str) -> tuple[str, ...]:

@@ -61,8 +61,7 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
     if "configurations" in bodies:
         name = bodies["configurations"]
         configurations_file = existing_file(source, "bodies.configurations", name)
-        known = arrangements.read_configurations(configurations_file, specimens)
-        counterparts = arrangements.read_counterparts(configurations_file)
+        known, counterparts = arrangements.read_configurations(configurations_file, specimens)
     building_file = _optional_file(source, "building", content)
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
     by_name = {configuration.name: configuration for configuration in known}

@@ -14,11 +14,8 @@ from rockfrag.motions.intensity import IntensityMeasure
 
 Floats = NDArray[np.float64]
 
-GRID = 600
-"""Levels on which a hazard curve is integrated."""
-
-NODES = 15
-"""Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration."""
+GRID = 600  # Levels on which a hazard curve is integrated
+NODES = 15  # Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration
 
 
 @dataclass(frozen=True)
@@ -99,8 +96,7 @@ def quantile_weights(values: Floats, weights: Floats, quantiles: Floats) -> Floa
     return np.array([np.interp(quantiles, c, v) for c, v in columns]).T
 
 
-TAIL = 6.0
-"""Standard deviations from the median beyond which a fragility no longer changes."""
+TAIL = 6.0  # Standard deviations from the median beyond which a fragility no longer changes
 
 
 @dataclass(frozen=True)

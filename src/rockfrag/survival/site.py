@@ -15,8 +15,7 @@ from rockfrag.survival.branches import Branch, read_branches
 from rockfrag.survival.evidence import Age, StandingObject, VelocityRelation, lognormal_coefficients
 from rockfrag.yaml_file import read_yaml
 
-RECORDS = "resources/records"
-"""Folder of fetched records."""
+RECORDS = "resources/records"  # Folder of fetched records
 
 ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}
 """A level in each measure: only fractions over all levels are used."""

@@ -64,12 +64,12 @@ def _section(text: TextFile, line: int, stop: int) -> Channel:
     words = re.split(r",\s*(?:AND\b)?|\bAND\b", size["units"], flags=re.I)
     units = [unit for unit in map(canonical_unit, words) if unit]
     if len(units) != len(_TYPES):
-        text.fail(f"{len(units)} units are stated where acceleration, velocity and "
-                  "displacement have one each", line + 1)  # fmt: skip
-    unit = units[list(_TYPES).index(rate["type"].upper())]
-    quantity = _TYPES[rate["type"].upper()]
+        held = "acceleration, velocity and displacement"
+        text.fail(f"{len(units)} units are stated where {held} have one each", line + 1)
+    kind = rate["type"].upper()
+    unit, count = units[list(_TYPES).index(kind)], int(size["count"])
     dt = text.interval(1 / float(rate["rate"]) if float(rate["rate"]) else 0.0, line)
-    return section(text, line + 1, stop, int(size["count"]), dt, unit, _WIDTH, quantity)
+    return section(text, line + 1, stop, count, dt, unit, _WIDTH, _TYPES[kind])
 
 
 FORMAT = Format("AGRAM", _recognise, _parse)

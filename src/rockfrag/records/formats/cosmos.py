@@ -64,8 +64,8 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
 
 def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
     """Return the line above the samples, the interval [s], and what the header says of the channel."""
-    at_integers, whole = _block(text, first, "integer", text.integers, width=8)
-    at_reals, numbers = _block(text, at_integers, "real", text.reals, width=15)
+    at_integers, whole = _block(text, first, "integer", text.integers, 8)
+    at_reals, numbers = _block(text, at_integers, "real", text.reals, 15)
     at_samples = _above_samples(text, at_reals)
     words = text.lines(first, at_integers)
     comments = [line for line in text.lines(at_reals, at_samples) if line.lstrip().startswith("|")]
@@ -133,14 +133,11 @@ def _facts(words: list[str], azimuth: int) -> dict[str, Any]:
     """Return the fields of a channel that the text header states."""
     network = station = location = code = name = component = ""
     for line in words:
-        found = re.search(r"Code\s*:\s*(\w+)-(\w+)\s*(.*)$", line)
-        if found:
+        if found := re.search(r"Code\s*:\s*(\w+)-(\w+)\s*(.*)$", line):
             network, station, name = found[1], found[2], found[3].strip()
-        found = re.search(r"Sta\s+Cha\w*\s*:?\s*[\d?]+\s*:\s*(.*?)\s*(?:\(|Location|$)", line)
-        if found:
+        if found := re.search(r"Sta\s+Cha\w*\s*:?\s*[\d?]+\s*:\s*(.*?)\s*(?:\(|Location|$)", line):
             component = re.sub(r"\s*deg\w*$", "", found[1], flags=re.I)
-        found = re.search(r"SCNL\W+(\w+)\.(\w+)\.(\w+)\.([\w-]+)", line)
-        if found:
+        if found := re.search(r"SCNL\W+(\w+)\.(\w+)\.(\w+)\.([\w-]+)", line):
             code, location = found[2], found[4].strip("-")
     if component.lower() in ("", "other", "unknown"):
         component = f"{azimuth:03d}" if 1 <= azimuth <= 360 else _NAMED_AZIMUTHS.get(azimuth, code)

@@ -107,11 +107,12 @@ def _detector(name: str) -> Callable[[str], bool]:
 
 def _unknown(path: Path) -> str:
     """Return what is wrong with a file that no format recognises."""
-    odd = first_odd_row(head_lines(path))
+    lines = head_lines(path)
+    odd = first_odd_row(lines)
     if odd is not None:
         return f", line {odd + 1}: not a row of numbers like those above; the file is damaged."
-    lines = [line.strip() for line in head_lines(path) if line.strip()]
-    seen = f"it begins with {lines[0][:_SHOWN]!r}" if lines else "it is no text"
+    first = next(filter(None, map(str.strip, lines)), "")
+    seen = f"it begins with {first[:_SHOWN]!r}" if first else "it is no text"
     return (
         f": no known record format: {seen}, and no rows of numbers go on below to its end; plain text "
         "needs columns or rows of numbers, and words above them alone."
@@ -214,12 +215,9 @@ def _shortness(trace: Trace, format_name: str, path: Path, cut_short: bool) -> l
     product = float(duration) * float(trace.stats.sampling_rate)
     if not math.isfinite(product):
         raise InputError(f"{path}: its duration of {duration} s is no length; the file is damaged.")
-    promised = round(product)
-    found = int(trace.stats.npts)
-    if found == promised:
-        return []
-    if cut_short and found < promised:
-        return [cut_short_step(promised, found)]
+    promised, found = round(product), int(trace.stats.npts)
+    if found == promised or (cut_short and found < promised):
+        return [] if found == promised else [cut_short_step(promised, found)]
     raise InputError(
         f"{path}: the header promises {promised} samples ({float(duration):g} s) but {found} follow; "
         "the file is cut short, or its header is wrong."
@@ -253,31 +251,29 @@ def _physical(
     trace: Trace, response: Response, path: Path
 ) -> tuple[NDArray[np.float64], dict[str, Any]]:
     """Return acceleration [m/s²] and the step that made it of counts."""
-    if not response.response_stages:
-        # divide counts by the sensitivity
-        sensitivity = response.instrument_sensitivity
-        if sensitivity is None or not sensitivity.value:
-            raise InputError(f"{path}: its StationXML has neither stages nor a sensitivity.")
-        if canonical_unit(str(sensitivity.input_units or "")) != "m/s2":
+    if response.response_stages:
+        physical = trace.copy()
+        physical.stats.response = response
+        settings = {"water_level": _WATER_LEVEL, "zero_mean": True, "taper": False}
+        try:
+            physical.remove_response(output="ACC", **settings)
+        except Exception as error:  # evalresp reports in many kinds
             raise InputError(
-                f"{path}: its StationXML has no stages and a sensitivity in {sensitivity.input_units}, "
-                "not M/S**2; get it with the level of the response."
-            )
-        value = float(sensitivity.value)
-        step = {"step": "divide by sensitivity", "counts_per_m_s2": value}
-        return np.asarray(trace.data, dtype=np.float64) / value, step
-    physical = trace.copy()
-    physical.stats.response = response
-    try:
-        physical.remove_response(
-            output="ACC", water_level=_WATER_LEVEL, zero_mean=True, taper=False
-        )
-    except Exception as error:  # evalresp reports in many kinds
+                f"{path}: the response of {trace.id} cannot be removed ({_one_line(error)})."
+            ) from error
+        step = {"step": "remove response", "output": "acceleration", "water_level_db": _WATER_LEVEL}
+        return np.asarray(physical.data, dtype=np.float64), step
+    sensitivity = response.instrument_sensitivity
+    if sensitivity is None or not sensitivity.value:
+        raise InputError(f"{path}: its StationXML has neither stages nor a sensitivity.")
+    if canonical_unit(str(sensitivity.input_units or "")) != "m/s2":
         raise InputError(
-            f"{path}: the response of {trace.id} cannot be removed ({_one_line(error)})."
-        ) from error
-    step = {"step": "remove response", "output": "acceleration", "water_level_db": _WATER_LEVEL}
-    return np.asarray(physical.data, dtype=np.float64), step
+            f"{path}: its StationXML has no stages and a sensitivity in {sensitivity.input_units}, "
+            "not M/S**2; get it with the level of the response."
+        )
+    value = float(sensitivity.value)
+    step = {"step": "divide by sensitivity", "counts_per_m_s2": value}
+    return np.asarray(trace.data, dtype=np.float64) / value, step
 
 
 def _one_line(error: Exception) -> str:

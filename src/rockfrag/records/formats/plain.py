@@ -45,7 +45,6 @@ class _Layout:
 
     text: TextFile
     table: number_fields.NumberTable
-    stop: int
     facts: StatedFacts
     titles: list[Column]
     npts: int | None = None
@@ -99,17 +98,16 @@ class _Layout:
 
 def _recognise(lines: list[str], name: str) -> bool:
     table = number_fields.number_table(lines)
-    if table is None or any(_OF_OBSPY.match(line) for line in lines[:1]):
+    if table is None or _OF_OBSPY.match(lines[0]):
         return False
     rows = [line for line in lines[table.start :] if not number_fields.is_blank(line)]
     while rows and is_remark(rows[-1]):
         rows.pop()
     found = [number_fields.numbers_of(line, table.decimal_comma) for line in rows]
-    widths = {len(row) for row in found[:-1]}
     return (
         len(rows) >= (_MIN_ROWS if not table.numbers else 1)
-        and all(number_fields.are_numbers(row) for row in found)
-        and widths <= {table.columns}
+        and all(map(number_fields.are_numbers, found))
+        and {len(row) for row in found[:-1]} <= {table.columns}
         and len(found[-1]) <= table.columns
         and not any(headed.recognise(lines, name) for headed in HEADED)
     )
@@ -121,7 +119,8 @@ def _parse(text: TextFile) -> list[Channel]:
         raise InputError(f"dt must be a positive number of seconds, got {dt}.")
     layout = _layout(text)
     columns = layout.table.columns
-    values, widths = text.rows(layout.line, layout.stop, layout.table.decimal_comma)
+    stop = last_row(text, layout.line)
+    values, widths = text.rows(layout.line, stop, layout.table.decimal_comma)
     # only the last row of a series is shorter
     _check_widths(layout, widths, None if columns == 1 else widths.size - 1)
     if columns == 1:
@@ -139,16 +138,10 @@ def _layout(text: TextFile) -> _Layout:
     table = number_fields.number_table(lines)
     if table is None:
         text.fail("no rows of numbers below a header of words", 0)
-    number = next(
-        (n for n in range(table.start - 1, -1, -1) if not number_fields.is_blank(lines[n])), 0
-    )
-    above = lines[number] if table.start else ""
-    if (
-        number_fields.is_damaged_row(above)
-        and not number_fields.is_comment(above)
-        and not number_fields.is_row(above)
-    ):
-        text.fail(f"{above.strip()[:_SHOWN]!r} is no row of numbers", number)
+    filled = [n for n in range(table.start) if not number_fields.is_blank(lines[n])]
+    for number in filled[-1:]:
+        if number_fields.is_damaged_row(lines[number]):
+            text.fail(f"{lines[number].strip()[:_SHOWN]!r} is no row of numbers", number)
     facts = stated_facts([words for _, words in table.words])
     if facts.contradiction:
         text.fail(f"{facts.contradiction}; mend the header")
@@ -157,8 +150,7 @@ def _layout(text: TextFile) -> _Layout:
             f"{facts.factor[:_SHOWN]!r} is a factor that is not applied here; apply it and take the line out"
         )
     titles = column_titles(table, lines[table.start])
-    stop = last_row(text, table.start)
-    layout = _Layout(text, table, stop, facts, titles, facts.npts, facts.dt)
+    layout = _Layout(text, table, facts, titles, facts.npts, facts.dt)
     _take_numbers_above(layout, lines)
     dt = text.asked_dt
     if dt is not None and layout.dt is not None and abs(dt - layout.dt) > 1e-6 * dt:
@@ -244,10 +236,8 @@ def _are_channels(layout: _Layout, values: NDArray[np.float64], widths: NDArray[
     columns = layout.table.columns
     if layout.npts in (widths.size, values.size):
         return layout.npts == widths.size
-    if len(layout.facts.components) == columns:
-        return True
-    if widths[-1] != columns:
-        return False
+    if len(layout.facts.components) == columns or widths[-1] != columns:
+        return len(layout.facts.components) == columns
     rows = values.reshape(-1, columns)
     down = float(np.median(np.abs(np.diff(rows, axis=0))))
     along = float(np.median(np.abs(np.diff(rows, axis=1))))
@@ -283,9 +273,8 @@ def _series(layout: _Layout, values: NDArray[np.float64]) -> Channel:
     if layout.interval is None:
         what = "one column" if layout.table.columns == 1 else "rows of numbers"
         layout.text.fail(f"{what} without sampling interval; give it with dt= (in seconds)")
-    names = layout.facts.components
-    component = names[0] if len(names) == 1 else ""
-    return layout.channel(values, layout.interval, stated, component, layout.table.title)
+    names = layout.facts.components if len(layout.facts.components) == 1 else ()
+    return layout.channel(values, layout.interval, stated, "".join(names), layout.table.title)
 
 
 def _without_leading(layout: _Layout, values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -378,13 +367,9 @@ def _channels(layout: _Layout, table: NDArray[np.float64]) -> list[Channel]:
     chosen = [i for i, kind in enumerate(kinds) if kind == "acceleration"]
     if not chosen:
         _refuse_other(layout, layout.facts.quantity)
-        known = set(kinds) - {""}
         # beside a depth what has no name is no acceleration in time
-        chosen = [
-            i
-            for i, kind in enumerate(kinds)
-            if not kind and (not known or known & {"time", "index"})
-        ]
+        in_time = not any(kinds) or "time" in kinds or "index" in kinds
+        chosen = [i for i, kind in enumerate(kinds) if not kind and in_time]
     if not chosen:
         text.refuse(
             f"none of the columns {titles} is acceleration; if one "
@@ -415,10 +400,10 @@ def _untitled(layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
             "separate them as the numbers are",
             number,
         )
-    stated = layout.facts.components
-    named = list(stated) if len(stated) == count - timed else []
-    if not named:
-        named = [""] if count - timed == 1 else [f"column {i + 1}" for i in range(timed, count)]
+    named = layout.facts.components
+    if len(named) != count - timed or not named:
+        numbered = [f"column {i + 1}" for i in range(timed, count)]
+        named = ("",) if count - timed == 1 else tuple(numbered)
     channels = [Column(name, "acceleration", "", name) for name in named]
     return [*([Column("", "time", "", "")] if timed else []), *channels]
 

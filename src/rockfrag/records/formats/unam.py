@@ -86,8 +86,8 @@ def _start(facts: dict[str, str]) -> UTCDateTime | None:
 
 
 def _details(facts: dict[str, str]) -> dict[str, object]:
-    coordinates = re.findall(r"(\d+(?:\.\d+)?)\s*(LAT|LONG)\.?\s*([NSEW])",
-                             facts["coordenadas de la estacion"])  # fmt: skip
+    stated = facts["coordenadas de la estacion"]
+    coordinates = re.findall(r"(\d+(?:\.\d+)?)\s*(LAT|LONG)\.?\s*([NSEW])", stated)
     place = {
         "latitude" if axis == "LAT" else "longitude": float(value) * (-1 if side in "SW" else 1)
         for value, axis, side in coordinates

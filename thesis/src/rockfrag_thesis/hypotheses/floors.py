@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import mean_effect, sign_flip_test, unit_means
+from rockfrag.pedestal.cluster_means import earthquake_means, mean_effect, sign_flip_test
 from rockfrag_thesis.hypotheses.contrasts import contrast
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
@@ -200,7 +200,7 @@ def c50(tests: Evidence) -> Result:
 def c51(tests: Evidence) -> Result:
     """The test that the thesis did not make."""
     rows = tests.part(floor=GROUND)
-    flips = sign_flip_test(unit_means(rows, "earthquake"))
+    flips = sign_flip_test(earthquake_means(rows))
     return order(
         {"P/NP on GF": Part(mean_effect(rows), Size.NOTICEABLE)},
         more=f"the thesis made no test; sign flips give p = {flips.p:.3f}, and {flips.units} earthquakes "
