@@ -17,7 +17,7 @@ NODES = 15  # Nodes of Gauss and Hermite over the velocity that comes with a lev
 
 
 @dataclass(frozen=True)
-class VelocityRelation:
+class VelocityRatio:
     """How fast the ground moves at a site when its peak acceleration is known: ln(PGV/PGA) is normal.
 
     ``median_s`` is the median of PGV/PGA [s], ``sd_ln`` the standard deviation of its logarithm from one
@@ -42,7 +42,7 @@ class ShakingRates:
 def shaking_rates(
     branches: Sequence[Mapping[IntensityMeasure, HazardCurve]],
     wanted: set[IntensityMeasure],
-    velocity: VelocityRelation | None,
+    velocity: VelocityRatio | None,
     reach: tuple[float, float],
 ) -> ShakingRates:
     """Points of shaking at a site in all measures that the objects are sensitive to, the same for all branches.
