@@ -1,28 +1,23 @@
 """Bodies and motions of the tests with friction, integrated by the planar kernels alone."""
 
+import math
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from rockfrag.engines.contract import Case, Request
 from rockfrag.engines.planar.cases import contact_run, response_of
-from rockfrag.engines.planar.integrate import (
-    Book,
-    Shaking,
-    contact_event_columns,
-    history_columns,
-    integrate,
-)
-from rockfrag.engines.planar.records import posed, system_record, working_memory
+from rockfrag.engines.response import Response
 from rockfrag.rocking.inputs import ground_motion
 from rockfrag.rocking.options import system_of
 from rockfrag.system import Block, Body, Column, Stack, System, as_system
-from rockfrag.system.contact import Contact, checked_friction
+from rockfrag.system.contact import checked_friction
+from rockfrag.system.system import Start
 from rockfrag.units import GRAVITY
 
 STILL = np.zeros(50)
 DT = 0.01
+G = 9.81
 
 
 def random_block(rng: np.random.Generator) -> Block:
@@ -70,35 +65,32 @@ def as_friction(mus: tuple[float, ...]) -> float | tuple[float, ...]:
     return mus[0] if len(mus) == 1 else mus
 
 
-def simulate_with_friction(
-    body, acceleration, dt, *, friction, vertical=None, omega0=None, g=GRAVITY
-):
+def run(system, motion, dt=DT, *, vertical=None, theta=None, closing=1e-6, g=GRAVITY) -> Response:
+    """Simulate a system by the contact kernels, never by pure rocking, until it rests or has fallen."""
+    if theta:
+        system = replace(system, start=Start(tuple(theta), (0.0,) * system.count))
+    case = Case(system, ground_motion(motion, dt, vertical), request=Request(g=g))
+    return response_of(contact_run(case, closing))
+
+
+def simulate_with_friction(body, motion, dt, *, friction, omega0=None, **more) -> Response:
     """Simulate what :func:`rockfrag.rocking.simulate` does, never by pure rocking."""
-    system = system_of(body, friction, omega0=omega0)
-    motion = ground_motion(acceleration, dt, vertical)
-    return response_of(contact_run(Case(system, motion, request=Request(g=g)), 1e-6))
+    return run(system_of(body, friction, omega0=omega0), motion, dt, **more)
 
 
-G = 9.81
+def imbalance(response: Response) -> float:
+    """What the balance of energy does not close by, over weight times height or the largest work [-]."""
+    masses = [body.mass for body in response.system.bodies]
+    energy, heights = response.energy, response.position[0, :, 1]
+    unit = max(G * float(masses @ heights), float(energy["input"].abs().max()))
+    return float(energy["residual"].abs().max()) / unit
 
 
-class Found(NamedTuple):
-    """What came out: histories at the samples, shape (n, bodies), and counts."""
-
-    system: System
-    time: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
-    slip: np.ndarray
-    residual: np.ndarray
-    contact_events: np.ndarray
-    fallen: int
-    when: float
-    work: np.void
-
-    @property
-    def theta(self) -> np.ndarray:
-        return self.position[:, 2::3]
+def samples_until(response: Response, contact_event: int) -> int:
+    """Number of samples before a contact event; all if there are fewer."""
+    times = response.contact_events["time"]
+    until = times.iloc[contact_event] if len(times) > contact_event else math.inf
+    return int(np.searchsorted(response.time, until))
 
 
 def random_column(rng: np.random.Generator, bodies: int) -> Column:
@@ -119,40 +111,12 @@ def random_column(rng: np.random.Generator, bodies: int) -> Column:
 def with_contacts(thing, frictions, laws=None):
     """Give the contacts of a system their friction and laws."""
     system = as_system(thing)
-    contacts = []
-    for k, contact in enumerate(system.contacts):
-        assert isinstance(contact, Contact)
-        changed = replace(contact, friction=checked_friction("friction", frictions[k]))
-        contacts.append(replace(changed, law=laws[k]) if laws else changed)
-    return replace(system, contacts=tuple(contacts))
-
-
-def run(system, motion, dt=DT, *, vertical=None, theta=None, closing=1e-06, substeps=2, free=800):
-    """Integrate a system through a motion and on until it rests or has fallen."""
-    p, w, n = system_record(system, G), working_memory(), system.count
-    start = posed(p, theta or [0.0] * n, [0.0] * n)
-    up = np.zeros(0) if vertical is None else vertical
-    history = np.zeros((motion.size + free, history_columns(n)))
-    contact_events = np.zeros((100_000, contact_event_columns(n)))
-    done, count, when = integrate(
-        p,
-        Shaking(motion, up, dt, 1.0, substeps, free),
-        start,
-        closing,
-        Book(history, contact_events),
-        w,
+    laws = laws or [contact.law for contact in system.contacts]
+    contacts = (
+        replace(contact, friction=checked_friction("friction", friction), law=law)
+        for contact, friction, law in zip(system.contacts, frictions, laws, strict=False)
     )
-    history = history[:done]
-    q, v = history[:, : 3 * n], history[:, 3 * n : 6 * n]
-    kinetic = (0.5 / p["inverse"][: 3 * n] * v**2).sum(axis=1)
-    potential = G * (p["mass"][:n] * q[:, 1::3]).sum(axis=1)
-    work, rubbed, struck = history[:, -4:-1].T
-    total = kinetic + potential - work + rubbed + struck
-    unit = max(G * float(p["mass"][:n] @ p["standing"][1 : 3 * n : 3]), float(np.abs(work).max()))
-    return Found(
-        system, np.arange(done) * dt, q, v, history[:, 6 * n : 7 * n], (total - total[0]) / unit,
-        contact_events[:count], int(w["fallen"]), float(when), w,
-    )  # fmt: skip
+    return replace(system, contacts=tuple(contacts))
 
 
 def is_critical(system: System, motion: np.ndarray, dt: float, vertical: np.ndarray) -> bool:
@@ -161,6 +125,6 @@ def is_critical(system: System, motion: np.ndarray, dt: float, vertical: np.ndar
         [0, -1, 1, -0.5, 0.5, -0.2, 0.2, -0.1, 0.1, -0.05, 0.05, -0.02, 0.02]
     )
     fell = {
-        run(system, f * motion, dt, vertical=f * vertical, closing=1e-4).fallen > 0 for f in factors
+        run(system, f * motion, dt, vertical=f * vertical, closing=1e-4).overturned for f in factors
     }
     return len(fell) == 2

@@ -7,17 +7,30 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from rockfrag.engines.contract import Case
 from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.planar.impact import strike
+from rockfrag.engines.planar.cases import contact_run
+from rockfrag.engines.planar.impact import kinetic_energy, strike
 from rockfrag.engines.planar.integrate import Book, Shaking, contact_event_columns, integrate
-from rockfrag.engines.planar.modes import kinetic_energy
 from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory
 from rockfrag.engines.planar.solve import look_at
+from rockfrag.engines.steps import STEP, step_count
 from rockfrag.rocking import MeasuredRestitution, simulate
+from rockfrag.rocking.inputs import ground_motion
 from rockfrag.system import ImpactLaw, System, geometry
 
 from ..rocking.reference_bodies import random_motion
-from .cases import DT, G, random_block, random_column, random_stack, run, with_contacts
+from .cases import (
+    DT,
+    G,
+    imbalance,
+    random_block,
+    random_column,
+    random_stack,
+    run,
+    samples_until,
+    with_contacts,
+)
 
 LAWS = ("position", "couple", "ratio")
 
@@ -155,26 +168,29 @@ def test_with_much_friction_impacts_are_those_of_pure_rocking(
         motion = random_motion(rng)
         slow, fast = run(system, motion), simulate(body, motion, DT, restitution=measured)
         times = fast.contact_events["time"].to_numpy()
-        if len(times) < 5 or fast.lost_contact < times[4] or slow.work["given_way"]:
+        if len(times) < 5 or fast.lost_contact < times[4] or slow.given_way:
             continue
-        n = int(np.searchsorted(fast.time, times[4]))
+        n = samples_until(fast, 4)
         np.testing.assert_allclose(slow.theta[:n], fast.theta[:n], atol=2e-7)
         compared += 1
     assert compared >= 3
 
 
-def stops_by_momentum(system, mus, motion, found, when):
+def stops_by_momentum(system: System, motion: np.ndarray, when: float) -> bool:
     """Whether the impact at an instant would stop all bodies under conservation of momentum too.
 
     A couple multiplies what that leaves, which of squat bodies may be nothing.
     """
     i, n = int(when / DT), 3 * system.count
-    p, w = system_record(with_contacts(system, list(mus)), G), working_memory()
+    history = contact_run(Case(system, ground_motion(motion, DT)), 1e-6).history
+    mus = [contact.friction for contact in system.contacts]
+    p = system_record(with_contacts(system, mus, [ImpactLaw()] * system.count), G)
     start = np.zeros((2, 3 * MOST))
-    start[0, :n], start[1, :n] = found.position[i], found.velocity[i]
+    start[:, :n] = history[i, : 2 * n].reshape(2, n)
     book = Book(np.zeros((0, 0)), np.zeros((9, contact_event_columns(system.count))))
-    shaking = Shaking(motion[i : i + 2], np.zeros(0), DT, 1.0, 2, 0)
-    _, count, _ = integrate(p, shaking, start, 1e-6, book, w)
+    substeps = int(step_count(system, DT, G, STEP))
+    shaking = Shaking(motion[i : i + 2], np.zeros(0), DT, 1.0, substeps, 0)
+    _, count, _ = integrate(p, shaking, start, 1e-6, book, working_memory())
     at = book.contact_events[:count]
     return bool((at[np.abs(at[:, 0] + i * DT - when) < 1e-9, 5] == 0).any())
 
@@ -189,18 +205,18 @@ def test_histories_with_friction_and_restitution_gain_nothing_and_do_not_stop_de
         system = random_column(rng, bodies).system()
         laws = drawn_laws(system, law, rng.uniform(0.7, 1.0))
         mus, motion = rng.uniform(0.3, 1.2, bodies), 1.5 * random_motion(rng)
-        found = run(with_contacts(system, list(mus), laws), motion, free=200)
-        struck = found.contact_events[found.contact_events[:, 1] == 1]
-        before, after = struck[:, 4], struck[:, 5]
+        lawful = with_contacts(system, list(mus), laws)
+        found = run(lawful, motion)
+        struck = found.contact_events.query("kind == 'impact'")
+        before, after = struck["energy_before"], struck["energy_after"]
         unit = 1e-9 * float(system.mass * G)
         impacts += len(struck)
         assert (after <= before * (1 + 1e-9) + unit).all()
-        for when in struck[(after == 0) & (before > 1e4 * unit), 0]:
-            assert stops_by_momentum(system, mus, motion, found, when)
-        assert np.abs(found.residual).max() < 2e-8
-        near = run(with_contacts(system, list(mus * (1 + 1e-9)), laws), motion, free=200)
-        until = found.contact_events[4, 0] if len(found.contact_events) > 4 else np.inf
-        n = min(int(np.searchsorted(found.time, until)), len(near.time))
+        for when in struck["time"][(after == 0) & (before > 1e4 * unit)]:
+            assert stops_by_momentum(lawful, motion, when)
+        assert imbalance(found) < 2e-8
+        near = run(with_contacts(system, list(mus * (1 + 1e-9)), laws), motion)
+        n = min(samples_until(found, 4), len(near.time))
         jumped += bool(np.abs(found.theta[:n] - near.theta[:n]).max() > 1e-4)
     assert impacts > 10 * cases
     assert jumped <= max(1, cases // 50)

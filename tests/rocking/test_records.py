@@ -70,22 +70,6 @@ def test_pulses_of_similar_blocks_share_one_curve() -> None:
         assert other.velocity == pytest.approx(found[0].velocity, rel=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("periods", "alpha", "message"),
-    [
-        ([], [0.2], "at least one period"),
-        ([1.0], [], "at least one period"),
-        ([0.0], [0.2], "period: 2π/p"),
-        ([math.nan], [0.2], "period: 2π/p"),
-        ([1.0], [2.0], "critical angle lies between"),
-        ([1.0], [math.nan], "critical angle lies between"),
-    ],
-)
-def test_impossible_blocks_are_refused(motion, periods, alpha, message):
-    with pytest.raises(InputError, match=message):
-        rocking_spectrum(motion, periods, alpha)
-
-
 def straight(angle_deg):
     """Two components of a motion along one line, a few pulses long."""
     t = np.arange(0, 4, 0.01)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Response, simulate
-from rockfrag.errors import InputError
 from rockfrag.rocking.restitution import (
     peak_after,
     restitution_from_history,
@@ -88,28 +87,3 @@ def test_without_spare_data_there_is_no_interval() -> None:
     assert 0 < fit.restitution < 1
     assert fit.computed == pytest.approx(0.911765, abs=1e-6)
     assert math.isnan(fit.lower) and math.isnan(fit.upper)
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: restitution_from_peaks(T2, [0.1]), "at least 2 numbers"),
-        (lambda: restitution_from_peaks(T2, [0.1, -0.05, -0.02]), "alternate in sign"),
-        (lambda: restitution_from_peaks(T2, [5.0, 3.0]), "critical angle"),
-        (lambda: restitution_from_peaks(T2, [0.1, math.nan]), "entry 1 is not a finite"),
-        (lambda: restitution_from_peaks(T2, [0.1, 0.07, 0.05], confidence=2.0), "between 0 and 1"),
-        (lambda: restitution_from_impacts(T2, [0.0, 0.5]), "at least 3 numbers"),
-        (lambda: restitution_from_impacts(T2, [0.0, 0.5, 0.4]), "entry 2 is not later"),
-        (lambda: restitution_from_history(T2, np.arange(9) ** 2, np.ones(9)), "evenly spaced"),
-        (lambda: restitution_from_history(T2, np.arange(9), np.ones(8)), "one per time"),
-        (lambda: restitution_from_history(T2, np.arange(9) / 100, np.ones(9) / 10), "two impacts"),
-        (
-            lambda: restitution_from_history(T2, np.arange(9), ["a"] * 9),
-            r"numbers \[rad\], got text",
-        ),
-    ],
-)
-def test_what_cannot_be_fitted_is_refused_in_one_sentence(call, message: str) -> None:  # type: ignore[no-untyped-def]
-    with pytest.raises(InputError, match=message) as caught:
-        call()
-    assert str(caught.value).count(". ") == 0

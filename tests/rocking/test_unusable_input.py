@@ -10,7 +10,11 @@ from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import (
     find_step_size_sensitive,
+    find_thresholds,
+    outcome_robustness,
     overturns,
+    restitution_from_history,
+    restitution_from_impacts,
     restitution_from_peaks,
     rocking_spectrum,
     simulate,
@@ -23,6 +27,7 @@ from .reference_bodies import T2, P
 STACK = Stack(P, T2)
 SHAKE = 4.0 * np.sin(np.arange(100) * 0.2)
 MOTION = Motion(SHAKE, 0.01)
+NINE = np.arange(9)
 MASKED = np.ma.masked_array(SHAKE, mask=np.abs(SHAKE) > 3)
 
 
@@ -32,6 +37,15 @@ def simulated(body=T2, motion=SHAKE, dt=0.01, **more):
 
 def stacked(**more):
     return simulated(STACK, **more)
+
+
+def examined(door, **more):
+    return lambda: door(T2, MOTION, None, [1.0], **more)
+
+
+def searched(**changed):
+    given = {"highest": 1.0, "tolerance": 0.1, "narrowest_resurrection": 0.5} | changed
+    return lambda: find_thresholds(T2, MOTION, None, **given)
 
 
 def swept(bodies=T2, motions=SHAKE, dt=0.01, scales=(1.0,), **more):
@@ -151,18 +165,34 @@ UNUSABLE = [
     (swept(theta0=0.1), "theta0: expected a list with one entry per body, got 0.1"),
     (swept(theta0=[(0.1, 0.2)]), "theta0: expected 1 finite number(s), got (0.1, 0.2)"),
     # what is built on them
-    (
-        lambda: find_step_size_sensitive(T2, MOTION, None, [1.0], sample=0),
-        "sample: expected at least one",
-    ),
-    (
-        lambda: find_step_size_sensitive(T2, MOTION, None, [1.0], sample="x"),
-        "sample: expected a whole number",
-    ),
+    (examined(find_step_size_sensitive, sample=0), "sample: expected at least one"),
+    (examined(find_step_size_sensitive, sample="x"), "sample: expected a whole number"),
+    (examined(outcome_robustness, perturbation=0.0), "perturbation: expected a relative change"),
+    (examined(outcome_robustness, perturbation="a"), "perturbation: expected a finite number"),
+    (examined(outcome_robustness, perturbation=0.01, copies=0), "copies: expected at least one"),
+    (searched(highest=-1.0), "highest: expected a positive number"),
+    (searched(tolerance=-1.0), "tolerance: expected a positive number"),
+    (searched(narrowest_resurrection=-1.0), "narrowest_resurrection: expected a positive number"),
     (lambda: rocking_spectrum(MOTION, ["a"], [0.2]), "periods: expected numbers [s], got text"),
+    (lambda: rocking_spectrum(MOTION, [], [0.2]), "at least one period"),
+    (lambda: rocking_spectrum(MOTION, [1.0], []), "at least one period"),
+    (lambda: rocking_spectrum(MOTION, [0.0], [0.2]), "period: 2π/p"),
+    (lambda: rocking_spectrum(MOTION, [math.nan], [0.2]), "period: 2π/p"),
     (lambda: rocking_spectrum(MOTION, [1.0], [2.0]), "alpha: a critical angle lies between"),
+    (lambda: rocking_spectrum(MOTION, [1.0], [math.nan]), "critical angle lies between"),
     (lambda: restitution_from_peaks(T2, "peaks"), "peaks: expected numbers [rad], got 'peaks'"),
     (lambda: restitution_from_peaks(T2, [0.1 + 0j, 0.05]), "got complex ones"),
+    (lambda: restitution_from_peaks(T2, [0.1]), "at least 2 numbers"),
+    (lambda: restitution_from_peaks(T2, [0.1, -0.05, -0.02]), "alternate in sign"),
+    (lambda: restitution_from_peaks(T2, [5.0, 3.0]), "critical angle"),
+    (lambda: restitution_from_peaks(T2, [0.1, math.nan]), "entry 1 is not a finite"),
+    (lambda: restitution_from_peaks(T2, [0.1, 0.07, 0.05], confidence=2.0), "between 0 and 1"),
+    (lambda: restitution_from_impacts(T2, [0.0, 0.5]), "at least 3 numbers"),
+    (lambda: restitution_from_impacts(T2, [0.0, 0.5, 0.4]), "entry 2 is not later"),
+    (lambda: restitution_from_history(T2, NINE**2, np.ones(9)), "evenly spaced"),
+    (lambda: restitution_from_history(T2, NINE, np.ones(8)), "one per time"),
+    (lambda: restitution_from_history(T2, NINE / 100, np.ones(9) / 10), "two impacts"),
+    (lambda: restitution_from_history(T2, NINE, ["a"] * 9), "numbers [rad], got text"),
 ]
 
 

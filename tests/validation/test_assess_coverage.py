@@ -16,7 +16,7 @@ import pytest
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.objects import ON_POINTS, Objects, higher, wider
+from rockfrag.assess.objects import ON_POINTS, Objects, stretched_block
 from rockfrag.assess.outcomes import make_intensity_levels, outcomes_of_all
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Request, make_request
@@ -157,8 +157,9 @@ def _drawn(
             told, livelier=1 + told.tolerances["restitution"] * random.standard_normal()
         )
     z = random.standard_normal(2)
-    block = wider(truth.block, 1 + told.tolerances["width"] * z[0])
-    truth = replace(truth, block=higher(block, 1 + told.tolerances["cg_height"] * z[1]))
+    block = stretched_block(truth.block, 1 + told.tolerances["width"] * z[0])
+    height = 1 + told.tolerances["cg_height"] * z[1]
+    truth = replace(truth, block=stretched_block(block, height=height))
     place = _true_place(request.place, random)
     spread = MODEL_ERRORS[kind].beyond * (outside if kind == CUT else 1.0)
     error = random.normal(0, spread) + random.normal(0, SPACE)

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import special
 
+from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G, HazardCurve
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import ObjectOutcomes
@@ -23,8 +23,6 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.fragility.vector import VectorFragility, fit_vector
 from rockfrag.motions.intensity import IntensityMeasure
-
-Floats = NDArray[np.float64]
 
 UNKNOWN = {"magnitude": 0.5, "ln_distance": 0.7, "ln_vs30": 0.45}
 """Standard deviations of what is not known of the earthquakes and the ground of a site: estimates of ours, half a
@@ -40,15 +38,13 @@ TOGETHER = 0.25
 """Relative standard deviation of the spread of ln PGV at a given level, which two hazard curves do not say: of
 ours."""
 
-NODES = 11
-"""Values of equal probability that stand for the spread of ln PGV/IM."""
+NODES = 11  # Values of equal probability that stand for the spread of ln PGV/IM
 
 OF_DISPLACEMENT = 2.0
 """Largest weight of ln PGV/IM [-]: a motion stretched in time by r at a given PGA has a PGV larger by r and a
 displacement larger by r²."""
 
-MOST_LEVELS = 8
-"""Levels of a motion that are fitted; tests under one motion depend on each other."""
+MOST_LEVELS = 8  # Levels of a motion that are fitted; tests under one motion depend on each other
 
 
 @dataclass(frozen=True)

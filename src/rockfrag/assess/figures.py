@@ -7,8 +7,7 @@ from rockfrag.assess.answer import Assessment
 from rockfrag.assess.words import NAMES
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, one_panel, plain_log
 
-_REACHED = 0.995
-"""Fraction of motions up to which the curves are shown."""
+_REACHED = 0.995  # Fraction of motions up to which the curves are shown
 
 
 def fractions_figure(found: Assessment) -> Figure:

@@ -33,8 +33,7 @@ from rockfrag.report.part import (
 from rockfrag.report.study_report import page_text
 from rockfrag.report.wording import number
 
-MOST_DRAWN = 40
-"""Objects of which the correlation is drawn: those that add most."""
+MOST_DRAWN = 40  # Objects of which the correlation is drawn: those that add most
 
 RANKING = (
     Column("name", "Object"),

@@ -5,28 +5,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
-from rockfrag.assess.objects import Objects, higher
+from rockfrag.assess.objects import Objects, stretched_block
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
-from rockfrag.fragility.intervals import jackknife_error
+from rockfrag.fragility.intervals import jackknife_error, student
 from rockfrag.system.blocks import Block, Body, Stack, stacked
 
-WIDER = 1.25
-"""Width of a foot plate over that of the base."""
-
-PLATE, STEEL = 0.02, 7850.0
-"""Thickness of a foot plate [m], square and of steel [kg/m³]."""
-
-LOWER = 0.8
-"""Factor of a lower centre of gravity."""
+WIDER = 1.25  # Width of a foot plate over that of the base
+PLATE, STEEL = 0.02, 7850.0  # Thickness of a foot plate [m], square and of steel [kg/m³]
+LOWER = 0.8  # Factor of a lower centre of gravity
 
 BALLAST, BALLAST_AT = 0.25, 0.05
 """Mass of ballast over that of the object, and its height over that of the object."""
 
-PEDESTAL_HEIGHT = 0.5
-"""Height of another pedestal over that of the one that is there."""
+PEDESTAL_HEIGHT = 0.5  # Height of another pedestal over that of the one that is there
 
 
 @dataclass(frozen=True)
@@ -47,7 +40,9 @@ def mitigations_of(objects: Objects) -> dict[str, Body]:
     """Bodies that result from each change of the object."""
     block, pedestals = objects.block, objects.pedestals
     lower = {
-        f"a centre of gravity {100 * (1 - LOWER):.0f} % lower": higher(block, LOWER),
+        f"a centre of gravity {100 * (1 - LOWER):.0f} % lower": stretched_block(
+            block, height=LOWER
+        ),
         f"ballast of {100 * BALLAST:.0f} % of its mass in its foot": with_ballast(block),
     }
     if not pedestals:
@@ -121,19 +116,15 @@ def compare(
     target: Target, now: ObjectOutcomes, changed: Mapping[str, ObjectOutcomes]
 ) -> list[Mitigation]:
     """Estimate again with each change of the object."""
-    return [_mitigation(target, name, now, outcomes) for name, outcomes in changed.items()]
-
-
-def _mitigation(
-    target: Target, name: str, now: ObjectOutcomes, changed: ObjectOutcomes
-) -> Mitigation:
-    before, after = target.value(now), target.value(changed)
-    helps = after > before if math.isinf(target.certain) else after < before
-    if not (math.isfinite(before) and before > 0 and math.isfinite(after)):
-        return Mitigation(name, after, math.nan, math.nan, math.nan, helps)
-    factor = after / before
-    limits = _limits(target, now, changed, factor)
-    return Mitigation(name, after, factor, *limits, helps)
+    before, found = target.value(now), []
+    for name, outcomes in changed.items():
+        after, factor, limits = target.value(outcomes), math.nan, (math.nan, math.nan)
+        if math.isfinite(before) and before > 0 and math.isfinite(after):
+            factor = after / before
+            limits = _limits(target, now, outcomes, factor)
+        helps = after > before if math.isinf(target.certain) else after < before
+        found.append(Mitigation(name, after, factor, *limits, helps))
+    return found
 
 
 def _limits(
@@ -146,5 +137,5 @@ def _limits(
     if groups < 2 or not np.isfinite(pairs).all() or (pairs <= 0).any():
         return math.nan, math.nan
     ratios = np.log(pairs[:, 0] / pairs[:, 1])
-    half = float(stats.t.ppf(0.5 + LEVEL / 2, groups - 1) * jackknife_error(ratios))
+    half = float(student(LEVEL, groups) * jackknife_error(ratios))
     return factor * math.exp(-half), factor * math.exp(half)

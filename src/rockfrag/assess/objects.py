@@ -1,7 +1,7 @@
 """The object and what it stands on as blocks, what was assumed of them, and what is not known to the digit."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -37,17 +37,13 @@ ON_POINTS = {"livelier": 0.85, "restitution": 0.1}
 """Middle and relative standard deviation of the restitution of a scanned body over that of momentum, which is
 uniform from 0.7 to 1 (:mod:`rockfrag.campaign.standing`)."""
 
-ROLLING = 1.0
-"""Restitution of a round base: its rim rolls from edge to edge and loses nothing."""
-
-HIGHER = 1.0 + 1e-9
-"""Height of a body that is another one than the object, over that of the object."""
+ROLLING = 1.0  # Restitution of a round base: its rim rolls from edge to edge and loses nothing
+HIGHER = 1.0 + 1e-9  # Height of a body that is another one than the object, over that of the object
 
 ASIDE = 45.0
 """Angle to both sides of how it faces the shaking, where nobody said it [degrees]: two at a right angle."""
 
-ALONE = "on the floor"
-"""How an object stands without a pedestal."""
+ALONE = "on the floor"  # How an object stands without a pedestal
 
 
 @dataclass(frozen=True)
@@ -192,11 +188,14 @@ class Objects:
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
-        moves = {"width": self._wider, "cg_height": self._higher}
+        moves: dict[str, Callable[[float], Objects]] = {
+            "width": lambda factor: self._stretched(width=factor),
+            "cg_height": lambda factor: self._stretched(height=factor),
+        }
         if not self.round:  # of a body in space that of the planar answer
             moves["restitution"] = lambda factor: replace(self, livelier=self.livelier * factor)
         if self.pedestals:
-            moves["mass"] = self._heavier
+            moves["mass"] = lambda factor: self._stretched(mass=factor)
         found = moved_to_both_sides(moves, self.tolerances)
         if self.scan is not None:
             found += _standing(self, self.scan)
@@ -205,28 +204,15 @@ class Objects:
             found.append(Moved("facing", 0.0, *turned))
         return found
 
-    def _stretched(self, *factors: float) -> RigidBody | None:
-        """The scan in space, if there is one, by the factors of :func:`stretched`."""
-        return None if self.scanned is None else stretched(self.scanned, *factors)
-
-    def _wider(self, factor: float) -> "Objects":
+    def _stretched(self, width: float = 1.0, height: float = 1.0, mass: float = 1.0) -> "Objects":
         """Move all edges: what carries is uncertain at the foot of a pedestal as at that of a statue."""
         return replace(
             self,
-            depth=None if self.depth is None else self.depth * factor,
-            block=wider(self.block, factor),
-            scanned=self._stretched(factor, 1.0, 1.0),
-            pedestals=tuple(wider(block, factor) for block in self.pedestals),
+            depth=self.depth and self.depth * width,
+            block=stretched_block(self.block, width, height, mass),
+            scanned=self.scanned and stretched(self.scanned, width, height, mass),
+            pedestals=tuple(stretched_block(block, width) for block in self.pedestals),
         )
-
-    def _higher(self, factor: float) -> "Objects":
-        scanned = self._stretched(1.0, factor, 1.0)
-        return replace(self, block=higher(self.block, factor), scanned=scanned)
-
-    def _heavier(self, factor: float) -> "Objects":
-        mass, inertia = self.block.mass * factor, self.block.centroidal_inertia * factor
-        heavier = replace(self.block, mass=mass, inertia=inertia)
-        return replace(self, block=heavier, scanned=self._stretched(1.0, 1.0, factor))
 
 
 def _standing(objects: Objects, scan: Scan) -> list[Moved[Objects]]:
@@ -263,15 +249,16 @@ def stretched(body: RigidBody, width: float, height: float, mass: float) -> Rigi
     )
 
 
-def wider(block: Block, factor: float) -> Block:
-    """A block whose edges are further apart; mass, centre of gravity and inertia stay."""
-    return replace(block, width=block.width * factor, inertia=block.centroidal_inertia)
-
-
-def higher(block: Block, factor: float) -> Block:
-    """A block whose centre of gravity is higher; its inertia about it stays."""
+def stretched_block(
+    block: Block, width: float = 1.0, height: float = 1.0, mass: float = 1.0
+) -> Block:
+    """A block with edges further apart, a higher centre of gravity and more mass, by factors."""
     return replace(
-        block, cg_height=min(block.h * factor, block.height), inertia=block.centroidal_inertia
+        block,
+        width=block.width * width,
+        mass=block.mass * mass,
+        inertia=block.centroidal_inertia * mass,
+        cg_height=min(block.h * height, block.height),
     )
 
 

@@ -32,8 +32,7 @@ from rockfrag.report.part import Answer, FigureSpec, Section, figure_of, finding
 from rockfrag.report.study_report import page_text
 from rockfrag.report.wording import PART, number, one_line, said, sentence
 
-MOTIONS_SHOWN = 15
-"""Rows of the table of motions that topple the object first."""
+MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
 
 FURTHEST = 3.0
 """Return periods are given up to so many times what the hazard curve reaches; beyond, its slope is a guess."""

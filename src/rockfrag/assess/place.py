@@ -14,20 +14,14 @@ from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.schema import checked
 
-STOREY_HEIGHT = 3.5
-"""Height of a storey of a building of which nothing is known [m]."""
-
-STOREY_MASS = 300_000.0
-"""Mass of its floors [kg]; equal floors respond alike whatever they weigh."""
-
-HIGHEST_BUILDING = 40
-"""Storeys up to which the rule for the period is used."""
+STOREY_HEIGHT = 3.5  # Height of a storey of a building of which nothing is known [m]
+STOREY_MASS = 300_000.0  # Mass of its floors [kg]; equal floors respond alike whatever they weigh
+HIGHEST_BUILDING = 40  # Storeys up to which the rule for the period is used
 
 TOLERANCES = {"period": 0.3, "damping": 0.4}
 """Relative standard deviations of an assumed building's first period and damping, unless stated."""
 
-TOLERANCE_OF_KNOWN_PERIOD = 0.1
-"""That of a first period that was given [-]."""
+TOLERANCE_OF_KNOWN_PERIOD = 0.1  # That of a first period that was given [-]
 
 PERIOD_FACTORS = {"steel": 0.085, "concrete": 0.075, "masonry": 0.05}
 """C_t of T = C_t H^(3/4) with H in metres: frames of steel and of concrete, all other buildings
@@ -42,8 +36,7 @@ ORDINALS = (
 ENDINGS = {digit: ORDINALS[digit][-2:] for digit in (1, 2, 3)}
 """Endings of numbers by their last digit."""
 
-_WHOLE = ("masses_", "masses")
-"""Keys that only the description of a whole building has begin so."""
+_WHOLE = ("masses_", "masses")  # Keys that only the description of a whole building has begin so
 
 _FLOOR = re.compile(r"\s*(\d+)\s*(?:/|of)\s*(\d+)\s*")
 

@@ -26,11 +26,8 @@ from rockfrag.schema import checked
 from rockfrag.units import quantity
 from rockfrag.yaml_file import read_yaml
 
-LONGEST_PERIOD = 1e6
-"""Longest return period of a level [year]."""
-
-YEARS = 50.0
-"""Time for which the probability is given unless another is asked for [year]."""
+LONGEST_PERIOD = 1e6  # Longest return period of a level [year]
+YEARS = 50.0  # Time for which the probability is given unless another is asked for [year]
 
 
 @dataclass(frozen=True)

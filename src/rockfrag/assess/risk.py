@@ -16,18 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special, stats
 
+from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
 from rockfrag.assess.outcomes import ObjectOutcomes, fraction_at
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
-Floats = NDArray[np.float64]
-
 Sides = Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]]
 """Outcomes with each property moved to both sides by its standard deviation."""
 
-LEVEL = 0.90
-"""Confidence of the intervals."""
+LEVEL = 0.90  # Confidence of the intervals
 
 HALF = 0.5
 """Part of an earthquake that is added on either side of counted fractions (Haldane 1956, Anscombe 1956)."""
@@ -305,8 +303,7 @@ def estimate_rocking(
     return Estimate(1.0, min([1 - hidden, *sides]), 1.0, {})
 
 
-REFERENCE_YEARS = 50.0
-"""Time for which the steps hold [year]."""
+REFERENCE_YEARS = 50.0  # Time for which the steps hold [year]
 
 
 @dataclass(frozen=True)

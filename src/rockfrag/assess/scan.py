@@ -37,8 +37,7 @@ SOURCE_OF = {
 }
 """Sources of uncertainty by the unknown."""
 
-WAYS = 256
-"""Ways to stand that are drawn."""
+WAYS = 256  # Ways to stand that are drawn
 
 KNOWN_CONTACT_SPREAD = 0.2
 """Relative standard deviation of a contact tolerance that was given: of ours."""

@@ -133,14 +133,9 @@ def parts_of(sources: Mapping[str, float]) -> dict[str, float]:
     return {name: sources[name] ** 2 / total for name in ranked}
 
 
-LIKELY, UNLIKELY = 0.5, 0.01
-"""An interval of a fraction that holds both tells nothing."""
-
-LEAST_GAIN = 0.15
-"""Fraction of the variance that a measurement must take away to be worth naming."""
-
-MOST_NAMED = 2
-"""Measurements that are named together."""
+LIKELY, UNLIKELY = 0.5, 0.01  # An interval of a fraction that holds both tells nothing
+LEAST_GAIN = 0.15  # Fraction of the variance that a measurement must take away to be worth naming
+MOST_NAMED = 2  # Measurements that are named together
 
 
 MEASUREMENTS: Mapping[str, Measurement] = {
@@ -149,21 +144,13 @@ MEASUREMENTS: Mapping[str, Measurement] = {
 """Measurements by the source of uncertainty that they narrow."""
 
 
-@dataclass(frozen=True)
-class Narrowed:
-    """An interval as it would be with more known."""
-
-    known: tuple[str, ...]  # Sources that were measured, the most helpful first
-    estimate: Estimate  # The same value with the narrower interval
-
-
 def is_wide(estimate: Estimate) -> bool:
     """Whether an interval reaches from unlikely to likely."""
     return estimate.lower < UNLIKELY and estimate.upper > LIKELY
 
 
-def narrowed(estimate: Estimate) -> Narrowed | None:
-    """Return the interval with the measurements that narrow it most; None where none is worth it."""
+def narrowed(estimate: Estimate) -> tuple[list[str], Estimate] | None:
+    """Return what narrows an interval most if it is measured, and the estimate then; None where nothing does."""
     variances = {name: value**2 for name, value in estimate.sources.items()}
     total = sum(variances.values())
     if not (0 < estimate.value < 1 and math.isfinite(total) and total > 0):
@@ -186,4 +173,4 @@ def narrowed(estimate: Estimate) -> Narrowed | None:
     ratio = math.sqrt(sum(value**2 for value in left.values()) / total)
     middle, low, high = special.logit([estimate.value, estimate.lower, estimate.upper])
     lower, upper = (float(special.expit(middle + ratio * (end - middle))) for end in (low, high))
-    return Narrowed(tuple(known), Estimate(estimate.value, lower, upper, left))
+    return known, Estimate(estimate.value, lower, upper, left)

@@ -15,20 +15,11 @@ from rockfrag.report.wording import Macros, one_line, said
 NAMES: Mapping[str, str] = {name: source.words for name, source in SOURCES.items()}
 """Sources of uncertainty and assumptions as a reader may know them."""
 
-MOST_SOURCES = 3
-"""Sources of uncertainty that are named in a line."""
-
-LEAST_PART = 0.05
-"""Part of the variance from which a source is worth naming [-]."""
-
-MANY = 0.5
-"""Fraction of motions from which an object is said to topple."""
-
-FEW = 0.01
-"""Fraction of motions up to which it is said to be unlikely to topple."""
-
-MOST_ASSUMPTIONS = 3
-"""Assumptions that are named in a line; the page has all."""
+MOST_SOURCES = 3  # Sources of uncertainty that are named in a line
+LEAST_PART = 0.05  # Part of the variance from which a source is worth naming [-]
+MANY = 0.5  # Fraction of motions from which an object is said to topple
+FEW = 0.01  # Fraction of motions up to which it is said to be unlikely to topple
+MOST_ASSUMPTIONS = 3  # Assumptions that are named in a line; the page has all
 
 
 def fraction_words(value: float) -> str:

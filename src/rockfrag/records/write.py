@@ -30,16 +30,13 @@ def write_motion(
 
     Parameters
     ----------
-    motion
-        What to write.
-    path
-        The file; its folder is made.
+    motion : what to write
+    path : the file; its folder is made
     format
         ``AT2`` (PEER), ``CSV``, ``SEISMOSOFT``, ``OPENSEES`` (a Tcl script with a Path series) or
         ``MSEED`` (float64, in m/s², with a StationXML file beside it that states the unit). None:
         as the ending of the path says (``.AT2``, ``.csv``, ``.dat``, ``.tcl``, ``.mseed``).
-    unit
-        Unit of the numbers in the file; g for AT2 and SeismoSoft and m/s² for the others if None.
+    unit : unit of the numbers in the file; g for AT2 and SeismoSoft and m/s² for the others if None
 
     Returns
     -------

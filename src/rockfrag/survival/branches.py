@@ -15,14 +15,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rockfrag.assess.hazard.curve import HazardCurve, make_curve
-from rockfrag.assess.hazard.reading import LARGEST_FILE, read_openquake
-from rockfrag.assess.hazard.table import annual_rates, level_column, measure_of
+from rockfrag.assess.hazard.reading import (
+    LARGEST_FILE,
+    annual_rates,
+    level_column,
+    measure_of,
+    read_openquake,
+)
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.tabular import read_cells, read_rows, read_text
+from rockfrag.tabular import Row, read_cells, read_rows, read_text
 
-MOST_BRANCHES = 10_000
-"""Branches of one site."""
+MOST_BRANCHES = 10_000  # Branches of one site
 
 WEIGHT_ERROR = 1e-3
 """By how much the sum of weights may differ from 1, which rounding to four digits explains."""
@@ -114,23 +118,22 @@ def _table(path: str | os.PathLike[str]) -> dict[str, tuple[float, HazardCurve]]
             f"return_period_years or such as poe_50_years; found {', '.join(header)[:120] or 'nothing'}."
         )
     measure, factor = measure_of(levels[0], str(path))
-    points: dict[str, list[tuple[float, float]]] = {}
-    weights: dict[str, float] = {}
+    rows: dict[str, list[Row]] = {}
     for row in read_rows(path, header, least=2):
-        name, weight = row.text("branch"), row.number("weight")
-        if weights.setdefault(name, weight) != weight:
-            raise row.error(
-                "weight", f"branch {name} has the weight {weights[name]:g} in an earlier row"
-            )
-        points.setdefault(name, []).append((row.positive(levels[0]) * factor, row.number(rates[0])))
+        rows.setdefault(row.text("branch"), []).append(row)
     found = {}
-    for name, pairs in points.items():
-        x, y = zip(*sorted(pairs), strict=True)
+    for name, mine in rows.items():
+        weight, points = mine[0].number("weight"), []
+        for row in mine:
+            if row.number("weight") != weight:
+                raise row.error(
+                    "weight", f"branch {name} has the weight {weight:g} in an earlier row"
+                )
+            points.append((row.positive(levels[0]) * factor, row.number(rates[0])))
+        x, y = zip(*sorted(points), strict=True)
         where = f"{path}, branch {name[:60]}"
-        found[name] = (
-            weights[name],
-            make_curve(measure, x, annual_rates(rates[0], list(y), where), where),
-        )
+        curve = make_curve(measure, x, annual_rates(rates[0], list(y), where), where)
+        found[name] = (weight, curve)
     return found
 
 

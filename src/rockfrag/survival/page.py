@@ -13,9 +13,10 @@ from matplotlib.figure import Figure
 
 from rockfrag import figure_style as style
 from rockfrag.files import file_name, write_table, write_text
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import page_text
+from rockfrag.report.wording import number
 from rockfrag.sentences import sayer
 from rockfrag.survival.answer import LIMITS, RULED_OUT, Constrained
 from rockfrag.survival.reweight import DECISION_RATE
@@ -141,17 +142,15 @@ def page_of(found: Constrained) -> str:
 
 
 def _hazard(found: Constrained) -> Markup:
-    unit = found.site.measure.unit
-    columns = (
-        Column("annual_rate", "Annual rate [1/year]", numeric=True),
-        Column("level_before", f"Before [{unit}]", 3),
-        Column("level_after", f"After [{unit}]", 3),
-        Column("level_ratio", "Level after / before", 2),
-        Column("rate_ratio", "Rate of the level before, after / before", 2),
-    )
-    table = found.result.ratios()
-    table["annual_rate"] = [f"{rate:g}" for rate in table["annual_rate"]]
-    return table_html(table, columns, "Mean hazard at annual rates of 1e-2 to 1e-5.")
+    unit, rows = found.site.measure.unit, found.result.ratios().to_dict("list")
+    shown = {
+        "Annual rate [1/year]": [f"{rate:g}" for rate in rows["annual_rate"]],
+        f"Before [{unit}]": [number(level, 3) for level in rows["level_before"]],
+        f"After [{unit}]": [number(level, 3) for level in rows["level_after"]],
+        "Level after / before": [number(ratio, 2) for ratio in rows["level_ratio"]],
+        "Rate of the level before, after / before": [number(r, 2) for r in rows["rate_ratio"]],
+    }
+    return text_table(shown, "Mean hazard at annual rates of 1e-2 to 1e-5.", list(shown))
 
 
 def _branches(found: Constrained) -> list[Markup | FigureSpec]:
@@ -162,11 +161,8 @@ def _branches(found: Constrained) -> list[Markup | FigureSpec]:
     return [weights, table_html(found.result.table(), BRANCHES, caption, file)]
 
 
-MOST_BRANCHES_SHOWN = 20
-"""Branches whose weights are drawn: those that matter most before or after."""
-
-LONGEST_LABEL = 34
-"""Characters of a branch's name beside its weights."""
+MOST_BRANCHES_SHOWN = 20  # Branches whose weights are drawn: those that matter most before or after
+LONGEST_LABEL = 34  # Characters of a branch's name beside its weights
 
 
 def curves_figure(found: Constrained) -> Figure:

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import special
 
+from rockfrag.arrays import Floats
 from rockfrag.survival.evidence import (
     ShakingRates,
     StandingObject,
@@ -26,19 +26,13 @@ from rockfrag.survival.evidence import (
 )
 from rockfrag.survival.site import Site
 
-Floats = NDArray[np.float64]
-
-SAMPLES = 1024
-"""Draws of ages and errors of fragilities."""
-
-DECISION_RATE = 1e-4
-"""Annual rate at which sensitivities are compared [1/year]."""
+SAMPLES = 1024  # Draws of ages and errors of fragilities
+DECISION_RATE = 1e-4  # Annual rate at which sensitivities are compared [1/year]
 
 RATES = (1e-2, 1e-3, 1e-4, 1e-5)
 """Annual rates at which curves before and after are compared [1/year]."""
 
-QUANTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
-"""Fractiles of the hazard over the branches."""
+QUANTILES = (0.05, 0.16, 0.5, 0.84, 0.95)  # Fractiles of the hazard over the branches
 
 
 @dataclass(frozen=True)

@@ -21,14 +21,12 @@ from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.units import GRAVITY
 
-MOST_BYTES = 6_000_000
-"""Largest page [bytes], which a memory stick and a mail take."""
+MOST_BYTES = 6_000_000  # Largest page [bytes], which a memory stick and a mail take
 
 LANGUAGES = ("en", "it")
 """Languages of the page, each a file of texts; what one lacks is said in the first."""
 
-_FACTORS = (GRAVITY, 0.01, 1.0)
-"""Factors of units in which records state decimals [m/s²]."""
+_FACTORS = (GRAVITY, 0.01, 1.0)  # Factors of units in which records state decimals [m/s²]
 
 _MOST_DIGITS = 9
 

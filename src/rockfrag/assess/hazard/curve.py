@@ -6,20 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure, declared
 from rockfrag.short_repr import short_repr
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 
-Floats = NDArray[np.float64]
-
 HIGHEST = {"PGA": 10.0, "SA": 30.0, "PGV": 2000.0}
 """Levels beyond which a curve is in another unit: g, g and cm/s."""
 
-HIGHEST_RATE = 100.0
-"""Shaking that is exceeded more often a year is no earthquake hazard [1/year]."""
+HIGHEST_RATE = 100.0  # Shaking that is exceeded more often a year is no earthquake hazard [1/year]
 
 DAMAGING = {"PGA": 0.02, "SA": 0.02, "PGV": 1.0}
 """A curve that ends below this level says nothing about what topples: g, g and cm/s."""
@@ -27,8 +25,7 @@ DAMAGING = {"PGA": 0.02, "SA": 0.02, "PGV": 1.0}
 EC8_SLOPE = 3.0
 """Exponent of a hazard curve H ~ a^-k of which one point is known (EN 1998-1:2004, note to 2.1(4))."""
 
-EC8_SLOPE_SD = 0.6
-"""Standard deviation of that exponent: 2 to 4 are seen in Europe and America."""
+EC8_SLOPE_SD = 0.6  # Standard deviation of that exponent: 2 to 4 are seen in Europe and America
 
 FLANKS = (0.16, 0.84)
 """Quantiles that a level continued with the exponents one standard deviation away stands for."""
@@ -156,8 +153,7 @@ def curve_of_one_level(measure: IntensityMeasure, level: float, years: float) ->
     return main
 
 
-PERIODS = (0.01, 10.0)
-"""Periods of Sa that hazard models cover [s]."""
+PERIODS = (0.01, 10.0)  # Periods of Sa that hazard models cover [s]
 
 VELOCITY_PER_G = GRAVITY * CENTIMETRES_PER_METRE
 """PGV over (a measure in g times PGV over it): cm/s for g and s."""

@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.engines.kernels.jit import entry_kernel, kernel
+from rockfrag.engines.planar import impact
 from rockfrag.engines.planar import step as stepping
-from rockfrag.engines.planar.impact import lift_laws, strike
-from rockfrag.engines.planar.modes import approach, kinetic_energy, project, settle
 from rockfrag.engines.planar.search import mode_number
 from rockfrag.engines.planar.solve import end_of, look_at, solve
 
@@ -216,7 +215,7 @@ def integrate(p, shaking, start, closing, book, w):
                     w.a[d] = w.a1[d]
                 fresh = False
                 jolts = 0
-                project(p, w)
+                impact.project(p, w)
                 tau += step
                 if 1.0 - tau < 1e-12:
                     tau = 1.0
@@ -234,7 +233,7 @@ def integrate(p, shaking, start, closing, book, w):
                     for d in range(3 * p.count):
                         w.q[d] = w.q0[d]
                         w.v[d] = w.v0[d]
-                project(p, w)
+                impact.project(p, w)
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
                 jolts = jolts if idle > 0 else 0
@@ -283,7 +282,7 @@ def _begin(p, w, start):
         w.v[d] = start[1, d]
         w.a[d] = 0.0
     look_at(p, w, w.q)
-    lift_laws(p, w)
+    impact.lift_laws(p, w)
     for k in range(p.count):
         w.slides[k] = 0
         for end in range(2):
@@ -370,7 +369,7 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
                     solve(p, w, w.q, w.v, now.ah, now.av, True, False)
                     for d in range(3 * p.count):
                         w.v[d] = w.out[d]
-                    project(p, w)
+                    impact.project(p, w)
                     w.resting = 0
         for end in range(2):
             touches = w.closed[k, end] == 1
@@ -386,18 +385,18 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
     hit = False
     for k in range(p.count):
         for end in range(2):
-            if w.touching[k, end] == 1 and approach(p, w, k, end) < -1e-13 * p.speed:
+            if w.touching[k, end] == 1 and impact.approach(p, w, k, end) < -1e-13 * p.speed:
                 hit = True
     if hit:
-        strike(p, w, now.ah, now.av, closing * p.speed, False)
+        impact.strike(p, w, now.ah, now.av, closing * p.speed, False)
         _touch_closed(p, w)
         kind = IMPACT
         exclude = False
-    if not settle(p, w, now.ah, now.av, exclude):
+    if not impact.settle(p, w, now.ah, now.av, exclude):
         w.paradoxes += 1
-        strike(p, w, now.ah, now.av, closing * p.speed, True)
+        impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
         _touch_closed(p, w)
-        settle(p, w, now.ah, now.av, False)
+        impact.settle(p, w, now.ah, now.av, False)
         kind = PARADOX
     for k in range(p.count):
         if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
@@ -414,9 +413,9 @@ def _jolt(p, w, now, closing, contact_events, count):
     _remember(p, w)
     _touch_closed(p, w)
     look_at(p, w, w.q)
-    strike(p, w, now.ah, now.av, closing * p.speed, True)
+    impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
     _touch_closed(p, w)
-    settle(p, w, now.ah, now.av, False)
+    impact.settle(p, w, now.ah, now.av, False)
     w.met += 1
     return _note(p, w, now.time, PARADOX, contact_events, count)
 
@@ -504,8 +503,8 @@ def _note(p, w, time, kind, contact_events, count):
         contact_event[1] = kind
         contact_event[2] = before
         contact_event[3] = after
-        contact_event[4] = kinetic_energy(p, w.old_v)
-        contact_event[5] = kinetic_energy(p, w.v)
+        contact_event[4] = impact.kinetic_energy(p, w.old_v)
+        contact_event[5] = impact.kinetic_energy(p, w.v)
         for k in range(p.count):
             contact_event[6 + k] = slip(p, w, k)
             contact_event[6 + p.count + k] = w.q[3 * k + 2]

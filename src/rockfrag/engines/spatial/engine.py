@@ -46,7 +46,7 @@ class SpatialResponse:
 
     def plot(self, title: str = "") -> "Figure":
         """Draw the path of the axis, and the base in the plan."""
-        from rockfrag.engines.spatial.response_figure import spatial_figure
+        from rockfrag.engines.response_figure import spatial_figure
 
         return spatial_figure(self.outcome, self.history, self.outline, title)
 
