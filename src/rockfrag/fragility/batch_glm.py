@@ -26,7 +26,6 @@ class BatchFit:
     """Coefficients of a batch of regressions of the same predictors."""
 
     coefficients: Floats  # shape (batch, k); NaN where all tests of a replicate agree
-    log_likelihood: Floats  # without binomial coefficients and without the penalty, shape (batch,)
     information: Floats  # expected (Fisher) information, shape (batch, k, k)
     converged: NDArray[np.bool_]  # shape (batch,)
 
@@ -66,7 +65,6 @@ def fit_batch(
     coefficients = np.zeros((batch, columns)) if start is None else np.tile(start, (batch, 1))
     coefficients[~mixed] = np.nan
     objective = np.full(batch, -np.inf)
-    log_likelihood = np.zeros(batch)
     information = np.full((batch, columns, columns), np.nan)
     converged = ~mixed
     active = np.flatnonzero(mixed)
@@ -80,12 +78,11 @@ def fit_batch(
         y, m = failures[active], trials[active]
         eta = np.clip(trial @ design.T, -_LARGEST_PREDICTOR, _LARGEST_PREDICTOR)
         log_p, log_q, log_density, weight_slope = log_terms(eta, link)
-        likelihood = (y * log_p + (m - y) * log_q).sum(axis=1)
+        goal = (y * log_p + (m - y) * log_q).sum(axis=1)
         weight = m * np.exp(2.0 * log_density - log_p - log_q)
         fisher = (weight @ flat_outer).reshape(-1, columns, columns)
-        goal = likelihood
         if penalised:
-            goal = likelihood + 0.5 * np.linalg.slogdet(fisher)[1]
+            goal = goal + 0.5 * np.linalg.slogdet(fisher)[1]
         worse = goal < objective[active] - 1e-10
         settled = (
             ~worse & (np.abs(step[active]).max(axis=1) < tolerance) & (objective[active] > -np.inf)
@@ -96,7 +93,6 @@ def fit_batch(
         where = active[better]
         coefficients[where] = trial[better]
         objective[where] = goal[better]
-        log_likelihood[where] = likelihood[better]
         information[where] = fisher[better]
         score = (y * np.exp(log_density - log_p) - (m - y) * np.exp(log_density - log_q))[better]
         inverse = np.linalg.pinv(fisher[better], hermitian=True)
@@ -106,7 +102,7 @@ def fit_batch(
         step[where] = np.einsum("bij,bj->bi", inverse, score @ design)
         converged[active[settled]] = True
         active = active[~settled & ~stuck]
-    return BatchFit(coefficients, log_likelihood, information, converged)
+    return BatchFit(coefficients, information, converged)
 
 
 def separated(log_im: Floats, failures: Floats, trials: Floats) -> NDArray[np.bool_]:

@@ -71,36 +71,27 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     rows: list[list[object]] = []
     known = [name for name in floors if name in set(table["floor"])]
     known += sorted(set(table["floor"]) - set(known))
-    table = table.assign(floor=pd.Categorical(table["floor"], known))
-    tied, at_bound = table["d"].abs() < cluster_means.ROUNDING, table["bound"] != ""
+    table = table.assign(
+        floor=pd.Categorical(table["floor"], known),
+        tied=table["d"].abs() < cluster_means.ROUNDING,
+        at_bound=table["bound"] != "",
+    )
     for scope, columns in SCOPES.items():
         groups = table.groupby(list(columns) or np.zeros(len(table)), observed=True)
-        number = groups.ngroup()
-        sampled = cluster_means.sampled_units(table.assign(group=number), "group")
-        about = pd.DataFrame(
-            {
-                "pairs": groups.size().to_numpy(),
-                "earthquakes": groups["earthquake"].nunique().to_numpy(),
-                "tied": tied.groupby(number).sum(),
-                "at_bound": at_bound.groupby(number).sum(),
-            }
-        )
-        for place, (key, of) in enumerate(
-            zip(groups.size().index, about.to_dict("records"), strict=True)
-        ):
+        sampled = cluster_means.sampled_units(table.assign(group=groups.ngroup()), "group")
+        for place, (key, pairs) in enumerate(groups):
             effect = cluster_means.effect_of(sampled[place])
             flips = cluster_means.sign_flip_test(sampled[place].d)
             same = cluster_means.equivalence(effect)
-            names = key if isinstance(key, tuple) else (key,)
-            level = "/".join(str(name) for name in names) if columns else "all"
-            unit = "earthquake" if of["earthquakes"] > 1 else "motion"
+            level = "/".join(map(str, key)) if isinstance(key, tuple) else "all"
+            unit = "earthquake" if len(set(pairs["earthquake"])) > 1 else "motion"
             estimate = (effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p)
             open_to = (cluster_means.detectable_ratio(effect), math.exp(effect.resolution))
             rows.append(
                 [
-                    *(scope, level, of["pairs"], unit, effect.units, *estimate, flips.p),
+                    *(scope, level, len(pairs), unit, effect.units, *estimate, flips.p),
                     *(flips.smallest_p, same, same < EQUIVALENCE_LEVEL, *open_to),
-                    *(of["tied"], of["at_bound"]),
+                    *pairs[["tied", "at_bound"]].sum(),
                 ]
             )
     adjusted = ("p_holm", "p_bh")
