@@ -307,3 +307,11 @@ new Promise(done => {
   look();
 })
 """
+
+
+def opened(
+    browser: Browser, page: Path, *size: int, ready: str = READY, dark: bool = False
+) -> None:
+    """Open a page in a window of a size, and wait until it is ready."""
+    browser.open(page, *size, dark=dark)
+    assert browser.run(ready)

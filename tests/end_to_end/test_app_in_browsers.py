@@ -14,7 +14,7 @@ from rockfrag.assess.words import five_lines
 from rockfrag.cli import main
 
 from ..app_forms import options_of, settings_of, some_form
-from .browsers import QUICK_IN_ONE, Browser, barriers, put, put_file, waited
+from .browsers import QUICK_IN_ONE, Browser, barriers, opened, put, put_file, waited
 
 FORM = {"width": "25 cm", "height": "1 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
 SETTINGS = {"width": "25 cm", "height": "1 m", "pga": "0.4 g", "return_period": "475"}
@@ -34,20 +34,13 @@ def app_page(motions, tmp_path_factory) -> Path:
     return path
 
 
-def opened(browser: Browser, page: Path) -> None:
-    """Open a page and wait for its first answer."""
-    browser.open(page)
-    assert browser.run(STAGE)
-
-
 def lines_of(browser: Browser) -> list[str]:
     return browser.run("[...document.querySelectorAll('#lines dd')].map(line => line.textContent)")
 
 
 @pytest.mark.parametrize(("width", "dark"), [(1400, False), (390, True)])
 def test_it_answers_in_the_words_of_assess(browser, app_page, motions, width, dark):
-    browser.open(app_page, width, 900, dark=dark)
-    assert browser.run(STAGE)
+    opened(browser, app_page, width, 900, ready=STAGE, dark=dark)
     request = make_request(SETTINGS, "form")
     said = [
         line.partition(": ")[2]
@@ -76,8 +69,7 @@ def test_its_figures_are_those_of_the_command(browser, own_records, tmp_path, ca
     records, rng = ["--record", str(own_records / "catalogue.csv")], random.Random(11)
     page = tmp_path / "assess.html"
     assert main(["app", *records, *options_of(FORM), "--output", str(page)]) == 0
-    browser.open(page)
-    assert browser.run(STAGE)
+    opened(browser, page, ready=STAGE)
     compared = 0
     while compared < count:
         form = some_form(rng)
@@ -111,11 +103,10 @@ def test_it_loads_nothing(browser, app_page, tmp_path):
     """There is no network in these tests, the page asks for none, and all ways to ask for one are refused."""
     path = tmp_path / "refused.html"
     path.write_text(app_page.read_text().replace("<head>", f"<head>{REFUSED}", 1))
-    browser.open(path)
-    assert browser.run(STAGE)
+    opened(browser, path, ready=STAGE)
     assert browser.run("location.protocol") == "file:"
     assert browser.run("window.asked") == []
-    opened(browser, app_page)
+    opened(browser, app_page, ready=STAGE)
     loaded = browser.run("performance.getEntriesByType('resource').map(entry => entry.name)")
     assert [name for name in loaded if not name.startswith("blob:")] == []
     refused = browser.run("fetch('data:,x').then(() => false, () => true)")
@@ -123,7 +114,7 @@ def test_it_loads_nothing(browser, app_page, tmp_path):
 
 
 def test_the_last_key_stroke_is_answered(browser, app_page):
-    opened(browser, app_page)
+    opened(browser, app_page, ready=STAGE)
     for text in ("10 cm", "2 m", "45,5 cm"):
         put(browser, "#field-width", text)
         time.sleep(0.15)
@@ -135,7 +126,7 @@ def test_the_last_key_stroke_is_answered(browser, app_page):
 
 @QUICK_IN_ONE
 def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
-    opened(browser, app_page)
+    opened(browser, app_page, ready=STAGE)
     for field, text in (
         ("width", "<img src=x onerror=document.title='hit'>"),
         ("height", "${document.title='hit'}"),
@@ -179,7 +170,7 @@ def test_a_browser_that_is_not_allowed_to_compute_says_so(
 
 
 def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
-    opened(browser, app_page)
+    opened(browser, app_page, ready=STAGE)
     browser.run(
         "URL.createObjectURL = blob => { blob.text().then(text => { window.saved = text; }); return 'blob:x'; }"
     )
@@ -214,8 +205,7 @@ def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
 
 def test_readers_of_every_kind_can_use_it(browser, app_page):
     for width, dark in ((1400, False), (1400, True), (390, False), (390, True)):
-        browser.open(app_page, width, 900, dark=dark)
-        assert browser.run(STAGE)
+        opened(browser, app_page, width, 900, ready=STAGE, dark=dark)
         browser.run("document.getElementById('keep').click()")
         waited(browser, "document.querySelectorAll('#objects tr').length === 1")
         browser.run("document.querySelectorAll('details').forEach(one => { one.open = true; })")
@@ -235,8 +225,7 @@ PICTURE = "document.getElementById('scene').toDataURL()"
 def test_the_page_says_and_shows_what_moves_in_space(browser, motions, tmp_path, form, width):
     path = tmp_path / "assess.html"
     write_app(motions, {key: str(value) for key, value in form.items()}, path, made=True)
-    browser.open(path, width, 1200)
-    assert browser.run(STAGE)
+    opened(browser, path, width, 1200, ready=STAGE)
     found = assess_with(make_request(settings_of(form), "form"), motions)
     said = browser.run("document.getElementById('lines').innerText")
     for line in five_lines(found)[:4]:

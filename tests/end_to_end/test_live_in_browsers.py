@@ -12,7 +12,7 @@ from rockfrag.report.page import render
 from rockfrag.report.part import Answer
 from rockfrag.system.system import turned_about_vertical
 
-from .browsers import READY, Browser, put
+from .browsers import Browser, opened, put
 
 pytestmark = pytest.mark.slow
 
@@ -24,8 +24,7 @@ def outcome(browser: Browser) -> str:
 
 
 def test_the_live_outcome_is_that_of_the_table(browser: Browser, report: Path):
-    browser.open(report)
-    assert browser.run(READY)
+    opened(browser, report)
     bodies = browser.run("document.querySelectorAll('#live .body option').length")
     most = int(browser.run("document.querySelector('#live .amplitude').max"))
     seen = []
@@ -42,8 +41,7 @@ def test_the_live_outcome_is_that_of_the_table(browser: Browser, report: Path):
 
 
 def test_another_width_is_another_body_at_once(browser: Browser, report: Path):
-    browser.open(report)
-    assert browser.run(READY)
+    opened(browser, report)
     before = outcome(browser)
     assert "Live: overturns" in before
     put(browser, "#live .sizes input", "48")
@@ -59,16 +57,14 @@ def test_another_width_is_another_body_at_once(browser: Browser, report: Path):
 
 
 def test_dimensions_that_cannot_stand_are_said_to(browser: Browser, play_page: Path):
-    browser.open(play_page)
-    assert browser.run(READY)
+    opened(browser, play_page)
     put(browser, "#live .sizes input", "900")
     assert "edge" in outcome(browser) or "touch" in outcome(browser) or "stand" in outcome(browser)
     assert browser.console == []
 
 
 def test_keys_move_time(browser: Browser, play_page: Path):
-    browser.open(play_page)
-    assert browser.run(READY)
+    opened(browser, play_page)
     clock = "parseFloat(document.querySelector('#live .clock').textContent)"
     before = browser.run(clock)
     key = "new KeyboardEvent('keydown', {key: 'ArrowLeft'})"
@@ -105,17 +101,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("live") / "space.html"
     element = live_in_space(bodies, [waves()])
     answer = Answer(asked="Does it topple?", sentences=[])
-    path.write_text(
-        render(
-            title="In space",
-            lead="Live.",
-            answer=answer,
-            sections=[],
-            pictures={},
-            provenance={},
-            live=element,
-        )
-    )
+    path.write_text(render(title="In space", lead="Live.", answer=answer, live=element))
     assert len(element) < 130_000
     return path
 
@@ -124,8 +110,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_outcomes_over_the_amplitudes_are_those_of_the_package(browser, page, body, system):
     from rockfrag.engines.spatial import run_in_space
 
-    browser.open(page)
-    assert browser.run(COMPUTED)
+    opened(browser, page, ready=COMPUTED)
     put(browser, "#live .body", body, "change")
     assert browser.run(COMPUTED)
     motion = waves()
@@ -140,8 +125,7 @@ def test_outcomes_over_the_amplitudes_are_those_of_the_package(browser, page, bo
 
 
 def test_keys_and_sizes_change_what_is_seen(browser: Browser, page: Path):
-    browser.open(page)
-    assert browser.run(COMPUTED)
+    opened(browser, page, ready=COMPUTED)
     seen = "document.querySelector('#live .scene').toDataURL()"
     pictures = [browser.run(seen)]
     for key in ("ArrowLeft", "ArrowUp", "+"):
@@ -168,6 +152,5 @@ def test_keys_and_sizes_change_what_is_seen(browser: Browser, page: Path):
 
 @pytest.mark.parametrize("width", [390, 1280])
 def test_nothing_is_wider_than_the_window(browser: Browser, page: Path, width: int):
-    browser.open(page, width, 900)
-    assert browser.run(COMPUTED)
+    opened(browser, page, width, 900, ready=COMPUTED)
     assert browser.run("document.documentElement.scrollWidth <= innerWidth")

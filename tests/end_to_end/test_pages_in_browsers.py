@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from .browsers import READY, Browser, barriers, put
+from .browsers import Browser, barriers, opened, put
 
 pytestmark = pytest.mark.slow
 
@@ -30,8 +30,7 @@ def page(request: pytest.FixtureRequest) -> Path:
 @pytest.mark.parametrize("dark", [False, True])
 @pytest.mark.parametrize("width", [400, 800, 1400, 2200])
 def test_nothing_is_cut_and_no_error_is_written(browser, page, width, dark):
-    browser.open(page, width, 900, dark=dark)
-    assert browser.run(READY)
+    opened(browser, page, width, 900, dark=dark)
     browser.run(OPEN)
     seen = browser.run("innerWidth")
     # Firefox's windows are no narrower than this
@@ -43,8 +42,7 @@ def test_nothing_is_cut_and_no_error_is_written(browser, page, width, dark):
 
 def test_a_part_that_is_not_laid_out_writes_no_error(browser: Browser, page: Path):
     """As while a browser takes a picture of a whole page: canvases have no pixels to copy then."""
-    browser.open(page, 1400, 900)
-    assert browser.run(READY)
+    opened(browser, page, 1400, 900)
     browser.run("document.querySelector('#live .app').style.display = 'none'")
     browser.run("dispatchEvent(new Event('resize')), new Promise(done => setTimeout(done, 500))")
     assert browser.console == []
@@ -52,8 +50,7 @@ def test_a_part_that_is_not_laid_out_writes_no_error(browser: Browser, page: Pat
 
 def test_readers_of_every_kind_can_use_it(browser: Browser, page: Path):
     for dark in (False, True):
-        browser.open(page, 1400, 900, dark=dark)
-        browser.run(READY)
+        opened(browser, page, 1400, 900, dark=dark)
         browser.run(OPEN)
         assert barriers(browser) == []
 
@@ -89,8 +86,7 @@ def test_tables_can_be_sorted_and_filtered(browser: Browser, report: Path):
 def test_paper_has_every_chapter(browser: Browser, report: Path):
     if browser.name != "chromium":
         pytest.skip("only Chromium prints without a dialogue")
-    browser.open(report)
-    assert browser.run(READY)
+    opened(browser, report)
     closed = browser.run("document.querySelectorAll('details:not([open])').length")
     assert closed > 8
     document = browser.printed()  # type: ignore[attr-defined]

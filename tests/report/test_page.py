@@ -41,7 +41,6 @@ def page(folder: Path) -> str:
         answer=Answer("Does it fall?", [Finding("Found", "this")], specs[0]),
         sections=[Section("one", "One", "Message <s>", ["Text & more"], [parts[0], specs[1]])],
         pictures=draw_all(specs, folder),
-        provenance={"Seed": "1"},
     )
 
 

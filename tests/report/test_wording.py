@@ -167,14 +167,8 @@ def test_no_report_speaks_in_riddles(riddle):
 
 def page(said: str = "AvgSA predicts best.", **answer) -> str:
     given = {"asked": "How strong?", "sentences": [Finding("It holds", "So far", "P/NP 1.01")]}
-    return render(
-        title="T",
-        lead="lead",
-        answer=Answer(**{**given, **answer}),
-        sections=[Section("a", "A", "Short.", [said])],
-        pictures={},
-        provenance={"Seed": "1"},
-    )
+    section = Section("a", "A", "Short.", [said])
+    return render(title="T", lead="lead", answer=Answer(**given | answer), sections=[section])
 
 
 def test_numbers_wait_behind_a_click():

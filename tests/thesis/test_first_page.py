@@ -249,14 +249,7 @@ def test_the_first_page_stands_open_in_few_words(effects, hypotheses):
     found = first_page(
         effects, hypotheses, sensitivity_analysis, inverted(), {"ground": 10.0, "above": -5.0}
     )
-    page = render(
-        title="T",
-        lead="lead",
-        answer=Answer("Does a pedestal help?", found),
-        sections=[],
-        pictures={},
-        provenance={"Seed": "1"},
-    )
+    page = render(title="T", lead="lead", answer=Answer("Does a pedestal help?", found))
     answer = page[page.index('<section id="answer"') : page.index("</section>")]
     assert len(open_words(answer)) <= MOST_WORDS - 40
     assert "[" not in " ".join(open_words(answer))

@@ -24,15 +24,13 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import number_from_zero, positive_number, real_number, whole_within
 from rockfrag.motions import intensity
 from rockfrag.records.motion import MOST_SAMPLES, Motion, integrate
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
-
-Floats = NDArray[np.float64]
 
 
 def demean(motion: Motion) -> Motion:

@@ -22,13 +22,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.keywords import named_keywords
 from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
 from rockfrag.short_repr import short_repr
-
-Floats = NDArray[np.float64]
 
 STEPS_PER_PERIOD = 40
 """Least number of steps in one natural period; twice the damping times as many above half critical.

@@ -10,10 +10,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Flags, Floats
 from rockfrag.short_repr import short_repr
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 Whole = NDArray[np.int64]
 Small = NDArray[np.int8]
 Words = NDArray[np.object_]
@@ -82,7 +81,7 @@ class Outcomes:
     scales: Floats
     engines: tuple[str, ...]
     engine: Small
-    overturned: Bools = column("Whether a body fell.", False)
+    overturned: Flags = column("Whether a body fell.", False)
     overturned_body: Small = column(
         "Number from below of the body that fell first, from 1; 0 without a fall.", np.int8(0)
     )

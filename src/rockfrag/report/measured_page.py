@@ -19,7 +19,15 @@ from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
 from rockfrag.report.figures import GREY
 from rockfrag.report.page import Column, estimated, p_values, table_html
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section, finding_of, section_of
+from rockfrag.report.part import (
+    Answer,
+    FigureSpec,
+    Finding,
+    Section,
+    figure_of,
+    finding_of,
+    section_of,
+)
 from rockfrag.report.sections.curves import (
     axis_label,
     draw_fractions,
@@ -73,20 +81,20 @@ def run(job: Job[MeasuredTable]) -> Results:
     job.log.info("%s", found.choice.words)
 
 
-def _figures(found: UserFragility) -> list[FigureSpec]:
+def _figures(found: UserFragility) -> tuple[FigureSpec, FigureSpec]:
     """Curves over each measure and how well they fit; what the data cannot carry says so in words."""
     words = "No curve: the tests show no measure with which overturning becomes more frequent."
-    nothing = partial(style.note_figure, words)
     curves = {name: fit for name, fit in found.fits.items() if np.isfinite(fit.fit.theta)}
-    drawings = (
-        ("measures", partial(measures_figure, curves, found.outcomes) if curves else nothing),
-        ("calibration", partial(calibration_figure, found.goodness) if found.goodness else nothing),
+    over = calibration = partial(style.note_figure, words)
+    if curves:
+        over = partial(measures_figure, curves, found.outcomes)
+    if found.goodness:
+        calibration = partial(calibration_figure, found.goodness)
+    best = found.choice.words
+    return (
+        figure_of(says.measures_figure(best), "measures", over),
+        figure_of(says.calibration_figure(best), "calibration", calibration),
     )
-    text, best = said(says.captions()), found.choice.words
-    return [
-        FigureSpec(name, f"{caption} {best}", caption, draw)
-        for (name, draw), caption in zip(drawings, text, strict=True)
-    ]
 
 
 def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) -> Answer:

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import pandas as pd
@@ -211,9 +212,9 @@ def render(
     title: str,
     lead: str,
     answer: Answer,
-    sections: Sequence[Section],
-    pictures: Mapping[str, Picture],
-    provenance: Mapping[str, str],
+    sections: Sequence[Section] = (),
+    pictures: Mapping[str, Picture] = MappingProxyType({}),
+    provenance: Mapping[str, str] = MappingProxyType({}),
     basis: str = "simulated",
     live: Markup = _NOTHING,
 ) -> str:

@@ -59,8 +59,6 @@ def write_play_page(
             ],
             rests_on=rests_on,
         ),
-        sections=[],
-        pictures={},
         provenance={
             "Record": motion.name,
             "Body": repr(body),

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.motions.rotation import rotate
@@ -29,7 +29,6 @@ LOSS, NO_LOSS = "momentum", "none"
 
 INTERVAL = (0.05, 0.95)
 
-Floats = NDArray[np.float64]
 Pair = tuple[Motion, Motion]
 
 

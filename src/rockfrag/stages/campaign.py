@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from rockfrag.arrays import Flags, Floats
 from rockfrag.campaign import comparison, laboratory
-from rockfrag.campaign.comparison import HALF, Bools, Floats, MeasuredTests
+from rockfrag.campaign.comparison import HALF, MeasuredTests
 from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
 from rockfrag.errors import InputError
@@ -177,13 +178,13 @@ class _Simulated:
     thing: Shape | Block | Column
     trials: Trials
     # whether the object overturned, and whether anything rocked, shape (trials, tests)
-    outcomes: Bools
-    rocked: Bools
+    outcomes: Flags
+    rocked: Flags
     measured: MeasuredTests
     votes: Floats  # of plausible trials, chosen by tests with other motions, shape (repeats, tests)
 
     @property
-    def plausible(self) -> Bools:
+    def plausible(self) -> Flags:
         """Trials that agree with all tests about as well as the best, in sample: shows where they lie only."""
         right = self.outcomes == self.measured.overturned
         return comparison.plausible_trials(right, self.measured.groups)

@@ -173,13 +173,9 @@ def _contours(tables: VectorTables, found: pd.DataFrame) -> list[FigureSpec]:
         own, tests = (
             t[(t[keys] == pd.Series(row)).all(axis=1)] for t in (tables.contours, tables.cells)
         )
-        caption = (
-            f"{row['configuration']}: probability of overturning in {pair}. Lines are fitted, the band holds the "
-            "median; squares show the fraction of tests that overturned by cell, rising in both measures."
-        )
         name = file_name(f"two_measures_{'_'.join(map(str, row.values()))}")
-        draw = partial(two_measures_figure, own, tests)
-        specs.append(FigureSpec(name, caption, caption, draw))
+        text = says.two_measures_figure(row["configuration"], pair)
+        specs.append(figure_of(text, name, partial(two_measures_figure, own, tests)))
     return specs
 
 

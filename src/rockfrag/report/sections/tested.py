@@ -1,7 +1,6 @@
 """What was tested: bodies, motions and shaking table, what the model assumes, and what a study went on without."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import cycle
 
 import numpy as np
@@ -16,7 +15,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.report.figures import GREY, MARKERS, drawn_tests
 from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Results, Section, figure_of, says, section_of
+from rockfrag.report.part import Results, Section, figure_of, says, section_of
 from rockfrag.report.sections.amplitudes import MOST_ROWS
 from rockfrag.report.wording import label, number, shortened
 from rockfrag.stages.tests import LIMITED
@@ -81,16 +80,11 @@ def shaker(results: Results) -> Section | None:
     free = results.tests[results.tests["censored"] == "right"]
     new = ended[~ended["test"].isin(free["test"])]
     names = [f"{row['test']} ({row['remark']})" for row in new.to_dict("records")]
-    section = section_of(says.shaker(names, len(limited)), "shaker", [])
-    figure = FigureSpec(
-        "shaker_limits",
-        section.message,
-        "Peak up to which the shaking table can reproduce each motion (bars; behind each its limiting quantity: "
-        "stroke, velocity, acceleration or force), and the peak that overturns each object.",
-        lambda: shaker_limits(limits, results.tests),
-    )
+    text = says.shaker_figure(names, len(limited))
+    figure = figure_of(text, "shaker_limits", lambda: shaker_limits(limits, results.tests))
     caption = "What each motion requires of the shaking table, per g of its peak."
-    return replace(section, parts=[figure, table_html(limits, _SHAKER, caption, "shaker.csv")])
+    table = table_html(limits, _SHAKER, caption, "shaker.csv")
+    return section_of(says.shaker(names, len(limited)), "shaker", [figure, table])
 
 
 def motions(results: Results) -> Section:
