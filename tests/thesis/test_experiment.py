@@ -38,26 +38,20 @@ def findings(numbers, tests, basis="simulated"):
     return {number: HYPOTHESES[number].test(evidence).finding for number in numbers}
 
 
-def on_floor(**effects):
-    return lambda object_name, earthquake, floor: effects.get(floor, 0.0)
+def where(place):
+    """Maker of effects by the name of an object, an earthquake or a floor."""
+    return lambda **effects: lambda *names: effects.get(names[place].replace(" ", ""), 0.0)
 
 
-def on_earthquake(**effects):
-    return lambda object_name, earthquake, floor: effects.get(earthquake.replace(" ", ""), 0.0)
-
-
-def on_object(**effects):
-    return lambda object_name, earthquake, floor: effects.get(object_name, 0.0)
+on_object, on_earthquake, on_floor = map(where, range(3))
 
 
 def everywhere(size):
-    return lambda object_name, earthquake, floor: size
+    return lambda *names: size
 
 
 def t1_first(floor, size):
-    return lambda object_name, earthquake, where: (
-        size * (3 if object_name == "T1" else 1) if where == floor else 0.0
-    )
+    return lambda name, _, at: size * (3 if name == "T1" else 1) * (at == floor)
 
 
 THESIS_SIGNS = on_floor(GF=0.2, F3=-0.05, F5=-0.05)
