@@ -244,10 +244,9 @@ BUILDING = {
 def test_a_building_that_is_given_has_the_bits_of_the_package(
     tmp_path, motions, floor, building, typed
 ):
-    settings = {"width": "20 cm", "height": "80 cm", "pga": "0.3 g", "return_period": "475"}
-    settings |= {"floor": floor, "building": building}
     form = {"width": "20 cm", "height": "80 cm", "measure": "PGA", "level": "0.3 g", "years": "475"}
     form |= {"floor": floor} | (building if "material" in building else {})
+    settings = settings_of(form) | {"building": building}
     given = make_request(settings, "test")
     first, said = in_node(tmp_path, motions, [form, form | typed], given)
     assert not first["computed"]
@@ -278,7 +277,7 @@ def test_a_hazard_that_is_given_brings_its_quantiles_and_its_measure(tmp_path, m
 @needs_node
 def test_floors_of_other_buildings_are_the_same_but_for_rounding(tmp_path, motions):
     """Eigenvalues come from LAPACK in the package and by Jacobi's rotations in the page: both round, elsewhere."""
-    rng, forms, places = random.Random(8), [], []
+    rng, forms = random.Random(8), []
     for _ in range(6):
         storeys = rng.randint(1, 20)
         height, material = f"{rng.uniform(2.5, 5):.2f} m", rng.choice(["masonry", "steel"])
@@ -286,12 +285,10 @@ def test_floors_of_other_buildings_are_the_same_but_for_rounding(tmp_path, motio
             {"width": "20 cm", "height": "80 cm", "measure": "PGA", "level": "0.3 g"}
             | {"floor": f"{storeys}/{storeys}", "storey_height": height, "material": material}
         )
-        known = {"storey_height": height, "material": material}
-        places.append({"floor": f"{storeys}/{storeys}", "building": known})
-    for place, said in zip(places, in_node(tmp_path, motions, forms), strict=True):
+    for form, said in zip(forms, in_node(tmp_path, motions, forms), strict=True):
         assert said["computed"]
-        settings = {"width": "20 cm", "height": "80 cm", "pga": "0.3 g", **place}
-        request = make_request(settings, "test")
+        known = {key: form[key] for key in ("storey_height", "material")}
+        request = make_request(settings_of(form) | {"building": known}, "test")
         moved = motions.at(request.place)
         for mine, his in zip(said["floor"], moved.base, strict=True):
             rounding = 1e-11 * np.abs(his.acceleration).max()

@@ -12,7 +12,7 @@ from rockfrag.survival.branches import Branch
 from rockfrag.survival.evidence import (
     Age,
     StandingObject,
-    VelocityRelation,
+    VelocityRatio,
     lognormal_coefficients,
     shaking_rates,
 )
@@ -113,7 +113,7 @@ def test_velocity_that_scatters_widens_a_fragility_in_two_measures_as_normal_the
     one = ((10.0 + 3.0 * m) / root, 4.0 / root)
     merged = StandingObject("merged", PGA, one, 0.0, Age(1000, 1000))
     branches = made_branches(0.1, 0.3)
-    found = weighed(branches, [body], velocity=VelocityRelation(0.08, s))
+    found = weighed(branches, [body], velocity=VelocityRatio(0.08, s))
     assert found.log_survival == pytest.approx(weighed(branches, [merged]).log_survival, rel=2e-3)
 
 
@@ -121,7 +121,7 @@ def test_fragility_in_velocity_needs_a_curve_or_a_relation():
     body = StandingObject("rock", PGV, lognormal_coefficients(40.0, 0.4), 0.0, Age(1000, 1000))
     with pytest.raises(InputError, match="needs PGV"):
         weighed(made_branches(1.0), [body])
-    shaking = shaking_rates([{PGA: power_law(1e-4)}], {PGV}, VelocityRelation(0.1, 0.5), (0.1, 1.0))
+    shaking = shaking_rates([{PGA: power_law(1e-4)}], {PGV}, VelocityRatio(0.1, 0.5), (0.1, 1.0))
     assert shaking.rates.sum() == pytest.approx(
         power_law(1e-4).rate(shaking.values[PGA].min()).item()
     )

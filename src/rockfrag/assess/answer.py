@@ -216,8 +216,12 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     hazard = plan.hazard
     measure = plan.intensity_levels.measure
     counted = next(iter(shaken.arrangements.values()))
-    target = _target(level, hazard, request.years)
-    exact = _starts_by_statics(request, measure) and not motions.both
+    target = risk.fraction_target(level.value) if level else risk.amplitude_target(0.5)
+    if hazard:
+        target = risk.risk_target(hazard, request.years)
+    # rocking starts where the measure passes a number: a peak acceleration of what it stands on
+    on_ground = request.place.shakes_as_ground or request.records.on_floor
+    exact = measure == PGA and on_ground and not motions.both
     conversion = None
     if level:
         about = (request.records, level, plan.curves)
@@ -307,12 +311,6 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
     )
 
 
-def _target(level: Level | None, hazard: HazardCurve | None, years: float) -> risk.Target:
-    if hazard:
-        return risk.risk_target(hazard, years)
-    return risk.fraction_target(level.value) if level else risk.amplitude_target(0.5)
-
-
 def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
     """The hazard curve that counts, and that of PGV where there is one beside it.
 
@@ -348,11 +346,6 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
             )
         return request.level
     return Level(hazard.measure, hazard.level(1 / 475)) if hazard else None
-
-
-def _starts_by_statics(request: Request, measure: IntensityMeasure) -> bool:
-    """Whether rocking starts where the measure passes a number: a peak acceleration of what it stands on."""
-    return measure == PGA and (request.place.shakes_as_ground or request.records.on_floor)
 
 
 def _rocks_from(request: Request, now: ObjectOutcomes, *, exact: bool) -> float:

@@ -69,31 +69,28 @@ def assess_inventory(
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
     found = _all_assessed(requests, motions)
     joint = joint_risk(found)
-    order = {}
+    losses: dict[Any, float] = {}
     if joint is not None:
-        order = dict(zip(joint.objects["name"], joint.objects["annual_loss"], strict=True))
-    found.sort(
-        key=lambda answer: (order.get(answer.request.name, 0.0), *_risk(answer)), reverse=True
-    )
+        losses = joint.objects.set_index("name")["annual_loss"].to_dict()
+    found.sort(key=lambda each: (losses.get(each.request.name, 0.0), *_risk(each)), reverse=True)
     return Inventory(found, motions, joint, faults)
 
 
 def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Assessment]:
     """Assess objects, those in places that shake alike at once."""
-    groups: dict[object, list[int]] = {}
-    for i, request in enumerate(requests):
+    groups: dict[object, list[Request]] = {}
+    for request in requests:
         about = request.objects
         kind = request.place.key, about.round, about.in_space, about.many
         # of several curves the one that counts may differ from object to object
-        alone = i if len(request.hazard) > 2 else -1
-        groups.setdefault((*kind, alone), []).append(i)
-    found: dict[int, Assessment] = {}
-    for members in groups.values():
-        same = [requests[i] for i in members]
+        alone = request.name if len(request.hazard) > 2 else ""
+        groups.setdefault((*kind, alone), []).append(request)
+    found = {}
+    for same in groups.values():
         plan = plan_for(same[0], motions.at(same[0].place), brief=True)
-        for i, shaken in zip(members, shake_all(same, plan), strict=True):
-            found[i] = assessed(requests[i], plan, shaken)
-    return [found[i] for i in range(len(requests))]
+        for request, shaken in zip(same, shake_all(same, plan), strict=True):
+            found[request.name] = assessed(request, plan, shaken)
+    return [found[request.name] for request in requests]
 
 
 def read_inventory(

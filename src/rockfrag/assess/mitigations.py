@@ -5,12 +5,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
 from rockfrag.assess.objects import Objects, stretched_block
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
-from rockfrag.fragility.intervals import jackknife_error
+from rockfrag.fragility.intervals import jackknife_error, student
 from rockfrag.system.blocks import Block, Body, Stack, stacked
 
 WIDER = 1.25  # Width of a foot plate over that of the base
@@ -138,5 +137,5 @@ def _limits(
     if groups < 2 or not np.isfinite(pairs).all() or (pairs <= 0).any():
         return math.nan, math.nan
     ratios = np.log(pairs[:, 0] / pairs[:, 1])
-    half = float(stats.t.ppf(0.5 + LEVEL / 2, groups - 1) * jackknife_error(ratios))
+    half = float(student(LEVEL, groups) * jackknife_error(ratios))
     return factor * math.exp(-half), factor * math.exp(half)

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
+from rockfrag.arrays import Floats
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
+from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.observations import Observations
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
@@ -25,8 +26,6 @@ from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
 from rockfrag.system.system import System
 from rockfrag.units import LARGEST_PEAK
-
-Floats = NDArray[np.float64]
 
 LEVELS = 80  # Levels of shaking that are tried, a constant factor apart
 FEW_LEVELS = 28  # Levels for what is only compared, and for many objects
@@ -126,11 +125,8 @@ class ObjectOutcomes:
         Wilson's interval (1927) of the fraction with the earthquakes as the number of trials, since motions of one
         earthquake are alike; it stays within 0 and 1.
         """
-        n, z = len(set(self.earthquakes)), float(stats.norm.ppf(0.95))
-        p = self.fractions()
-        middle = (p + z**2 / (2 * n)) / (1 + z**2 / n)
-        half = z / (1 + z**2 / n) * np.sqrt(p * (1 - p) / n + z**2 / (4 * n**2))
-        low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, 1.0)
+        p, n = self.fractions(), len(set(self.earthquakes))
+        low, high = wilson_interval(p * n, np.full(p.size, n))
         # what does not rock cannot topple
         return np.where(p > 0, low, 0.0), np.where(self.fractions(state=ROCKS) > 0, high, 0.0)
 

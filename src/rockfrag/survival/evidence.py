@@ -5,21 +5,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import special, stats
 
+from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G, HazardCurve, rate_weights
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure
-
-Floats = NDArray[np.float64]
 
 GRID = 600  # Levels on which a hazard curve is integrated
 NODES = 15  # Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration
 
 
 @dataclass(frozen=True)
-class VelocityRelation:
+class VelocityRatio:
     """How fast the ground moves at a site when its peak acceleration is known: ln(PGV/PGA) is normal.
 
     ``median_s`` is the median of PGV/PGA [s], ``sd_ln`` the standard deviation of its logarithm from one
@@ -44,7 +42,7 @@ class ShakingRates:
 def shaking_rates(
     branches: Sequence[Mapping[IntensityMeasure, HazardCurve]],
     wanted: set[IntensityMeasure],
-    velocity: VelocityRelation | None,
+    velocity: VelocityRatio | None,
     reach: tuple[float, float],
 ) -> ShakingRates:
     """Points of shaking at a site in all measures that the objects are sensitive to, the same for all branches.

@@ -12,7 +12,7 @@ from rockfrag.errors import InputError, errors_of
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.schema import checked
 from rockfrag.survival.branches import Branch, read_branches
-from rockfrag.survival.evidence import Age, StandingObject, VelocityRelation, lognormal_coefficients
+from rockfrag.survival.evidence import Age, StandingObject, VelocityRatio, lognormal_coefficients
 from rockfrag.yaml_file import read_yaml
 
 RECORDS = "resources/records"  # Folder of fetched records
@@ -34,7 +34,7 @@ class Site:
     #: Correlation of the errors of the objects' fragilities, 0 (each its own) to 1 (all the same) [-]
     shared_error: float = 0.0
     same_earthquakes: bool = True  #: Whether the objects feel the same earthquakes
-    velocity: VelocityRelation | None = None  #: PGV that comes with a PGA; None if not stated
+    velocity: VelocityRatio | None = None  #: PGV that comes with a PGA; None if not stated
 
     @property
     def measure(self) -> IntensityMeasure:
@@ -73,7 +73,7 @@ def _site(known: Mapping[str, Any], folder: Path, records: Path) -> Site:
         objects=(),
         shared_error=float(known.get("shared_error", 0.0)),
         same_earthquakes=bool(known.get("same_earthquakes", True)),
-        velocity=velocity and VelocityRelation(**velocity),
+        velocity=velocity and VelocityRatio(**velocity),
     )
     return replace(site, objects=tuple(_objects(known["objects"], site, folder, records)))
 
