@@ -183,10 +183,8 @@ def pushed(ops, path):
         ({"damage_energy": 0.0}, 1e-9),
         ({"damage_energy": 0.0, "damage_ductility": 0.05}, 1e-9),
         ({"damage_energy": 0.0, "unloading": 0.0}, 1e-9),
-        (
-            {},
-            0.03,
-        ),  # HystereticSM relates the energy to an area of its own, which is the whole difference
+        # HystereticSM relates the energy to an area of its own, which is the whole difference
+        ({}, 0.03),
     ],
 )
 def test_a_cyclic_push_is_that_of_opensees(opensees, masonry, law, tolerance):

@@ -118,24 +118,17 @@ def test_spectrum_compatible_motion_starts_and_ends_at_rest():
         ({"mid_hz": 30.0}, "give a smaller dt"),
         ({"dt": 0.0}, "dt: expected a positive"),
         ({"dt": 1e-9}, "number of samples"),
+        (([1.0], [0.1]), "two or more"),
+        (([0.1, 1.0], [0.1]), "two or more"),
+        (([1.0, 0.1], [0.1, 0.2]), "must increase"),
+        (([0.01, 1.0], [0.1, 0.2]), "at least 4 dt"),
+        (([0.1, 1.0], [0.1, 0.0]), "positive numbers"),
+        (([0.1, math.nan], [0.1, 0.2]), "must increase"),
     ],
 )
-def test_impossible_models_are_refused(change, message):
+def test_impossible_models_and_targets_are_refused(change, message):
+    make, given = (m.evolutionary, MODEL | change) if isinstance(change, dict) else (
+        m.spectrum_compatible, dict(zip(("periods", "target_g"), change, strict=True))
+    )  # fmt: skip
     with pytest.raises(InputError, match=message):
-        m.evolutionary(**({"seed": 1, **MODEL} | change))
-
-
-@pytest.mark.parametrize(
-    ("periods", "target", "message"),
-    [
-        ([1.0], [0.1], "two or more"),
-        ([0.1, 1.0], [0.1], "two or more"),
-        ([1.0, 0.1], [0.1, 0.2], "must increase"),
-        ([0.01, 1.0], [0.1, 0.2], "at least 4 dt"),
-        ([0.1, 1.0], [0.1, 0.0], "positive numbers"),
-        ([0.1, math.nan], [0.1, 0.2], "must increase"),
-    ],
-)
-def test_impossible_targets_are_refused(periods, target, message):
-    with pytest.raises(InputError, match=message):
-        m.spectrum_compatible(1, periods, target)
+        make(**({"seed": 1} | given))

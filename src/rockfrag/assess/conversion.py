@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import special
 
+from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G, HazardCurve
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import ObjectOutcomes
@@ -23,8 +23,6 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.fragility.vector import VectorFragility, fit_vector
 from rockfrag.motions.intensity import IntensityMeasure
-
-Floats = NDArray[np.float64]
 
 UNKNOWN = {"magnitude": 0.5, "ln_distance": 0.7, "ln_vs30": 0.45}
 """Standard deviations of what is not known of the earthquakes and the ground of a site: estimates of ours, half a

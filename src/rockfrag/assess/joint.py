@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Flags, Floats
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import Evidence, probability_in, risk_target, toppling_rate
@@ -22,9 +23,6 @@ NUMBERS = (1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000, 2000, 5000, 10_
 """Numbers of objects of which it is said how often so many topple together."""
 
 LOSSES = 24  # Losses of which it is said how often they are exceeded
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +109,7 @@ def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int6
 
 
 def _losses(
-    together: ObjectOutcomes, fell: Bools, worth: Floats, per_level: Floats
+    together: ObjectOutcomes, fell: Flags, worth: Floats, per_level: Floats
 ) -> pd.DataFrame:
     """How often losses are exceeded, from the least object to everything."""
     lost = np.tensordot(worth, fell, axes=1)
@@ -126,7 +124,7 @@ def _losses(
     return pd.DataFrame({"loss": steps, "annual_rate": rates})
 
 
-def _correlation(fell: Bools, allowed: Bools, per_level: Floats) -> Floats:
+def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
     """Rates of toppling together over the geometric mean of those of each, shape (objects, objects)."""
     known = allowed.any(axis=0)
     at = np.maximum.accumulate(np.where(known, np.arange(known.size), 0))

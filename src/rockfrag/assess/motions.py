@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
@@ -28,8 +29,6 @@ MAGNITUDE_SCALE, DISTANCE_SCALE = 0.5, 0.7
 """Differences of magnitude and of ln distance that count alike when records are chosen."""
 
 FEWEST_EARTHQUAKES = 4  # Earthquakes below which an interval over motions was not validated
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

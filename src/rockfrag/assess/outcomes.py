@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.engines.spatial import run_in_space
@@ -25,8 +26,6 @@ from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
 from rockfrag.system.system import System
 from rockfrag.units import LARGEST_PEAK
-
-Floats = NDArray[np.float64]
 
 LEVELS = 80  # Levels of shaking that are tried, a constant factor apart
 FEW_LEVELS = 28  # Levels for what is only compared, and for many objects

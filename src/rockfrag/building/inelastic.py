@@ -19,16 +19,14 @@ envelope that is the same on both sides:
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.building.model import MasonryLaw, ShearBuilding
 from rockfrag.building.response import BuildingResponse, EnergyBalance, damping_matrix, find_modes
 from rockfrag.errors import InputError
 from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
-
-Floats = NDArray[np.float64]
 
 # the memory of a storey: present displacement and force, aim on either side (as magnitudes), where
 # the force was zero after unloading from the other side, direction of motion, and work done on it

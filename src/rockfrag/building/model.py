@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, fields
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 
 
@@ -63,8 +63,6 @@ class MasonryLaw:
                 f"{self.yield_drift}, {self.shear_drift}, {self.rocking_drift}."
             )
 
-
-Floats = NDArray[np.float64]
 
 MOST_STOREYS = 100  # more storeys than this are a slip of the keyboard and not a masonry building
 _LEAST, _MOST = 1e-9, 1e21

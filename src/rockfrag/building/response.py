@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.building.model import RayleighDamping, ShearBuilding
 from rockfrag.records.motion import Motion
 from rockfrag.short_repr import short_repr
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
+from rockfrag.arrays import Flags, Floats
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.short_repr import short_repr
 
@@ -32,15 +33,12 @@ REPEATS = "majority of repeated tests (ceiling)"  # who gave these outcomes, in 
 REPLICATES = 400
 """Resamples of input motions behind the limits of a fragility and of ratios of fragilities."""
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-
 
 @dataclass(frozen=True)
 class MeasuredTests:
     """What a laboratory saw, and how simulated and other outcomes are held against it."""
 
-    overturned: Bools  # shape (tests,)
+    overturned: Flags  # shape (tests,)
     groups: NDArray[np.int64]  # number of each test's input motion, from 0 up, shape (tests,)
     seed: int
     folds: int = 5
@@ -49,12 +47,12 @@ class MeasuredTests:
 
     __repr__ = short_repr
 
-    def only(self, chosen: Bools) -> "MeasuredTests":
+    def only(self, chosen: Flags) -> "MeasuredTests":
         """Return some of the tests."""
         groups = pd.factorize(self.groups[chosen])[0]
         return replace(self, overturned=self.overturned[chosen], groups=groups)
 
-    def divisions(self) -> Iterator[tuple[int, Bools]]:
+    def divisions(self) -> Iterator[tuple[int, Flags]]:
         """Yield for each fold the number of the division and which tests are outside; no fold splits a motion."""
         rng = np.random.default_rng(self.seed)
         for repeat in range(self.repeats):
@@ -62,7 +60,7 @@ class MeasuredTests:
             for number in range(self.folds):
                 yield repeat, fold != number
 
-    def cross_validate(self, simulated: Bools, asked: Bools | None = None) -> Floats:
+    def cross_validate(self, simulated: Flags, asked: Flags | None = None) -> Floats:
         """Let trials that are plausible by the tests of other motions vote on each test.
 
         ``simulated`` are outcomes, shape (trials, tests). ``asked`` is what the plausible trials vote on, if not
@@ -77,7 +75,7 @@ class MeasuredTests:
             votes[repeat, ~chosen_by] = answers[voters][:, ~chosen_by].mean(axis=0)
         return votes
 
-    def by_threshold(self, measures: Floats) -> Bools:
+    def by_threshold(self, measures: Floats) -> Flags:
         """Outcomes by thresholds on one or two measures that other motions' tests chose, shape (repeats, tests).
 
         On two measures the line of even odds of a probit regression on their logarithms takes the place of the
@@ -94,7 +92,7 @@ class MeasuredTests:
             outcomes[repeat, asked] = _design(measures[asked]) @ fit.coefficients[0] >= 0
         return outcomes
 
-    def agreement(self, name: str, outcomes: Bools) -> dict[str, object]:
+    def agreement(self, name: str, outcomes: Flags) -> dict[str, object]:
         """Fraction of right outcomes with its interval, and both errors; repeats of the outcomes are averaged."""
         each = np.atleast_2d(outcomes)
         right = (each == self.overturned).mean(axis=0)
@@ -109,7 +107,7 @@ class MeasuredTests:
             "tests": len(self.overturned),
         }
 
-    def lead(self, ours: Bools, theirs: Bools) -> dict[str, float]:
+    def lead(self, ours: Flags, theirs: Flags) -> dict[str, float]:
         """How many more tests are right than by a rival, on the same tests.
 
         Returns ``better`` (difference of the fractions of right outcomes) with ``better_lower`` and
@@ -136,7 +134,7 @@ class MeasuredTests:
         quantile = stats.t.ppf(0.5 + self.level / 2, len(np.unique(self.groups)) - 1)
         return float(quantile * clustered_error(values, self.groups))
 
-    def fragility(self, measure: Floats, simulated: Mapping[str, Bools | Floats]) -> pd.DataFrame:
+    def fragility(self, measure: Floats, simulated: Mapping[str, Flags | Floats]) -> pd.DataFrame:
         """Lognormal fragility of the measured and of simulated outcomes, with their ratio.
 
         ``simulated`` has outcomes by name, or the part of votes to overturn, shape (tests,) each; the bootstrap
@@ -182,7 +180,7 @@ def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:
     return float(np.sqrt(count / (count - 1) * np.sum(sums**2)) / len(values))
 
 
-def plausible_trials(right: Bools, groups: NDArray[np.int64]) -> Bools:
+def plausible_trials(right: Flags, groups: NDArray[np.int64]) -> Flags:
     """Say which trials agree with tests about as well as the best; ``right`` has the shape (trials, tests)."""
     fraction = right.mean(axis=1)
     best = int(fraction.argmax())
@@ -192,7 +190,7 @@ def plausible_trials(right: Bools, groups: NDArray[np.int64]) -> Bools:
     return np.asarray(fraction >= fraction[best] - slack - 1e-12)
 
 
-def best_threshold(measure: Floats, overturned: Bools) -> float:
+def best_threshold(measure: Floats, overturned: Flags) -> float:
     """Return the value of a measure above which "overturned" is right most often, in the measure's unit."""
     order = np.argsort(measure, kind="stable")
     values = measure[order]
@@ -205,7 +203,7 @@ def _design(measures: Floats) -> Floats:
     return np.column_stack([np.ones(len(measures)), np.log(measures)])
 
 
-def curves_of(measure: Floats, outcomes: Bools | Floats, weights: Floats) -> Floats:
+def curves_of(measure: Floats, outcomes: Flags | Floats, weights: Floats) -> Floats:
     """Fit a lognormal curve for each row of weights, (rows, tests): θ and β, (rows, 2); NaN where none rises."""
     coefficients = fit_batch(_design(measure), weights * outcomes, weights).coefficients
     slope = np.where(coefficients[:, 1] > 0, coefficients[:, 1], np.nan)
@@ -240,7 +238,7 @@ def by_region(judged: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def majority_of_repeats(settings: NDArray[np.object_], measured: Bools) -> Bools | None:
+def majority_of_repeats(settings: NDArray[np.object_], measured: Flags) -> Flags | None:
     """Outcome that most tests at the same setting had, the best that a model can say; None without repeats."""
     code = pd.factorize(settings)[0]
     tests = np.bincount(code)

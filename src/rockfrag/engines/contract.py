@@ -33,16 +33,14 @@ from pkgutil import resolve_name
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
-
-Floats = NDArray[np.float64]
 
 
 class Wish(Enum):

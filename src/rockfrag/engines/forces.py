@@ -7,19 +7,18 @@ T2 = m2 x2'', and the sums over both blocks at the ground.
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.elementary import hypot
 from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.engines.kernels.record import fill_sines
 from rockfrag.system import geometry
 from rockfrag.system.system import System
 
-Array = NDArray[np.float64]
-
 
 class Turned:
     """The links of one or two bodies that rock, from pivot to pivot and to the centres, turned as they are."""
 
-    def __init__(self, system: System, state: NDArray[np.int64], theta: Array) -> None:
+    def __init__(self, system: System, state: NDArray[np.int64], theta: Floats) -> None:
         self.system, side = system, (state < 0).astype(np.int64)
         self.sine, self.cosine = np.empty_like(theta), np.empty_like(theta)
         with compiling_alone(fill_sines):
@@ -34,13 +33,13 @@ class Turned:
             above = np.array([geometry.upper_arm(system.pile, way) for way in ways])
             self.links += [(feet[side[:, 0], side[:, 1]], 0), (above[side[:, 1]], 1)]
 
-    def link(self, number: int) -> tuple[Array, Array]:
+    def link(self, number: int) -> tuple[Floats, Floats]:
         """X and y of a link [m]: to the lower centre, to the foot of the upper body, from there to its centre."""
         arm, body = self.links[number]
         (ax, ay), s, c = arm.T, self.sine[:, body], self.cosine[:, body]
         return ax * c + ay * s, -ax * s + ay * c
 
-    def centres(self) -> Array:
+    def centres(self) -> Floats:
         """Centres of gravity relative to the ground [m], shape (n, blocks, 2)."""
         found = [self.link(0)]
         if self.system.count == 2:
@@ -51,11 +50,11 @@ class Turned:
         return made
 
     def forces(
-        self, ground: Array, gravity: Array, omega: Array, alpha: Array
-    ) -> tuple[Array, Array]:
+        self, ground: Floats, gravity: Floats, omega: Floats, alpha: Floats
+    ) -> tuple[Floats, Floats]:
         """Normal and friction force of each interface, across and along the face that carries [N], (n, blocks)."""
 
-        def acceleration(number: int) -> tuple[Array, Array]:
+        def acceleration(number: int) -> tuple[Floats, Floats]:
             """Acceleration of the tip of a link that turns clockwise about its foot [m/s²]."""
             (x, y), body = self.link(number), self.links[number][1]
             w, q = omega[:, body], alpha[:, body]

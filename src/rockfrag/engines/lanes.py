@@ -8,16 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.engines.contract import Cases
 from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.engines.kernels.lanes.case import BLOCK, Motions
 from rockfrag.engines.steps import step_count
 from rockfrag.outcomes.outcomes import Outcomes
 
-Array = NDArray[np.float64]
 
-
-def intervals_of(cases: Cases) -> Array:
+def intervals_of(cases: Cases) -> Floats:
     """Sampling interval of each motion [s], shape (motions,)."""
     return np.array([motion.dt for motion in cases.motions])
 
@@ -41,7 +40,7 @@ def integrate(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: 
         list(pool.map(work, range(needed)))
 
 
-def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64], Array]:
+def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64], Floats]:
     """Sample the motions as densely as systems need; which each uses, its interval [s]; vertical over gravity."""
     values = [motion.x.acceleration for motion in cases.motions]
     dts = intervals_of(cases)
@@ -57,7 +56,7 @@ def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64
     # whole blocks each, so that no block straddles two motions
     offsets = np.concatenate([[0], np.cumsum(sizes + -sizes % BLOCK)])
 
-    def end_to_end(each: Sequence[Array]) -> Array:
+    def end_to_end(each: Sequence[Floats]) -> Floats:
         made = np.zeros(offsets[-1])
         for start, (times, motion) in zip(offsets.tolist(), each_kind, strict=False):
             dense = refined(each[motion], times)
@@ -75,7 +74,7 @@ def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64
     return motions, number.reshape(times.shape), dts[np.newaxis, :] / times
 
 
-def _extremes(samples: Array, offsets: NDArray[np.int64]) -> tuple[Array, Array, Array, Array]:
+def _extremes(samples: Floats, offsets: NDArray[np.int64]) -> tuple[Floats, Floats, Floats, Floats]:
     """Extremes of each BLOCK of samples, and from the beginning of each to the end of its motion."""
     blocks = samples.reshape(-1, BLOCK)
     high, low = blocks.max(axis=1, initial=-np.inf), blocks.min(axis=1, initial=np.inf)
@@ -88,7 +87,7 @@ def _extremes(samples: Array, offsets: NDArray[np.int64]) -> tuple[Array, Array,
     return high, low, ahead, behind
 
 
-def refined(values: Array, times: int) -> Array:
+def refined(values: Floats, times: int) -> Floats:
     """Sample a piecewise linear motion that ends in zero ``times`` as densely, up to that zero at least."""
     if times == 1:
         return values
@@ -115,7 +114,7 @@ def write_rocking(
     into.unstable_distance[place] = found["unstable_distance"]
 
 
-def write_lanes(into: Outcomes, found: NDArray[np.void], interval: Array) -> None:
+def write_lanes(into: Outcomes, found: NDArray[np.void], interval: Floats) -> None:
     """Write what lanes tell of cases, which count time in samples of ``interval`` [s], into outcomes."""
     write_rocking(into, range(len(into.names)), found)
     into.certain_time[:] = np.where(into.overturned, found["certain"] * interval, np.nan)

@@ -10,13 +10,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.short_repr import short_repr
 from rockfrag.system.system import System
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 ROCKING_MODES = {

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.engines.contract import Case, Cases, Wish
 from rockfrag.engines.pure_rocking import PureRocking
 from rockfrag.engines.response import Response, contact_event_table, energy_table
@@ -15,7 +16,6 @@ from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.system.system import System
 
-Array = NDArray[np.float64]
 Records = NDArray[np.void]
 
 
@@ -67,7 +67,7 @@ class Single(PureRocking):
         return _response(case.system, *found)
 
 
-def samples_of(case: Case) -> tuple[Array, Array, Array, NDArray[Any]]:
+def samples_of(case: Case) -> tuple[Floats, Floats, Floats, NDArray[Any]]:
     """Return times [s], (n,), and rotations, velocities and contact states of a case as of :class:`Response`."""
     _, _, rows, _, _ = _integrated(case, 0)
     time, count = np.arange(len(rows), dtype=np.float64) * case.motion.dt, case.system.count
@@ -223,7 +223,7 @@ def _contact_events(contact_events: Records, count: int) -> pd.DataFrame:
 
 
 def _energies(
-    record: np.void, time: Array, history: Records, contact_events: Records, contacts: int
+    record: np.void, time: Floats, history: Records, contact_events: Records, contacts: int
 ) -> pd.DataFrame:
     """Balance of energy by cause over time [J]."""
     from rockfrag.engines.kernels.equations import STATE

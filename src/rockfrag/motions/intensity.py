@@ -22,8 +22,8 @@ from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import number_from_zero, positive_number
 from rockfrag.records.motion import Motion, peak_displacement, peak_velocity
@@ -32,7 +32,6 @@ from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 if TYPE_CHECKING:
     from rockfrag.motions.pulse_extraction import StrongestPulse
 
-Floats = NDArray[np.float64]
 SPECTRAL_PERIODS = (0.3, 1.0)  # of the 5 % damped spectrum in a table, unless others are asked for
 SUFFIXES = {
     "g": "g", "cm/s": "cm_s", "m/s": "m_s", "m/s²": "m_s2", "cm": "cm", "m": "m", "s": "s", "1/s": "1_s",

@@ -24,15 +24,13 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import number_from_zero, positive_number, real_number, whole_within
 from rockfrag.motions import intensity
 from rockfrag.records.motion import MOST_SAMPLES, Motion, integrate
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
-
-Floats = NDArray[np.float64]
 
 
 def demean(motion: Motion) -> Motion:
@@ -447,11 +445,7 @@ def _checked(number: int, entry: Mapping[str, Any]) -> tuple[Callable[..., Motio
             f"processing, entry {number}: step {name} has no parameter {unknown[0]!r}; "
             f"known are {', '.join(known) or 'none'}."
         )
-    missing = [
-        key
-        for key, p in known.items()
-        if p.default is inspect.Parameter.empty and key not in parameters
-    ]
+    missing = [key for key, p in known.items() if p.default is p.empty and key not in parameters]
     if missing:
         raise InputError(f"processing, entry {number}: step {name} needs {', '.join(missing)}.")
     return STEPS[name], parameters

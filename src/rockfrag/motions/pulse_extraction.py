@@ -10,14 +10,12 @@ from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from rockfrag.arrays import Floats
 from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion, integrate
 from rockfrag.short_repr import short_repr
-
-Floats = NDArray[np.float64]
 
 CYCLES = (1.0, 1.5, 2.0, 2.5, 3.0)
 """Oscillatory characters γ that are tried; recorded near-fault pulses have 1 to 3 (Mavroeidis &

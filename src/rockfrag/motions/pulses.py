@@ -11,13 +11,11 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number, whole_within
 from rockfrag.records.motion import MOST_SAMPLES, Motion
-
-Floats = NDArray[np.float64]
 
 DT = 0.005  # sampling interval that pulses have unless another is asked for [s]
 

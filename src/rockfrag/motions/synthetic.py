@@ -11,19 +11,18 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 from scipy.signal.windows import tukey
 from scipy.stats import gamma
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number, whole_within
 from rockfrag.motions.pulses import plain
 from rockfrag.motions.spectra import oscillator_response, response_spectrum
 from rockfrag.records.motion import Motion, integrate
 from rockfrag.units import GRAVITY
-
-Floats = NDArray[np.float64]
 
 LOWEST_FREQUENCY = 0.3
 """The filter frequency of the evolutionary process never falls below this [Hz] (Rezaeian & Der

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 import pyarrow.parquet as pq
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.short_repr import short_repr
@@ -35,19 +35,14 @@ class Motion:
 
     Attributes
     ----------
-    acceleration
-        Acceleration [m/s²], shape (n,), read-only.
-    dt
-        Sampling interval [s].
-    name
-        Short name, unique within a study.
-    metadata
-        What is known about it: ``earthquake``, ``station``, ``component``, ``start_time``, ``floor``, …
-    provenance
-        One entry per step it went through: ``{"step": name, **parameters}``.
+    acceleration : acceleration [m/s²], shape (n,), read-only
+    dt : sampling interval [s]
+    name : short name, unique within a study
+    metadata : what is known about it: ``earthquake``, ``station``, ``component``, ``start_time``, ``floor``, …
+    provenance : one entry per step it went through: ``{"step": name, **parameters}``
     """
 
-    acceleration: NDArray[np.float64]
+    acceleration: Floats
     dt: float
     name: str = ""
     metadata: Mapping[str, Any] = field(default_factory=dict)
@@ -78,7 +73,7 @@ class Motion:
         object.__setattr__(self, "dt", float(self.dt))
 
     @property
-    def time(self) -> NDArray[np.float64]:
+    def time(self) -> Floats:
         """Time of each sample [s], shape (n,), from zero."""
         return np.arange(self.acceleration.size, dtype=np.float64) * self.dt
 
@@ -112,7 +107,7 @@ class Motion:
             figure.align_ylabels(panels)
             return figure
 
-    def peaks(self, samples: NDArray[np.float64]) -> dict[str, float]:
+    def peaks(self, samples: Floats) -> dict[str, float]:
         """Return the peaks [m/s²] before and after a step that changes samples, for its provenance."""
         after = float(np.abs(samples).max()) if samples.size else 0.0
         return {"peak_before_m_s2": self.pga, "peak_after_m_s2": after}
@@ -120,7 +115,7 @@ class Motion:
     def after(
         self,
         step: str,
-        acceleration: NDArray[np.float64],
+        acceleration: Floats,
         dt: float | None = None,
         **parameters: Any,
     ) -> "Motion":
@@ -197,12 +192,9 @@ class GroundMotion:
 
     Attributes
     ----------
-    x
-        Horizontal component along the x axis of the bodies, the plane of planar ones.
-    y
-        Horizontal component across that plane; None where it is not given.
-    z
-        Vertical component, upwards; None where it is not given.
+    x : horizontal component along the x axis of the bodies, the plane of planar ones
+    y : horizontal component across that plane; None where it is not given
+    z : vertical component, upwards; None where it is not given
     """
 
     x: Motion
@@ -240,16 +232,13 @@ class GroundMotion:
         return "x" + ("y" if self.y is not None else "") + ("z" if self.z is not None else "")
 
     @property
-    def accelerations(self) -> NDArray[np.float64]:
+    def accelerations(self) -> Floats:
         """Accelerations along x, y and z [m/s²], shape (n, 3); zero where a component is not given."""
         found = np.zeros((self.x.acceleration.size, 3))
         for column, motion in zip(found.T, (self.x, self.y, self.z), strict=True):
             if motion is not None:
                 column[:] = motion.acceleration
         return found
-
-
-Floats = NDArray[np.float64]
 
 
 def integrate(acceleration: Floats, dt: float) -> tuple[Floats, Floats]:

@@ -126,19 +126,14 @@ def read_motion(
 
     Parameters
     ----------
-    path
-        The file; ``archive.zip#member`` for one of several records in an archive.
+    path : the file; ``archive.zip#member`` for one of several records in an archive
     unit
         Unit of the samples (``g``, ``m/s2``, ``cm/s2``, ``gal``, ``mm/s2``); wanted where the file
         does not state its own, and checked against it where it does.
-    channel
-        Which channel, by name, orientation or number from 1; wanted where there are several.
-    dt
-        Sampling interval [s]; wanted where plain text does not state it.
-    cut_short
-        Whether to read what there is of a file with fewer samples than its header promises.
-    force
-        Whether to take ``unit`` as given although the peak is then above 3 g.
+    channel : which channel, by name, orientation or number from 1; wanted where there are several
+    dt : sampling interval [s]; wanted where plain text does not state it
+    cut_short : whether to read what there is of a file with fewer samples than its header promises
+    force : whether to take ``unit`` as given although the peak is then above 3 g
 
     Returns
     -------

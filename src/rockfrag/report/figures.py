@@ -15,9 +15,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
-from numpy.typing import NDArray
 
 from rockfrag import figure_style as style
+from rockfrag.arrays import Floats
 from rockfrag.report.findings import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import shortened
 
@@ -41,8 +41,6 @@ _STROKES = [Path.MOVETO, Path.LINETO, Path.MOVETO, Path.LINETO, Path.LINETO]
 _UP = Path(_ARROW, _STROKES)
 _DOWN = Path(_ARROW * np.array([1, -1]), _STROKES)
 _RIGHT = Path(_ARROW[:, ::-1], _STROKES)
-
-Floats = NDArray[np.float64]
 
 
 def drawn_tests(tests: pd.DataFrame) -> pd.DataFrame:

@@ -11,6 +11,7 @@ from typing import TypedDict, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.engines.contract import Cases, Request, run_cases
 from rockfrag.engines.steps import STEP, rocking_shapes
 from rockfrag.input_checks import positive_number
@@ -23,7 +24,6 @@ from rockfrag.system.blocks import SystemLike
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
-Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 LIGHT = 0.5
@@ -198,7 +198,7 @@ def shaken(cases: Cases) -> Outcomes:
 
 
 def overturned_cases(
-    cases: Cases, system: Index, motion: Index, scale: NDArray[np.float64]
+    cases: Cases, system: Index, motion: Index, scale: Floats
 ) -> NDArray[np.bool_]:
     """Say of case i, system ``system[i]`` under ``scale[i]`` × motion ``motion[i]``, whether it overturns."""
     overturned = np.zeros(len(system), dtype=bool)
@@ -222,7 +222,7 @@ def overturned_cases(
     return overturned
 
 
-def _warn_of_weight(ratio: Array) -> None:
+def _warn_of_weight(ratio: Floats) -> None:
     """Warn of cases in which bodies may leave the ground because it drops."""
     light, none = int((ratio < LIGHT).sum()), int((ratio <= 0).sum())
     if light:

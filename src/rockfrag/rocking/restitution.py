@@ -12,16 +12,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import OptimizeResult, brentq, least_squares
 from scipy.stats import t as student
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_array
 from rockfrag.rocking.simulation import simulate
 from rockfrag.system.blocks import Block
-
-Floats = NDArray[np.float64]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 

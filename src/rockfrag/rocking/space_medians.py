@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.motions.rotation import rotate
@@ -29,7 +29,6 @@ LOSS, NO_LOSS = "momentum", "none"
 
 INTERVAL = (0.05, 0.95)
 
-Floats = NDArray[np.float64]
 Pair = tuple[Motion, Motion]
 
 
@@ -66,13 +65,10 @@ def medians(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return medians in space and in the plane of one body, and the fractions they come from.
 
-    Returns
-    -------
-    tuple
-        A row for each loss of planar impacts: ``space_g`` with ``space_lower`` and ``space_upper``; the ratio of
-        that median over each of :data:`PLANAR`, with its limits, 90 % of resampled earthquakes; ``flip_rate``, the
-        fraction of outcomes at the level next to the median that a perturbation of 1e-6 turns round. And a row for
-        each level with the fraction toppled in space and in each planar answer.
+    A row for each loss of planar impacts: ``space_g`` with ``space_lower`` and ``space_upper``; the ratio of that
+    median over each of :data:`PLANAR`, with its limits, 90 % of resampled earthquakes; ``flip_rate``, the fraction
+    of outcomes at the level next to the median that a perturbation of 1e-6 turns round. And a row for each level
+    with the fraction toppled in space and in each planar answer.
     """
     body = body_of(base, slenderness, height)
     levels = np.geomspace(sweep.lowest, sweep.highest, sweep.levels) / slenderness

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.elementary import sin_cos
 from rockfrag.engines.steps import fastest_frequency
 from rockfrag.errors import InputError
@@ -25,8 +26,6 @@ from rockfrag.rocking.options import FrictionInput, Restitution
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

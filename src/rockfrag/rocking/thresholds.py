@@ -16,6 +16,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
@@ -24,7 +25,6 @@ from rockfrag.rocking.inputs import MotionLike
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import SystemLike
 
-Array = NDArray[np.float64]
 MOST_GRID_CASES = 5_000_000
 
 
@@ -146,7 +146,7 @@ def find_thresholds(
 
 
 def _read(
-    low: Array, high: Array, falls: NDArray[np.bool_], highest: float
+    low: Floats, high: Floats, falls: NDArray[np.bool_], highest: float
 ) -> tuple[tuple[float, float], list[tuple[float, float]]]:
     """Read first and always-overturning scale and resurrections off bracketed changes; the first is a fall."""
     if not falls.size:

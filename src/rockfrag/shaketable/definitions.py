@@ -13,13 +13,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Flags, Floats
 from rockfrag.errors import InputError
 from rockfrag.shaketable.protocols import Outcome, Protocol, measured
 from rockfrag.shaketable.swept import ABOUT, Swept, swept_of
 from rockfrag.shaketable.tests_table import as_tests_table
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 DEFINITIONS = ("step_protocol", "first_overturning", "always_overturning")
 DEFINITION = "step_protocol"  # as in a laboratory: statistics rest on it, the others stand beside

@@ -6,13 +6,12 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number
 from rockfrag.units import GRAVITY
 
-Floats = NDArray[np.float64]
 MOST_STEPS = 100_000  # more than this are a slip: nobody shakes a block that often
 
 

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from rockfrag.arrays import Flags, Floats
 from rockfrag.campaign import comparison, laboratory
-from rockfrag.campaign.comparison import HALF, Bools, Floats, MeasuredTests
+from rockfrag.campaign.comparison import HALF, MeasuredTests
 from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
 from rockfrag.errors import InputError
@@ -80,7 +81,11 @@ def campaign_with_motions(
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
     if study.leave_out:
         absent = laboratory.missing_motions(study.motions, list(campaign.tests["motion"]))
-        campaign = campaign.only(~campaign.tests["motion"].isin(absent))
+        keep = ~campaign.tests["motion"].isin(absent).to_numpy()
+        tests, codes = (
+            part[keep].reset_index(drop=True) for part in (campaign.tests, campaign.codes)
+        )
+        campaign = replace(campaign, tests=tests, codes=codes)
         log.info("%d tests without a motion are left out", len(absent))
         if campaign.tests.empty:
             raise InputError(f"{study.motions}: has no motion of any test of {study.tests.name}.")
@@ -91,11 +96,8 @@ def campaign_with_motions(
         )
     motions = _motions(study, campaign, study.conditioning)
     if not campaign.measures:
-        campaign = Campaign(
-            campaign.tests.join(laboratory.measured_peaks(motions)),
-            ("pga_g", "pgv_cm_s"),
-            campaign.codes,
-        )
+        tests = campaign.tests.join(laboratory.measured_peaks(motions))
+        campaign = replace(campaign, tests=tests, measures=("pga_g", "pgv_cm_s"))
     elif not study.pulse_cycles and campaign.tests["amplitude_g"].isna().all():
         laboratory.check_peaks(campaign.tests, motions, study.motions)
     return campaign, motions
@@ -176,13 +178,13 @@ class _Simulated:
     thing: Shape | Block | Column
     trials: Trials
     # whether the object overturned, and whether anything rocked, shape (trials, tests)
-    outcomes: Bools
-    rocked: Bools
+    outcomes: Flags
+    rocked: Flags
     measured: MeasuredTests
     votes: Floats  # of plausible trials, chosen by tests with other motions, shape (repeats, tests)
 
     @property
-    def plausible(self) -> Bools:
+    def plausible(self) -> Flags:
         """Trials that agree with all tests about as well as the best, in sample: shows where they lie only."""
         right = self.outcomes == self.measured.overturned
         return comparison.plausible_trials(right, self.measured.groups)

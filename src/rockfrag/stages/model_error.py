@@ -17,7 +17,8 @@ from datetime import UTC, datetime
 import numpy as np
 from scipy import stats
 
-from rockfrag.campaign.comparison import Bools, Floats, MeasuredTests, curves_of
+from rockfrag.arrays import Flags, Floats
+from rockfrag.campaign.comparison import MeasuredTests, curves_of
 from rockfrag.campaign.laboratory import Campaign
 from rockfrag.campaign.standing import kind_of, simulate_tests, unknowns_of, ways_to_stand
 from rockfrag.errors import InputError
@@ -64,7 +65,7 @@ class BlindAnswer:
         return self.median * math.exp(-low), self.median * math.exp(high)
 
 
-def blind_answer(tests: MeasuredTests, measure: Floats, simulated: Bools) -> BlindAnswer:
+def blind_answer(tests: MeasuredTests, measure: Floats, simulated: Flags) -> BlindAnswer:
     """Hold ways to stand, ``simulated`` (ways, tests), against what was measured; no way is chosen by it."""
     measured = tests.overturned
     seen = replace(tests, level=LEVEL)

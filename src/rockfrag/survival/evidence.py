@@ -5,14 +5,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import special, stats
 
+from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G, HazardCurve, rate_weights
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure
-
-Floats = NDArray[np.float64]
 
 GRID = 600  # Levels on which a hazard curve is integrated
 NODES = 15  # Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration

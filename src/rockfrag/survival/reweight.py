@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import special
 
+from rockfrag.arrays import Floats
 from rockfrag.survival.evidence import (
     ShakingRates,
     StandingObject,
@@ -25,8 +25,6 @@ from rockfrag.survival.evidence import (
     shaking_rates,
 )
 from rockfrag.survival.site import Site
-
-Floats = NDArray[np.float64]
 
 SAMPLES = 1024  # Draws of ages and errors of fragilities
 DECISION_RATE = 1e-4  # Annual rate at which sensitivities are compared [1/year]

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number
 from rockfrag.short_repr import short_repr
@@ -29,8 +29,6 @@ Y_UP = (".glb", ".gltf")  # formats whose specification says so (glTF 2.0, secti
 FEWEST_CARRY = 3  # points that make a polygon to stand on
 MOST_CORNERS = 48  # of a polygon to stand on in space
 FLAT = 1e-3  # distance over the polygon's size at which a corner hardly turns it [-]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,9 +44,9 @@ class Shape:
     name : of the file it came from
     """
 
-    points: Array
+    points: Floats
     mass: float
-    inertia: Array
+    inertia: Floats
     volume: float
     name: str = ""
 
@@ -65,12 +63,12 @@ class Shape:
         return float(np.ptp(self.points[:, 2]))
 
     @property
-    def outline(self) -> Array:
+    def outline(self) -> Floats:
         """Convex outline seen from above, relative to the centre of gravity, in order [m], shape (n, 2)."""
         seen = self.points[:, :2]
         return np.asarray(seen[ConvexHull(seen).vertices])
 
-    def contact_polygon(self, tolerance: float) -> Array:
+    def contact_polygon(self, tolerance: float) -> Floats:
         """Return the corners of the polygon around all points at most ``tolerance`` [m] above the lowest one.
 
         They are relative to the centre of gravity, in order [m], shape (n, 2).
@@ -164,19 +162,19 @@ class Shape:
         return float(directions[least]), float(math.atan2(reach[least], self.cg_height))
 
 
-def _outward(corners: Array) -> Array:
+def _outward(corners: Floats) -> Floats:
     """Unit normals of the edges of a convex polygon in order, shape (n, 2)."""
     edges = np.roll(corners, -1, axis=0) - corners
     lengths = np.hypot(*edges.T)[:, np.newaxis]
     return np.asarray(np.column_stack([edges[:, 1], -edges[:, 0]]) / lengths)
 
 
-def edge_distances(corners: Array) -> Array:
+def edge_distances(corners: Floats) -> Floats:
     """Distances of a convex polygon's edges from the origin, negative where that is outside [m], shape (n,)."""
     return np.asarray(np.einsum("ni,ni->n", _outward(corners), corners))
 
 
-def _without_hardly_turning(corners: Array) -> Array:
+def _without_hardly_turning(corners: Floats) -> Floats:
     """Leave out the corner nearest to the line past it, until few are left that are further than FLAT off it."""
     kept = corners
     size = float(np.ptp(corners, axis=0).max())
@@ -191,7 +189,7 @@ def _without_hardly_turning(corners: Array) -> Array:
     return kept
 
 
-def _retreated(corners: Array, distance: float) -> Array | None:
+def _retreated(corners: Floats, distance: float) -> Floats | None:
     """Move the edges of a convex polygon about the origin inwards; None where the origin is left outside."""
     outward = _outward(corners)
     reach = edge_distances(corners) - distance

@@ -7,10 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.building.floors import judge_drift, respond, response_motions
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.settings import make_building
@@ -26,8 +25,6 @@ from rockfrag.study.study import Study
 from rockfrag.system.system import System
 from rockfrag.yaml_file import read_yaml
 from rockfrag_thesis.settings import settings_of
-
-Floats = NDArray[np.float64]
 
 AXES = ("first_period_s", "damping_ratio", "base_shear", "ground_scale", "floors")
 """Assumptions that can be varied: first period and damping of the elastic model, shear strength over

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Flags, Floats
 from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
@@ -22,8 +22,6 @@ SIZES = (1e-9, 1e-6, 1e-4)
 COPIES = 4
 """Perturbed copies of a test for each of them."""
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 Bounds = tuple[float, float]
 Copy = tuple[System, float]
 """A perturbed system and the factor on its motion."""

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure, declared
 from rockfrag.short_repr import short_repr
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
-
-Floats = NDArray[np.float64]
 
 HIGHEST = {"PGA": 10.0, "SA": 30.0, "PGV": 2000.0}
 """Levels beyond which a curve is in another unit: g, g and cm/s."""

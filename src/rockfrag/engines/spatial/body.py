@@ -5,16 +5,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.engines.spatial._body import BODY, MOST_VERTICES, SIZE
 from rockfrag.engines.spatial._describe import fill_body
 from rockfrag.errors import InputError
 from rockfrag.system.body import Circle, Polygon
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
-
-Array = NDArray[np.float64]
 
 # size of the perturbation that tells how robust an outcome is: of vertices over the width of the base, of the
 # direction in radians [-].  Two vertices that land at once and two that land one after the other go on
@@ -36,7 +34,7 @@ def kernel_body(system: System, g: float = GRAVITY) -> np.void:
 
 def solid_body(
     base: Circle | Polygon,
-    inertia: Array,
+    inertia: Floats,
     centre: Sequence[float],
     friction: tuple[float, float],
     g: float = GRAVITY,
@@ -64,7 +62,7 @@ def solid_body(
     return body
 
 
-def standing(body: np.void, turned: float = 0.0) -> Array:
+def standing(body: np.void, turned: float = 0.0) -> Floats:
     """Return the state of a body that stands at rest over the origin, turned about the vertical [rad]."""
     y = np.zeros(SIZE)
     y[2] = body["height"]
@@ -72,7 +70,7 @@ def standing(body: np.void, turned: float = 0.0) -> Array:
     return y
 
 
-def later_peaks(acceleration: Array) -> Array:
+def later_peaks(acceleration: Floats) -> Floats:
     """Return the largest horizontal and vertical acceleration from each sample on, shape (n, 2) [m/s²]."""
     x, y = acceleration[:, 0], acceleration[:, 1]
     level = np.sqrt(x * x + y * y)

@@ -8,14 +8,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._forces import CASE
 from rockfrag.engines.spatial.body import later_peaks, standing
 from rockfrag.units import GRAVITY
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-9  # largest error of a step: position [m], attitude [-], velocities [m/s, rad/s]
 CUT_OFF = 1e-6  # energy over rest, as a part of what a fall takes, at which a body rests [-]
@@ -50,16 +49,16 @@ class SpatialOutcome:
 
 def run_case(
     body: np.void,
-    acceleration: Array,
+    acceleration: Floats,
     dt: float,
     scale: float = 1.0,
     *,
     g: float = GRAVITY,
-    peaks: Array | None = None,
+    peaks: Floats | None = None,
     samples: int = 0,
     tolerance: float = TOLERANCE,
-    start: Array | None = None,
-) -> tuple[SpatialOutcome, Array]:
+    start: Floats | None = None,
+) -> tuple[SpatialOutcome, Floats]:
     """Integrate one analysis; the outcome, and the history, shape (m, COLUMNS), of at most so many samples.
 
     ``acceleration`` is the ground's (x, y, up), shape (n, 3) [m/s²], ``peaks`` those of :func:`later_peaks`, and
@@ -78,7 +77,7 @@ def run_case(
     return _outcome(body, out, case["counters"], y), history[kept]
 
 
-def _outcome(body: np.void, out: Array, counters: NDArray[np.int64], y: Array) -> SpatialOutcome:
+def _outcome(body: np.void, out: Floats, counters: NDArray[np.int64], y: Floats) -> SpatialOutcome:
     fell = bool(out[kernel.FELL])
     return SpatialOutcome(
         overturned=fell,
@@ -101,7 +100,7 @@ def _outcome(body: np.void, out: Array, counters: NDArray[np.int64], y: Array) -
     )
 
 
-def _named(body: np.void, out: Array) -> str:
+def _named(body: np.void, out: Floats) -> str:
     """Say over what a body fell."""
     first, second = int(out[kernel.FALL_FIRST]), int(out[kernel.FALL_SECOND])
     if first < 0:
@@ -114,7 +113,7 @@ def _named(body: np.void, out: Array) -> str:
     return f"edge {low + 1}-{high + 1}"
 
 
-def history_table(history: Array, dt: float, height: float) -> pd.DataFrame:
+def history_table(history: Floats, dt: float, height: float) -> pd.DataFrame:
     """Return a history of :func:`run_case` as the table of a :class:`rockfrag.engines.spatial.SpatialResponse`."""
     w, x, y, z = history[:, 3:7].T
     axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from rockfrag.arrays import Floats
 from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns, simulate
@@ -16,7 +17,6 @@ from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, 
 from rockfrag_thesis.hypotheses.outcomes import SEEN, decided, most
 from rockfrag_thesis.hypotheses.setting import (
     EXACT,
-    Floats,
     Setting,
     below,
     bisect,

@@ -7,8 +7,9 @@ from functools import cached_property
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rockfrag.arrays import Floats
 from rockfrag.engines.response import Response
 from rockfrag.motions.processing import scale_to_pga
 from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
@@ -21,7 +22,6 @@ from rockfrag_thesis.hypotheses.evidence import PEDESTAL, THESIS_BODIES
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 from rockfrag_thesis.printed_tables import uplift_accelerations
 
-Floats = NDArray[np.float64]
 FreeRocking = Mapping[str, tuple[ArrayLike, ArrayLike]]
 
 PEAKS_G = (0.3, 0.5, 0.8, 1.2)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from rockfrag.arrays import Floats
 from rockfrag.motions.intensity import pgd, pgv
 from rockfrag.motions.spectra import oscillator_response
 from rockfrag.pedestal.cluster_means import Estimate
@@ -22,7 +23,7 @@ from rockfrag_thesis.hypotheses.outcomes import (
     most,
     ratios,
 )
-from rockfrag_thesis.hypotheses.setting import PERIODS, SIZES, Floats, Setting
+from rockfrag_thesis.hypotheses.setting import PERIODS, SIZES, Setting
 
 DAMPINGS = (0.02, 0.10)
 LONG = 200.0

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.arrays import Flags, Floats
 from rockfrag.engines.contract import Cases, Request
 from rockfrag.engines.planar.cases import contact_outcomes
 from rockfrag.motions.processing import factors_to_pga
@@ -20,9 +21,6 @@ from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Body, Stack
 from rockfrag.system.system import uplift_ratios
 from rockfrag_thesis.sensitivity_analysis.simulated import motion_columns
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 def friction_ratios(

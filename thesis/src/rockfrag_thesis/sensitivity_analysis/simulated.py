@@ -11,8 +11,8 @@ from math import radians
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.laws import BUILT_IN
 from rockfrag.motions.processing import factors_to_pga
@@ -21,8 +21,6 @@ from rockfrag.rocking import overturns
 from rockfrag.rocking.options import MeasuredRestitution, system_of
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
-
-Floats = NDArray[np.float64]
 
 BATCH = 64
 """Bodies that are shaken at a time, between two lines of progress."""
