@@ -1,5 +1,6 @@
 """The question turned round: which perturbed parameters give an effect that was asked for."""
 
+import itertools
 import math
 from types import SimpleNamespace
 
@@ -29,16 +30,13 @@ def ratios(scatter=0.002):
         "raises_both": (0.02, 0.02),
         "idle": (0.0, 0.0),
     }
-    names = ["factor", "level", "reference", "earthquake", "floor", "ratio"]
     rows = []
-    for earthquake in "ABCDEF":
-        for place, floor in enumerate(FLOORS):
-            own = rng.normal(0, scatter)
-            for factor, effect in effects.items():
-                for level in ("ideal", "4", "8"):
-                    shift = 0.0 if level == "ideal" else effect[place] * float(level)
-                    about = (factor, level, level == "ideal", earthquake, floor)
-                    rows.append((*about, np.exp(own + shift)))
+    for earthquake, (place, floor) in itertools.product("ABCDEF", enumerate(FLOORS)):
+        own = rng.normal(0, scatter)
+        for (factor, effect), level in itertools.product(effects.items(), ("ideal", "4", "8")):
+            shift = 0.0 if level == "ideal" else effect[place] * float(level)
+            rows.append((factor, level, level == "ideal", earthquake, floor, np.exp(own + shift)))
+    names = ["factor", "level", "reference", "earthquake", "floor", "ratio"]
     table = pd.DataFrame(rows, columns=names)
     return table.assign(object="T", motion=table["earthquake"] + "-" + table["floor"])
 
@@ -143,19 +141,15 @@ def row(factor_1: str, factor_2: str = "", **given) -> dict[str, object]:
     """A row of the table: a perturbed parameter at its closest, or two."""
     item = {"factor_1": factor_1, "level_1": -2.0, "factor_2": factor_2, "level_2": math.nan}
     item |= {"acts_on": "all floors", "ground": 1.02, "above": 0.99, "plausible": True}
-    return (
-        item | {"reaches": False, "simulated_ground": math.nan, "simulated_above": math.nan} | given
-    )
-
-
-def asking(wanted: dict[str, float]) -> SimpleNamespace:
-    settings = Settings(sensitivity_analysis={"wanted_percent": wanted})
-    return SimpleNamespace(added={NAME: settings}, has_pairs=True)
+    item |= {"reaches": False, "simulated_ground": math.nan, "simulated_above": math.nan}
+    return item | given
 
 
 def section(rows: list[dict[str, object]], wanted: dict[str, float]):
-    results = SimpleNamespace(study=asking(wanted), table=lambda name: pd.DataFrame(rows))
-    return inverse_problem(results)
+    """The section of a study that asks for an effect and found these rows."""
+    settings = Settings(sensitivity_analysis={"wanted_percent": wanted})
+    study = SimpleNamespace(added={NAME: settings}, has_pairs=True)
+    return inverse_problem(SimpleNamespace(study=study, table=lambda _: pd.DataFrame(rows)))
 
 
 def test_what_gives_the_effect_is_named_for_a_reader():
