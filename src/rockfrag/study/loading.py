@@ -104,9 +104,7 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         shaker=None if shaker_file is None else read_shaker(shaker_file),
         measured_tests=measured_tests,
         counterparts={
-            configuration.name: counterparts[configuration.name]
-            for configuration in configurations
-            if counterparts.get(configuration.name) in {other.name for other in configurations}
+            name: other for name in tested if (other := counterparts.get(name, "")) in tested
         },
     )
     asked = plugins_asked(content)
