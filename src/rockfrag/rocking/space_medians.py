@@ -15,7 +15,7 @@ from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.motions.rotation import rotate
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.space_sweep import Sweep
+from rockfrag.rocking.options import Sweep
 from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY, STONE
 

@@ -59,11 +59,10 @@ class CampaignStudy(Heading):
     @property
     def files(self) -> list[str]:
         """Files that must be there before anything runs; those to be fetched are not among them."""
-        named = (self.tests, self.other_codes, self.mesh)
-        paths = [path for path in named if path is not None]
-        paths += [Path(self.motions)] if self.motions.endswith(".npz") else []
-        fetched = {path for *_, path in self.fetch}
-        return [str(path) for path in paths if path not in fetched]
+        motions = Path(self.motions) if self.motions.endswith(".npz") else None
+        fetched = {None, *(path for *_, path in self.fetch)}
+        named = (self.tests, self.other_codes, self.mesh, motions)
+        return [str(path) for path in named if path not in fetched]
 
 
 def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:

@@ -62,20 +62,14 @@ def _check_columns(source: Path, table: Path, content: Mapping[str, Any]) -> Non
     lines = read_cells(table)
     header = lines[0][1] if lines else []
     columns = content["columns"]
-    wanted = {
-        f"columns.{key}": columns[key]
-        for key in ("overturned", "motion", "earthquake")
-        if key in columns
-    }
-    wanted |= {f"columns.given[{i}]": name for i, name in enumerate(columns.get("given", ()))}
-    wanted |= {
-        f"measures.{measure}[{i}]": factor
-        for measure, factors in content["measures"].items()
-        for i, factor in enumerate(factors)
-        if isinstance(factor, str)
-    }
-    for key, name in wanted.items():
-        if name not in header:
+    wanted = [
+        *((f"columns.{key}", columns.get(key)) for key in ("overturned", "motion", "earthquake")),
+        *((f"columns.given[{i}]", name) for i, name in enumerate(columns.get("given", ()))),
+    ]
+    for measure, factors in content["measures"].items():
+        wanted += [(f"measures.{measure}[{i}]", factor) for i, factor in enumerate(factors)]
+    for key, name in wanted:
+        if isinstance(name, str) and name not in header:
             raise InputError(
                 f"{source}: key {key}: expected a column of {table}, one of {', '.join(header)}, found {name}."
             )
