@@ -15,42 +15,27 @@ from rockfrag.system.contact import checked_friction
 from rockfrag.system.system import Start
 from rockfrag.units import GRAVITY
 
-STILL = np.zeros(50)
 DT = 0.01
 G = 9.81
 
 
-def random_block(rng: np.random.Generator) -> Block:
-    """Block of any slenderness, its centre of gravity off the middle."""
-    width = rng.uniform(0.1, 1.0)
-    height = width * rng.uniform(1.2, 5.0)
-    return Block(
-        width,
-        height,
-        rng.uniform(5, 500),
-        cg_height=height * rng.uniform(0.4, 0.6),
-        cg_offset=rng.uniform(-0.1, 0.1) * width,
-    )
+def random_block(
+    rng: np.random.Generator, width=None, slenderness=(1.2, 5.0), mass=(5, 500), middle=(0.4, 0.6)
+) -> Block:
+    """Block drawn from ranges of slenderness, mass [kg] and height of its centre, which is off the middle."""
+    width = width or rng.uniform(0.1, 1.0)
+    height = width * rng.uniform(*slenderness)
+    masses, centre = rng.uniform(*mass), height * rng.uniform(*middle)
+    return Block(width, height, masses, None, centre, rng.uniform(-0.1, 0.1) * width)
 
 
 def random_stack(rng: np.random.Generator) -> Stack:
     """General stack: centres of gravity off the middle, an uneven base, an offset."""
-    lower = Block(
-        rng.uniform(0.3, 0.6),
-        rng.uniform(0.2, 0.8),
-        rng.uniform(20, 200),
-        cg_offset=rng.uniform(-0.02, 0.02),
-        lean=rng.uniform(-0.01, 0.01),
-    )
+    size = [rng.uniform(*limits) for limits in ((0.3, 0.6), (0.2, 0.8), (20, 200))]
+    aside, lean = rng.uniform(-0.02, 0.02), rng.uniform(-0.01, 0.01)
+    lower = Block(*size, cg_offset=aside, lean=lean)
     width = rng.uniform(0.3, 0.9) * lower.width
-    height = width * rng.uniform(1.5, 5)
-    upper = Block(
-        width,
-        height,
-        rng.uniform(5, 100),
-        cg_height=height * rng.uniform(0.35, 0.6),
-        cg_offset=rng.uniform(-0.1, 0.1) * width,
-    )
+    upper = random_block(rng, width, (1.5, 5), (5, 100), (0.35, 0.6))
     return Stack(lower, upper, offset=rng.uniform(-0.01, 0.01))
 
 

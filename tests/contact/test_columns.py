@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -118,45 +119,40 @@ def test_sliding_that_jams_between_a_light_and_heavy_bodies_keeps_the_energy_bal
     assert imbalance(found) < 2e-8
 
 
+def mirrored(block: Block) -> Block:
+    """The mirror image of a block."""
+    return replace(block, cg_offset=-block.cg_offset, lean=-block.lean)
+
+
+def grown(block: Block, ratio: float) -> Block:
+    """The block with all its lengths times a ratio."""
+    lengths = "width", "height", "cg_height", "cg_offset"
+    sizes = {name: ratio * getattr(block, name) for name in lengths}
+    return replace(block, mass=ratio**3 * block.mass, **sizes)
+
+
 @pytest.mark.parametrize("bodies", [1, 2, 3, 5])
-def test_the_mirror_image_of_a_column_moves_as_the_mirror_image(bodies: int) -> None:
+@pytest.mark.parametrize(
+    ("alike", "ratio", "side", "off"),
+    [
+        (mirrored, 1.0, -1, 1e-9),
+        *((partial(grown, ratio=ratio), ratio, 1, 1e-7) for ratio in (0.3, 4.0)),
+    ],
+)
+def test_a_mirrored_or_larger_column_moves_alike(alike, ratio, side, off, bodies):
+    """Lengths times λ, times times √λ, the same accelerations."""
     rng = np.random.default_rng(bodies)
     for _ in range(4):
         column = random_column(rng, bodies)
-        mirrored = Column(
-            tuple(replace(b, cg_offset=-b.cg_offset, lean=-b.lean) for b in column.blocks),
-            tuple(-x for x in column.offsets or ()),
-        )
+        offsets = tuple(side * ratio * x for x in column.offsets or ())
+        twin = Column(tuple(map(alike, column.blocks)), offsets)
         mus, motion = list(rng.uniform(0.3, 0.8, bodies)), random_motion(rng)
         up = 0.5 * random_motion(rng)
         found = run(with_contacts(column, mus), motion, vertical=up)
-        other = run(with_contacts(mirrored, mus), -motion, vertical=up)
+        other = run(with_contacts(twin, mus), side * motion, DT * math.sqrt(ratio), vertical=up)
         n = samples_until(found, 5)
-        np.testing.assert_allclose(found.theta[:n], -other.theta[:n], atol=1e-9)
-        np.testing.assert_allclose(found.slip[:n], -other.slip[:n], atol=1e-9)
-
-
-@pytest.mark.parametrize("bodies", [1, 2, 3])
-def test_a_larger_column_moves_alike_in_longer_time(bodies: int) -> None:
-    """Lengths times λ, times times √λ, the same accelerations."""
-    rng = np.random.default_rng(3)
-    for ratio in (0.3, 4.0):
-        column = random_column(rng, bodies)
-        blocks = tuple(replace(b, cg_height=b.h) for b in column.blocks)
-        lengths = "width", "height", "cg_height", "cg_offset"
-        grown = tuple(
-            replace(
-                b, mass=ratio**3 * b.mass, **{name: ratio * getattr(b, name) for name in lengths}
-            )
-            for b in blocks
-        )
-        larger = Column(grown, tuple(ratio * x for x in column.offsets or ()))
-        mus, motion, up = [0.5, 0.6, 0.7][:bodies], random_motion(rng), 0.5 * random_motion(rng)
-        found = run(with_contacts(Column(blocks, column.offsets), mus), motion, vertical=up)
-        other = run(with_contacts(larger, mus), motion, DT * math.sqrt(ratio), vertical=up)
-        n = samples_until(found, 5)
-        np.testing.assert_allclose(found.theta[:n], other.theta[:n], atol=1e-7)
-        np.testing.assert_allclose(found.slip[:n], other.slip[:n] / ratio, atol=1e-7)
+        np.testing.assert_allclose(found.theta[:n], side * other.theta[:n], atol=off)
+        np.testing.assert_allclose(found.slip[:n], side * other.slip[:n] / ratio, atol=off)
 
 
 def test_without_a_motion_a_column_rests_for_ever() -> None:
