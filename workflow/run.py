@@ -16,7 +16,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from rockfrag.errors import InputError
-from rockfrag.stages.preflight import check_folders, check_memory
+from rockfrag.stages.log import check_folders, check_memory, in_words
 from rockfrag.yaml_file import read_yaml
 
 SNAKEFILE = Path(os.path.relpath(Path(__file__).resolve().parent / "Snakefile"))
@@ -28,7 +28,6 @@ def main(study_file: str, arguments: Sequence[str]) -> int:
         check_memory()
         # what takes much memory is loaded now that there is some
         from rockfrag.cli import main as rockfrag
-        from rockfrag.stages.log import in_words
         from rockfrag.stages.running import results_folder, run_lock
         from rockfrag.study.loading import load_any
     except InputError as error:

@@ -46,8 +46,12 @@ def checked(content: object, name: str, where: str) -> dict[str, Any]:
     """
     schema = read_schema(name)
     with errors_of(where):
-        plain = _in_usual_units(_with_text_keys(content, ""), schema, "")
-        for key, value in _leaves(plain):
+        for key, value in _places(content):
+            for word in value if isinstance(value, Mapping) else ():
+                if not isinstance(word, str):
+                    raise InputError(f"key {_joined(key, str(word))}: expected a word in quotes.")
+        plain = _in_usual_units(content, schema, "")
+        for key, value in _places(plain):
             if isinstance(value, str) and (unfit := unfit_character(value)):
                 raise InputError(
                     f"key {key}: holds the character {unfit!r}, which no text shows; remove it."
@@ -105,20 +109,9 @@ def _described(schema: _Schema, otherwise: str) -> str:
     return re.sub(r"\{(\w+ [\w ]+)\}", lambda found: ", ".join(registered(found[1])), words)
 
 
-def _with_text_keys(value: Any, key: str) -> Any:
-    if isinstance(value, Mapping):
-        for name in value:
-            if not isinstance(name, str):
-                raise InputError(f"key {_joined(key, str(name))}: expected a word in quotes.")
-        return {name: _with_text_keys(inner, _joined(key, name)) for name, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_with_text_keys(inner, f"{key}[{i}]") for i, inner in enumerate(value)]
-    return value
-
-
 def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
     """Express every quantity in the unit of its usual key, whatever key it was given under."""
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         items = schema.get("items", {})
         return [_in_usual_units(entry, items, f"{key}[{i}]") for i, entry in enumerate(value)]
     if not isinstance(value, Mapping):
@@ -144,7 +137,7 @@ def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
 
 
 def _converted(value: Any, name: str, unit: str | None, key: str) -> Any:
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         return [_converted(number, name, unit, f"{key}[{i}]") for i, number in enumerate(value)]
     usual = split_name(name)[1]
     if not isinstance(value, str) and unit == usual:
@@ -157,15 +150,15 @@ def _joined(key: str, name: str) -> str:
     return f"{key}.{name}" if key else name
 
 
-def _leaves(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
+def _places(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield a value and all that it holds, each with its key, from the outside to the inside."""
+    yield key, value
     if isinstance(value, Mapping):
         for name, inner in value.items():
-            yield from _leaves(inner, _joined(key, name))
-    elif isinstance(value, list):
+            yield from _places(inner, _joined(key, str(name)))
+    elif isinstance(value, list | tuple):
         for i, inner in enumerate(value):
-            yield from _leaves(inner, f"{key}[{i}]")
-    else:
-        yield key, value
+            yield from _places(inner, f"{key}[{i}]")
 
 
 def _importance(error: ValidationError) -> tuple[int, list[str]]:

@@ -143,6 +143,7 @@ STOREY_HEIGHTS = (1.0, 30.0)  # of a storey [m]: a crawl space, and the nave of 
 FIRST_PERIODS = (0.01, 20.0)  # shortest and longest first period of a building [s]
 SHORTEST_STEP = 1e-5  # sampling interval [s]; recorders take at most some thousand samples a second
 LONGEST_STEP = 1.0  # sampling interval [s] of a record; slower channels are not of strong motion
+LARGEST_GRAVITY = 100.0  # largest acceleration of gravity that is no mistake of unit [m/s²]
 LEAST_PEAK = 0.05  # a motion whose peak is below this [m/s²] moves nothing that stands
 
 
@@ -164,20 +165,13 @@ def check_density(width: float, height: float, mass: float) -> None:
     )
 
 
-def light_giant_warning(width: float, height: float, mass: float) -> str:
-    """Say that a block is as large as a house and lighter than air, as one in centimetres, or return nothing."""
+def block_warning(width: float, height: float, mass: float, inertia: float) -> str:
+    """Say that a block is a giant lighter than air, or its inertia [kg m²] that of another body, or nothing."""
     # the depth is not known; the thinnest that is admitted
     densest = mass / width / width / height / DEPTHS[0]
-    if max(width, height) <= LARGEST_SIZE or densest >= AIR:
-        return ""
-    return (
-        f"{width:g} m wide, {height:g} m high and of {mass:g} kg it would be lighter than air; give metres and "
-        "kilograms"
-    )
-
-
-def inertia_warning(width: float, height: float, mass: float, inertia: float) -> str:
-    """Say that a moment of inertia [kg m²] is that of a body of another size, or return an empty text."""
+    if max(width, height) > LARGEST_SIZE and densest < AIR:
+        size = f"{width:g} m wide, {height:g} m high and of {mass:g} kg"
+        return f"{size} it would be lighter than air; give metres and kilograms"
     gyration = math.sqrt(inertia) / math.sqrt(mass) / math.hypot(width, height)
     if GYRATIONS[0] <= gyration <= GYRATIONS[1]:
         return ""
@@ -213,20 +207,3 @@ def peak_warning(peak: float, least_uplift: float | None = None) -> str:
         found = f"the peak acceleration is {peak:.3g} m/s²{short}"
         return f"{found}; if the motion is in g, multiply it by {GRAVITY:g}"
     return ""
-
-
-def gravity_warning(g: float) -> str:
-    """Say that an acceleration of gravity [m/s²] looks like one in cm/s², or return an empty text."""
-    if g <= LARGEST_GRAVITY:
-        return ""
-    return f"an acceleration of gravity of {g:g} m/s² is that of no planet; if it is in cm/s², divide it by 100"
-
-
-LARGEST_GRAVITY = 100.0  # largest acceleration of gravity that is no mistake of unit [m/s²]
-
-
-def interval_warning(dt: float) -> str:
-    """Say that a sampling interval [s] is too long for strong motion, or return an empty text."""
-    if dt <= LONGEST_STEP:
-        return ""
-    return f"a sampling interval of {dt:g} s is too long for strong motion; check its unit"

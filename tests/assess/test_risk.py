@@ -15,8 +15,8 @@ from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.request import make_request
 from rockfrag.assess.risk import (
+    Evidence,
     amplitude_target,
-    estimate,
     fraction_target,
     probability_in,
     risk_target,
@@ -86,7 +86,7 @@ def test_an_object_that_bears_more_topples_less_often():
 
 def test_where_nothing_topples_there_is_a_bound_and_no_zero():
     rocks = outcomes_from(np.full(20, 100.0), range(20), all_rock=True)
-    found = estimate(risk_target(BENT, 50), rocks, {}, {}, {"model": 0.2})
+    found = Evidence(rocks, shifts={"model": 0.2}).estimate(risk_target(BENT, 50))
     assert found.value == 0
     # 19 of 20 chances that fewer than 1 - 0.1^(1/20) of all earthquakes topple it
     assert 0 < found.upper <= probability_in(0.11 * float(BENT.rate(LEVELS[0])), 50) * 1.9
@@ -97,7 +97,7 @@ def test_one_earthquake_that_topples_leaves_more_open_than_none():
     for toppling in range(4):
         capacities = np.where(np.arange(20) < toppling, 0.3, 100.0)
         outcomes = outcomes_from(capacities, range(20), all_rock=True)
-        found = estimate(fraction_target(0.5), outcomes, {}, {}, {"model": 0.2})
+        found = Evidence(outcomes, shifts={"model": 0.2}).estimate(fraction_target(0.5))
         assert found.lower <= found.value <= found.upper
         # the exact binomial limit of 5 % on that side (Clopper and Pearson 1934)
         exact = stats.beta.ppf(0.95, toppling + 1, 20 - toppling)
@@ -108,15 +108,13 @@ def test_one_earthquake_that_topples_leaves_more_open_than_none():
 
 def test_share_at_a_level_and_level_of_a_share_are_inverse():
     outcomes = outcomes_from(np.geomspace(0.1, 1.5, 40), range(40))
-    level = estimate(amplitude_target(0.5), outcomes, {}, {}, {}).value
-    assert estimate(fraction_target(level), outcomes, {}, {}, {}).value == pytest.approx(
-        0.5, abs=1e-9
-    )
+    level = Evidence(outcomes).estimate(amplitude_target(0.5)).value
+    assert Evidence(outcomes).estimate(fraction_target(level)).value == pytest.approx(0.5, abs=1e-9)
 
 
 def test_one_earthquake_alone_gives_no_finite_interval():
     outcomes = outcomes_from([0.3, 0.4, 0.5], ["one"] * 3)
-    found = estimate(risk_target(BENT, 50), outcomes, {}, {}, {})
+    found = Evidence(outcomes).estimate(risk_target(BENT, 50))
     assert (found.lower, found.upper) == (0, 1)
 
 
@@ -144,7 +142,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
                 outcomes_from(capacities * math.exp(sign * of_width), names) for sign in (-1, 1)
             )
         }
-        found = estimate(risk_target(hazard, 50), outcomes, moved, {}, {"model": of_model})
+        found = Evidence(outcomes, moved, {"model": of_model}).estimate(risk_target(hazard, 50))
         held += found.lower <= probability_in(truth, 50) <= found.upper
     fraction = held / runs
     assert 0.85 < fraction < 0.95

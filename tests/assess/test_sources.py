@@ -27,7 +27,6 @@ from rockfrag.assess.request import Records, make_request
 from rockfrag.assess.risk import toppling_rate
 from rockfrag.assess.sources import SOURCES, SPACE, parts_of
 from rockfrag.assess.words import assumptions, five_lines, quality_flags
-from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 
 from .conftest import asked, outcomes_of
@@ -254,8 +253,6 @@ def test_the_level_is_given_in_both(motions):
     assert found.conversion.known.spread == 0
     # the made motions are quicker than that
     assert any("PGV of 66.7 cm/s per g" in quality_flag for quality_flag in quality_flags(found))
-    with pytest.raises(InputError, match="key pga and key sa"):
-        figure(pga="0.6 g", sa=["0.3 s", "0.6 g"])
 
 
 def test_the_export_says_which_errors_are_not_in_it(found):

@@ -14,7 +14,7 @@ from rockfrag.assess.mitigations import compare
 from rockfrag.assess.page import page_of
 from rockfrag.assess.place import PERIOD_FACTORS
 from rockfrag.assess.request import read_request
-from rockfrag.assess.risk import Estimate, estimate, fraction_target, step_of
+from rockfrag.assess.risk import Estimate, Evidence, fraction_target, step_of
 from rockfrag.assess.sources import is_wide, narrowed
 from rockfrag.assess.words import assumptions, five_lines, range_words
 from rockfrag.building.floors import floor_motions
@@ -54,7 +54,7 @@ def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
     target = fraction_target(float(levels[5]))
     (change,) = compare(target, outcomes, {"a change": outcomes})
     assert change.factor == 1 and not change.helps
-    found = estimate(target, outcomes, {}, {}, {})
+    found = Evidence(outcomes).estimate(target)
     # one of six: an exact binomial interval of 90 % runs from 0.9 to 58 %
     assert 0.005 < found.lower < found.value < found.upper < 0.75
 

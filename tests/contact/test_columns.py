@@ -1,7 +1,6 @@
 """Columns of any number of bodies: limits, invariances, and a plain time stepping beside them."""
 
 import math
-from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -14,9 +13,7 @@ from rockfrag.system.body import Interval, RigidBody
 from rockfrag.system.contact import Contact
 
 from ..oracle.cases import drum_column, drum_pulse
-from ..oracle.contact_reference import simulate_reference
 from ..oracle.rocking_integrator import simulate_reference as rock
-from ..oracle.time_stepping import time_stepping
 from ..rocking.reference_bodies import random_motion
 from .cases import DT, imbalance, random_column, run, samples_until, with_contacts
 
@@ -207,26 +204,6 @@ def test_a_column_tilted_as_one_falls_as_one_until_a_joint_opens() -> None:
         np.testing.assert_allclose(many.theta[:n, k], single.theta[:n, 0], atol=1e-9)
 
 
-@pytest.mark.parametrize("columns", [1, pytest.param(3, marks=pytest.mark.slow)])
-def test_histories_of_three_bodies_are_those_of_the_plain_reference(columns: int) -> None:
-    rng = np.random.default_rng(6)
-    compared = 0
-    for _ in range(columns):
-        column, mus = random_column(rng, 3), list(rng.uniform(0.3, 0.8, 3))
-        motion, up = random_motion(rng), 0.3 * random_motion(rng)
-        found = run(with_contacts(column, mus), motion, vertical=up)
-        times = found.contact_events["time"]
-        length = float(times.iloc[7]) if len(times) > 7 else 3.0
-        plain = simulate_reference(
-            column, motion, DT, friction=mus, vertical=up, duration=length + DT
-        )
-        n = min(samples_until(found, 6), len(plain.time) - 1)
-        np.testing.assert_allclose(found.theta[:n], plain.theta[:n], atol=2e-6)
-        np.testing.assert_allclose(found.slip[:n], plain.slip[:n], atol=2e-6)
-        compared += len(times) > 7
-    assert compared >= 1
-
-
 def test_rough_columns_rock_as_the_plain_integrator_of_pure_rocking_says() -> None:
     rng = np.random.default_rng(9)
     for bodies in (3, 4):
@@ -236,35 +213,6 @@ def test_rough_columns_rock_as_the_plain_integrator_of_pure_rocking_says() -> No
         assert 20 < n < len(found.time)
         plain = rock(column, motion, DT, duration=n * DT)
         np.testing.assert_allclose(found.theta[:n], plain.theta[:n], atol=1e-6)
-
-
-def outcomes_beside_stepping(cases, bodies, seed):
-    """Falls, and outcomes that differ from those of time stepping at 200 µs and once more at 20 µs."""
-    rng, counts = np.random.default_rng(seed), Counter()
-    for i in range(cases):
-        n = bodies[i % len(bodies)]
-        column, mus = random_column(rng, n), tuple(rng.uniform(0.2, 0.9, n))
-        motion, up = 2.5 * random_motion(rng), 0.3 * random_motion(rng)
-        fell = run(with_contacts(column, list(mus)), motion, vertical=up, closing=1e-4).overturned
-        counts["fallen"] += fell
-        for step in (2e-4, 2e-5):
-            if time_stepping(column, motion, DT, mus, step=step, vertical=up)[0] == fell:
-                break
-            counts[step] += 1
-    return counts
-
-
-@pytest.mark.slow
-def test_outcomes_of_many_columns_are_those_of_time_stepping():
-    short, long = (outcomes_beside_stepping(*each, seed=8) for each in ((200, (3, 4)), (50, (8,))))
-    print(f"200 columns of three and four bodies: {short}; 50 of eight: {long}")
-    assert short[2e-4] + long[2e-4] <= 0.03 * 250
-    assert 50 <= short["fallen"] <= 150 and 12 <= long["fallen"] <= 47
-
-
-def test_outcomes_of_columns_are_those_of_time_stepping():
-    found = outcomes_beside_stepping(6, (3,), seed=7)
-    assert found[2e-4] <= 1 <= found["fallen"]
 
 
 @pytest.mark.slow

@@ -25,14 +25,8 @@ PAIRS = (["pga_g", "pgv_over_pga_s"], ["pga_g", "pgv_cm_s"], ["pga_g", "mean_per
 FLOORS: tuple[dict[str, int] | None, ...] = (
     None, None, {"ground": 0, "top": 3}, {"piano nobile": 1}, {"cellar": 0, "gallery": 2, "attic": 3},
 )  # fmt: skip
-SHAKER = {
-    "stroke_m": 0.29,
-    "force_n": 500,
-    "lowest_hz": 0.5,
-    "highest_hz": 200,
-    "start": "off-centre",
-}
-SHAKER |= {"armature_mass_kg": 5, "table_mass_kg": 5}
+SHAKER = {"stroke_m": 0.29, "force_n": 500, "lowest_hz": 0.5, "highest_hz": 200}
+SHAKER |= {"start": "off-centre", "armature_mass_kg": 5, "table_mass_kg": 5}
 SENSITIVITY_ANALYSIS: dict[str, Any] = {
     "statue_restitution": [0.97], "interface_restitution": [1.03], "ground_restitution": [0.9],
     "pedestal_lean_deg": [0.5], "statue_offset_mm": [5], "statue_cg_offset_mm": [3], "pedestal_width_cm": [60],

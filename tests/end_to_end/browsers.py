@@ -157,10 +157,8 @@ class Firefox(Driven):
             "network.proxy.ssl_port": 9,
             "datareporting.policy.dataSubmissionEnabled": False,
         }
-        lines = [
-            f"user_pref({json.dumps(key)}, {json.dumps(value)});"
-            for key, value in preferences.items()
-        ]
+        settings = preferences.items()
+        lines = [f"user_pref({json.dumps(key)}, {json.dumps(value)});" for key, value in settings]
         (Path(self._folder.name) / "user.js").write_text("\n".join(lines))
         self._start(
             *(_firefox() or "", "--headless", "--marionette", "--remote-allow-system-access"),
@@ -283,9 +281,8 @@ def waited(browser: Browser, script: str) -> None:
     """Wait until something is so in the page."""
     until = time.monotonic() + 60
     while not browser.run(script):
-        assert time.monotonic() < until, (
-            f"{script}: {browser.run('document.body.innerText')[:2000]}"
-        )
+        page = browser.run("document.body.innerText")
+        assert time.monotonic() < until, f"{script}: {page[:2000]}"
         time.sleep(0.05)
 
 

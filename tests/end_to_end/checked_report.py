@@ -147,22 +147,14 @@ def check_first_page(results: Results) -> None:
     """Assert that each number of what stands first is in the study's tables, and that it is short."""
     answer = study_answer(results)
     text = " ".join(sentence.said for sentence in answer.sentences)
-    for name in sorted(
-        {configuration.name for configuration in results.study.configurations},
-        key=len,
-        reverse=True,
-    ):
+    names = sorted((each.name for each in results.study.configurations), key=len, reverse=True)
+    for name in [*names, *results.objects, *results.tests["test"], *results.tests["motion"]]:
         text = text.replace(name, "¤")
-    for name in [*results.objects, *results.tests["test"], *results.tests["motion"]]:
-        text = text.replace(name, "¤")
-    tables = [
-        results.table(name) for name in ("fragility", "tests", "as_recorded", "mean_amplitudes")
-    ]
-    if results.study.has_pairs:
-        tables.append(results.table("pedestal/effects"))
-    values = np.concatenate(
-        [table.select_dtypes("number").to_numpy(float).ravel() for table in tables]
-    )
+    sources = ["fragility", "tests", "as_recorded", "mean_amplitudes"]
+    sources += ["pedestal/effects"] if results.study.has_pairs else []
+    tables = [results.table(name) for name in sources]
+    numbers = [table.select_dtypes("number").to_numpy(float).ravel() for table in tables]
+    values = np.concatenate(numbers)
     values = values[np.isfinite(values)]
     known = {f"{value:.{digits}f}" for value in values for digits in (0, 1, 2, 3)}
     known |= {f"{100 * abs(value - 1):.{digits}f}" for value in values for digits in (0, 1)}

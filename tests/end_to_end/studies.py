@@ -1,5 +1,6 @@
 """Small studies of things that nobody in this project has in mind, from configuration to report."""
 
+import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -38,19 +39,13 @@ class Foreign:
 def write(study: Foreign, folder: Path) -> Path:
     """Write everything that the study's user would write, and return the configuration's path."""
     folder.mkdir(parents=True, exist_ok=True)
-    _table(
-        folder / "blocks.csv",
-        "name,width_cm,height_cm,mass_kg",
-        [(name, *map(str, values)) for name, values in study.blocks.items()],
-    )
-    _table(
-        folder / "configurations.csv",
-        "name,object,pedestal,counterpart",
-        [
-            (name, *(cell or "" for cell in (*cells, None)[:3]))
-            for name, cells in study.configurations.items()
-        ],
-    )
+    blocks = [(name, *map(str, values)) for name, values in study.blocks.items()]
+    _table(folder / "blocks.csv", "name,width_cm,height_cm,mass_kg", blocks)
+    standing = [
+        (name, *(cell or "" for cell in (*cells, None)[:3]))
+        for name, cells in study.configurations.items()
+    ]
+    _table(folder / "configurations.csv", "name,object,pedestal,counterpart", standing)
     rows = []
     for number, (name, earthquake) in enumerate(study.records.items()):
         names = f"record{number}.txt", f"record{number}-up.txt"
@@ -84,10 +79,8 @@ def write(study: Foreign, folder: Path) -> Path:
 
 
 def _table(path: Path, header: str, rows: Sequence[Sequence[str]]) -> None:
-    lines = [
-        ",".join(f'"{cell}"' if set(cell) & {",", '"'} else cell for cell in row) for row in rows
-    ]
-    path.write_text("\n".join([header, *lines]) + "\n", encoding="utf-8")
+    with path.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([header.split(","), *rows])
 
 
 def _record(path: Path, seed: int) -> None:
@@ -124,6 +117,8 @@ def alone(*names: str) -> dict[str, tuple[str | None, ...]]:
     return {name: (name, None) for name in names}
 
 
+LONG_NAME = "a very long name of a figure of a saint with a book in the left niche"
+
 STUDIES = {
     "one marble figure, one record": Foreign(
         blocks={"marble figure": MARBLE["marble figure"]},
@@ -140,12 +135,8 @@ STUDIES = {
         content={"amplitudes": {"lowest_g": 0.1, "highest_g": 0.7, "step_percent": 20}},
     ),
     "the thesis's bodies, but nobody asks for the thesis": Foreign(
-        blocks={
-            "T1": (12.4, 37.2, 2.172),
-            "T2": (12.4, 49.6, 2.79),
-            "T3": (12.4, 62.0, 3.456),
-            "P": (18.4, 20.8, 2.3),
-        },
+        blocks={"T1": (12.4, 37.2, 2.172), "T2": (12.4, 49.6, 2.79), "T3": (12.4, 62.0, 3.456)}
+        | {"P": (18.4, 20.8, 2.3)},
         configurations=alone("T1", "T2", "T3") | {"P&T1": ("T1", "P")},
         records={"Friuli": "Friuli", "Gilroy": "Loma Prieta"},
         floors={"GF": 0, "F5": 3},
@@ -192,20 +183,11 @@ STUDIES = {
         blocks={
             "Büste „Ä“, $x_1$": (30.0, 90.0, 60.0),
             "<b>&amp; \\alpha^2": (28.0, 110.0, 70.0),
-            "a very long name of a figure of a saint with a book in the left niche": (
-                (26.0, 100.0, 60.0)
-            ),
+            LONG_NAME: (26.0, 100.0, 60.0),
             "Sockel 50 %": (50.0, 40.0, 200.0),
         },
-        configurations={
-            "Büste „Ä“, $x_1$": ("Büste „Ä“, $x_1$", None),
-            "Büste $ auf Sockel $": ("Büste „Ä“, $x_1$", "Sockel 50 %"),
-            "<b>&amp; \\alpha^2": ("<b>&amp; \\alpha^2", None),
-            "a very long name of a figure of a saint with a book in the left niche": (
-                "a very long name of a figure of a saint with a book in the left niche",
-                None,
-            ),
-        },
+        configurations=alone("Büste „Ä“, $x_1$", "<b>&amp; \\alpha^2", LONG_NAME)
+        | {"Büste $ auf Sockel $": ("Büste „Ä“, $x_1$", "Sockel 50 %")},
         records={"Motion <i>1</i>": "$E$ & Söhne", "2": "2"},
         floors={"1. Stock <hinten>": 1, "Dach $": 3},
     ),

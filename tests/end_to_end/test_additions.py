@@ -15,7 +15,7 @@ from rockfrag.outcomes.limit_states import forget_limit_state, limit_state
 from rockfrag.outcomes.outcomes import empty_outcomes
 
 from .checked_report import check_report
-from .studies import Foreign, run
+from .studies import Foreign, alone, run
 
 
 class Needles:
@@ -62,26 +62,17 @@ def additions():
 
 
 def test_one_declaration_each_reaches_the_report(additions, tmp_path):
-    bodies = {
-        "specimens": "blocks.csv",
-        "configurations": "configurations.csv",
-        "restitution": {"law": "energy", "blocks": {"column": 0.8}},
-    }
+    bodies = {"specimens": "blocks.csv", "configurations": "configurations.csv"}
+    bodies |= {"restitution": {"law": "energy", "blocks": {"column": 0.8}}}
     content = {
         "bodies": bodies,
         "amplitudes": {"lowest_g": 0.05, "highest_g": 2.0, "step_percent": 8},
         "fragility": {"measures": ["rms_g", ["rms_g", "pgv_over_pga_s"]], "confidence": 0.9},
     }
-    study = Foreign(
-        {
-            "column": (30.0, 120.0, 110.0),
-            "plinth": (60.0, 40.0, 350.0),
-            "needle": (0.05, 60.0, 0.2),
-        },
-        {"column": ("column", None), "both": ("column", "plinth"), "needle": ("needle", None)},
-        {name: name for name in "abcdef"},
-        content=content,
-    )
+    blocks = {"column": (30.0, 120.0, 110.0), "plinth": (60.0, 40.0, 350.0)}
+    blocks["needle"] = (0.05, 60.0, 0.2)
+    standing = {**alone("column"), "both": ("column", "plinth"), **alone("needle")}
+    study = Foreign(blocks, standing, {name: name for name in "abcdef"}, content=content)
     results = run(study, tmp_path)
     page = check_report(results, study.names)
     # the engine answered for the needle, and only for it

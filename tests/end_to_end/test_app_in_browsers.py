@@ -42,10 +42,8 @@ def lines_of(browser: Browser) -> list[str]:
 def test_it_answers_in_the_words_of_assess(browser, app_page, motions, width, dark):
     opened(browser, app_page, width, 900, ready=STAGE, dark=dark)
     request = make_request(SETTINGS, "form")
-    said = [
-        line.partition(": ")[2]
-        for line in five_lines(assess_with(request, motions.at(request.place)))
-    ]
+    found = assess_with(request, motions.at(request.place))
+    said = [line.partition(": ")[2] for line in five_lines(found)]
     lines = lines_of(browser)
     assert [lines[i] for i in (0, 1, 3)] == [said[i] for i in (0, 1, 3)]
     assert browser.run("document.documentElement.scrollWidth <= innerWidth")

@@ -14,18 +14,11 @@ from rockfrag.study.loading import load_any
 from rockfrag.units import GRAVITY
 
 from .checked_report import Page, check_first_page, check_report
-from .studies import Foreign, run
+from .studies import Foreign, alone, run
 
-SLENDER = {
-    "figure": (30.0, 60.0, 60.0),
-    "column": (30.0, 120.0, 110.0),
-    "plinth": (50.0, 60.0, 350.0),
-}
-STANDING = {
-    "figure": ("figure", None),
-    "column": ("column", None),
-    "column on plinth": ("column", "plinth"),
-}
+SLENDER = {"figure": (30.0, 60.0, 60.0), "column": (30.0, 120.0, 110.0)}
+SLENDER |= {"plinth": (50.0, 60.0, 350.0)}
+STANDING = alone("figure", "column") | {"column on plinth": ("column", "plinth")}
 RECORDS = {"a": "one", "b": "two"}
 
 
@@ -41,10 +34,8 @@ def table(results: Path, name: str) -> pd.DataFrame:
 
 
 def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(tmp_path):
-    content = {
-        "friction": 0.3,
-        "amplitudes": {"lowest_g": 0.2, "highest_g": 1.2, "step_percent": 20},
-    }
+    amplitudes = {"lowest_g": 0.2, "highest_g": 1.2, "step_percent": 20}
+    content = {"friction": 0.3, "amplitudes": amplitudes}
     study = Foreign(SLENDER, STANDING, RECORDS, floors={"hall": 0}, content=content)
     results, page = run_and_check(study, tmp_path)
     # b/h of the figure is 0.5: it slides before it could rock, and never overturns
@@ -57,10 +48,8 @@ def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(tmp_p
     # b/h of the column is 0.25: it rocks as on surfaces that hold until it slides
     column = table(results, "ida/column")
     weak = column["amplitude_g"] < 0.29
-    assert (
-        column.loc[weak & (column["peak_slip_contact_1_m"] == 0), "overturned"]
-        == column.loc[weak & (column["peak_slip_contact_1_m"] == 0), "overturned_without_sliding"]
-    ).all()
+    holds = column[weak & (column["peak_slip_contact_1_m"] == 0)]
+    assert (holds["overturned"] == holds["overturned_without_sliding"]).all()
     found = table(results, "sliding").set_index("configuration")
     assert found.loc["figure", "saved"] == figure["overturned_without_sliding"].sum()
     assert found.loc["figure", "felled"] == 0
@@ -85,10 +74,8 @@ COLUMN = Block(0.3, 1.2, 110.0)
 @pytest.fixture(scope="module")
 def shaken(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     """Results and words of a study under vertical components too."""
-    content = {
-        "vertical": True,
-        "amplitudes": {"lowest_g": 0.2, "highest_g": 2.4, "step_percent": 20},
-    }
+    amplitudes = {"lowest_g": 0.2, "highest_g": 2.4, "step_percent": 20}
+    content = {"vertical": True, "amplitudes": amplitudes}
     study = Foreign(SLENDER, STANDING, RECORDS, floors={"hall": 0, "loft": 3}, content=content)
     results, page = run_and_check(study, tmp_path_factory.mktemp("shaken"))
     return results, " ".join(page.words)
@@ -119,9 +106,8 @@ def test_each_outcome_is_that_of_both_components_scaled_together(shaken):
     for row, factor in zip(rows.to_dict("records"), factors, strict=True):
         response = simulate(COLUMN, factor * motion.acceleration, motion.dt, vertical=factor * up)
         assert response.overturned == row["overturned"]
-        assert row["minimum_gravity_ratio"] == pytest.approx(
-            1 + min((factor * up).min(), 0) / GRAVITY, abs=1e-9
-        )
+        least = 1 + min((factor * up).min(), 0) / GRAVITY
+        assert row["minimum_gravity_ratio"] == pytest.approx(least, abs=1e-9)
         if not row["overturned"]:
             rotation, peak = row["peak_rotation_body_1"], np.abs(response.theta).max()
     assert rotation == pytest.approx(peak / COLUMN.alpha, rel=0.02)

@@ -57,16 +57,14 @@ def test_readers_of_every_kind_can_use_it(browser: Browser, page: Path):
 
 def test_a_link_opens_the_chapter_that_it_names(browser: Browser, report: Path):
     browser.open(report)
-    asked = browser.run(
-        "[...document.querySelectorAll('.questions a')].map(one => one.hash.slice(1))"
-    )
+    links = "[...document.querySelectorAll('.questions a')]"
+    asked = browser.run(f"{links}.map(one => one.hash.slice(1))")
     assert {"as_recorded", "pedestal", "fragility", "grounds", "live"} == set(asked)
     for anchor in asked:
         browser.run(f"document.querySelector('.questions a[href=\"#{anchor}\"]').click()")
         place = f"document.getElementById('{anchor}')"
-        assert browser.run(
-            f"{place}.open !== false && {place}.getBoundingClientRect().top < innerHeight"
-        )
+        assert browser.run(f"{place}.open !== false")
+        assert browser.run(f"{place}.getBoundingClientRect().top < innerHeight")
 
 
 def test_tables_can_be_sorted_and_filtered(browser: Browser, report: Path):

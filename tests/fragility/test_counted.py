@@ -54,11 +54,7 @@ def measures() -> pd.DataFrame:
 
 
 def rows() -> pd.DataFrame:
-    part = parts(MOTIONS)[0]
-    table = part.about.loc[part.about.index.repeat(AMPLITUDES.size)].reset_index(drop=True)
-    return table.assign(
-        amplitude_g=np.tile(AMPLITUDES, MOTIONS), overturned=part.overturned.ravel()
-    )
+    return parts(MOTIONS)[0].rows(("configuration", "earthquake", "floor", "motion"))
 
 
 @pytest.mark.parametrize("column", ["pga_g", "pgv_cm_s", "arias_m_s"])

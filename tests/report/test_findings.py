@@ -154,9 +154,8 @@ def test_friction_counts_the_tests_that_need_more_than_a_usual_surface_has():
 
 def test_what_friction_says_of_the_pedestal_is_said_where_both_sides_were_tested():
     found = model_allowed(validity([0.2, 0.3, 0.7, 1.4], [5, 5, 5, 5], "NNPP"))
-    assert found.headline == (
-        "All 2 tests with the pedestal require a friction coefficient above 0.6, and none of 2 tests without"
-    )
+    beyond = "All 2 tests with the pedestal require a friction coefficient above 0.6"
+    assert found.headline == f"{beyond}, and none of 2 tests without"
     assert "with the pedestal 0.70 to 1.40" in found.numbers
     assert "without 0.20 to 0.30" in found.numbers
 
@@ -166,22 +165,15 @@ def resurrections(*counts: int) -> pd.DataFrame:
 
 
 def test_survival_windows_are_counted_over_the_ida_curves_that_overturn():
-    tests = pd.DataFrame(
-        {
-            "test": ["a", "a"],
-            "definition": ["first_overturning", "always_overturning"],
-            "amplitude_g": [0.5, 1.0],
-        }
-    )
+    definitions = ["first_overturning", "always_overturning"]
+    tests = pd.DataFrame({"test": "a", "definition": definitions, "amplitude_g": [0.5, 1.0]})
     found = resurrections_found(resurrections(2, 0), tests)
     assert found.headline.startswith("Non-monotone response: in 1 of 2 analyses")
     assert "2.00 times" in found.numbers
-    assert resurrections_found(resurrections(0, 0), tests).headline.startswith(
-        "Every motion stronger"
-    )
-    assert resurrections_found(resurrections(0).assign(first_upper=NAN), tests).headline.startswith(
-        "Nothing overturns"
-    )
+    none = resurrections_found(resurrections(0, 0), tests)
+    assert none.headline.startswith("Every motion stronger")
+    standing = resurrections_found(resurrections(0).assign(first_upper=NAN), tests)
+    assert standing.headline.startswith("Nothing overturns")
 
 
 def curves(**medians: tuple[float, float, float]) -> pd.DataFrame:
@@ -238,44 +230,29 @@ def test_objects_that_no_shown_digit_tells_apart_are_named_together():
 def test_without_limits_no_interval_is_spoken_of():
     found = strength_found(curves(bust=(math.nan, 0.523, math.nan)), "90 %")
     assert "interval" not in found.said and "[" not in found.said
-    assert (
-        found.headline == "A peak base acceleration of 0.52 g overturns bust with 50 % probability"
-    )
+    only = "A peak base acceleration of 0.52 g overturns bust with 50 % probability"
+    assert found.headline == only
     assert strength_found(curves(), "90 %") is None
 
 
-def recorded(*cases: tuple[str, str, bool, float]) -> pd.DataFrame:
-    return pd.DataFrame(cases, columns=["configuration", "motion", "overturned", "fraction_near"])
-
-
 @pytest.mark.parametrize(
-    ("table", "headline", "sure"),
+    ("names", "overturned", "near", "headline", "sure"),
     [
+        ("a", [1], [1.0], "the only motion overturns everything", "No outcome changes"),
         (
-            recorded(("a", "x", True, 1.0)),
-            "At recorded strength the only motion overturns everything",
-            "No outcome changes",
-        ),
-        (
-            recorded(("a", "x", False, 0.0), ("a", "y", False, 0.4)),
-            "At recorded strength the 2 motions overturn nothing",
+            *("aa", [0, 0], [0.0, 0.4], "the 2 motions overturn nothing"),
             "1 of 2 outcomes flips if the motion is scaled within ±10 %",
         ),
         (
-            recorded(
-                ("a", "x", True, 1.0),
-                ("a", "y", False, 0.0),
-                ("b", "x", True, 0.9),
-                ("b", "y", True, 1),
-            ),
-            "At recorded strength 1 (a) to 2 (b) of 2 motions overturn the object",
-            "1 of 4 outcomes flips",
+            *("aabb", [1, 0, 1, 1], [1.0, 0.0, 0.9, 1.0]),
+            *("1 (a) to 2 (b) of 2 motions overturn the object", "1 of 4 outcomes flips"),
         ),
     ],
 )
 def test_motions_as_recorded_say_what_overturns_and_which_outcomes_are_sensitive(
-    table, headline, sure
+    names, overturned, near, headline, sure
 ):
-    found = recorded_found(table)
-    assert found.headline == headline
+    table = pd.DataFrame({"configuration": list(names), "fraction_near": near})
+    found = recorded_found(table.assign(overturned=np.array(overturned, dtype=bool)))
+    assert found.headline == f"At recorded strength {headline}"
     assert sure in found.text

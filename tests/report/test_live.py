@@ -49,14 +49,9 @@ def test_the_page_carries_motions_to_the_last_bit_and_bodies_as_given():
 
 
 def test_bodies_in_space_stand_in_a_small_page_with_both_components():
-    bodies = {
-        "a </script> vase": Standing(
-            Block(0.3, 1.0, 90.0, round=True).system(), Block(0.5, 0.6, 350.0)
-        ),
-        "turned": Standing(
-            turned_about_vertical(Block(0.3, 1.2, 110.0, depth=0.4, cg_offset=0.02).system(), 30.0)
-        ),
-    }
+    vase, box = Block(0.3, 1.0, 90.0, round=True), Block(0.3, 1.2, 110.0, depth=0.4, cg_offset=0.02)
+    bodies = {"a </script> vase": Standing(vase.system(), Block(0.5, 0.6, 350.0))}
+    bodies["turned"] = Standing(turned_about_vertical(box.system(), 30.0))
     both = GroundMotion(motion(), motion("other"))
     html = live_in_space(bodies, [both] * 100, ["the drums"])
     assert html.count("</script>") == 2
@@ -75,9 +70,8 @@ def test_what_the_kernel_of_the_page_does_not_know_is_left_out_by_name():
     held = system_of(STATUE, restitution=0.9)
     slippery = system_of(STATUE, friction=0.4)
     drum = Column((Block(0.5, 0.3, 150.0), Block(0.4, 0.3, 100.0), STATUE)).system()
-    html = live_kernel(
-        {**BODIES, "measured": held, "slippery": slippery, "drums": drum}, [motion()]
-    )
+    others = {"measured": held, "slippery": slippery, "drums": drum}
+    html = live_kernel({**BODIES, **others}, [motion()])
     assert [body["name"] for body in data_of(html)["bodies"]] == list(BODIES)
     assert "and so not: measured, slippery, drums." in html
     assert live_kernel({"measured": held}, [motion()]) == ""
@@ -125,12 +119,8 @@ def test_a_statue_is_drawn_on_its_pedestal(theta: tuple[float, float]):
     """The corner on which it rocks is on the pedestal's top, and no corner is below it."""
     stack = BODIES["figure </script> on plinth"]
     pedestal, statue = outlines(stack, theta)
-    along = pedestal[2].minus(pedestal[3])
-    heights = [
-        (along.x * (item.y - pedestal[3].y) - along.y * (item.x - pedestal[3].x))
-        / math.hypot(*along)
-        for item in statue
-    ]
+    along, corners = pedestal[2].minus(pedestal[3]), [at.minus(pedestal[3]) for at in statue]
+    heights = [(along.x * at.y - along.y * at.x) / math.hypot(*along) for at in corners]
     assert min(heights) == pytest.approx(0, abs=1e-12)
 
 

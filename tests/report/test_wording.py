@@ -205,12 +205,7 @@ def test_an_open_chapter_says_what_its_headline_rests_on():
 
 
 def test_best_measures_are_among_those_asked_for():
-    choice = pd.DataFrame(
-        {
-            "configuration": ["a", "a", "a", "b", "b", "b"],
-            "measure": ["avgsa_g", "pga_g", "pgv_cm_s"] * 2,
-            "im": ["AvgSA", "PGA", "PGV"] * 2,
-            "score": [-1.0, -2.0, -3.0, -1.0, float("nan"), -3.0],
-        }
-    )
+    measures = {"measure": ["avgsa_g", "pga_g", "pgv_cm_s"] * 2, "im": ["AvgSA", "PGA", "PGV"] * 2}
+    choice = pd.DataFrame({"configuration": list("aaabbb"), **measures})
+    choice["score"] = [-1.0, -2.0, -3.0, -1.0, NAN, -3.0]
     assert best_of(choice, ["pga_g", "pgv_cm_s"]) == ["PGA", "PGV"]

@@ -1,5 +1,6 @@
 """Synthetic tables of tests, in which hypotheses are true or false by construction."""
 
+import itertools
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -60,20 +61,15 @@ def build(
     """
     rng = np.random.default_rng(seed)
     rows = []
-    for earthquake in earthquakes:
-        for floor in FLOORS:
-            for k in range(motions):
-                motion = f"{earthquake}-{floor}" + (f"-{k}" if motions > 1 else "")
-                shared = rng.normal(0, of_motion)
-                for object_name, amplitude in objects.items():
-                    base = np.log(amplitude) + level(object_name, earthquake, floor) + shared
-                    for pedestal in ("NP", "P"):
-                        ln_a = base + rng.normal(0, noise)
-                        if pedestal == "P":
-                            ln_a += effect(object_name, earthquake, floor)
-                        rows.append(
-                            (object_name, pedestal, earthquake, floor, motion, np.exp(ln_a))
-                        )
+    for earthquake, floor, k in itertools.product(earthquakes, FLOORS, range(motions)):
+        motion = f"{earthquake}-{floor}" + (f"-{k}" if motions > 1 else "")
+        shared = rng.normal(0, of_motion)
+        for object_name, amplitude in objects.items():
+            base = np.log(amplitude) + level(object_name, earthquake, floor) + shared
+            gain = {"NP": 0.0, "P": effect(object_name, earthquake, floor)}
+            for pedestal in gain:
+                ln_a = base + rng.normal(0, noise) + gain[pedestal]
+                rows.append((object_name, pedestal, earthquake, floor, motion, np.exp(ln_a)))
     names = ["object", "pedestal", "earthquake", "floor", "motion", "amplitude_g"]
     table = pd.DataFrame(rows, columns=names)
     upper = table["amplitude_g"]

@@ -1,3 +1,4 @@
+import itertools
 import math
 
 import numpy as np
@@ -17,23 +18,13 @@ TOWERS = {"T1": 0.5, "T2": 0.4, "T3": 0.3}
 
 def table_of(order=None, effect=None, objects=None):
     """Tests of two earthquakes; amplitude = object × floor, times 1 + effect with the pedestal."""
-    order = order or {"GF": 1.2, "F3": 1.0, "F5": 1.1}
+    objects, order = objects or TOWERS, order or {"GF": 1.2, "F3": 1.0, "F5": 1.1}
     effect = effect or {"GF": 0.1, "F3": -0.05, "F5": -0.05}
-    rows = [
-        {
-            "object": object_name,
-            "earthquake": earthquake,
-            "floor": floor,
-            "pedestal": pedestal,
-            "amplitude_g": base * order[floor] * (1 + effect[floor] if pedestal == "P" else 1),
-            "lower_g": 0.0,
-        }
-        for object_name, base in (objects or TOWERS).items()
-        for earthquake in ("A", "B")
-        for floor in FLOORS
-        for pedestal in ("P", "NP")
-    ]
-    return pd.DataFrame(rows)
+    sides = {"object": objects, "earthquake": "AB", "floor": FLOORS, "pedestal": ("P", "NP")}
+    table = pd.DataFrame(itertools.product(*sides.values()), columns=list(sides))
+    gain = 1 + table["floor"].map(effect).where(table["pedestal"] == "P", 0.0)
+    a = table["object"].map(objects) * table["floor"].map(order) * gain
+    return table.assign(amplitude_g=a, lower_g=0.0)
 
 
 def test_margins_are_the_logarithms_they_are_said_to_be():
@@ -99,28 +90,16 @@ PERIODS = (0.3, 0.5, 0.7)
 @pytest.fixture
 def tests():
     floors = {"GF": [0.4, 0.4, 0.4], "F3": [0.5, 0.3, 0.2], "F5": [0.6, 0.2, 0.3]}
-    rows = [
-        (period, floor, value)
-        for floor, values in floors.items()
-        for period, value in zip(PERIODS, values, strict=True)
-    ]
-    means = pd.DataFrame(rows, columns=["value", "floor", "mean_g"])
+    means = pd.DataFrame(floors | {"value": PERIODS}).melt("value", None, "floor", "mean_g")
     return means.assign(axis="first_period_s", pedestal="NP", by="floor")
 
 
 @pytest.fixture
 def margins():
-    rows = [
-        {"hypothesis": name, "value": period, "margin": margin}
-        for name in (*HYPOTHESES, "order")
-        for period, margin in zip(PERIODS, (-0.5, -0.1, 0.3), strict=True)
-    ]
-    table = pd.DataFrame(rows)
-    return table.assign(
-        axis="first_period_s",
-        definition="step_protocol",
-        label=[f"first period {value:g} s" for value in table["value"]],
-    )
+    names = pd.DataFrame({"hypothesis": [*HYPOTHESES, "order"]})
+    table = names.merge(pd.DataFrame({"value": PERIODS, "margin": (-0.5, -0.1, 0.3)}), "cross")
+    label = table["value"].map("first period {:g} s".format)
+    return table.assign(axis="first_period_s", definition="step_protocol", label=label)
 
 
 def test_the_order_of_the_floors_is_shaded_where_it_holds(tests, margins):
@@ -144,8 +123,8 @@ def test_the_map_of_statements_shows_every_margin(margins):
 
 
 def test_the_building_figure_has_a_line_per_floor_and_marks_what_is_not_to_be_believed(tests):
-    means = tests.assign(label="x", credible=[True, True, False] * 3)
-    means["label"] = [f"first period {value:g} s" for value in means["value"]]
+    label = tests["value"].map("first period {:g} s".format)
+    means = tests.assign(label=label, credible=[True, True, False] * 3)
     axes = floor_amplitudes(means, "first_period_s").axes[0]
     lines = {line.get_label(): line.get_ydata().tolist() for line in axes.lines}
     assert lines["F3"] == [0.5, 0.3, 0.2]

@@ -38,9 +38,8 @@ def test_amplitudes_are_those_of_each_pair_climbed_by_itself(motions: list[Motio
     accelerations = [motion.acceleration for motion in motions]
     fell = overturns([STACK] * len(PAIRS), accelerations, 0.01, scales, friction=PAIRS).overturned
     first = fell.argmax(axis=2)
-    each = np.where(
-        fell.any(axis=2) & (first > 0), INTENSITY_LEVELS[np.maximum(first - 1, 0)], np.nan
-    )
+    known = fell.any(axis=2) & (first > 0)
+    each = np.where(known, INTENSITY_LEVELS[np.maximum(first - 1, 0)], np.nan)
     np.testing.assert_array_equal(found, each)
     assert np.isfinite(found).sum() > 6 and len(np.unique(found[np.isfinite(found)])) > 2
 
@@ -48,16 +47,15 @@ def test_amplitudes_are_those_of_each_pair_climbed_by_itself(motions: list[Motio
 def test_without_end_friction_gives_what_pure_rocking_gives(motions: list[Motion]) -> None:
     pure = level_amplitudes([TOWER.system(), STACK.system()], motions, INTENSITY_LEVELS)
     rough = [
-        survived_amplitudes(TOWER, [(math.inf,)], motions, INTENSITY_LEVELS)[0],
-        survived_amplitudes(STACK, [(math.inf, math.inf)], motions, INTENSITY_LEVELS)[0],
+        survived_amplitudes(body, [(math.inf,) * count], motions, INTENSITY_LEVELS)[0]
+        for body, count in ((TOWER, 1), (STACK, 2))
     ]
     np.testing.assert_array_equal(pure, rough)
 
 
 def test_below_its_slenderness_an_object_has_no_amplitude(motions: list[Motion]) -> None:
-    rows = friction_ratios(
-        {"tower": STACK}, motions, INTENSITY_LEVELS, ground=[0.3], interface=[0.5]
-    )
+    stacks, friction = {"tower": STACK}, {"ground": [0.3], "interface": [0.5]}
+    rows = friction_ratios(stacks, motions, INTENSITY_LEVELS, **friction)
     smooth = rows[rows["ground"] == 0.3]
     assert smooth["np_g"].isna().all() and smooth["ratio"].isna().all()
     effects = friction_effects(rows, {"ground": 0})

@@ -1,5 +1,6 @@
 """The question turned round: which perturbed parameters give an effect that was asked for."""
 
+import itertools
 import math
 from types import SimpleNamespace
 
@@ -29,16 +30,13 @@ def ratios(scatter=0.002):
         "raises_both": (0.02, 0.02),
         "idle": (0.0, 0.0),
     }
-    names = ["factor", "level", "reference", "earthquake", "floor", "ratio"]
     rows = []
-    for earthquake in "ABCDEF":
-        for place, floor in enumerate(FLOORS):
-            own = rng.normal(0, scatter)
-            for factor, effect in effects.items():
-                for level in ("ideal", "4", "8"):
-                    shift = 0.0 if level == "ideal" else effect[place] * float(level)
-                    about = (factor, level, level == "ideal", earthquake, floor)
-                    rows.append((*about, np.exp(own + shift)))
+    for earthquake, (place, floor) in itertools.product("ABCDEF", enumerate(FLOORS)):
+        own = rng.normal(0, scatter)
+        for (factor, effect), level in itertools.product(effects.items(), ("ideal", "4", "8")):
+            shift = 0.0 if level == "ideal" else effect[place] * float(level)
+            rows.append((factor, level, level == "ideal", earthquake, floor, np.exp(own + shift)))
+    names = ["factor", "level", "reference", "earthquake", "floor", "ratio"]
     table = pd.DataFrame(rows, columns=names)
     return table.assign(object="T", motion=table["earthquake"] + "-" + table["floor"])
 
@@ -60,9 +58,8 @@ def test_no_factor_alone_makes_it_and_the_words_say_so():
     alone = table[(table["factor_2"] == "") & (table["acts_on"] == "all floors")]
     assert not alone["reaches"].any() and not alone["plausible"].any()
     words = " ".join(inverse_problem_words(table, WANTED))
-    assert (
-        "No single perturbed parameter can produce +10 % on the ground and −5 % above it" in words
-    )
+    asked = "+10 % on the ground and −5 % above it"
+    assert f"No single perturbed parameter can produce {asked}" in words
     assert "lowers_loft with raises_ground" in words
     assert "No mechanism that acts on the ground alone, or above it alone, can." in words
 
@@ -89,9 +86,8 @@ def test_p_value_is_that_of_t_with_one_place_and_of_hotelling_with_two():
     from scipy import stats
 
     x = np.random.default_rng(4).normal(0.1, 0.2, (1, 7, 1))
-    assert hotelling(x, np.zeros(1), 0.0)[0] == pytest.approx(
-        stats.ttest_1samp(x[0, :, 0], 0.0).pvalue, rel=1e-2
-    )
+    expected = stats.ttest_1samp(x[0, :, 0], 0.0).pvalue
+    assert hotelling(x, np.zeros(1), 0.0)[0] == pytest.approx(expected, rel=1e-2)
     two = np.random.default_rng(5).normal(0, 0.2, (4000, 6, 2))
     p = hotelling(two, np.zeros(2), 0.0)
     assert np.mean(p < 0.05) == pytest.approx(0.05, abs=0.012)
@@ -119,15 +115,12 @@ def test_friction_of_either_interface_is_a_perturbation_like_others():
     everything = pd.concat([ratios(), friction_perturbations(tried_friction())], ignore_index=True)
     table = invert(everything, WANTED, FLOORS, NEUTRAL)
     everywhere = table[table["acts_on"] == "all floors"]
-    found = {
-        frozenset(name for name in row if name)
-        for row in everywhere[["factor_1", "factor_2"]].itertuples(index=False)
-    }
-    for other in ("raises_ground", "lowers_loft", "raises_both", "idle"):
-        assert {
-            frozenset({name, other}) for name in ("ground_friction", "interface_friction")
-        } <= found
-    assert frozenset({"ground_friction", "interface_friction"}) in found
+    pairs = everywhere[["factor_1", "factor_2"]].itertuples(index=False)
+    found = {frozenset(filter(None, pair)) for pair in pairs}
+    friction = {"ground_friction", "interface_friction"}
+    for name, other in itertools.product(friction, NEUTRAL):
+        assert {name, other} in found
+    assert friction in found
 
 
 def test_an_object_that_no_longer_falls_is_not_taken_for_an_effect():
@@ -143,19 +136,15 @@ def row(factor_1: str, factor_2: str = "", **given) -> dict[str, object]:
     """A row of the table: a perturbed parameter at its closest, or two."""
     item = {"factor_1": factor_1, "level_1": -2.0, "factor_2": factor_2, "level_2": math.nan}
     item |= {"acts_on": "all floors", "ground": 1.02, "above": 0.99, "plausible": True}
-    return (
-        item | {"reaches": False, "simulated_ground": math.nan, "simulated_above": math.nan} | given
-    )
-
-
-def asking(wanted: dict[str, float]) -> SimpleNamespace:
-    settings = Settings(sensitivity_analysis={"wanted_percent": wanted})
-    return SimpleNamespace(added={NAME: settings}, has_pairs=True)
+    item |= {"reaches": False, "simulated_ground": math.nan, "simulated_above": math.nan}
+    return item | given
 
 
 def section(rows: list[dict[str, object]], wanted: dict[str, float]):
-    results = SimpleNamespace(study=asking(wanted), table=lambda name: pd.DataFrame(rows))
-    return inverse_problem(results)
+    """The section of a study that asks for an effect and found these rows."""
+    settings = Settings(sensitivity_analysis={"wanted_percent": wanted})
+    study = SimpleNamespace(added={NAME: settings}, has_pairs=True)
+    return inverse_problem(SimpleNamespace(study=study, table=lambda _: pd.DataFrame(rows)))
 
 
 def test_what_gives_the_effect_is_named_for_a_reader():

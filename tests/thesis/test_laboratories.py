@@ -62,17 +62,9 @@ NEITHER = {"thesis": {54}, "no effect": set(), "opposite": {54}}
 def laboratory(name: str, seed: int, earthquakes: int = 4, motions: int = 1) -> pd.DataFrame:
     effect, level, objects = LABORATORIES[name]
     names = [*EARTHQUAKES, *(f"E{k}" for k in range(5, earthquakes + 1))]
-    return build(
-        effect,
-        level,
-        noise=PAIR_SCATTER / np.sqrt(2),
-        of_motion=0.15,
-        seed=seed,
-        objects=objects,
-        earthquakes=names,
-        motions=motions,
-        step=STEP,
-    )
+    design = {"earthquakes": names, "motions": motions, "objects": objects, "step": STEP}
+    scatter = {"noise": PAIR_SCATTER / np.sqrt(2), "of_motion": 0.15, "seed": seed}
+    return build(effect, level, **design, **scatter)
 
 
 def outcomes(tests: pd.DataFrame) -> dict[int, str]:

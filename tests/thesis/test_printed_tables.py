@@ -53,8 +53,7 @@ def test_the_printed_tables_come_out(computed, name, rows):
 def test_a_value_off_in_the_last_printed_digit_does_not_agree(tmp_path: Path):
     printed = tmp_path / "table.csv"
     printed.write_text((FOLDER / "table_3_1.csv").read_text().replace("19.61", "19.62"))
-    block = load_any(CONFIG / "thesis.yaml").specimens["T1"]
-    table = compare({"T1": block}, TABLE_3_1, printed)
+    table = compare({"T1": THESIS_BODIES["T1"]}, TABLE_3_1, printed)
     assert table.set_index("quantity")["agrees"].to_dict()["R"] is False
 
 
@@ -84,8 +83,7 @@ def test_a_heavy_pedestal_takes_the_threshold_of_pattern_3_to_its_own():
 
 
 def test_comparison_keeps_the_printed_decimals(tmp_path: Path):
-    study = load_any(CONFIG / "thesis.yaml")
-    table = compare(study.specimens, TABLE_3_1, FOLDER / "table_3_1.csv")
+    table = compare(THESIS_BODIES, TABLE_3_1, FOLDER / "table_3_1.csv")
     path = tmp_path / "table.csv"
     table.to_csv(path, index=False)
     again = pd.read_csv(path, dtype={"printed": str})

@@ -60,22 +60,14 @@ def test_no_restitution_makes_a_difference_on_a_pedestal_that_cannot_move(motion
 
 def test_an_interface_that_takes_more_energy_acts_like_a_lone_object_that_does(motions):
     lossy = 0.9 * TOWER.momentum_restitution()
-    rows = case_ratios(
-        factor_cases("T2", ROCK, {"interface_restitution": (0.9,)}), motions, INTENSITY_LEVELS
-    )
-    lone = Case(
-        "lone",
-        0.0,
-        "T2",
-        system_of(TOWER, restitution=lossy),
-        system_of(ROCK, restitution=(None, lossy)),
-    )
-    alike = case_ratios([lone], motions, INTENSITY_LEVELS)
+    cases = factor_cases("T2", ROCK, {"interface_restitution": (0.9,)})
+    rows = case_ratios(cases, motions, INTENSITY_LEVELS)
+    alone, on_it = system_of(TOWER, restitution=lossy), system_of(ROCK, restitution=(None, lossy))
+    alike = case_ratios([Case("lone", 0.0, "T2", alone, on_it)], motions, INTENSITY_LEVELS)
+    expected = pytest.approx(alike["np_g"].to_numpy(), abs=0, nan_ok=True)
     # on so heavy a pedestal by every law
     for _, by_law in rows.groupby("factor"):
-        assert by_law["p_g"].to_numpy() == pytest.approx(
-            alike["np_g"].to_numpy(), abs=0, nan_ok=True
-        )
+        assert by_law["p_g"].to_numpy() == expected
 
 
 def test_mass_that_is_not_counted_scales_every_ratio_by_the_masses(motions):
@@ -136,15 +128,10 @@ def test_restitution_is_varied_by_each_law_that_differs():
 
 def test_a_perturbation_is_judged_only_where_its_laws_agree():
     names = ["interface_restitution", "interface_restitution_ratio", "pedestal_lean_deg"]
-    effects = pd.DataFrame(
-        {
-            "factor": [*names, *names],
-            "level": ["0.9"] * 3 + ["1.05"] * 3,
-            "floor": "all",
-            "judgement": [CHANGES, SAME, SAME, CHANGES, CHANGES, OPEN],
-        }
-    )
-    judged = where_laws_agree(effects, LAW_OF)["judgement"].tolist()
+    effects = pd.DataFrame({"factor": names * 2, "level": ["0.9"] * 3 + ["1.05"] * 3})
+    said = [CHANGES, SAME, SAME, CHANGES, CHANGES, OPEN]
+    judged = where_laws_agree(effects.assign(floor="all", judgement=said), LAW_OF)
+    judged = judged["judgement"].tolist()
     assert judged == [OPEN, OPEN, SAME, CHANGES, CHANGES, OPEN]
 
 
@@ -204,17 +191,9 @@ def test_a_perturbation_reads_as_english_in_the_middle_of_a_sentence(factor):
 
 
 def test_perturbations_are_named_by_factor_and_level_in_the_order_of_the_figure():
-    effects = pd.DataFrame(
-        {
-            "factor": ["table_not_counted", "statue_restitution", "statue_restitution"],
-            "level": ["10", "1", "ideal"],
-            "floor": "all",
-            "ratio_lower": 0.9,
-            "ratio": 1.0,
-            "ratio_upper": 1.1,
-            "p": 0.5,
-        }
-    )
+    factors = ["table_not_counted", "statue_restitution", "statue_restitution"]
+    effects = pd.DataFrame({"factor": factors, "level": ["10", "1", "ideal"], "floor": "all"})
+    effects = effects.assign(ratio_lower=0.9, ratio=1.0, ratio_upper=1.1, p=0.5)
     assert perturbations(effects)["name"].tolist() == [
         "the object's restitution everywhere × 1",
         "neglecting the mass of a 10 kg table",
@@ -223,13 +202,10 @@ def test_perturbations_are_named_by_factor_and_level_in_the_order_of_the_figure(
 
 def perturbed(ratios: dict[str, float], p: float = 0.04) -> pd.DataFrame:
     """Effects of perturbations of one parameter on two floors together."""
-    rows = [
-        {"factor": "statue_restitution", "level": level, "floor": floor, "ratio": ratio}
-        for level, ratio in {REFERENCE: 1.0, **ratios}.items()
-        for floor in ("all", "cellar", "attic")
-    ]
-    table = pd.DataFrame(rows)
-    return table.assign(ratio_lower=0.97 * table["ratio"], ratio_upper=1.03 * table["ratio"], p=p)
+    levels = pd.Series({REFERENCE: 1.0, **ratios}, name="ratio").rename_axis("level").reset_index()
+    table = levels.merge(pd.DataFrame({"floor": ["all", "cellar", "attic"]}), "cross")
+    limits = {"ratio_lower": 0.97 * table["ratio"], "ratio_upper": 1.03 * table["ratio"]}
+    return table.assign(factor="statue_restitution", p=p, **limits)
 
 
 def test_the_rule_for_many_perturbations_is_named_and_counts_all():

@@ -73,9 +73,7 @@ def test_what_is_found_is_said(hypothesis_table, number, column, words):
     assert words in hypothesis_table.loc[number, column]
 
 
-def test_a_sudden_acceleration_starts_rocking_mode_1_and_a_continuous_one_does_not(
-    hypothesis_table,
-):
+def test_a_sudden_start_gives_rocking_mode_1_and_a_continuous_one_does_not(hypothesis_table):
     records, sudden = hypothesis_table.loc[9, "figure"].split("under motions")
     fraction, total = records.split(" start")[0].split(" of ")
     assert fraction == total
@@ -90,25 +88,20 @@ def test_the_pedestal_of_the_specimens_lifts_and_stands_again_at_once() -> None:
         assert contact_events[contact_events["kind"] == "impact"]["to"].iloc[0] == "1b"
         assert set(after_impacts(contact_events)) == {SETTLES}
         # in far less time than to the statue's next landing
-        lifted = (
-            contact_events["time"][contact_events["to"].str.startswith("4")].iloc[0]
-            - contact_events["time"].iloc[0]
-        )
+        time = contact_events["time"]
+        lifted = time[contact_events["to"].str.startswith("4")].iloc[0] - time.iloc[0]
         assert 0 < lifted < 0.1 * math.pi / stack.upper.frequency()
 
 
 def test_landings_are_told_apart() -> None:
-    def contact_events(*rows: tuple[str, str, str]) -> pd.DataFrame:
-        return pd.DataFrame(rows, columns=["kind", "from", "to"])
+    def contact_events(*rows: tuple[str, str]) -> pd.DataFrame:
+        return pd.DataFrame(rows, columns=["from", "to"]).assign(kind="impact")
 
-    landing = ("impact", "4a", "1b")
-    assert after_impacts(contact_events(("impact", "4a", "4b"))) == [STILL]
-    assert after_impacts(
-        contact_events(landing, ("impact", "1b", "2a"), ("impact", "2a", "4b"))
-    ) == [SETTLES]
-    assert after_impacts(contact_events(landing, ("impact", "1b", "2b"))) == [LIFTED]
+    assert after_impacts(contact_events(("4a", "4b"))) == [STILL]
+    assert after_impacts(contact_events(("4a", "1b"), ("1b", "2a"), ("2a", "4b"))) == [SETTLES]
+    assert after_impacts(contact_events(("4a", "1b"), ("1b", "2b"))) == [LIFTED]
     # the record ends before it is decided
-    assert after_impacts(contact_events(landing)) == []
+    assert after_impacts(contact_events(("4a", "1b"))) == []
 
 
 def test_results_do_not_depend_on_threads_or_repetition(hypothesis_table: pd.DataFrame) -> None:
@@ -136,10 +129,9 @@ def test_measured_free_rocking_decides_about_restitution(restitution, outcome):
 
 
 def test_an_unusable_history_is_the_users_error() -> None:
+    wrong = {"T3": (np.arange(9), np.ones(8))}
     with pytest.raises(InputError, match="one per time"):
-        theory_table(
-            {"T3": THESIS_BODIES["T3"]}, [], seed=1, free_rocking={"T3": (np.arange(9), np.ones(8))}
-        )
+        theory_table({"T3": THESIS_BODIES["T3"]}, [], seed=1, free_rocking=wrong)
 
 
 @pytest.mark.parametrize(

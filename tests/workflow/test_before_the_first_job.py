@@ -20,7 +20,7 @@ from rockfrag.study.loading import load_any
 from rockfrag.yaml_file import read_yaml
 
 from .conftest import study_content, write_example, write_study, write_synthetic
-from .running import ROOT, SNAKEFILE, called, snakemake
+from .running import ROOT, SNAKEFILE, called, finished, snakemake
 
 
 def said(capsys: pytest.CaptureFixture[str], path: Path) -> str:
@@ -206,8 +206,7 @@ def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
     )
     study = ("--directory", str(study_folder), "--configfile", str(study_folder / "study.yaml"))
     command = (sys.executable, "-c", program, "--snakefile", SNAKEFILE, "--dry-run")
-    done = called(ROOT, *command, *study)
-    assert done.returncode == 0, done.stderr[-2000:]
+    done = finished(called(ROOT, *command, *study))
     assert "results/tiny/report.html" in done.stdout + done.stderr
     assert "rule study" in done.stdout + done.stderr
 

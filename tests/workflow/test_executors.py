@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from .running import ROOT, run_locally_and_with
+from .running import LAUNCHER, ROOT, called, finished, tables_of
 
 CONF = Path("/etc/slurm/slurm.conf")
 """Where jobs look for the configuration: the executor takes SLURM's variables from their environment."""
@@ -120,6 +120,16 @@ def _wait_for_node(folder: Path) -> None:
         time.sleep(1)
     logs = "\n".join(path.read_text()[-500:] for path in folder.glob("*.log"))
     pytest.fail(f"SLURM did not come up: {done.stdout} {done.stderr}\n{logs}")
+
+
+def run_locally_and_with(folder: Path, *arguments: str) -> str:
+    """Run a study here, then from nothing with more arguments; the bytes must agree. Return what was said."""
+    finished(called(folder, *LAUNCHER, "study.yaml", "--cores", "2"))
+    wanted = tables_of(folder)
+    shutil.rmtree(folder / "results")
+    done = finished(called(folder, *LAUNCHER, "study.yaml", *arguments))
+    assert tables_of(folder) == wanted
+    return done.stderr
 
 
 @pytest.mark.slow

@@ -17,8 +17,7 @@ import pytest
 from rockfrag import lock
 from rockfrag.errors import InputError
 from rockfrag.processes import in_processes
-from rockfrag.stages.log import in_words, logged
-from rockfrag.stages.preflight import check_folders
+from rockfrag.stages.log import check_folders, in_words, logged
 from rockfrag.stages.running import RUN, run_lock, same_numbers
 
 from .running import LAUNCHER, ROOT, called

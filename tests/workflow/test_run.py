@@ -18,7 +18,7 @@ from rockfrag.study.loading import load_any
 
 from ..stages_in_process import run_stages, stages_of
 from .conftest import make_study, study_content, write_study
-from .running import LAUNCHER, ROOT, SNAKEFILE, called, snakemake, tables_of
+from .running import LAUNCHER, ROOT, SNAKEFILE, called, finished, snakemake, tables_of
 
 
 def make_smaller(folder: Path) -> Path:
@@ -34,8 +34,7 @@ def make_smaller(folder: Path) -> Path:
 def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a study that has gone through the workflow."""
     folder = make_smaller(tmp_path_factory.mktemp("by the workflow") / "a study")
-    done = snakemake(folder, "--cores", "2")
-    assert done.returncode == 0, done.stderr[-3000:]
+    finished(snakemake(folder, "--cores", "2"))
     return folder
 
 
@@ -55,8 +54,7 @@ def large_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_jobs_share_the_motions_of_a_large_study(large_study: Path):
-    done = snakemake(large_study, "--dry-run")
-    assert done.returncode == 0, done.stderr[-3000:]
+    done = finished(snakemake(large_study, "--dry-run"))
     counts = dict(re.findall(r"^(\w+) +(\d+)$", done.stdout, re.MULTILINE))
     assert (counts["ida"], counts["as_recorded"]) == ("2", "1")
 
@@ -65,8 +63,7 @@ def test_jobs_share_the_motions_of_a_large_study(large_study: Path):
 def test_jobs_that_share_the_motions_write_what_one_does(ran: Path, large_study: Path):
     tables = ("tests", "as_recorded", "fragility")
     wanted = [f"results/tiny/{name}.parquet" for name in tables]
-    done = snakemake(large_study, "--cores", "2", *wanted)
-    assert done.returncode == 0, done.stderr[-3000:]
+    finished(snakemake(large_study, "--cores", "2", *wanted))
     (tests, alone), (recorded, at_once), (counted, of_rows) = (
         [pd.read_parquet(folder / path) for folder in (large_study, ran)] for path in wanted
     )
@@ -86,8 +83,7 @@ def test_the_workflow_writes_what_the_stages_write_to_the_byte(ran: Path, tmp_pa
     )
     names = ("P&T1", "T1", "First", "Second")
     program = (sys.executable, "-c", alone, str(path))
-    done = called(ROOT, *program, *names, env=os.environ | same_numbers(os.environ))
-    assert done.returncode == 0, done.stderr[-3000:]
+    done = finished(called(ROOT, *program, *names, env=os.environ | same_numbers(os.environ)))
     by_hand = Path(done.stdout.splitlines()[-1])
     results = ran / "results" / "tiny"
     for name in ("report.html", "tests.csv"):
@@ -109,8 +105,7 @@ def test_a_study_runs_from_records_to_report(ran: Path):
     assert "thesis" not in report
     assert {path.name for path in ran.iterdir() if path.is_dir()} <= {".snakemake", "results"}
 
-    listed = snakemake(ran, "--report", "listed.html")
-    assert listed.returncode == 0, listed.stderr[-3000:]
+    finished(snakemake(ran, "--report", "listed.html"))
     text = (ran / "listed.html").read_text(encoding="utf-8")
     captions = json.loads((results / "figures" / "captions.json").read_text(encoding="utf-8"))
     assert set(captions) == {path.stem for path in (results / "figures").glob("*.svg")}
@@ -127,8 +122,7 @@ def test_a_finished_study_has_nothing_to_do_even_where_nothing_may_be_written(ra
         "str(path) and access(path, mode, **more); sys.argv = ['run.py', 'study.yaml', '--cores', '2', "
         f"'--logger', 'rockfrag']; runpy.run_path({LAUNCHER[1]!r}, run_name='__main__')"
     )
-    done = called(ran, sys.executable, "-c", program)
-    assert done.returncode == 0, done.stderr[-3000:]
+    done = finished(called(ran, sys.executable, "-c", program))
     assert done.stdout == "Nothing to do; the report is results/tiny/report.html\n"
     assert {path: path.stat().st_mtime_ns for path in (ran / "results").rglob("*")} == before
 
@@ -137,8 +131,7 @@ def test_a_finished_study_has_nothing_to_do_even_where_nothing_may_be_written(ra
 def test_two_runs_write_the_same_bytes_whatever_the_number_of_cores(study_folder: Path):
     runs = []
     for cores in ("1", "2"):
-        done = snakemake(study_folder, "--cores", cores, "--forceall")
-        assert done.returncode == 0, done.stderr[-3000:]
+        finished(snakemake(study_folder, "--cores", cores, "--forceall"))
         runs.append(tables_of(study_folder))
     assert len(runs[0]) > 50
     assert runs[0] == runs[1]
@@ -171,8 +164,7 @@ def test_with_the_key_check_config_says_what_will_be_left_out(damaged, capsys):
 def test_the_study_goes_on_and_says_what_is_missing(damaged: Path, monkeypatch: pytest.MonkeyPatch):
     path = write_study(damaged, {**study_content(), "keep_going": True})
     # the workflow as far as records are fetched and read; what follows needs no process of its own
-    done = snakemake(damaged, "--cores", "2", "results/tiny/left_out.csv")
-    assert done.returncode == 0, done.stderr[-3000:]
+    finished(snakemake(damaged, "--cores", "2", "results/tiny/left_out.csv"))
     monkeypatch.chdir(damaged)
     study = load_any(path)
     results = run_stages(study, damaged / "results" / "tiny", stages_of(study)[1:])
@@ -251,14 +243,12 @@ def test_another_workflow_takes_the_rules_with_a_prefix(study_folder, config, in
     assert "rf_report" in by_snakefile(study_folder, "--dry-run").stdout
     if inside:
         target = "results/tiny/measures.csv"
-        done = by_snakefile(study_folder, "--cores", "1", target)
-        assert done.returncode == 0, done.stderr[-2000:]
+        finished(by_snakefile(study_folder, "--cores", "1", target))
         assert (study_folder / target).is_file()
 
 
 def test_without_a_configuration_it_is_an_example():
-    done = by_snakefile(ROOT, "--dry-run")
-    assert done.returncode == 0, done.stderr[-2000:]
+    done = finished(by_snakefile(ROOT, "--dry-run"))
     assert "results/example/report.html" in done.stdout
     assert "thesis" not in planned(done.stdout)
 
@@ -274,8 +264,7 @@ def test_files_named_like_libraries_in_the_folder_of_a_study_are_not_code(study_
         program = f"open({str(marked)!r}, 'a').write({name!r})\n"
         (study_folder / f"{name}.py").write_text(program)
     wanted = ("--cores", "1", "results/tiny/measures.csv")
-    done = called(study_folder, *LAUNCHER, "study.yaml", *wanted)
-    assert done.returncode == 0, done.stderr[-2000:]
+    finished(called(study_folder, *LAUNCHER, "study.yaml", *wanted))
     assert not marked.exists()
 
 

@@ -275,18 +275,16 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
             both_sides["together"] = together
     now = next(iter(arrangements.values()))
 
-    def estimated(target: risk.Target, fixed: Mapping[str, float] | None = None) -> Estimate:
-        return risk.estimate(target, now, both_sides, fixed or {}, shifts)
-
+    evidence = risk.Evidence(now, both_sides, shifts)
     probability = None
     if hazard:
         fixed = _of_quantiles(now, hazard)
-        probability = estimated(risk.risk_target(hazard, request.years), fixed)
+        probability = evidence.estimate(risk.risk_target(hazard, request.years), fixed)
     rocking, fraction = None, None
     rocks_from = _rocks_from(request, counted, exact=exact)
     if level:
-        rocking = risk.estimate_rocking(level.value, now, both_sides, exact=exact)
-        fraction = estimated(risk.fraction_target(level.value))
+        rocking = evidence.rocking(level.value, exact=exact)
+        fraction = evidence.estimate(risk.fraction_target(level.value))
         if rocking.value == 0:
             # what does not rock cannot topple
             fraction = replace(fraction, upper=min(fraction.upper, rocking.upper))
@@ -307,7 +305,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         fraction=fraction,
         probability=probability,
         counts=_counts(counted, level) if now is counted else None,
-        amplitudes={p: estimated(risk.amplitude_target(p)) for p in (0.1, 0.5)},
+        amplitudes={p: evidence.estimate(risk.amplitude_target(p)) for p in (0.1, 0.5)},
         by_arrangement={
             name: target.value(arrangement) for name, arrangement in arrangements.items()
         },

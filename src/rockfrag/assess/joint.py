@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rockfrag.arrays import Flags, Floats
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.outcomes import ObjectOutcomes
-from rockfrag.assess.risk import estimate, probability_in, risk_target, toppling_rate
+from rockfrag.assess.risk import Evidence, probability_in, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 
@@ -93,7 +93,7 @@ def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int6
     for least in [n for n in NUMBERS if n <= count.max()] or [1]:
         many = replace(together, overturned=count >= least, rocked=np.ones_like(together.rocked))
         fractions = many.fractions()
-        found = estimate(target, many, {}, {}, shifts)
+        found = Evidence(many, shifts=shifts).estimate(target)
         rate = toppling_rate(many.intensity_levels.levels, fractions, first.hazard)
         rows.append(
             {

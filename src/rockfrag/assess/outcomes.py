@@ -278,20 +278,16 @@ def simulated(
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", LightBodies)
-        result = overturns(
-            systems,
-            [motion.acceleration for motion in shaking],
-            [motion.dt for motion in shaking],
-            scales,
-        )
-    light = [issubclass(warning.category, LightBodies) for warning in caught]
-    for warning, known in zip(caught, light, strict=True):
-        if not known:
-            warnings.warn_explicit(
-                warning.message, warning.category, warning.filename, warning.lineno
-            )
+        result = overturns(systems, shaking, scales=scales)
+    light = False
+    for warning in caught:
+        if issubclass(warning.category, LightBodies):
+            light = True
+        else:
+            about = (warning.filename, warning.lineno)
+            warnings.warn_explicit(warning.message, warning.category, *about)
     # more than two bodies leave the ground where they have to
-    return result, [any(light) and system.count < 3 for system in systems]
+    return result, [light and system.count < 3 for system in systems]
 
 
 def in_space(

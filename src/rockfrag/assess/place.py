@@ -33,11 +33,6 @@ ORDINALS = (
 )
 """Names of floors."""
 
-ENDINGS = {digit: ORDINALS[digit][-2:] for digit in (1, 2, 3)}
-"""Endings of numbers by their last digit."""
-
-_WHOLE = ("masses_", "masses")  # Keys that only the description of a whole building has begin so
-
 _FLOOR = re.compile(r"\s*(\d+)\s*(?:/|of)\s*(\d+)\s*")
 
 
@@ -143,7 +138,7 @@ def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
     if isinstance(given, str):
         building = read_building(folder / given)
         where = given
-    elif any(key.startswith(_WHOLE) for key in map(str, given)):
+    elif any(str(key).startswith("masses") for key in given):
         building, where = make_building(given), "the building"
     else:
         if floor is None:
@@ -242,4 +237,5 @@ def _ordinal(number: int) -> str:
     if number < len(ORDINALS):
         return ORDINALS[number]
     # 21 and 31 end as 1 does; 11 to 13 are exceptions
-    return f"{number}{'th' if number % 100 in (11, 12, 13) else ENDINGS.get(number % 10, 'th')}"
+    ending = "th" if number % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(number % 10)
+    return f"{number}{ending or 'th'}"

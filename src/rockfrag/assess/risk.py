@@ -9,7 +9,7 @@ Student's t has the degrees of freedom of Welch and Satterthwaite. ``docs/assess
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 
 import numpy as np
@@ -21,9 +21,6 @@ from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
 from rockfrag.assess.outcomes import ObjectOutcomes, fraction_at
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
-
-Sides = Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]]
-"""Outcomes with each property moved to both sides by its standard deviation."""
 
 LEVEL = 0.90  # Confidence of the intervals
 
@@ -184,65 +181,118 @@ def earthquake_weights(earthquakes: NDArray[np.object_]) -> Floats:
     return np.array([(earthquakes != name).astype(np.float64) for name in names])
 
 
-def estimate(
-    target: Target,
-    outcomes: ObjectOutcomes,
-    moved: Sides,
-    fixed: Mapping[str, float],
-    shifts: Mapping[str, float],
-) -> Estimate:
-    """Estimate a probability with its interval.
+@dataclass(frozen=True)
+class Evidence:
+    """What estimates rest on."""
 
-    ``moved`` has outcomes with each property moved to both sides by its standard deviation, ``fixed`` further
-    standard deviations on the target's scale, such as of the hazard, ``shifts`` those of ln level, such as of the
-    model.
-    """
-    middle = target.on_scale(outcomes)
-    if not math.isfinite(middle):
-        return _bounded(target, outcomes, middle, moved, shifts)
+    outcomes: ObjectOutcomes  # Outcomes of the object
+    # Outcomes with each property moved to both sides by its standard deviation
+    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]] = field(default_factory=dict)
+    # Standard deviations of ln level by source, such as of the model
+    shifts: Mapping[str, float] = field(default_factory=dict)
 
-    def near(changed: ObjectOutcomes, shift: float = 0.0) -> float:
-        return target.on_scale(changed, shift=shift, added=target.added)
+    def estimate(self, target: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
+        """Estimate a probability with its interval.
 
-    sources: dict[str, float] = {}
-    left_out = target.without_each(outcomes)
-    # where nothing rocks without one of them, what others would say is open
-    known = len(left_out) > 1 and np.isfinite(left_out).all()
-    sources["motions"] = float(jackknife_error(left_out)) if known else math.inf
-    for name, (lower, upper) in moved.items():
-        sources[name] = _half_width(near(lower), near(upper), near(outcomes))
-    for name, spread in shifts.items():
-        low, high = (near(outcomes, sign * spread) for sign in (-1, 1))
-        sources[name] = _half_width(low, high, near(outcomes))
-    sources |= fixed
-    total = math.sqrt(sum(value**2 for value in sources.values()))
-    quantile = _Z
-    if math.isfinite(total) and sources["motions"] != 0:
-        # Student's t for the sum of one estimated and several known variances
-        freedom = (len(left_out) - 1) * (total / sources["motions"]) ** 4
-        quantile = float(stats.t.ppf(0.5 + LEVEL / 2, freedom))
-    # what was added must not make an interval narrower than that of motions which all agree
-    low, high = sorted((middle, near(outcomes)))
-    down, up = _shifted(target, outcomes, middle, quantile * math.hypot(*shifts.values()))
-    others = quantile * math.hypot(*(sources[name] for name in sources if name not in shifts))
-    return Estimate(
-        target.back(middle),
-        target.back(low - math.hypot(others, down)),
-        target.back(high + math.hypot(others, up)),
-        sources,
-    )
+        ``fixed`` are further standard deviations on the target's scale, such as of the hazard.
+        """
+        middle = target.on_scale(self.outcomes)
+        if not math.isfinite(middle):
+            return self._bounded(target, middle)
+
+        def near(changed: ObjectOutcomes, shift: float = 0.0) -> float:
+            return target.on_scale(changed, shift=shift, added=target.added)
+
+        here, left_out = near(self.outcomes), target.without_each(self.outcomes)
+        # where nothing rocks without one of them, what others would say is open
+        known = len(left_out) > 1 and np.isfinite(left_out).all()
+        sources = {"motions": float(jackknife_error(left_out)) if known else math.inf}
+        for name, (lower, upper) in self.moved.items():
+            sources[name] = _half_width(near(lower), near(upper), here)
+        for name, spread in self.shifts.items():
+            low, high = (near(self.outcomes, sign * spread) for sign in (-1, 1))
+            sources[name] = _half_width(low, high, here)
+        sources |= fixed or {}
+        total = math.sqrt(sum(value**2 for value in sources.values()))
+        quantile = _Z
+        if math.isfinite(total) and sources["motions"] != 0:
+            # Student's t for the sum of one estimated and several known variances
+            freedom = (len(left_out) - 1) * (total / sources["motions"]) ** 4
+            quantile = float(stats.t.ppf(0.5 + LEVEL / 2, freedom))
+        # what was added must not make an interval narrower than that of motions which all agree
+        low, high = sorted((middle, here))
+        down, up = self._shifted(target, middle, quantile * math.hypot(*self.shifts.values()))
+        others = [sources[name] for name in sources if name not in self.shifts]
+        half = quantile * math.hypot(*others)
+        return Estimate(
+            target.back(middle),
+            target.back(low - math.hypot(half, down)),
+            target.back(high + math.hypot(half, up)),
+            sources,
+        )
+
+    def _shifted(self, target: Target, middle: float, shift: float) -> tuple[float, float]:
+        """How far below and above the middle the value lies with all levels shifted to the ends of the interval.
+
+        The fraction that topples falls to nothing within less than the error of the level, which no multiple of
+        its slope says.
+        """
+        ends = sorted(target.on_scale(self.outcomes, shift=sign * shift) for sign in (-1, 1))
+        return max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
+
+    def _bounded(self, target: Target, middle: float) -> Estimate:
+        """Where every motion agrees: as many others could disagree as these earthquakes cannot exclude."""
+        hidden = _hidden(self.outcomes)
+        shift = _Z * math.sqrt(sum(spread**2 for spread in self.shifts.values()))
+        happens = middle > 0 and not math.isinf(target.certain)
+        sign = -1 if happens else 1
+
+        def bound(changed: ObjectOutcomes, shift: float = 0.0) -> float:
+            fractions = changed.fractions(state=target.state)
+            if happens:
+                fractions = np.minimum(fractions, 1 - hidden)
+            else:
+                could = changed.fractions(state=ROCKS) > 0
+                fractions = np.where(could, np.maximum(fractions, hidden), 0.0)
+            return target.of(changed.intensity_levels.levels, fractions, -sign * shift)
+
+        if math.isinf(target.certain):
+            # never reached: hidden motions could be enough at some level, or it lies above the last one
+            last = float(self.outcomes.intensity_levels.levels[-1])
+            return Estimate(math.inf, min(bound(self.outcomes, shift), last), math.inf, {})
+        limit, plain = (target.forward(bound(self.outcomes, by)) for by in (shift, 0.0))
+        both_sides = self.moved.values()
+        ends = [max(sign * target.forward(bound(side)) for side in both) for both in both_sides]
+        if math.isfinite(plain):
+            further = [max(0.0, end - sign * plain) for end in ends]
+            limit += sign * _Z * math.sqrt(sum(term**2 for term in further))
+        else:
+            # at rest as it is: what could move it decides
+            limit = sign * max([sign * limit, *ends])
+        if happens:
+            return Estimate(1.0, target.back(limit), 1.0, {})
+        return Estimate(0.0, 0.0, target.back(limit), {})
+
+    def rocking(self, level: float, *, exact: bool) -> Estimate:
+        """Estimate the fraction of motions at a level that make the object rock.
+
+        The error of the rocking model does not enter: a contact opens by statics. Where the level alone decides
+        (``exact``), as a peak acceleration of what it stands on does, other earthquakes say the same.
+        """
+        target = fraction_target(level, state=ROCKS)
+        found = replace(self, shifts={}).estimate(target)
+        if 0 < found.value < 1:
+            return found
+        sides = [target.value(side) for both in self.moved.values() for side in both]
+        hidden = 0.0 if exact else _hidden(self.outcomes)
+        if found.value == 0:
+            return Estimate(0.0, 0.0, max([hidden, *sides]), {})
+        return Estimate(1.0, min([1 - hidden, *sides]), 1.0, {})
 
 
-def _shifted(
-    target: Target, outcomes: ObjectOutcomes, middle: float, shift: float
-) -> tuple[float, float]:
-    """How far below and above the middle the value lies with all levels shifted to either end of the interval.
-
-    The fraction that topples falls to nothing within less than the error of the level, which no multiple of its
-    slope says.
-    """
-    ends = sorted(target.on_scale(outcomes, shift=sign * shift) for sign in (-1, 1))
-    return max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
+def _hidden(outcomes: ObjectOutcomes) -> float:
+    """Fraction of earthquakes that could disagree where all of so many agree, which they cannot exclude."""
+    return float(1 - (1 - LEVEL) ** (1 / len(set(outcomes.earthquakes))))
 
 
 def _half_width(low: float, high: float, middle: float) -> float:
@@ -251,64 +301,6 @@ def _half_width(low: float, high: float, middle: float) -> float:
     if len(ends) == 2:
         return abs(high - low) / 2
     return abs(ends[0] - middle) if ends else 0.0
-
-
-def _bounded(
-    target: Target,
-    outcomes: ObjectOutcomes,
-    middle: float,
-    moved: Sides,
-    shifts: Mapping[str, float],
-) -> Estimate:
-    """Where every motion agrees: as many others could disagree as this number of earthquakes cannot exclude."""
-    hidden = 1 - (1 - LEVEL) ** (1 / len(set(outcomes.earthquakes)))
-    shift = _Z * math.sqrt(sum(spread**2 for spread in shifts.values()))
-    happens = middle > 0 and not math.isinf(target.certain)
-    sign = -1 if happens else 1
-
-    def bound(changed: ObjectOutcomes, shift: float = 0.0) -> float:
-        fractions = changed.fractions(state=target.state)
-        if happens:
-            fractions = np.minimum(fractions, 1 - hidden)
-        else:
-            could = changed.fractions(state=ROCKS) > 0
-            fractions = np.where(could, np.maximum(fractions, hidden), 0.0)
-        return target.of(changed.intensity_levels.levels, fractions, -sign * shift)
-
-    if math.isinf(target.certain):
-        # never reached: hidden motions could be enough at some level, or it lies above the last one
-        reached = min(bound(outcomes, shift), float(outcomes.intensity_levels.levels[-1]))
-        return Estimate(math.inf, reached, math.inf, {})
-    limit, plain = (target.forward(bound(outcomes, by)) for by in (shift, 0.0))
-    ends = [max(sign * target.forward(bound(side)) for side in both) for both in moved.values()]
-    if math.isfinite(plain):
-        further = [max(0.0, end - sign * plain) for end in ends]
-        limit += sign * _Z * math.sqrt(sum(term**2 for term in further))
-    else:
-        # at rest as it is: what could move it decides
-        limit = sign * max([sign * limit, *ends])
-    if happens:
-        return Estimate(1.0, target.back(limit), 1.0, {})
-    return Estimate(0.0, 0.0, target.back(limit), {})
-
-
-def estimate_rocking(
-    level: float, outcomes: ObjectOutcomes, moved: Sides, *, exact: bool
-) -> Estimate:
-    """Estimate the fraction of motions at a level that make the object rock.
-
-    The error of the rocking model does not enter: a contact opens by statics. Where the level alone decides
-    (``exact``), as a peak acceleration of what it stands on does, other earthquakes say the same.
-    """
-    target = fraction_target(level, state=ROCKS)
-    found = estimate(target, outcomes, moved, {}, {})
-    if 0 < found.value < 1:
-        return found
-    sides = [target.value(side) for both in moved.values() for side in both]
-    hidden = 0.0 if exact else 1 - (1 - LEVEL) ** (1 / len(set(outcomes.earthquakes)))
-    if found.value == 0:
-        return Estimate(0.0, 0.0, max([hidden, *sides]), {})
-    return Estimate(1.0, min([1 - hidden, *sides]), 1.0, {})
 
 
 REFERENCE_YEARS = 50.0  # Time for which the steps hold [year]

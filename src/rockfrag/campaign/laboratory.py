@@ -43,15 +43,6 @@ class Campaign:
 
     __repr__ = short_repr
 
-    def only(self, keep: "pd.Series[bool]") -> "Campaign":
-        """Return the campaign with some of its tests."""
-        chosen = keep.to_numpy()
-        return Campaign(
-            self.tests[chosen].reset_index(drop=True),
-            self.measures,
-            self.codes[chosen].reset_index(drop=True),
-        )
-
 
 def read_campaign(
     path: str | os.PathLike[str],

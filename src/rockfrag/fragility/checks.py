@@ -4,7 +4,7 @@ The test is of the deviance, by a parametric bootstrap.
 """
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -226,8 +226,7 @@ def checks_of_outcomes(
         residual = float(apart[np.abs(apart).argmax()])
     groups = outcomes.groups(interval.over)
     fractions = fractions_of_outcomes(outcomes, groups, interval.level)
-    checks = _checks(fit, interval, groups, (p_fit, test, residual), fractions)
-    return replace(checks, goodness=found)
+    return _checks(fit, interval, groups, (p_fit, test, residual, found), fractions)
 
 
 def checks_of_brackets(brackets: Brackets, fit: FragilityFit, interval: Interval) -> Checks:
@@ -247,20 +246,20 @@ def checks_of_brackets(brackets: Brackets, fit: FragilityFit, interval: Interval
     capacity = np.where(lower > 0, middles, -np.inf)
     groups = brackets.groups(interval.over)
     fractions = fractions_of_capacities(capacity, groups, interval.level)
-    return _checks(fit, interval, groups, (p_fit, test, residual), fractions)
+    return _checks(fit, interval, groups, (p_fit, test, residual, None), fractions)
 
 
 def _checks(
     fit: FragilityFit,
     interval: Interval,
     groups: NDArray[np.object_],
-    judged: tuple[float, str, float],
+    judged: tuple[float, str, float, GoodnessOfFit | None],
     fractions: Fractions,
 ) -> Checks:
-    p_fit, test, residual = judged
+    p_fit, test, residual, goodness = judged
     notes = tuple(_say("notes", fit, interval, p_fit, fractions))
     name, influence = _influence(interval, groups)
-    return Checks(p_fit, test, residual, name, influence, fractions, notes)
+    return Checks(p_fit, test, residual, name, influence, fractions, notes, goodness)
 
 
 def _influence(interval: Interval, groups: NDArray[np.object_]) -> tuple[str, float]:

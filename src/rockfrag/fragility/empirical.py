@@ -36,11 +36,10 @@ def fraction_in_bins(outcomes: Observations, bins: int = 10, level: float = 0.90
     ``im`` is the geometric mean of a bin. In the binomial limits several rows of one motion in a bin count once.
     """
     code = observations.cells(outcomes.im, bins, outcomes.trials)[0]
-    rows, independent = [], []
+    rows = []
     for k in np.unique(code):
         inside = code == k
         motions, counted_once = outcomes.independent(inside)
-        independent.append(counted_once)
         n = outcomes.trials[inside].sum()
         rows.append(
             {
@@ -51,10 +50,11 @@ def fraction_in_bins(outcomes: Observations, bins: int = 10, level: float = 0.90
                 "motions": motions,
                 "overturned": int(outcomes.overturned[inside].sum()),
                 "fraction": outcomes.overturned[inside].sum() / n,
+                "alone": counted_once,
             }
         )
     table = pd.DataFrame(rows)
-    alone = np.array(independent)
+    alone = table.pop("alone").to_numpy()
     lower, upper = wilson_interval(table["fraction"].to_numpy() * alone, alone, level)
     return table.assign(fraction_lower=lower, fraction_upper=upper)
 

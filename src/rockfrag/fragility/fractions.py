@@ -45,14 +45,10 @@ class Fractions:
     beta: float
     beta_limits: Limits
 
-    def knots(self) -> tuple[Floats, Floats]:
-        """See :func:`knots_of`."""
-        return knots_of(self.im, self.fraction)
-
     def at(self, im: ArrayLike) -> tuple[Floats, Floats, Floats]:
         """Share and its limits at any values > 0, three arrays of shape (n,)."""
         x = np.atleast_1d(np.asarray(im, dtype=np.float64))
-        knots, fraction = self.knots()
+        knots, fraction = knots_of(self.im, self.fraction)
         value = np.interp(np.log(x), np.log(knots), fraction)
         # between two values the limits are the outer ones
         before = np.searchsorted(self.im, x, side="right")

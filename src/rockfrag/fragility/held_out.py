@@ -17,11 +17,6 @@ FOLDS = 20  # groups are held out one by one up to so many, and beyond in so man
 WORST_SCORE = -20.0  # log score of an outcome that a curve calls impossible [-]
 
 
-def folds_of(groups: int) -> NDArray[np.intp]:
-    """Fold of each group, shape (groups,)."""
-    return np.arange(groups) % FOLDS
-
-
 def outcome_scores(
     logs: Floats,
     overturned: Floats,
@@ -36,7 +31,7 @@ def outcome_scores(
     """
     cell, values = _cells(logs)
     fell, total = counts(group, cell, overturned), counts(group, cell, trials)
-    fold = folds_of(len(fell))
+    fold = np.arange(len(fell)) % FOLDS
     if fold.max() == 0:
         return np.full(len(fell), np.nan)
     member = (fold == np.arange(fold.max() + 1)[:, None]).astype(np.float64)
@@ -67,7 +62,7 @@ def _cells(logs: Floats) -> tuple[NDArray[np.intp], Floats]:
 def capacity_scores(brackets: Brackets, group: NDArray[np.intp]) -> Floats:
     """Log probability of each group's brackets under the lognormal fitted to the other folds, (groups,)."""
     groups = int(group.max()) + 1
-    fold = folds_of(groups)
+    fold = np.arange(groups) % FOLDS
     if fold.max() == 0:
         return np.full(groups, np.nan)
     weights = (fold[group] != np.arange(fold.max() + 1)[:, None]).astype(np.float64)

@@ -12,6 +12,7 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.curve_facts import total_beta
 from rockfrag.fragility.empirical import TableIda, fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
+from rockfrag.fragility.fractions import knots_of
 from rockfrag.fragility.observations import Observations, positive
 from rockfrag.motions.intensity import declared, measure_of
 from rockfrag.records.motion import Motion
@@ -244,7 +245,7 @@ def fraction_points(labels: Mapping[str, Any], curve: Fragility) -> pd.DataFrame
     ``fraction`` of overturned tests never falls, and is straight over ln ``x`` between the points.
     """
     fractions = curve.checks.fractions
-    x = fractions.knots()[0] if curve.checks.rejected else np.empty(0)
+    x = knots_of(fractions.im, fractions.fraction)[0] if curve.checks.rejected else np.empty(0)
     fraction, lower, upper = fractions.at(x) if x.size else (x, x, x)
     return _about(labels, curve, x.size).assign(x=x, fraction=fraction, lower=lower, upper=upper)
 

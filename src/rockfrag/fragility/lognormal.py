@@ -161,16 +161,19 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
 
 def _estimated(outcomes: Observations, link: Link, notes: list[str]) -> tuple[str, Floats, Floats]:
     """How the coefficients were found, these and their information; ``notes`` grow by what is to be known."""
-    if separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None])[0]:
-        found = _penalised(outcomes, link)
-        notes += SAY("separated", outcomes) if found[0][1] >= LEAST_SLOPE else []
-    else:
+    apart = separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None])[0]
+    if not apart:
         try:
             return f"{link}, maximum likelihood (GLM)", *_statsmodels(outcomes, link)
         except (PerfectSeparationError, PerfectSeparationWarning, ConvergenceWarning):
-            found = _penalised(outcomes, link)
             notes += SAY("not_finite")
-    return f"{link}, penalised likelihood (Firth)", *found
+    design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
+    counts = (outcomes.overturned[None], outcomes.trials[None])
+    fit = fit_batch(design, *counts, link=link, penalised=True)
+    if apart and fit.coefficients[0, 1] >= LEAST_SLOPE:
+        notes += SAY("separated", outcomes)
+    method = f"{link}, penalised likelihood (Firth)"
+    return method, fit.coefficients[0], fit.information[0]
 
 
 def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
@@ -186,11 +189,3 @@ def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
         python_warnings.simplefilter("error", ConvergenceWarning)
         result = model.fit(tol=1e-13, maxiter=200)
     return np.asarray(result.params), -np.asarray(model.hessian(result.params, observed=False))
-
-
-def _penalised(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
-    design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
-    fit = fit_batch(
-        design, outcomes.overturned[None, :], outcomes.trials[None, :], link=link, penalised=True
-    )
-    return fit.coefficients[0], fit.information[0]

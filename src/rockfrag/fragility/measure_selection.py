@@ -238,10 +238,8 @@ def _best_pair(
         if name == best or proportional:
             continue
         outcomes = (other.overturned, other.trials, group)
-        both, alone = (
-            held_out.outcome_scores(logs, *outcomes),
-            held_out.outcome_scores(logs, *outcomes, fitted=1),
-        )
+        both = held_out.outcome_scores(logs, *outcomes)
+        alone = held_out.outcome_scores(logs, *outcomes, fitted=1)
         gain = float((both - alone).sum() / other.n)
         if gain > found[2]:
             found = (name, held_out.paired_p(both, alone), gain)

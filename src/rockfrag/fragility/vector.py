@@ -52,10 +52,6 @@ class Interaction:
     kept: bool
 
 
-NOT_TRIED = Interaction(np.nan, np.nan, kept=False)
-"""Of tests that allow no test of an interaction, or where none was asked for."""
-
-
 @dataclass(frozen=True)
 class VectorFragility:
     """P(overturn | IM1, IM2) with limits over earthquakes.
@@ -183,7 +179,7 @@ def fit_vector(
             "constant) in these tests; choose fewer."
         )
     group = pd.factorize(pd.Series(observations.labels(table, earthquake, source)))[0]
-    fit, interaction = _fitted(design, outcome), NOT_TRIED
+    fit, interaction = _fitted(design, outcome), Interaction(np.nan, np.nan, kept=False)
     product = design_of(logs, interaction=True)
     if try_interaction and np.linalg.matrix_rank(product) == 4 and "penalised" not in fit.method:
         full = _fitted(product, outcome)

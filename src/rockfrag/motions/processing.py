@@ -445,11 +445,7 @@ def _checked(number: int, entry: Mapping[str, Any]) -> tuple[Callable[..., Motio
             f"processing, entry {number}: step {name} has no parameter {unknown[0]!r}; "
             f"known are {', '.join(known) or 'none'}."
         )
-    missing = [
-        key
-        for key, p in known.items()
-        if p.default is inspect.Parameter.empty and key not in parameters
-    ]
+    missing = [key for key, p in known.items() if p.default is p.empty and key not in parameters]
     if missing:
         raise InputError(f"processing, entry {number}: step {name} needs {', '.join(missing)}.")
     return STEPS[name], parameters

@@ -50,12 +50,7 @@ _STATES: dict[str, LimitState] = {}
 
 
 def limit_state(name: str, order: int, label: str, **more: Any) -> Callable[[Predicate], Predicate]:
-    """Declare the function below as the predicate of a limit state; its name is one word, as in exports.
-
-    Parameters
-    ----------
-    name, order, label, **more : as of :class:`LimitState`
-    """
+    """Declare the function below as the predicate of a :class:`LimitState`; its name is one word."""
     if not name.isidentifier():
         raise InputError(f"limit state {name!r}: expected one word of letters, digits and _.")
 

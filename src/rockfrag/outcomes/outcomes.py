@@ -219,27 +219,29 @@ class Outcomes:
         chosen = [
             known for known in columns(which) if columns_of is None or known.name in columns_of
         ]
-        shape = self.shape
-        system = np.arange(shape[0])[:, np.newaxis, np.newaxis]
-        motion = np.arange(shape[1])[:, np.newaxis]
+        values = {known.title: getattr(self, known.name) for known in chosen}
+        systems, motions, _ = shape = self.shape
+        system, motion = (
+            np.arange(systems)[:, np.newaxis, np.newaxis],
+            np.arange(motions)[:, np.newaxis],
+        )
         made: dict[str, Any] = {"system": system, "motion": motion, "scale": self.scales}
         if which == "cases":
-            made |= {known.title: getattr(self, known.name) for known in chosen}
-            made["engine"] = np.array(self.engines, dtype=object)[self.engine]
+            made |= values | {"engine": np.array(self.engines, dtype=object)[self.engine]}
             return pd.DataFrame(
-                {name: np.broadcast_to(values, shape).ravel() for name, values in made.items()}
+                {name: np.broadcast_to(a, shape).ravel() for name, a in made.items()}
             )
         most = max(self.counts, default=0)
         full = (*shape, most)
-        made = {name: np.asarray(values)[..., np.newaxis] for name, values in made.items()}
+        made = {name: np.asarray(place)[..., np.newaxis] for name, place in made.items()}
         made["body" if which == "bodies" else "contact"] = np.arange(1, most + 1)
         padded = [[*names, *[""] * (most - len(names))] for names in self.names]
         made["name"] = np.array(padded, dtype=object)[:, np.newaxis, np.newaxis, :]
-        made |= {known.title: getattr(self, known.name) for known in chosen}
         there = np.arange(most) < np.array(self.counts)[:, np.newaxis, np.newaxis, np.newaxis]
         rows = np.broadcast_to(there, full).ravel()
+        made |= values
         return pd.DataFrame(
-            {name: np.broadcast_to(values, full).ravel()[rows] for name, values in made.items()}
+            {name: np.broadcast_to(a, full).ravel()[rows] for name, a in made.items()}
         )
 
 

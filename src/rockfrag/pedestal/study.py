@@ -166,18 +166,12 @@ def study_pedestal(
         return PedestalStudy(pairs, effects, whole, without, ranks, notes)
     tied = table["d"].abs() < cluster_means.ROUNDING
     widest = float(table.loc[tied, "resolution"].max())
-    return PedestalStudy(
-        pairs=pairs,
-        effects=effects_table(table, list(tests["floor"].astype(str).unique())),
-        whole=_whole_tests(table, seed),
-        without_earthquake=cluster_means.leave_one_earthquake_out(table),
-        ranks=_ranks(table, seed),
-        notes=(
-            *SAY("population", table["earthquake"].nunique()),
-            *pairs.notes(),
-            *SAY("ties", int(tied.sum()), len(table), widest),
-        ),
-    )
+    population = SAY("population", table["earthquake"].nunique())
+    notes = (*population, *pairs.notes(), *SAY("ties", int(tied.sum()), len(table), widest))
+    effects = effects_table(table, list(tests["floor"].astype(str).unique()))
+    without = cluster_means.leave_one_earthquake_out(table)
+    whole, ranks = _whole_tests(table, seed), _ranks(table, seed)
+    return PedestalStudy(pairs, effects, whole, without, ranks, notes)
 
 
 def rank_probabilities(

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
@@ -17,17 +17,7 @@ from rockfrag.records.formats import at2, opensees, plain, seismosoft
 from rockfrag.records.motion import Motion, read_motion_set
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit
 
-WRITERS = {
-    "AT2": (".AT2", at2.write),
-    "CSV": (".csv", plain.write),
-    "SEISMOSOFT": (".dat", seismosoft.write),
-    "OPENSEES": (".tcl", opensees.write),
-}
-"""Ending and writer of each text format."""
-
-FORMATS = (*WRITERS, "MSEED")  # formats that a motion can be written in
 _USUAL_UNITS = {"AT2": "g", "SEISMOSOFT": "g"}
-_ENDINGS = {ending.lower(): name for name, (ending, _) in WRITERS.items()} | {".mseed": "MSEED"}
 
 
 @named_keywords
@@ -57,19 +47,17 @@ def write_motion(
     if name == "MSEED" and stored != "m/s2":
         raise InputError(f"{path}: MiniSEED is written in m/s2, not {unit}; leave unit= out.")
     try:
-        if name == "MSEED":
-            _write_mseed(motion, Path(path))
-        else:
-            facts = motion.metadata
-            described = {
-                "unit": stored,
-                "earthquake": str(facts.get("earthquake") or motion.name),
-                "component": str(facts.get("component") or ""),
-                "source": str(facts.get("source") or "rockfrag"),
-            }
-            header = {"delta": motion.dt, "station": str(facts.get("station") or "")}
-            trace = Trace(motion.acceleration / TO_SI[stored], {**header, "rockfrag": described})
-            WRITERS[name][1](Stream([trace]), path)
+        facts = motion.metadata
+        described = {
+            **{key: facts.get(key) for key in ("network", "location", "channel", "start_time")},
+            "unit": stored,
+            "earthquake": str(facts.get("earthquake") or motion.name),
+            "component": str(facts.get("component") or ""),
+            "source": str(facts.get("source") or "rockfrag"),
+        }
+        header = {"delta": motion.dt, "station": str(facts.get("station") or "")}
+        trace = Trace(motion.acceleration / TO_SI[stored], {**header, "rockfrag": described})
+        WRITERS[name][1](Stream([trace]), path)
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror or error}).") from error
     return Path(path)
@@ -80,7 +68,7 @@ def write_motions(
 ) -> list[Path]:
     """Write each motion into a folder, named as the motion, and return the paths."""
     name = _format("", format)
-    ending = ".mseed" if name == "MSEED" else WRITERS[name][0]
+    ending = WRITERS[name][0]
     paths: dict[Path, str] = {}
     for motion in motions:
         path = Path(folder) / f"{file_name(motion.name)}{ending}"
@@ -101,25 +89,27 @@ def motions_of_study(path: str | os.PathLike[str]) -> list[Motion]:
 
 
 def _format(path: str | os.PathLike[str], format: str | None) -> str:
-    name = _ENDINGS.get(Path(path).suffix.lower(), "") if format is None else format.upper()
-    if name not in FORMATS:
+    endings = {ending.lower(): name for name, (ending, _) in WRITERS.items()}
+    name = endings.get(Path(path).suffix.lower(), "") if format is None else format.upper()
+    if name not in WRITERS:
         what = f"{format!r} is" if format else f"the ending {Path(path).suffix!r} names"
-        raise InputError(f"{path}: {what} no format that is written: {', '.join(FORMATS)}.")
+        raise InputError(f"{path}: {what} no format that is written: {', '.join(WRITERS)}.")
     return name
 
 
-def _write_mseed(motion: Motion, path: Path) -> None:
+def _write_mseed(stream: Stream, path: str | os.PathLike[str]) -> None:
     """Write float64 MiniSEED and, beside it, a StationXML whose sensitivity is one per m/s²."""
-    facts = motion.metadata
+    stats = stream[0].stats
+    facts = stats.rockfrag
     codes = {
         "network": _code(facts.get("network"), 2, "XX"),
-        "station": _code(facts.get("station"), 5, "MOTN"),
+        "station": _code(stats.station, 5, "MOTN"),
         "location": _code(facts.get("location"), 2, ""),
         "channel": _code(facts.get("channel"), 3, "HN1"),
     }
     start = UTCDateTime(str(facts.get("start_time") or "1970-01-01"))
-    data = np.ascontiguousarray(motion.acceleration, dtype=np.float64)
-    trace = Trace(data, {**codes, "delta": motion.dt, "starttime": start})
+    data = np.ascontiguousarray(stream[0].data, dtype=np.float64)
+    trace = Trace(data, {**codes, "delta": stats.delta, "starttime": start})
     sensitivity = InstrumentSensitivity(1.0, 1.0, "M/S**2", "M/S**2")
     channel = Channel(
         codes["channel"],
@@ -128,12 +118,12 @@ def _write_mseed(motion: Motion, path: Path) -> None:
         longitude=0,
         elevation=0,
         depth=0,
-        sample_rate=1 / motion.dt,
+        sample_rate=1 / stats.delta,
         response=Response(instrument_sensitivity=sensitivity),
     )
     station = Station(codes["station"], 0, 0, 0, channels=[channel])
     inventory = Inventory([Network(codes["network"], [station])], source="rockfrag")
-    with whole_file(path.with_suffix(".xml")) as part:
+    with whole_file(Path(path).with_suffix(".xml")) as part:
         inventory.write(str(part), format="STATIONXML")
     with whole_file(path) as part:
         Stream([trace]).write(str(part), format="MSEED", encoding="FLOAT64")
@@ -143,3 +133,13 @@ def _code(words: object, longest: int, default: str) -> str:
     """Return a SEED code of letters and digits, the default where the facts have none that fits."""
     plain_code = re.sub(r"[^A-Z0-9]", "", str(words or "").upper())
     return plain_code if 0 < len(plain_code) <= longest else default
+
+
+WRITERS: dict[str, tuple[str, Callable[..., None]]] = {
+    "AT2": (".AT2", at2.write),
+    "CSV": (".csv", plain.write),
+    "SEISMOSOFT": (".dat", seismosoft.write),
+    "OPENSEES": (".tcl", opensees.write),
+    "MSEED": (".mseed", _write_mseed),
+}
+"""Ending and writer of each format that a motion can be written in."""

@@ -247,14 +247,16 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     doubtful = plain and 0 < peak <= units.LARGEST_IN_G
     least = g * min(min(uplift_ratios(system)) for system in cases.systems) if doubtful else None
     longest = max(motion.dt for motion in cases.motions)
+    flags = [units.peak_warning(peak, least)]
+    if g > units.LARGEST_GRAVITY:
+        planet = f"an acceleration of gravity of {g:g} m/s² is that of no planet"
+        flags.append(f"{planet}; if it is in cm/s², divide it by 100")
     if longest > units.LONGEST_STEP:
         # what is far too long is refused before it is doubted
         for system in cases.systems:
             step_count(system, longest, g, STEP)
-    for quality_flag in (
-        units.peak_warning(peak, least),
-        units.gravity_warning(g),
-        units.interval_warning(longest),
-    ):
-        if quality_flag:
-            warnings.warn(quality_flag, UnitWarning, stacklevel=stacklevel)
+        flags.append(
+            f"a sampling interval of {longest:g} s is too long for strong motion; check its unit"
+        )
+    for flag in filter(None, flags):
+        warnings.warn(flag, UnitWarning, stacklevel=stacklevel)

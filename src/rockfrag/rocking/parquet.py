@@ -103,8 +103,7 @@ def stream_overturns(
             found = shaken(part).table(table, columns)
             found["system"] += some.start
             found["motion"] += rows.start
-            arrays = [pa.array(found[field.name], type=field.type) for field in schema]
-            writer.write_table(pa.Table.from_arrays(arrays, schema=schema))
+            writer.write_table(pa.Table.from_pydict(dict(found), schema=schema))
             done += math.prod(part.shape)
             if progress is not None:
                 progress(done, total)
@@ -234,5 +233,4 @@ def _history_table(place: Place, case: Case) -> pa.Table:
         "omega_rad_s": omega.ravel(),
         "state": state.ravel(),
     }
-    arrays = [pa.array(values[field.name].astype(field.type.to_pandas_dtype())) for field in SCHEMA]
-    return pa.Table.from_arrays(arrays, schema=SCHEMA)
+    return pa.Table.from_pydict(values, schema=SCHEMA)

@@ -15,7 +15,7 @@ from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.motions.rotation import rotate
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.space_sweep import Sweep
+from rockfrag.rocking.options import Sweep
 from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY, STONE
 
@@ -65,13 +65,10 @@ def medians(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return medians in space and in the plane of one body, and the fractions they come from.
 
-    Returns
-    -------
-    tuple
-        A row for each loss of planar impacts: ``space_g`` with ``space_lower`` and ``space_upper``; the ratio of
-        that median over each of :data:`PLANAR`, with its limits, 90 % of resampled earthquakes; ``flip_rate``, the
-        fraction of outcomes at the level next to the median that a perturbation of 1e-6 turns round. And a row for
-        each level with the fraction toppled in space and in each planar answer.
+    A row for each loss of planar impacts: ``space_g`` with ``space_lower`` and ``space_upper``; the ratio of that
+    median over each of :data:`PLANAR`, with its limits, 90 % of resampled earthquakes; ``flip_rate``, the fraction
+    of outcomes at the level next to the median that a perturbation of 1e-6 turns round. And a row for each level
+    with the fraction toppled in space and in each planar answer.
     """
     body = body_of(base, slenderness, height)
     levels = np.geomspace(sweep.lowest, sweep.highest, sweep.levels) / slenderness

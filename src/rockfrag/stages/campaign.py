@@ -81,7 +81,11 @@ def campaign_with_motions(
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
     if study.leave_out:
         absent = laboratory.missing_motions(study.motions, list(campaign.tests["motion"]))
-        campaign = campaign.only(~campaign.tests["motion"].isin(absent))
+        keep = ~campaign.tests["motion"].isin(absent).to_numpy()
+        tests, codes = (
+            part[keep].reset_index(drop=True) for part in (campaign.tests, campaign.codes)
+        )
+        campaign = replace(campaign, tests=tests, codes=codes)
         log.info("%d tests without a motion are left out", len(absent))
         if campaign.tests.empty:
             raise InputError(f"{study.motions}: has no motion of any test of {study.tests.name}.")
@@ -92,11 +96,8 @@ def campaign_with_motions(
         )
     motions = _motions(study, campaign, study.conditioning)
     if not campaign.measures:
-        campaign = Campaign(
-            campaign.tests.join(laboratory.measured_peaks(motions)),
-            ("pga_g", "pgv_cm_s"),
-            campaign.codes,
-        )
+        tests = campaign.tests.join(laboratory.measured_peaks(motions))
+        campaign = replace(campaign, tests=tests, measures=("pga_g", "pgv_cm_s"))
     elif not study.pulse_cycles and campaign.tests["amplitude_g"].isna().all():
         laboratory.check_peaks(campaign.tests, motions, study.motions)
     return campaign, motions

@@ -44,17 +44,15 @@ def floor_curves(
     """Fragility of every configuration on every floor; motions of different floors are never mixed.
 
     For each limit state ``ida_curves`` has those of each configuration on each floor, ``measures`` are of the
-    motions as recorded, ``floors`` the level of each by its label (0 moves as the ground does), ``record_set`` a
-    digest of the motions. ``rocks_at_once`` tells that bodies rock as soon as the peak of a motion exceeds their
-    threshold, as they do where nothing slides and nothing moves vertically; the state ``rocks`` is left out where
-    they may not.
+    motions as recorded, ``floors`` the level of each by its label (0 moves as the ground does). ``rocks_at_once``
+    tells that bodies rock as soon as the peak of a motion exceeds their threshold, as they do where nothing slides
+    and nothing moves vertically; the state ``rocks`` is left out where they may not. Rocking starts at an exact
+    peak acceleration, whose value in another measure varies from motion to motion.
 
     Returns curves and fractions. Curves have one row per configuration, floor, measure and limit state:
-    ``configuration``, ``floor``, ``floor_level``, ``measure`` (column of ``measures``), ``state`` (name of a
-    limit state) and the columns of :func:`rockfrag.fragility.ida_curves.fragility_table`. A state that IDA curves
-    count has the mean probability over all analyses; rocking starts at an exact peak acceleration, whose value in
-    another measure varies from motion to motion. Fractions are points of the non-parametric fragility function,
-    of those that are rejected: see :func:`rockfrag.fragility.ida_curves.fraction_points`.
+    ``configuration``, ``floor``, ``floor_level``, ``measure`` (column of ``measures``), ``state`` and the columns
+    of :func:`rockfrag.fragility.ida_curves.fragility_table`; fractions are points of those that are rejected, see
+    :func:`rockfrag.fragility.ida_curves.fraction_points`.
     """
     from rockfrag.fragility.estimators import fit_uplift, fragility_of
     from rockfrag.fragility.ida_curves import fraction_points, fragility_row, with_measures

@@ -1,4 +1,4 @@
-"""Logs of the workflow's jobs: what each found and how long it took, and one sentence if it failed."""
+"""Logs of the workflow's jobs: what each found, how long it took, one sentence if it failed; what they need."""
 
 import errno
 import logging
@@ -129,3 +129,32 @@ def last_seconds(path: Path) -> float | None:
 
 def _lines(path: Path) -> list[str]:
     return path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
+
+
+LEAST_MEMORY = 4 * 2**30
+"""Bytes of addresses that a process of a run may have to reserve; a small study's take half of them."""
+
+
+def check_memory() -> None:
+    """Refuse a limit of memory (``ulimit -v``) under which no process of a run could work.
+
+    Libraries of linear algebra wait for ever where they are refused memory while they are loaded.
+    """
+    if os.name != "posix":
+        return
+    import resource
+
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
+        raise InputError(
+            f"a process may reserve {limit / 2**20:.0f} MiB of memory here, and a run needs "
+            f"{LEAST_MEMORY / 2**20:.0f}; raise the limit with 'ulimit -v {LEAST_MEMORY // 2**10}'."
+        )
+
+
+def check_folders(*folders: Path) -> None:
+    """See that all can be written where there is something already; the folders need not be there."""
+    for top in folders:
+        for folder in [top, *(path for path in top.rglob("*") if path.is_dir())]:
+            if folder.is_dir() and not os.access(folder, os.W_OK | os.X_OK):
+                raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))

@@ -9,7 +9,7 @@ from rockfrag.stages.job import Job, Results
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag.study.study import Study
 
-_KEY = ("object", "pedestal", "earthquake", "floor")
+_KEY = ["object", "pedestal", "earthquake", "floor"]
 _CURVES = ("configuration", "im", "unit", "theta", "theta_lower", "theta_upper", "beta")
 
 
@@ -71,11 +71,10 @@ def beside(measured: pd.DataFrame, simulated: pd.DataFrame) -> pd.DataFrame:
     Adds ``simulated_g``, the simulated amplitude (NaN without a counterpart or where it is censored), and
     ``ratio``, measured over simulated amplitude.
     """
-    key = list(_KEY)
-    known = simulated.drop_duplicates(key)[[*key, "amplitude_g"]]
-    columns = [*key, "repetition", "lower_g", "upper_g", "amplitude_g", "censored"]
+    known = simulated.drop_duplicates(_KEY)[[*_KEY, "amplitude_g"]]
+    columns = [*_KEY, "repetition", "lower_g", "upper_g", "amplitude_g", "censored"]
     table = measured[columns].merge(
-        known.rename(columns={"amplitude_g": "simulated_g"}), how="left", on=key
+        known.rename(columns={"amplitude_g": "simulated_g"}), how="left", on=_KEY
     )
     return table.assign(ratio=table["amplitude_g"] / table["simulated_g"])
 

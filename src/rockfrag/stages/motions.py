@@ -1,8 +1,9 @@
 """Motions: records read, processed, felt by the floors of a building, and measured."""
 
+from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pandas as pd
 
@@ -61,12 +62,10 @@ def _felt(
     from rockfrag.records.sources.wheel import NotFetched
 
     study = job.study
-    kinds = ("records", "ground", "floors", *(["vertical"] if study.vertical else []))
-    felt: dict[str, list[Motion]] = {kind: [] for kind in kinds}
+    felt: dict[str, list[Motion]] = defaultdict(list)
     rows, left_out = [], []
     unfetched: dict[str, NotFetched] = {}
-    for row in study.catalogue.to_dict("records"):
-        named = {str(key): value for key, value in row.items()}
+    for named in cast("list[dict[str, Any]]", study.catalogue.to_dict("records")):
         source = str(named["source"])
         try:
             if source in unfetched:
@@ -82,8 +81,8 @@ def _felt(
                 raise InputError(f"{record.name}: the record is zero throughout; leave it out.")
             ground = process(record, study.processing)
             found |= {"records": [record], "ground": [ground], "floors": _floors(study, ground)}
-            for kind, motions in felt.items():
-                motions += found[kind]
+            for kind, motions in found.items():
+                felt[kind] += motions
             rows.append(named)
         except InputError as error:
             if not study.keep_going:

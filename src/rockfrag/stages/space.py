@@ -1,6 +1,7 @@
 """Stage of a study of bodies in space: medians over planar ones, under records of both components."""
 
 from pathlib import Path
+from typing import Any, cast
 
 import pandas as pd
 
@@ -35,10 +36,7 @@ def run(job: Job[SpaceStudy]) -> Results:
 def own_pairs(study: SpaceStudy) -> tuple[list[Pair], list[str]]:
     """Return both components of the records of a study's catalogue, and their earthquakes."""
     assert study.catalogue is not None and study.catalogue_file is not None
-    rows = [
-        {str(key): value for key, value in row.items()}
-        for row in study.catalogue.to_dict("records")
-    ]
+    rows = cast("list[dict[str, Any]]", study.catalogue.to_dict("records"))
     folder = study.catalogue_file.parent
     return [pair_of_row(row, folder, RECORDS) for row in rows], [row["earthquake"] for row in rows]
 

@@ -1,6 +1,7 @@
 """What surfaces were asked for in the tests, and what sliding and flight did where friction is limited."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import repeat
 from pathlib import Path
 
 import numpy as np
@@ -102,8 +103,7 @@ def _in_contact(
     from rockfrag.rocking import simulate
 
     found = empty_outcomes([system.names], np.ones((len(motions), 1)))
-    for place, motion in enumerate(motions):
-        up = None if vertical is None else vertical[place]
+    for place, (motion, up) in enumerate(zip(motions, vertical or repeat(None), strict=False)):
         response = simulate(system, motion, vertical=up)
         at = (0, place, 0)
         found.friction_demand[at] = response.friction_demand

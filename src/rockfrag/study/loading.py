@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError, errors_of
@@ -62,7 +62,10 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         name = bodies["configurations"]
         configurations_file = existing_file(source, "bodies.configurations", name)
         known, counterparts = arrangements.read_configurations(configurations_file, specimens)
-    building_file = _optional_file(source, "building", content)
+    building_file, shaker_file, measured_tests = (
+        None if content.get(key) is None else existing_file(source, key, content[key])
+        for key in ("building", "shaker", "measured_tests")
+    )
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
     by_name = {configuration.name: configuration for configuration in known}
     tested = _used(source, "bodies", bodies.get("use"), list(by_name), "configurations")
@@ -70,14 +73,11 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
     configurations = _measured(source, chosen, specimens, bodies.get("restitution"))
     with errors_of(f"{source}"):
         amplitudes = Amplitudes(**content["amplitudes"])
-    if content.get("friction") is not None:
+    if (friction := content.get("friction")) is not None:
         with errors_of(f"{source}: key friction"):
-            configurations = tuple(
-                arrangements.with_friction(c, content["friction"]) for c in configurations
-            )
+            configurations = tuple(arrangements.with_friction(c, friction) for c in configurations)
     catalogue = read_catalogue(catalogue_file).set_index("name", drop=False)
     shaken = _used(source, "motions", motions.get("use"), list(catalogue.index), "motions")
-    shaker_file = _optional_file(source, "shaker", content)
     study = Study(
         **heading_of(content, source),
         catalogue_file=catalogue_file,
@@ -102,7 +102,7 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         write_motions=content.get("write_motions"),
         shaker_file=shaker_file,
         shaker=None if shaker_file is None else read_shaker(shaker_file),
-        measured_tests=_optional_file(source, "measured_tests", content),
+        measured_tests=measured_tests,
         counterparts={
             configuration.name: counterparts[configuration.name]
             for configuration in configurations
@@ -121,10 +121,6 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         _check_measured_tests(study, study.measured_tests)
     _check_vertical(study)
     return study
-
-
-def _optional_file(source: Path, key: str, content: Mapping[str, Any]) -> Path | None:
-    return None if content.get(key) is None else existing_file(source, key, content[key])
 
 
 def _used(
@@ -244,14 +240,14 @@ def _read_all(study: Study) -> list[str]:
 
     warnings = [f"{study.catalogue_file}: {line}" for line in repeated_motions(study.catalogue)]
     folder = study.catalogue_file.parent
-    for row in study.catalogue[study.catalogue["source"] == "folder"].to_dict("records"):
+    own = study.catalogue[study.catalogue["source"] == "folder"]
+    for row in cast("list[dict[str, Any]]", own.to_dict("records")):
         where = f"{study.catalogue_file}, motion {row['name']}"
         try:
-            named = {str(k): v for k, v in row.items()}
             if study.vertical:
-                motion, _ = motion_and_vertical(named, folder, Path(RECORDS_FOLDER))
+                motion, _ = motion_and_vertical(row, folder, Path(RECORDS_FOLDER))
             else:
-                motion = motion_of_row(named, folder, Path(RECORDS_FOLDER))
+                motion = motion_of_row(row, folder, Path(RECORDS_FOLDER))
             if motion.pga == 0:
                 raise InputError("the record is zero throughout; leave it out.")
         except InputError as error:

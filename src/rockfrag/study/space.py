@@ -10,7 +10,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import own_records, read_catalogue
-from rockfrag.rocking.space_sweep import Sweep
+from rockfrag.rocking.options import Sweep
 from rockfrag.study.heading import Heading, existing_file, heading_of
 
 SPACE_KEY = "space"  # key that only a study of bodies in space has

@@ -21,7 +21,7 @@ from rockfrag.system import system as systems
 from rockfrag.system.body import Interval, RigidBody, Tensor, checked_tensor
 from rockfrag.system.contact import Contact
 from rockfrag.system.system import System
-from rockfrag.units import GRAVITY, inertia_warning, light_giant_warning
+from rockfrag.units import GRAVITY, block_warning
 
 
 class Vector(NamedTuple):
@@ -104,11 +104,8 @@ class Block:
             raise InputError(
                 f"Block: cg_height {self.cg_height} m is above the top, which is at height {self.height} m."
             )
-        quality_flags = light_giant_warning(self.width, self.height, self.mass) or inertia_warning(
-            self.width, self.height, self.mass, self.centroidal_inertia
-        )
-        if quality_flags:
-            warnings.warn(f"Block: {quality_flags}", UnlikelyBlock, stacklevel=4)
+        if flag := block_warning(self.width, self.height, self.mass, self.centroidal_inertia):
+            warnings.warn(f"Block: {flag}", UnlikelyBlock, stacklevel=4)
         if not geometry.can_stand(self.shape):
             raise InputError(
                 f"Block: with cg_offset {self.cg_offset} m and lean {self.lean} rad its centre of "

@@ -12,13 +12,6 @@ from rockfrag.units import GRAVITY
 DT = 0.01
 
 
-def box_inertia(width, depth, height):
-    """Tensor of a uniform box over its mass."""
-    return np.diag(
-        [(depth**2 + height**2) / 12, (width**2 + height**2) / 12, (width**2 + depth**2) / 12]
-    )
-
-
 def turned(vectors, angle):
     """Turn plane vectors anticlockwise."""
     c, s = math.cos(angle), math.sin(angle)
@@ -29,14 +22,8 @@ def box(width, depth, height, friction=20.0):
     """A uniform box."""
     x, y = width / 2, depth / 2
     base = Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
-    inertia = box_inertia(width, depth, height)
+    inertia = np.diag([depth**2 + height**2, width**2 + height**2, width**2 + depth**2]) / 12
     return solid_body(base, inertia, (0.0, 0.0, height / 2), (friction, friction))
-
-
-def cylinder_inertia(radius, height):
-    """Tensor of a uniform cylinder over its mass."""
-    across = (3 * radius**2 + height**2) / 12
-    return np.diag([across, across, radius**2 / 2])
 
 
 def cylinder(radius, height, friction=20.0, sides=0):
@@ -45,8 +32,9 @@ def cylinder(radius, height, friction=20.0, sides=0):
     if sides:
         angle = 2 * math.pi * np.arange(sides) / sides
         base = Polygon(tuple(zip(radius * np.cos(angle), radius * np.sin(angle), strict=True)))
-    centre = (0.0, 0.0, height / 2)
-    return solid_body(base, cylinder_inertia(radius, height), centre, (friction, friction))
+    across = (3 * radius**2 + height**2) / 12
+    inertia = np.diag([across, across, radius**2 / 2])
+    return solid_body(base, inertia, (0.0, 0.0, height / 2), (friction, friction))
 
 
 def synthetic_motion(rng, components=2, seconds=20.0, dt=DT):

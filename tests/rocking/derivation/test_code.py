@@ -11,7 +11,7 @@ from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.records import body_record
 
 from ...oracle.rocking_model import Model
-from . import impacts, motion, single_block, transitions
+from . import motion, single_block, transitions
 from .systems import Equation, System, error, impact_map, random_systems
 
 PIVOTS = list(itertools.product((1, -1), (1, -1)))
@@ -154,7 +154,7 @@ def test_an_impact_has_one_outcome_which_takes_energy_and_which_the_fast_kernel_
     assert without == 0 or both_of_rocking_mode_2
 
 
-EQUATIONS = [*single_block.EQUATIONS, *motion.EQUATIONS, *transitions.EQUATIONS, *impacts.EQUATIONS]
+EQUATIONS = [*single_block.EQUATIONS, *motion.EQUATIONS, *transitions.EQUATIONS]
 
 # the misprints that docs/derivation.md lists
 WRONG = [

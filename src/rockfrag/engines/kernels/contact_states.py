@@ -22,13 +22,8 @@ def side_of(value):
 @kernel
 def first_contacts(state):
     """Contacts at the start: those with an angle, or opening, are open."""
-    c1 = side_of(state.theta1)
-    if c1 == 0:
-        c1 = side_of(state.omega1)
-    c2 = side_of(state.theta2 - state.theta1)
-    if c2 == 0:
-        c2 = side_of(state.omega2 - state.omega1)
-    return c1, c2
+    c1 = side_of(state.theta1) or side_of(state.omega1)
+    return c1, side_of(state.theta2 - state.theta1) or side_of(state.omega2 - state.omega1)
 
 
 @kernel

@@ -85,30 +85,26 @@ def begin(state, summary):
 
 @kernel
 def fill_balances(body, balances):
-    """Fill the ways to balance, (8,): of the pedestal in places 0 to 5, of the statue in 6 and 7."""
-    for c1 in (1, -1):
+    """Fill the ways to balance, shape (8,)."""
+    for c1 in (1, -1, 0):
         for c2 in (-1, 0, 1):
-            critical, vx, vy, inertia = equations.balance(body, c1, c2)
-            _keep_balance(body, balances[_way_of_lower(c1, c2)], critical, (vx, vy), inertia)
-    for c2 in (1, -1):
-        critical, vx, vy, inertia = equations.upper_balance(body, c2)
-        _keep_balance(body, balances[_way_of_upper(c2)], critical, (vx, vy), inertia)
+            if c1 != 0:
+                critical, vx, vy, inertia = equations.balance(body, c1, c2)
+            elif c2 != 0:
+                critical, vx, vy, inertia = equations.upper_balance(body, c2)
+            else:
+                continue
+            way = balances[_way_of(c1, c2)]
+            way.critical = critical
+            way.frequency2 = body.gravity * hypot(vx, vy) / inertia
 
 
 @kernel
-def _keep_balance(body, way, critical, moment, inertia):
-    way.critical = critical
-    way.frequency2 = body.gravity * hypot(moment[0], moment[1]) / inertia
-
-
-@kernel
-def _way_of_lower(c1, c2):
+def _way_of(c1, c2):
+    """Place of a way to balance: of the pedestal 0 to 5, of the statue, where c1 is zero, 6 and 7."""
+    if c1 == 0:
+        return 6 if c2 > 0 else 7
     return 1 + c2 + (0 if c1 > 0 else 3)
-
-
-@kernel
-def _way_of_upper(c2):
-    return 6 if c2 > 0 else 7
 
 
 @kernel
@@ -145,10 +141,10 @@ def track(balances, state, series, end, h, summary):
     summary.speed2 = max(summary.speed2, abs(omega2))
     c1, c2 = state.c1, state.c2
     if c2 != 0:
-        ratio2 = _approach(balances[_way_of_upper(c2)], c2, theta2, omega2, summary)
+        ratio2 = _approach(balances[_way_of(0, c2)], c2, theta2, omega2, summary)
         summary.ratio2 = max(summary.ratio2, ratio2)
     if c1 != 0:
-        ratio1 = _approach(balances[_way_of_lower(c1, c2)], c1, theta1, omega1, summary)
+        ratio1 = _approach(balances[_way_of(c1, c2)], c1, theta1, omega1, summary)
         summary.ratio1 = max(summary.ratio1, ratio1)
     return ratio1 >= 1.0 or ratio2 >= 1.0
 

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 CLOSING = 1e-4  # parting speed over √(g b) below which a contact stays closed after an impact [-]
-CHUNK = 4  # cases that a thread takes at once
+CHUNK = 8  # cases that a thread takes at once
 
 _KINDS = {
     contact.IMPACT: "impact",
@@ -60,20 +60,14 @@ def contact_outcomes(grid: Cases, wanted: NDArray[np.bool_] | None = None) -> ND
     numbers = np.flatnonzero(wanted)
     book = contact.Book(np.zeros((0, 0)), np.zeros((0, 0)))
 
-    firsts = iter(range(0, numbers.size, CHUNK))
+    def work(chunk: Ints) -> None:
+        memory = records.working_memory()
+        contact.integrate_cases(chunk, cases, CLOSING, book, memory, outcome)
 
-    def work(memory: np.void) -> None:
-        for first in firsts:
-            chunk = numbers[first : first + CHUNK]
-            contact.integrate_cases(chunk, cases, CLOSING, book, memory, outcome)
-
-    memories = [records.working_memory() for _ in range(grid.threads)]
-    contact.integrate_cases(numbers[:0], cases, CLOSING, book, memories[0], outcome)
-    if grid.threads == 1:
-        work(memories[0])
-    else:
-        with ThreadPoolExecutor(grid.threads) as pool:
-            list(pool.map(work, memories))
+    # compiled before threads begin
+    work(numbers[:0])
+    with ThreadPoolExecutor(grid.threads) as pool:
+        list(pool.map(work, np.array_split(numbers, 1 + numbers.size // CHUNK)))
     return outcome.reshape(wanted.shape)
 
 

@@ -118,8 +118,7 @@ def fill_velocities(body, y, rows, which, n, out):
     """Fill in the velocities of contacts."""
     for i in range(n):
         u = solid.velocity_of(body, y, rows, which[i])
-        for k in range(3):
-            out[3 * i + k] = u[k]
+        out[3 * i], out[3 * i + 1], out[3 * i + 2] = u
 
 
 @kernel
@@ -131,8 +130,7 @@ def fill_accelerations(body, y, rows, weight, which, n, out):
         p = solid.arm(body, rows[2], which[i])
         b = solid.bias(body, rows[2], omega, p, which[i])
         u = to_world(rows, plus(plus(weight, cross(spin, p)), b))
-        for k in range(3):
-            out[3 * i + k] = u[k]
+        out[3 * i], out[3 * i + 1], out[3 * i + 2] = u
 
 
 @kernel
@@ -316,8 +314,7 @@ def rates(body, tau, y, dy, s, share=True):
     if kind == PIVOT:
         alpha, force = pivot_acceleration(body, rows[2], omega, weight, s.closed[0])
         pushed = to_world(rows, force)
-        for k in range(3):
-            s.lam[0, k] = pushed[k]
+        s.lam[0, 0], s.lam[0, 1], s.lam[0, 2] = pushed
         acceleration = plus(pull, pushed)
     elif kind == HINGE:
         i, j = s.closed[0], s.closed[1]
@@ -329,8 +326,7 @@ def rates(body, tau, y, dy, s, share=True):
         spin = solid.free_spin(body, omega)
         force, p, u = slider_force(body, y, rows, omega, spin, weight, s)
         pushed = to_world(rows, force)
-        for k in range(3):
-            s.lam[0, k] = pushed[k]
+        s.lam[0, 0], s.lam[0, 1], s.lam[0, 2] = pushed
         acceleration = plus(pull, pushed)
         alpha = plus(spin, times(body.inverse, cross(p, force)))
         lost = -pushed[0] * u[0] - pushed[1] * u[1]

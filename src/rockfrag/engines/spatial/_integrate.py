@@ -192,9 +192,7 @@ def rise(body, y, u, rate, s):
     """Let a body that is next to flat tilt up about the rim's point towards u at a rate."""
     y[10], y[11] = -rate * u[1], rate * u[0]
     if s.slides[0] == forces.SLIDES:
-        rows = algebra.rotation(y)
-        p = solid.arm(body, rows[2], solid.rim_contact(body))
-        y[9] -= solid.point_velocity(y, rows, p)[2]
+        y[9] -= rising(body, y, solid.rim_contact(body))
     else:
         modes.settle(body, y, s)
 
@@ -215,8 +213,7 @@ def lowest_open(body, y, s):
 @kernel
 def rising(body, y, i):
     """Velocity upwards of point i."""
-    rows = algebra.rotation(y)
-    return solid.velocity_of(body, y, rows, i)[2]
+    return solid.velocity_of(body, y, algebra.rotation(y), i)[2]
 
 
 @kernel
@@ -279,9 +276,8 @@ def stop_slips(body, y, s):
     rows = algebra.rotation(y)
     for i in range(s.count):
         if s.slides[i] == forces.SLIDES:
-            p = solid.arm(body, rows[2], s.closed[i])
-            turned = algebra.to_world(rows, algebra.cross(solid.omega_of(y), p))
-            if algebra.norm(y[7] + turned[0], y[8] + turned[1]) < 2 * modes.AT_REST:
+            u = solid.velocity_of(body, y, rows, s.closed[i])
+            if algebra.norm(u[0], u[1]) < 2 * modes.AT_REST:
                 s.slides[i] = forces.STICKS
     modes.hold(body, y, rows, s)
 

@@ -80,12 +80,11 @@ def _section(text: TextFile, line: int, stop: int) -> form.Channel:
         text.fail("number of samples, interval or rate cannot be read here", line)
     quantity = form.QUANTITIES[match["quantity"].upper()[:3]]
     dt = float(match["dt"]) if second else 1 / float(match["rate"])
-    unit = _UNIT.search(match["rest"])
     width = form.field_width(match["rest"]) or (10 if second else 9)
-    stated = _DEFAULT_UNITS[quantity] if second else ""
-    if unit:
-        stated = canonical_unit(unit["unit"]).replace("1/10g", "g/10")
-    return form.section(text, line, stop, int(match["count"]), dt, stated, width, quantity)
+    unit = _DEFAULT_UNITS[quantity] if second else ""
+    if stated := _UNIT.search(match["rest"]):
+        unit = canonical_unit(stated["unit"]).replace("1/10g", "g/10")
+    return form.section(text, line, stop, int(match["count"]), dt, unit, width, quantity)
 
 
 def _described(values: form.Channel, lines: list[str]) -> form.Channel:

@@ -30,8 +30,7 @@ _MAX_HEADER = 30
 def _parse(text: TextFile) -> Iterator[Channel]:
     header = text.lines(0, _MAX_HEADER)
     at_size = next((i for i, line in enumerate(header) if _SIZE.search(line)), 0)
-    size = _SIZE.search(header[at_size])
-    header = header[:_HEADER]
+    size, header = _SIZE.search(header[at_size]), header[:_HEADER]
     words = "\n".join(header)
     kind, station = _QUANTITY.search(words), _STATION.search(words)
     if size is None or kind is None or station is None:

@@ -43,11 +43,11 @@ def _parse(text: TextFile) -> Iterator[Channel]:
 def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | None) -> Channel:
     script = _command(text, line, stop)
     tag = re.search(r"Path[\"']?\s+(\w+)", script, re.I)
-    step, factor = _option(script, "dt"), _option(script, "factor")
+    step = _number(text, line, script, "dt")
     if step is None:
         text.fail("the Path series states no -dt; a series of -time or -fileTime is not read", line)
-    dt = text.interval(_number(text, line, "-dt", step), line)
-    scale = 1.0 if factor is None else _number(text, line, "-factor", factor)
+    dt, factor = text.interval(step, line), _number(text, line, script, "factor")
+    scale = 1.0 if factor is None else factor
     samples = scale * _values(text, line, script)
     if promised is not None and samples.size != promised:
         text.fail(
@@ -68,21 +68,17 @@ def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | Non
 def _command(text: TextFile, line: int, stop: int) -> str:
     """Return the whole command of a series: until braces close, with lines that a backslash joins."""
     script = text.data[text.offset(line) : text.offset(stop)].decode("latin-1")
-    end = 0
-    while True:
-        following = script.find("\n", end)
-        if following < 0:
-            if not script.endswith("\n") or script.endswith("\\\n"):
-                text.fail(
-                    "the Path series ends with the file and not with its line, and its -factor may be cut off; "
-                    "end the last line if the file is whole",
-                    line,
-                )
-            return script
-        whole = script[:following]
+    for end in re.finditer("\n", script):
+        whole = script[: end.start()]
         if whole.count("{") <= whole.count("}") and not whole.endswith("\\"):
             return whole.replace("\\\n", " ")
-        end = following + 1
+    if not script.endswith("\n") or script.endswith("\\\n"):
+        text.fail(
+            "the Path series ends with the file and not with its line, and its -factor may be cut off; "
+            "end the last line if the file is whole",
+            line,
+        )
+    return script
 
 
 def _values(text: TextFile, line: int, script: str) -> NDArray[np.float64]:
@@ -106,20 +102,17 @@ def _values(text: TextFile, line: int, script: str) -> NDArray[np.float64]:
 
 def _option(script: str, name: str) -> str | None:
     match = re.search(_OPTION.format(name=name), script, re.I)
-    if match is None:
-        return None
-    return next(group for group in match.groups() if group is not None)
+    return next(group for group in match.groups() if group is not None) if match else None
 
 
-def _number(text: TextFile, line: int, name: str, words: str) -> float:
-    value = float("nan")
+def _number(text: TextFile, line: int, script: str, name: str) -> float | None:
+    words, value = _option(script, name), float("nan")
     with suppress(ValueError):
-        value = float(words)
-    if not np.isfinite(value):
-        text.fail(
-            f"{name} is {words[:40]!r}, which is no number; write its value into the script", line
-        )
-    return value
+        value = float(words or "")
+    if words is None or np.isfinite(value):
+        return None if words is None else value
+    shown = f"-{name} is {words[:40]!r}"
+    text.fail(f"{shown}, which is no number; write its value into the script", line)
 
 
 FORMAT = Format("OPENSEES", headed(None, _SERIES, within=200), _parse)

@@ -17,25 +17,23 @@ _COLUMNS = re.compile(
 )
 _BEFORE_COMPONENT = re.compile(r"^(?P<station>[^()]+)\((?P<component>[^()]+)\)\s*$")
 _BEHIND_COMPONENT = re.compile(r"^(?P<component>\d{3})\s+(?P<station>\D.*)$")
+_KEYS = re.compile(r"\s*(?:recording station|source|frequency range)\s*:", re.I)
 _MAX_HEADER = 40
 
 
-def _find_columns(lines: list[str]) -> int:
-    return next((i for i, line in enumerate(lines[:_MAX_HEADER]) if _COLUMNS.match(line)), -1)
+def _titles(lines: list[str]) -> Iterator[tuple[int, re.Match[str]]]:
+    matches = enumerate(map(_COLUMNS.match, lines[:_MAX_HEADER]))
+    return ((number, match) for number, match in matches if match)
 
 
 def _recognise(lines: list[str], name: str) -> bool:
     # the titles of the columns alone are a plain two-column file
-    columns = _find_columns(lines)
-    return columns > 0 and any(
-        re.match(r"\s*(recording station|source|frequency range)\s*:", line, re.I)
-        for line in lines[:columns]
-    )
+    above = next((lines[:number] for number, _ in _titles(lines)), [])
+    return any(map(_KEYS.match, above))
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
-    columns = _find_columns(text.lines(0, _MAX_HEADER))
-    titles = _COLUMNS.match(text.line(columns)) if columns >= 0 else None
+    columns, titles = next(_titles(text.lines(0, _MAX_HEADER)), (-1, None))
     if titles is None:
         text.fail("no line 'Time[s] Accel[g]' above the data")
     unit = canonical_unit(titles["unit"])

@@ -113,13 +113,12 @@ def _width(text: TextFile, start: int, whole: list[int]) -> int:
 
 
 def _start(whole: list[int]) -> UTCDateTime | None:
-    year, day, hour, minute, second, millisecond = whole[_YEAR : _YEAR + 6]
+    year, day, hour, minute, *rest = whole[_YEAR : _YEAR + 6]
     missing = whole[_MISSING]
     if missing in (year, day, hour, minute) or year <= 0:
         return None
-    seconds: float = 0 if second == missing else second
-    seconds += 0 if millisecond == missing else millisecond / 1000
-    return time_at(seconds, year=year, julday=day, hour=hour, minute=minute)
+    second, millisecond = (0 if value == missing else value for value in rest)
+    return time_at(second + millisecond / 1000, year=year, julday=day, hour=hour, minute=minute)
 
 
 def _component(whole: list[int], words: str) -> str:

@@ -154,21 +154,18 @@ def _quantity(words: str, unit: str, bare: str) -> str:
     if _SPECTRA.search(bare.replace("_", " ")):
         return "spectrum"
     spaced = words.replace("_", " ")
-    if not bare:
-        return ""
-    named = next((name for name, pattern in _WORDS.items() if pattern.search(spaced)), "")
-    other = _OTHERS.search(spaced)
-    if quantity_of(unit):
-        return quantity_of(unit)
-    if len(bare) > 1 and _ORIENTATION.match(bare):
-        return "acceleration"
-    if named:
-        return named
-    if other:
-        return other["what"].lower()
-    if _INDEX.match(bare):
-        return "index"
-    return "acceleration" if _ORIENTATION.match(bare) else ""
+    if not bare or _SPECTRA.search(bare.replace("_", " ")):
+        return "spectrum" if bare else ""
+    other, directed = _OTHERS.search(spaced), _ORIENTATION.match(bare)
+    found = (
+        quantity_of(unit),
+        "acceleration" if directed and len(bare) > 1 else "",
+        next((name for name, pattern in _WORDS.items() if pattern.search(spaced)), ""),
+        other["what"].lower() if other else "",
+        "index" if _INDEX.match(bare) else "",
+        "acceleration" if directed else "",
+    )
+    return next(filter(None, found), "")
 
 
 def _time_unit(words: str, unit: str) -> str:

@@ -1,6 +1,7 @@
 """A text file held in memory, within bounds, that can say where in it something is wrong."""
 
 import gzip
+import itertools
 import os
 import re
 import zlib
@@ -325,7 +326,15 @@ def _tokens_by_line(body: bytes) -> NDArray[np.int64]:
 def read_text(source: Source, encoding: str = "") -> TextFile:
     """Read a text file within the bounds of size and line length; lines that are not UTF-8 are of ``encoding``."""
     name = name_of(source)
-    data = read_bytes(source)
+    if isinstance(source, (str, os.PathLike)):
+        check_file(source)
+        try:
+            with _opened(source) as file:
+                data = _read_blocks(file, name)
+        except (OSError, EOFError, zlib.error) as error:
+            raise InputError(f"{name}: cannot be read ({error}).") from None
+    else:
+        data = _read_blocks(source, name)
     if b"\n" not in data[:HEAD_BYTES] and b"\r" in data[:HEAD_BYTES]:
         data = data.replace(b"\r", b"\n")
     elif b"\r" in data:
@@ -359,22 +368,10 @@ def check_file(path: str | os.PathLike[str]) -> None:
         )
 
 
-def read_bytes(source: Source) -> bytes:
-    """Read all bytes of a text file, refusing early what is too large or has too long a line."""
-    name = name_of(source)
-    if not isinstance(source, (str, os.PathLike)):
-        return _read_blocks(source, name)
-    check_file(source)
-    try:
-        with _opened(source) as file:
-            return _read_blocks(file, name)
-    except (OSError, EOFError, zlib.error) as error:
-        raise InputError(f"{name}: cannot be read ({error}).") from None
-
-
 def _read_blocks(file: Any, name: str) -> bytes:
+    """Read all bytes of a text file, refusing early what is too large or has too long a line."""
     blocks: list[bytes] = []
-    total = lines = newlines = open_line = 0
+    open_line, total, lines, newlines = b"", 0, 0, 0
     zeros = True
     while block := file.read(_BLOCK):
         if not isinstance(block, bytes):
@@ -387,20 +384,18 @@ def _read_blocks(file: Any, name: str) -> bytes:
         zeros = zeros and not block.translate(None, b"0 .,;\t\r\n+-\x00")
         if zeros and total >= _MOST_ZEROS:
             raise InputError(f"{name}: nothing but zeros.")
-        breaks = np.frombuffer(block, dtype=np.uint8)
-        ends = np.flatnonzero((breaks == ord("\n")) | (breaks == ord("\r")))
-        lengths = np.diff(ends, prepend=-1 - open_line) - 1
-        open_line = len(block) - int(ends[-1]) - 1 if ends.size else open_line + len(block)
-        too_long = np.flatnonzero(lengths > MAX_LINE)
-        if too_long.size or open_line > MAX_LINE:
-            here = int(too_long[0]) if too_long.size else int(ends.size)
-            number = newlines + int(np.count_nonzero(breaks[ends[:here]] == ord("\n"))) + 1
+        joined = open_line + block
+        parts = joined.replace(b"\r", b"\n").split(b"\n")
+        if max(map(len, parts)) > MAX_LINE:
+            whole = itertools.takewhile(lambda part: len(part) <= MAX_LINE, parts)
+            start = sum(len(part) + 1 for part in whole)
+            number = newlines + joined.count(b"\n", 0, start) + 1
             raise InputError(
-                f"{name}, line {number}: the line is longer than {MAX_LINE} characters, "
-                "which no record format has."
+                f"{name}, line {number}: the line is longer than "
+                f"{MAX_LINE} characters, which no record format has."
             )
-        newlines += int(np.count_nonzero(breaks == ord("\n")))
-        lines += ends.size
+        newlines, lines = newlines + block.count(b"\n"), lines + len(parts) - 1
+        open_line = parts[-1]
         if lines > MAX_LINES:
             raise InputError(f"{name}: more than {MAX_LINES:,} lines are no record.")
         blocks.append(block)
