@@ -32,7 +32,36 @@ RECORDS = "resources/records"  # Folder of fetched records
 
 @dataclass(frozen=True, eq=False)
 class Assessment:
-    """All that is known of one object at one place."""
+    """All that is known of one object at one place.
+
+    Attributes
+    ----------
+    request : what was asked
+    motions : the motions
+    level : level of shaking at the site; None if neither level nor hazard was given
+    hazard : the hazard curve that was used; None if none was given
+    counted : what each motion as recorded does to the object as it stands
+    arrangements : outcomes of each way to stand, its own first, under motions with the velocity of the site
+    rocking : fraction of the motions at the level that make it rock; None without a level
+    rocks_from : least level at which any motion makes it rock, in the measure's unit; infinite where none does
+    fraction : fraction of the motions at the level that topple it; None without a level
+    probability : probability of toppling in the years asked for; None without a hazard
+    counts : motions that reach the level, that rock and that topple it there; None where none can be
+        scaled to it
+    amplitudes : levels at which a tenth and half of the motions topple it, by fraction
+    by_arrangement : what is estimated of each arrangement
+    curve : lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
+    conversion : what hazard in another measure than PGV leaves open; None in PGV
+    planar : what is estimated in one plane, beside the answer in space, which counts; None where there is none
+    directions : the worst direction; None where no record has two components
+    mitigations : what helps, most helpful first
+    effects : what is estimated with each property smaller and larger
+    rules : engineers' rules held against the outcomes
+    sliding_fraction : fraction of the motions at the level that topple it if it may slide [-]; NaN without
+        friction or level
+    flip_rate : fraction of outcomes in space at the level that differ if the base does by a millionth [-]; or
+        NaN
+    """
 
     request: Request  #: What was asked
     motions: MotionSet  #: The motions
@@ -126,9 +155,17 @@ class Shaken:
 
 
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
-    """Assess one object at one place, with the folder of fetched records.
+    """Assess one object at one place.
 
-    ``brief`` leaves out directions and mitigations, as for one line of an inventory.
+    Parameters
+    ----------
+    request : what is asked
+    records : folder of fetched records
+    brief : leave out directions and mitigations, as for one line of an inventory
+
+    Returns
+    -------
+    The :class:`Assessment`.
     """
     motions = motion_set(request.records, request.place, Path(records))
     return assess_with(request, motions, brief=brief)

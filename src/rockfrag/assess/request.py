@@ -62,7 +62,19 @@ class Records:
 
 @dataclass(frozen=True)
 class Request:
-    """An object at a place, ready to be assessed."""
+    """An object at a place, ready to be assessed.
+
+    Attributes
+    ----------
+    name : what the object is called
+    objects : the object, its pedestal, and what is not known of them
+    place : the floor on which it stands
+    level : the level of shaking asked about
+    hazard : hazard curves of the site, one a measure
+    years : time for the probability [year]
+    records : where the motions come from
+    value : what the object is worth, in any unit; NaN if not given
+    """
 
     name: str  #: What the object is called
     objects: Objects  #: The object, its pedestal, and what is not known of them
@@ -75,7 +87,16 @@ class Request:
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:
-    """Read a request from a YAML file such as ``statue.yaml``; paths in it are relative to it."""
+    """Read a request from a YAML file.
+
+    Parameters
+    ----------
+    path : file such as ``statue.yaml``; paths in it are relative to it
+
+    Returns
+    -------
+    The :class:`Request`.
+    """
     return make_request(read_yaml(path), str(path), Path(path).parent)
 
 

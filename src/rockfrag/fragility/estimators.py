@@ -18,7 +18,13 @@ from rockfrag.short_repr import short_repr
 
 @dataclass(frozen=True)
 class Fragility:
-    """A fitted curve, its confidence limits, and checks of its fit and of the influence of single motions."""
+    """A fitted curve with its confidence limits and what speaks for and against it.
+
+    Attributes
+    ----------
+    fit, interval : the fitted curve, and its confidence limits
+    checks : goodness of fit and influence of single motions
+    """
 
     fit: FragilityFit
     interval: Interval
@@ -45,11 +51,15 @@ class Fragility:
 class IncrementalFragility:
     """Three definitions of overturning intensity, of the same analyses; resurrections make them differ.
 
-    ``first`` is of the first overturning amplitude of each motion (first passage), ``always`` of that above which
-    each always overturns, as far as it was raised, ``probability`` the mean P(overturn | amplitude) over the
-    motions, structural resurrections included. ``resurrections`` are the table of
-    :func:`rockfrag.fragility.empirical.find_resurrections`, ``fraction_with_resurrections`` that of the motions
-    that overturned and have at least one window.
+    Attributes
+    ----------
+    first, always
+        First overturning amplitude of each motion (first passage), and that above which each always overturns, as
+        far as it was raised.
+    probability : mean P(overturn | amplitude) over the motions, structural resurrections included
+    resurrections, fraction_with_resurrections
+        Table of :func:`rockfrag.fragility.empirical.find_resurrections`; fraction of the motions that overturned
+        and have at least one window.
     """
 
     first: Fragility
@@ -89,9 +99,15 @@ def fit_cloud(
 ) -> Fragility:
     """Fit a curve to single tests at scattered values of the measure (cloud analysis).
 
-    ``table`` has one row a test; ``im``, ``overturned``, ``motion`` and ``earthquake`` are its columns of the
-    intensity measure, the outcome and the names, None where tests have none; ``level`` is that of the confidence
-    limits [-], 0 to 1.
+    Parameters
+    ----------
+    table, im, overturned : one row a test; its columns of the intensity measure and of the outcome
+    motion, earthquake : columns of their names; None where tests have none
+    level : of the confidence limits [-], 0 to 1
+
+    Returns
+    -------
+    The :class:`Fragility`.
     """
     outcomes = observations.observations_from_table(
         table, im, overturned=overturned, motion=motion, earthquake=earthquake
@@ -113,9 +129,18 @@ def fit_stripes(
     """Fit a curve to counts at a few levels of the measure (multiple stripe analysis).
 
     The curve maximises the product of the binomial likelihoods of the stripes (Baker, 2015,
-    Earthquake Spectra 31: 579-599, eq. 11). Rows are counts when ``trials`` names the column of the number of
-    tests in a row, else single tests, which are pooled by level for the likelihood; the limits resample motions
-    (each stripe a motion of its own only when ``motion`` is None). All else is as of :func:`fit_cloud`.
+    Earthquake Spectra 31: 579-599, eq. 11). Rows are counts when ``trials`` names a column, else
+    single tests, which are pooled by level for the likelihood; the limits resample motions (each
+    stripe a motion of its own only when ``motion`` is None).
+
+    Parameters
+    ----------
+    table, im, overturned, trials, motion, earthquake, level
+        As of :func:`fit_cloud`; column with the number of tests in a row, None where a row is one test.
+
+    Returns
+    -------
+    The :class:`Fragility`.
     """
     outcomes = observations.observations_from_table(
         table, im, overturned=overturned, trials=trials, motion=motion, earthquake=earthquake
@@ -138,8 +163,14 @@ def fit_incremental(
 ) -> IncrementalFragility:
     """Fit first overturning, always overturning, and mean probability to incremental dynamic analyses.
 
-    ``ida`` has one row per motion and amplitude of one body, with ``overturned`` and the columns ``amplitude``,
-    ``motion`` and ``earthquake``, or is IDA curves in another form; ``level`` is that of the limits [-], 0 to 1.
+    Parameters
+    ----------
+    ida : one row per motion and amplitude, with ``overturned``; or the IDA curves in another form. One body.
+    amplitude, motion, earthquake, level : names of the columns, and the level of the confidence limits [-], 0 to 1
+
+    Returns
+    -------
+    The :class:`IncrementalFragility`.
     """
     data = TableIda(ida, earthquake, motion) if isinstance(ida, pd.DataFrame) else ida
     resurrections = data.resurrections(amplitude)
@@ -166,8 +197,15 @@ def fit_step_tests(
 ) -> Fragility:
     """Fit a curve to tests of a step protocol, one row per test, interval- or right-censored.
 
-    ``lower`` and ``upper`` are the columns of the largest amplitude survived and of the one that overturned; all
-    else is as of :func:`fit_cloud`.
+    Parameters
+    ----------
+    tests, lower, upper
+        One row a test; its columns of the largest amplitude survived and of the one that overturned.
+    motion, earthquake, level : as of :func:`fit_cloud`
+
+    Returns
+    -------
+    The :class:`Fragility`.
     """
     brackets = censored.brackets_from_table(
         tests, lower=lower, upper=upper, motion=motion, earthquake=earthquake

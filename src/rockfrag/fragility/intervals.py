@@ -34,12 +34,16 @@ WeightedFit = Callable[[Floats], Floats]
 class Interval:
     """Confidence limits of θ, β and the whole curve.
 
-    ``theta`` and ``beta`` are lower and upper limits of the two-sided confidence ``level``; infinite where the
-    data set none, NaN where there is no interval. ``method`` is ``jackknife``, ``common step`` where all
-    capacities lie in one step (:func:`step_limits`), or ``none``; what was resampled is ``groups`` times ``over``,
-    ``motion`` or ``earthquake``. ``estimate`` is intercept and slope of the fit that the interval belongs to,
-    ``replicates`` those without each group (or block of groups), shape (replicates, 2). ``warnings`` are what a
-    reader must know before trusting the limits.
+    Attributes
+    ----------
+    theta, beta : lower and upper limit; infinite where the data set none, NaN where there is no interval
+    level : two-sided confidence level, for example 0.90
+    method : ``jackknife``; ``common step`` where all capacities lie in one step (:func:`step_limits`); or ``none``
+    groups, over : number of independent groups that were resampled, and what one is: ``motion`` or ``earthquake``
+    estimate, replicates
+        Intercept and slope of the fit that the interval belongs to, and without each group (or block of groups),
+        shape (replicates, 2).
+    warnings : what a reader must know before trusting the limits
     """
 
     theta: tuple[float, float]
@@ -120,9 +124,15 @@ def interval_over_motions(
 ) -> Interval:
     """Confidence limits of a curve fitted to outcomes, by leaving out whole motions or earthquakes.
 
-    Over ``motion`` they answer for other motions of the same earthquakes, over ``earthquake`` for other
-    earthquakes; None takes earthquakes where they are known and some have several motions. ``level`` is that of
-    the limits [-].
+    Parameters
+    ----------
+    outcomes, over, level : the tests, and the level of the limits [-]
+        Over ``motion`` they answer for other motions of the same earthquakes, over ``earthquake`` for other
+        earthquakes; None takes earthquakes where they are known and some have several motions.
+
+    Returns
+    -------
+    The :class:`Interval`, with limits of median and dispersion.
     """
     over, notes = population(outcomes, over)
     fit, groups = outcome_fitter(outcomes, over)

@@ -43,12 +43,18 @@ class FragilityFit:
     F is the standard normal distribution (link ``probit``) or the standard logistic one
     (``logit``).
 
-    ``theta`` is the median of the intensity measure ``im`` at overturning, in ``unit``, ``beta`` the logarithmic
-    standard deviation (probit) or logistic scale (logit); both NaN where the data give none. ``covariance`` is of
-    (ln θ, β), 2 × 2, by the delta method from the expected information. It takes tests for independent; where
-    motions repeat, use an interval over motions instead. ``log_likelihood`` has binomial coefficients; of ``n``
-    tests ``n_overturned`` did, under ``n_motions`` different motions. ``method`` says how it was fitted, and
-    ``warnings`` has a sentence for each thing that a reader must know before using the curve.
+    Attributes
+    ----------
+    theta, beta
+        Median of the intensity measure at overturning, in ``unit``, and logarithmic standard deviation (probit) or
+        logistic scale (logit); NaN where the data give none.
+    covariance : covariance of (ln θ, β), 2 × 2, by the delta method from the expected information
+        It takes tests for independent; where motions repeat, use an interval over motions instead.
+    log_likelihood : with binomial coefficients
+    n, n_overturned, n_motions : tests, those that overturned, and different motions
+    method, warnings
+        How it was fitted, in words, and a sentence for each thing that a reader must know before using the curve.
+    im, unit, link : intensity measure and its unit; ``probit`` or ``logit``
     """
 
     theta: float
@@ -113,7 +119,13 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
     says what the data do tell. Where the probability does not rise with the measure, or all tests are
     at one value of it, there is no curve either.
 
-    ``link`` is ``probit`` (lognormal curve) or ``logit``.
+    Parameters
+    ----------
+    outcomes, link : outcomes with their measure; ``probit`` (lognormal curve) or ``logit``
+
+    Returns
+    -------
+    The :class:`FragilityFit`.
     """
     notes = SAY("outcomes", outcomes)
     if outcomes.im.size > MOST_ROWS:

@@ -30,13 +30,19 @@ SUFFICIENT_P = 0.05  # a residual's dependence on a column is named below this p
 class MeasureSelection:
     """Comparison of intensity measures on the same tests.
 
-    ``recommended`` is the column of the recommended measure and ``name`` what the field calls it, for example
-    ``PGV``; empty where no measure has a rising curve. ``words`` are the recommendation with its reasons.
-    ``table`` has one row per measure, best first: ``measure``, ``im``, ``unit``, ``theta``, ``beta`` (efficiency:
-    the smaller the better), ``beta_lower``, ``beta_upper``, ``aic``, ``auc``, ``score`` (mean log probability of
-    what was held out, per test [-]; the larger the better), ``p_worse`` (p value of scoring as the best does, t
-    over motions or earthquakes), ``chosen_fraction`` (fraction of bootstrap samples of motions or earthquakes in
-    which it scores best), and ``p_<column>`` for the sufficiency against each given column.
+    Attributes
+    ----------
+    recommended, name
+        Column of the recommended measure, and what the field calls it, for example ``PGV``; empty where no measure
+        has a rising curve.
+    table
+        One row per measure, best first: ``measure``, ``im``, ``unit``, ``theta``, ``beta``
+        (efficiency: the smaller the better), ``beta_lower``, ``beta_upper``, ``aic``, ``auc``,
+        ``score`` (mean log probability of what was held out, per test [-]; the larger the better),
+        ``p_worse`` (p value of scoring as the best does, t over motions or earthquakes), ``chosen_fraction``
+        (fraction of bootstrap samples of motions or earthquakes in which it scores best), and ``p_<column>``
+        for the sufficiency against each given column.
+    words : the recommendation with its reasons, for a report
     """
 
     recommended: str
@@ -48,9 +54,15 @@ class MeasureSelection:
 
 
 def area_under_curve(outcomes: Observations) -> float:
-    """Probability that an overturned test had the larger measure than a survived one [-], ties half.
+    """Probability that an overturned test had the larger measure than a survived one; ties half.
 
-    NaN where all tests agree.
+    Parameters
+    ----------
+    outcomes : outcomes with their measure
+
+    Returns
+    -------
+    The area [-], from 0 to 1; NaN where all tests agree.
     """
     fell, stood = outcomes.overturned, outcomes.trials - outcomes.overturned
     _, level = np.unique(outcomes.im, return_inverse=True)
@@ -109,9 +121,18 @@ def recommend_measure(
     the best score is recommended. Measures that the scores do not tell from it are named as equals,
     with the more efficient one (smaller β) first.
 
-    ``table`` has one row per test; sufficiency is tested against its columns ``given`` (magnitude, distance, …).
-    ``level`` is that of the limits of β, ``replicates`` and ``seed`` are of the bootstrap over motions
-    (earthquakes where given) for ``chosen_fraction``; ``source`` is what messages call the table.
+    Parameters
+    ----------
+    table, measures : one row per test, and its columns of measures
+    given, overturned, motion, earthquake
+        Columns of what sufficiency is tested against (magnitude, distance, …), and of each test.
+    level, replicates, seed, source
+        Of the limits of β; of the bootstrap over motions (earthquakes where given) for ``chosen_fraction``; what
+        messages call the table.
+
+    Returns
+    -------
+    The :class:`MeasureSelection`.
     """
     if not measures:
         raise InputError("measures: name at least one column with an intensity measure.")

@@ -58,15 +58,22 @@ def write_nrml(
     NRML has no place for confidence limits and numbers of motions, so a comment before each function gives them.
     The description has what is to be warned of, each sentence once.
 
-    ``table`` has one row per configuration and limit state (one estimator and one measure each), as
-    :func:`rockfrag.fragility.ida_curves.fragility_table` gives them; a column ``state`` names the limit state
-    (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. A column ``floor`` must be empty: only
-    motions of the ground are known to OpenQuake. No function may lack a state that another has. The value in the
-    column ``by`` names the function (OpenQuake's taxonomy); what OpenQuake does not take in a name becomes ``_``.
-    ``fractions`` are points of the non-parametric fragility function
-    (:func:`rockfrag.fragility.ida_curves.fraction_points`), with columns ``by`` and ``state``. A function of which
-    a state has such points is written as discrete levels; so is one whose lognormal curves would make a state more
-    probable than the one that comes before it. ``identifier`` names the model.
+    Parameters
+    ----------
+    table
+        One row per configuration and limit state (one estimator and one measure each), as
+        :func:`rockfrag.fragility.ida_curves.fragility_table` gives them; a column ``state`` names the limit
+        state (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. A column ``floor`` must be
+        empty: only motions of the ground are known to OpenQuake. No function may lack a state that another has.
+    path, identifier : file to write, and name of the model
+    by
+        Column whose value names the function (OpenQuake's taxonomy); what OpenQuake
+        does not take in a name becomes ``_``.
+    fractions
+        Points of the non-parametric fragility function (:func:`rockfrag.fragility.ida_curves.fraction_points`),
+        with columns ``by`` and ``state``. A function of which a state has such points is written as discrete
+        levels; so is one whose lognormal curves would make a state more probable than the one that comes before
+        it.
     """
     # OpenQuake takes letters, digits, "_", "-" and ":" in a name
     curves = curves_by_name("NRML", table, by, "_:-", fractions)

@@ -43,9 +43,14 @@ class Grouped:
 class Observations(Grouped):
     """Overturned or not, at known values of one intensity measure.
 
-    A row is a test, or several: of ``trials`` tests at ``im`` > 0 so many ``overturned``. Rows of one ``motion``
-    are not independent, and motions of one ``earthquake``, the motion's label where none is known, may share an
-    effect. All these have shape (n,). The measure has ``name`` and ``unit``, for example ``PGA`` and ``g``.
+    Attributes
+    ----------
+    im : intensity measure of each row, > 0, shape (n,)
+    overturned, trials : number of tests of the row that overturned, and of all, shape (n,); 1 for single tests
+    motion, earthquake
+        Labels, shape (n,): rows of one motion are not independent, and motions of one earthquake may share an
+        effect. The motion's label where no earthquake is known.
+    name, unit : the intensity measure as the field writes it, for example ``PGA`` and ``g``
     """
 
     im: Floats
@@ -219,10 +224,19 @@ def observations_from_table(
 ) -> Observations:
     """Read outcomes and one intensity measure out of a table.
 
-    A row of ``table`` is a test, or a group of equal tests when ``trials`` names a column with their number;
-    ``im`` is the column of the intensity measure, whose unit is read from the name (``pga_g``, ``pgv_cm_s``),
-    ``overturned`` that of outcomes (0/1, false/true) or counts. ``motion`` and ``earthquake`` are columns with
-    labels, None where every row is one of its own; ``source`` is what messages call the table.
+    Parameters
+    ----------
+    table, im
+        One row per test, or per group of equal tests when ``trials`` names a column of counts; and the column of
+        the intensity measure, whose unit is read from the name (``pga_g``, ``pgv_cm_s``).
+    overturned, trials
+        Column of outcomes (0/1, false/true), or of counts when the column with the number of tests is given.
+    motion, earthquake, source
+        Columns with labels, None where every row is a motion (earthquake) of its own; what messages call it.
+
+    Returns
+    -------
+    The :class:`Observations`, of n rows.
     """
     if len(table) == 0:
         raise InputError(f"{source}: there is no row; give at least one test.")

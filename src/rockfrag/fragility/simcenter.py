@@ -42,9 +42,15 @@ def write_simcenter(
 ) -> None:
     """Write rows of a fragility table as a damage model.
 
-    All is as of :func:`rockfrag.fragility.nrml.write_nrml`, but PGA and PGV are demands of the ground, PFA and PFV
-    of the floor on which the object stands; the ID is ``ROCKFRAG.`` and letters and digits of the value in the
-    column ``by``, and a state with points in ``fractions`` is written with the family ``multilinear_CDF``.
+    Parameters
+    ----------
+    table : as of :func:`rockfrag.fragility.nrml.write_nrml`
+        PGA and PGV are demands of the ground, PFA and PFV of the floor on which the object stands.
+    csv_path, json_path : files to write
+    by : column that names the curve; the ID is ``ROCKFRAG.`` and its letters and digits
+    fractions
+        As of :func:`rockfrag.fragility.nrml.write_nrml`; a state that has such points is written with the family
+        ``multilinear_CDF``.
     """
     rows = []
     notes: dict[str, object] = {

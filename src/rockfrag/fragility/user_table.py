@@ -22,10 +22,14 @@ from rockfrag.short_repr import short_repr
 class UserFragility:
     """All that a table of tests says about fragility.
 
-    ``tests`` is the table as used: ``motion``, ``earthquake``, ``overturned`` and a column per measure.
-    ``outcomes`` and ``fits`` are by measure, in the order given; ``choice`` recommends one. ``two_measures`` is
-    fragility in the first two measures with contours and cells, None with one measure. ``table`` has a row a
-    curve, see :func:`rockfrag.fragility.ida_curves.fragility_table`, ``bins`` empirical fractions by ``measure``.
+    Attributes
+    ----------
+    tests : the table as used: ``motion``, ``earthquake``, ``overturned`` and a column per measure
+    outcomes, fits, choice : by measure, in the order given, and the recommendation of a measure
+    two_measures : fragility in the first two measures with contours and cells; None with one measure
+    table, bins
+        Tidy table of curves, see :func:`rockfrag.fragility.ida_curves.fragility_table`, and empirical fractions in
+        bins, by measure (column ``measure``).
     """
 
     tests: pd.DataFrame
@@ -59,10 +63,18 @@ def fit_user_table(
 ) -> UserFragility:
     """Read a table of tests from a text file and fit, compare and judge fragility curves in its measures.
 
-    The file at ``path`` has one row per test. ``measures`` are as of
-    :func:`rockfrag.fragility.tests_file.read_tests`, for example
-    ``{"pga_g": ["pga_g"], "pgv_cm_s": ["pga_g", "pgv_over_pga_s", 980.665]}``; sufficiency is tested against the
-    columns ``given``. ``level``, ``replicates`` and ``seed`` are of confidence limits and bootstraps.
+    Parameters
+    ----------
+    path : text file with one row per test
+    measures
+        As of :func:`rockfrag.fragility.tests_file.read_tests`, for example
+        ``{"pga_g": ["pga_g"], "pgv_cm_s": ["pga_g", "pgv_over_pga_s", 980.665]}``.
+    overturned, motion, earthquake, given : columns; sufficiency is tested against the last
+    level, replicates, seed : of confidence limits and bootstraps
+
+    Returns
+    -------
+    The :class:`UserFragility`.
     """
     source = Path(path).name
     tests = read_tests(

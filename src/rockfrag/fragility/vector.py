@@ -36,10 +36,15 @@ _say = sayer("rockfrag.fragility", "vector.j2", {"FEWEST_GROUPS": FEWEST_GROUPS}
 class Interaction:
     """Whether the effect of one measure depends on the other.
 
-    ``p`` is the p value of no interaction, a score test with contributions summed by earthquake [-], NaN with
-    fewer than three earthquakes; ``likelihood_ratio`` is 2 ln (L with / L without) [-], tests counted as
-    independent, for comparison with other programs. The interaction is ``kept`` in the fit if p is below
-    ``INTERACTION_LEVEL`` and held-out earthquakes score better.
+    Attributes
+    ----------
+    p
+        p value of no interaction, score test with contributions summed by earthquake [-]; NaN with fewer than
+        three earthquakes.
+    likelihood_ratio
+        2 ln (L with / L without) [-]; tests counted as independent, for comparison with other programs.
+    kept
+        Whether the fit has the interaction: p below ``INTERACTION_LEVEL``, and held-out earthquakes score better.
     """
 
     p: float
@@ -51,11 +56,17 @@ class Interaction:
 class VectorFragility:
     """P(overturn | IM1, IM2) with limits over earthquakes.
 
-    ``coefficients`` are of 1, ln IM1, ln IM2 and, where it earned its place, ln IM1 ln IM2, IM1 and IM2 being the
-    columns ``measures``; ``covariance`` is from the expected information, which takes tests for independent. The
-    ``method`` is maximum likelihood, or penalised under separation. ``replicates`` are coefficients without one
-    earthquake each, shape (earthquakes, coefficients); ``level`` is the two-sided confidence level of limits, and
-    ``warnings`` are what a reader must know before using it.
+    Attributes
+    ----------
+    measures : columns of the two measures
+    coefficients, covariance
+        Of 1, ln IM1, ln IM2 and, where it earned its place, ln IM1 ln IM2; the covariance is from the expected
+        information, which takes tests for independent.
+    log_likelihood, method, interaction
+        Of the fit; maximum likelihood, or penalised under separation; and the test of an interaction.
+    replicates : coefficients without one earthquake each, shape (earthquakes, coefficients)
+    n, n_overturned, n_earthquakes : tests, those that overturned, and earthquakes
+    level, warnings : two-sided confidence level of limits, and what a reader must know before using it
     """
 
     measures: tuple[str, str]
@@ -139,10 +150,18 @@ def fit_vector(
 ) -> VectorFragility:
     """Fit the probability of overturning in two intensity measures.
 
-    ``table`` has one row a test; ``measures`` are two of its columns, such as ``pga_g`` and ``pgv_over_pga_s``,
-    ``earthquake`` is None where each test has one of its own. ``level`` is the two-sided confidence level of
-    limits [-], ``source`` what messages call the table. ``try_interaction`` takes most of the time: without it
-    none is kept.
+    Parameters
+    ----------
+    table, measures : one row a test, and the columns of the two measures, such as ``pga_g`` and ``pgv_over_pga_s``
+    overturned, earthquake
+        Columns of outcome (0 or 1) and earthquake; None where each test has an earthquake of its own.
+    level, source, try_interaction
+        Two-sided confidence level of limits [-]; what messages call the table; whether to test an interaction,
+        which takes most of the time: without it none is kept.
+
+    Returns
+    -------
+    The :class:`VectorFragility`, with replicates by earthquake.
     """
     if not 0.0 < level < 1.0:
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")

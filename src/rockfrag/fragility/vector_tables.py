@@ -28,10 +28,12 @@ MOST_CYCLES = 5_000  # cycles of alternating projections; some hundreds are usua
 class VectorChecks:
     """Test of fit and non-parametric surface of a fragility in two measures.
 
-    ``p_fit`` is the p value of the hypothesis that the fit describes the outcomes, by parametric bootstrap [-].
-    ``surface`` has a row per cell of the two measures that has tests: the measures' columns (geometric means of
-    the cell's row and column), ``tests``, ``overturned``, ``probability`` (rising in both measures) and
-    ``fitted``.
+    Attributes
+    ----------
+    p_fit : p value of the hypothesis that the fit describes the outcomes, by parametric bootstrap [-]
+    surface
+        A row per cell of the two measures that has tests: the measures' columns (geometric means of the cell's
+        row and column), ``tests``, ``overturned``, ``probability`` (rising in both measures) and ``fitted``.
     """
 
     p_fit: float
@@ -54,9 +56,17 @@ def check_vector(
 ) -> VectorChecks:
     """Judge a fragility in two measures by the outcomes that it was fitted to.
 
-    ``table`` has one row a test; ``motion`` is None where each test has a motion of its own. In simulated data
-    each motion has one capacity, so that its tests depend on each other as in an incremental dynamic analysis.
-    ``replicates`` and ``seed`` are of the parametric bootstrap.
+    Parameters
+    ----------
+    fit, table : the fit and its table, one row a test
+    overturned, motion : columns of the outcome and of the motion; None where each test has a motion of its own
+        In simulated data each motion has one capacity, so that its tests depend on each other as in an incremental
+        dynamic analysis.
+    replicates, seed : of the parametric bootstrap
+
+    Returns
+    -------
+    The :class:`VectorChecks`.
     """
     logs = [np.log(observations.positive(table, column)) for column in fit.measures]
     outcome = observations.read_observations(table, overturned)

@@ -35,13 +35,19 @@ _NEEDED = ("object", "pedestal", "earthquake", "floor", "amplitude_g")
 class Pairs:
     """Tests sorted into pairs.
 
-    ``table`` has one row per pair: object, earthquake, floor, motion, slenderness, s_c (slenderness less the mean
-    of the objects'; both NaN where it is not known), a_np_g, a_p_g [g], d, resolution (half-width to which d is
-    known [-]; 0 where amplitudes came without brackets), bound ("at least" or "at most" where one of the tests
-    never overturned and d is the bound that follows, else empty). ``censored`` has one row per pair of which at
-    least one test never overturned: object, earthquake, floor, motion, d_lower, d_upper (infinite where
-    unbounded); those with both infinite are not in ``table``. ``unpaired`` has one row per object and motion that
-    was tested on one side only: object, earthquake, floor, motion, missing ("P" or "NP").
+    Parameters
+    ----------
+    table
+        One row per pair: object, earthquake, floor, motion, slenderness, s_c (slenderness less the mean of
+        the objects'; both NaN where it is not known), a_np_g, a_p_g [g], d, resolution (half-width to
+        which d is known [-]; 0 where amplitudes came without brackets), bound ("at least" or "at most"
+        where one of the tests never overturned and d is the bound that follows, else empty).
+    censored
+        One row per pair of which at least one test never overturned: object, earthquake, floor, motion,
+        d_lower, d_upper (infinite where unbounded). Those with both infinite are not in ``table``.
+    unpaired
+        One row per object and motion that was tested on one side only: object, earthquake, floor, motion,
+        missing ("P" or "NP").
     """
 
     table: pd.DataFrame

@@ -44,10 +44,14 @@ DRAWN_AT_ONCE = 2_000_000
 class PedestalStudy:
     """Everything about P against NP for one table of tests.
 
-    ``pairs`` are the tests sorted; ``effects`` see `effects_table`; ``whole`` has tests of the whole: method,
-    estimate, lower, upper (as ratios), p, smallest_p, units, remark; ``without_earthquake`` see
-    `leave_one_earthquake_out`; ``ranks``: factor, level, mean ratio, p_largest, p_smallest; ``notes`` say in words
-    the population, what was left out, what the steps cannot tell.
+    Parameters
+    ----------
+    pairs, effects : tests sorted into pairs; see `effects_table`
+    whole, without_earthquake
+        Tests of the whole: method, estimate, lower, upper (as ratios), p, smallest_p, units, remark; see
+        `leave_one_earthquake_out`.
+    ranks : factor, level, mean ratio, p_largest, p_smallest
+    notes : in words: population, what was left out, what the steps cannot tell
     """
 
     pairs: Pairs
@@ -143,8 +147,15 @@ def study_pedestal(
 ) -> PedestalStudy:
     """Do everything for one table of tests, simulated or measured alike.
 
-    ``tests`` are as of :func:`rockfrag.pedestal.paired_tests.check_tests`, ``seed`` is of the bootstrap and of
-    drawn sign flips; ``slenderness``, height over width by object [-], is needed only for slopes on it.
+    Parameters
+    ----------
+    tests, seed
+        See :func:`rockfrag.pedestal.paired_tests.check_tests`; the seed of the bootstrap and of drawn sign flips.
+    slenderness : height over width by object [-]; needed only for slopes on it
+
+    Returns
+    -------
+    The :class:`PedestalStudy`.
     """
     pairs = pair_tests(tests, slenderness)
     table = pairs.table

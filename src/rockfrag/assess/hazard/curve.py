@@ -33,7 +33,17 @@ FLANKS = (0.16, 0.84)
 
 @dataclass(frozen=True, eq=False)
 class HazardCurve:
-    """Annual rates with which levels of a measure are exceeded; a power law between the points."""
+    """Annual rates with which levels of a measure are exceeded; a power law between the points.
+
+    Attributes
+    ----------
+    measure : the intensity measure
+    levels : levels in the measure's unit, rising, shape (n,), n ≥ 2
+    rates : annual rates of exceedance [1/year], falling, shape (n,)
+    source : where it comes from, in a few words
+    quantiles : curves of the same measure by their quantile, such as 0.16 and 0.84
+    is_read : whether it was read; False where one level was continued with an assumed slope
+    """
 
     measure: IntensityMeasure  #: The intensity measure
     levels: Floats  #: Levels in the measure's unit, rising, shape (n,), n ≥ 2
