@@ -63,39 +63,27 @@ class Assessment:
         NaN
     """
 
-    request: Request  #: What was asked
-    motions: MotionSet  #: The motions
-    level: Level | None  #: Level of shaking at the site; None if neither level nor hazard was given
-    hazard: HazardCurve | None  #: The hazard curve that was used; None if none was given
-    counted: ObjectOutcomes  #: What each motion as recorded does to the object as it stands
-    #: Outcomes of each way to stand, its own first, under motions with the velocity of the site
+    request: Request
+    motions: MotionSet
+    level: Level | None
+    hazard: HazardCurve | None
+    counted: ObjectOutcomes
     arrangements: Mapping[str, ObjectOutcomes]
-    rocking: Estimate | None  #: Fraction of the motions at the level that make it rock
-    #: Least level at which any motion makes it rock, in the measure's unit; infinite where none does
+    rocking: Estimate | None
     rocks_from: float
-    fraction: Estimate | None  #: Fraction of the motions at the level that topple it
-    probability: Estimate | None  #: Probability of toppling in the years asked for
-    #: Motions that reach the level, that rock and that topple it there; None where none can be scaled to it
+    fraction: Estimate | None
+    probability: Estimate | None
     counts: tuple[int, int, int] | None
-    amplitudes: Mapping[
-        float, Estimate
-    ]  #: Levels at which a tenth and half of the motions topple it
-    by_arrangement: Mapping[str, float]  #: What is estimated of each arrangement
-    #: Lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
+    amplitudes: Mapping[float, Estimate]
+    by_arrangement: Mapping[str, float]
     curve: Fragility | None
-    conversion: (
-        Conversion | None
-    )  #: What hazard in another measure than PGV leaves open; None in PGV
-    planar: (
-        float | None
-    )  #: What is estimated in one plane, beside the answer in space, which counts
-    directions: Directions | None  #: The worst direction; None where no record has two components
-    mitigations: tuple[Mitigation, ...]  #: What helps, most helpful first
-    effects: tuple[Moved[float], ...]  #: What is estimated with each property smaller and larger
-    rules: tuple[RuleCheck, ...]  #: Engineers' rules held against the outcomes
-    #: Fraction of the motions at the level that topple it if it may slide [-]; NaN without friction or level
+    conversion: Conversion | None
+    planar: float | None
+    directions: Directions | None
+    mitigations: tuple[Mitigation, ...]
+    effects: tuple[Moved[float], ...]
+    rules: tuple[RuleCheck, ...]
     sliding_fraction: float
-    #: Fraction of outcomes in space at the level that differ if the base does by a millionth [-]; or NaN
     flip_rate: float = math.nan
 
     __repr__ = short_repr

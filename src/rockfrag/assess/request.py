@@ -76,14 +76,14 @@ class Request:
     value : what the object is worth, in any unit; NaN if not given
     """
 
-    name: str  #: What the object is called
-    objects: Objects  #: The object, its pedestal, and what is not known of them
-    place: Place  #: The floor on which it stands
-    level: Level | None = None  #: The level of shaking asked about
-    hazard: tuple[HazardCurve, ...] = ()  #: Hazard curves of the site, one a measure
-    years: float = YEARS  #: Time for the probability [year]
-    records: Records = field(default_factory=Records)  #: Where the motions come from
-    value: float = math.nan  #: What the object is worth, in any unit; NaN if not given
+    name: str
+    objects: Objects
+    place: Place
+    level: Level | None = None
+    hazard: tuple[HazardCurve, ...] = ()
+    years: float = YEARS
+    records: Records = field(default_factory=Records)
+    value: float = math.nan
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:

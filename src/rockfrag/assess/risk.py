@@ -70,11 +70,10 @@ class Estimate:
     sources : standard deviation on the scale of the interval by source [-]
     """
 
-    value: float  #: Probability [-]
-    #: Limits of the interval [-]
+    value: float
     lower: float
     upper: float
-    sources: Mapping[str, float]  #: Standard deviation on the scale of the interval by source [-]
+    sources: Mapping[str, float]
 
 
 @dataclass(frozen=True)

@@ -45,13 +45,12 @@ class HazardCurve:
     is_read : whether it was read; False where one level was continued with an assumed slope
     """
 
-    measure: IntensityMeasure  #: The intensity measure
-    levels: Floats  #: Levels in the measure's unit, rising, shape (n,), n ≥ 2
-    rates: Floats  #: Annual rates of exceedance [1/year], falling, shape (n,)
-    source: str  #: Where it comes from, in a few words
-    #: Curves of the same measure by their quantile, such as 0.16 and 0.84
+    measure: IntensityMeasure
+    levels: Floats
+    rates: Floats
+    source: str
     quantiles: dict[float, "HazardCurve"] = field(default_factory=dict)
-    is_read: bool = True  #: Whether it was read; False where one level was continued with a slope
+    is_read: bool = True
 
     __repr__ = short_repr
 
