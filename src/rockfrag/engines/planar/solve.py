@@ -110,14 +110,12 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     ``look_at`` must have been called with ``q``.
     """
     if p.count == 1 and not impact:
-        _solve_top(p, w, q, v, ah, av)
-        return True
+        return _solve_lone(p, w, q, v, ah, av)
     standing = 0 if impact else standing_bodies(p, w)
     if p.count == 2:
         flat = w.closed[1, 0] == 1 and w.closed[1, 1] == 1
         if standing > 0 and not (flat and w.slides[1] == 0):
-            _solve_top(p, w, q, v, ah, av)
-            return True
+            return _solve_upper(p, w, q, v, ah, av)
         standing = 0
     if not solve_generally(p, w, q, v, ah, av, impact, rough, standing):
         return False
@@ -130,7 +128,7 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
 def accelerate(p, w, q, v, ah, av):
     """Accelerations of the mode in ``w`` into ``w.out``: :func:`solve` where steps spend their time."""
     if p.count == 1:
-        _solve_top(p, w, q, v, ah, av)
+        _solve_lone(p, w, q, v, ah, av)
     else:
         solve(p, w, q, v, ah, av, False)
 
@@ -300,74 +298,106 @@ def _carry(p, w, q, ah, av, standing):
 
 
 @kernel
-def _solve_top(p, w, q, v, ah, av):
-    """Accelerations and forces of a lone block, or where the pedestal stands and the statue does not, by hand.
-
-    They are those of :func:`solve`.
-    """
-    k = p.count - 1
-    own = 3 * k
+def _solve_lone(p, w, q, v, ah, av):
+    """Accelerations and forces of a lone block, whose equations are solved by hand: those of :func:`solve`."""
     fx, fy = -ah, -(p.g + av)
-    light, slow = p.inverse[own], p.inverse[own + 2]
-    slides, kinetic = w.slides[k], p.kinetic[k]
-    w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0
-    pull_x, pull_y, twist, x, y, aside = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    if w.closed[k, 0] == 1 or w.closed[k, 1] == 1:
-        flat = w.closed[k, 0] == 1 and w.closed[k, 1] == 1
-        end = 0 if w.closed[k, 0] == 1 else 1
-        (x, y), tx, ty, kind = corner_of(p, w, q, 0, end), 1.0, 0.0, 1
-        if k > 0:
-            x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
-        rx, ry = x - q[own], y - q[own + 1]
-        # arms of normal (-ty, tx) and tangent (tx, ty)
-        first, two = -ty * ry - tx * rx, tx * ry - ty * rx
-        if flat:
-            # what accelerates it apart vanishes, and it does not turn
-            x1, y1, _, _, _, _, _ = end_of(p, w, q, k, 1, w.kind[k, 1])
-            other = -ty * (y1 - q[own + 1]) - tx * (x1 - q[own])
-            push = (ty * fx - tx * fy) / light
-            shear = -slides * kinetic * push if slides != 0 else -(tx * fx + ty * fy) / light
-            far = (two * shear + first * push) / (first - other)
-            w.normal[k, 0], w.normal[k, 1] = push - far, far
-            aside = far * (tx * (x1 - x) + ty * (y1 - y))
+    turn = v[2]
+    light, slow = p.inverse[0], p.inverse[2]
+    slides = w.slides[0]
+    w.normal[0, 0] = w.normal[0, 1] = 0.0
+    push, shear, twist = 0.0, 0.0, 0.0
+    if w.closed[0, 0] == 1 and w.closed[0, 1] == 1:
+        left, _ = corner_of(p, w, q, 0, 0)
+        right, y = corner_of(p, w, q, 0, 1)
+        rx0, rx1, ry = left - q[0], right - q[0], y - q[1]
+        push = -fy / light
+        shear = -slides * p.kinetic[0] * push if slides != 0 else -fx / light
+        # no turning: N0 rx0 + N1 rx1 = T ry
+        w.normal[0, 1] = (shear * ry - push * rx0) / (rx1 - rx0)
+        w.normal[0, 0] = push - w.normal[0, 1]
+    elif w.closed[0, 0] == 1 or w.closed[0, 1] == 1:
+        end = 0 if w.closed[0, 0] == 1 else 1
+        x, y = corner_of(p, w, q, 0, end)
+        rx, ry = x - q[0], y - q[1]
+        across = light + rx * rx * slow
+        both = -rx * ry * slow
+        need = turn * turn * ry - fy
+        if slides != 0:
+            push = need / (across - slides * p.kinetic[0] * both)
+            shear = -slides * p.kinetic[0] * push
         else:
-            across = light + first * first * slow
-            both = first * two * slow
-            need = ty * fx - tx * fy - bias(q, v, k, x, y, -ty, tx, kind)
-            if slides != 0:
-                push = need / (across - slides * kinetic * both)
-                shear = -slides * kinetic * push
-            else:
-                along = light + two * two * slow
-                also = -tx * fx - ty * fy - bias(q, v, k, x, y, tx, ty, kind)
-                whole = across * along - both * both
-                push = (need * along - also * both) / whole
-                shear = (also * across - need * both) / whole
-            w.normal[k, end] = push
-            twist = first * push + two * shear
-        w.shear[k] = shear
-        pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
-    w.out[own] = fx + pull_x * light
-    w.out[own + 1] = fy + pull_y * light
-    w.out[own + 2] = twist * slow
-    if k == 1:
-        _carry_top(p, w, q, (fx, fy), (pull_x, pull_y), (x, y, aside))
+            along = light + ry * ry * slow
+            also = turn * turn * rx - fx
+            whole = across * along - both * both
+            push = (need * along - also * both) / whole
+            shear = (also * across - need * both) / whole
+        w.normal[0, end] = push
+        twist = ry * shear - rx * push
+    w.shear[0] = shear
+    w.out[0] = fx + shear * light
+    w.out[1] = fy + push * light
+    w.out[2] = twist * slow
+    return True
 
 
 @kernel
-def _carry_top(p, w, q, load, pull, at):
-    """Forces under a pedestal that stands, with what the statue pulls and pushes at a point."""
-    x, y, aside = at
-    moment = pull[1] * (x - q[0]) - pull[0] * (y - q[1]) + aside
+def _solve_upper(p, w, q, v, ah, av):
+    """Accelerations and forces where the pedestal stands and the statue does not: those of :func:`solve`."""
+    fx, fy = -ah, -(p.g + av)
+    light, slow = p.inverse[3], p.inverse[5]
+    w.normal[1, 0] = w.normal[1, 1] = w.shear[1] = 0.0
+    pull_x, pull_y, twist, moment = 0.0, 0.0, 0.0, 0.0
+    if w.closed[1, 0] == 1 and w.closed[1, 1] == 1:
+        # it slides flat: what accelerates it apart vanishes, and it does not turn
+        x, y, tx, ty, _, _, _ = end_of(p, w, q, 1, 0, w.kind[1, 0])
+        rx, ry = x - q[3], y - q[4]
+        first, two = -ty * ry - tx * rx, tx * ry - ty * rx
+        x1, y1, _, _, _, _, _ = end_of(p, w, q, 1, 1, w.kind[1, 1])
+        other = -ty * (y1 - q[4]) - tx * (x1 - q[3])
+        push = (ty * fx - tx * fy) / light
+        shear = -w.slides[1] * p.kinetic[1] * push
+        w.normal[1, 1] = (two * shear + first * push) / (first - other)
+        w.normal[1, 0] = push - w.normal[1, 1]
+        w.shear[1] = shear
+        pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
+        moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
+        moment += w.normal[1, 1] * (tx * (x1 - x) + ty * (y1 - y))
+    elif w.closed[1, 0] == 1 or w.closed[1, 1] == 1:
+        end = 0 if w.closed[1, 0] == 1 else 1
+        x, y, tx, ty, _, _, kind = end_of(p, w, q, 1, end, w.kind[1, end])
+        rx, ry = x - q[3], y - q[4]
+        # arms of normal (-ty, tx) and tangent (tx, ty)
+        first, two = -ty * ry - tx * rx, tx * ry - ty * rx
+        across = light + first * first * slow
+        both = first * two * slow
+        need = ty * fx - tx * fy - bias(q, v, 1, x, y, -ty, tx, kind)
+        if w.slides[1] != 0:
+            push = need / (across - w.slides[1] * p.kinetic[1] * both)
+            shear = -w.slides[1] * p.kinetic[1] * push
+        else:
+            along = light + two * two * slow
+            also = -tx * fx - ty * fy - bias(q, v, 1, x, y, tx, ty, kind)
+            whole = across * along - both * both
+            push = (need * along - also * both) / whole
+            shear = (also * across - need * both) / whole
+        w.normal[1, end] = push
+        w.shear[1] = shear
+        pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
+        twist = first * push + two * shear
+        moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
     left, _ = corner_of(p, w, q, 0, 0)
     right, y = corner_of(p, w, q, 0, 1)
     rx0, rx1, ry = left - q[0], right - q[0], y - q[1]
-    shear = pull[0] - p.mass[0] * load[0]
-    push = pull[1] - p.mass[0] * load[1]
+    shear = pull_x - p.mass[0] * fx
+    push = pull_y - p.mass[0] * fy
     w.normal[0, 1] = (shear * ry + moment - push * rx0) / (rx1 - rx0)
     w.normal[0, 0] = push - w.normal[0, 1]
     w.shear[0] = shear
     w.out[0] = w.out[1] = w.out[2] = 0.0
+    w.out[3] = fx + pull_x * light
+    w.out[4] = fy + pull_y * light
+    w.out[5] = twist * slow
+    return True
 
 
 @kernel
