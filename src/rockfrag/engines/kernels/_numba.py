@@ -6,7 +6,6 @@ Read by :mod:`rockfrag.engines.kernels.jit` alone, with versions of numba that i
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, ClassVar
-from unittest.mock import patch
 
 import llvmlite.binding as llvm
 from numba import _dynfunc  # type: ignore[attr-defined]
@@ -147,8 +146,11 @@ def _plain_types() -> Iterator[None]:
         plain = {name: unliteral(kind) for name, kind in named.items()}
         return find(kernel, context, tuple(map(unliteral, args)), plain)
 
-    with patch.object(Dispatcher, "get_call_type", get_call_type):
+    Dispatcher.get_call_type = get_call_type
+    try:
         yield
+    finally:
+        Dispatcher.get_call_type = find
 
 
 class _KernelCompiler(CompilerBase):
