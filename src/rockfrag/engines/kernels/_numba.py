@@ -140,17 +140,18 @@ def _plain_types() -> Iterator[None]:
 
     The compiler's lock is held meanwhile.
     """
-    find = Dispatcher.get_call_type
+    dispatcher: Any = Dispatcher
+    find = dispatcher.get_call_type
 
     def get_call_type(kernel: Any, context: Any, args: Any, named: Any) -> Any:
         plain = {name: unliteral(kind) for name, kind in named.items()}
         return find(kernel, context, tuple(map(unliteral, args)), plain)
 
-    Dispatcher.get_call_type = get_call_type
+    dispatcher.get_call_type = get_call_type
     try:
         yield
     finally:
-        Dispatcher.get_call_type = find
+        dispatcher.get_call_type = find
 
 
 class _KernelCompiler(CompilerBase):
