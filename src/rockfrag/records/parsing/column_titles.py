@@ -151,11 +151,9 @@ def _column(title: str, unit_below: str, first: bool) -> Column:
 
 def _quantity(words: str, unit: str, bare: str) -> str:
     """Return the quantity that the unit of a title names, else its words, else its direction."""
-    if _SPECTRA.search(bare.replace("_", " ")):
-        return "spectrum"
-    spaced = words.replace("_", " ")
     if not bare or _SPECTRA.search(bare.replace("_", " ")):
         return "spectrum" if bare else ""
+    spaced = words.replace("_", " ")
     other, directed = _OTHERS.search(spaced), _ORIENTATION.match(bare)
     found = (
         quantity_of(unit),
