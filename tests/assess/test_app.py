@@ -332,7 +332,8 @@ def test_the_command_writes_a_page(tmp_path, command):
 
 
 def test_what_the_page_cannot_say_is_refused(tmp_path, command, capsys):
-    for more in (["--friction", "0.5"], ["--pga", "0.4g"], ["--pgv", "20cm/s"]):
+    refused = (["--friction", "0.5"], ["--pga", "0.4g"], ["--pgv", "20cm/s"], ["--up", "y"])
+    for more in refused:
         assert main([*command, *more, "--output", str(tmp_path / "a.html")]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
     assert not Path(tmp_path / "a.html").exists()
