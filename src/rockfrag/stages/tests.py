@@ -14,7 +14,7 @@ from rockfrag.system import geometry
 from rockfrag.system.system import System, uplift_ratios
 from rockfrag.units import GRAVITY
 
-LIMITED = "step_protocol_shaker"  # Reading of the step protocol that stops at the shaker's limit
+LIMITED = "step_protocol_shaker"  # the step protocol that stops at the shaker's limit
 
 
 def run(job: Job[Study]) -> Results:
@@ -61,7 +61,7 @@ def limited_tests(
 ) -> pd.DataFrame:
     """Read the step protocol with limits of :func:`rockfrag.shaketable.shaker.shaker_table`.
 
-    Returns tests whose reading is ``LIMITED``; the remark of a test that the shaker ended says so.
+    Return tests of the definition ``LIMITED``; the remark of a test that the shaker ended says so.
     """
     from rockfrag.shaketable.definitions import DEFINITION, tests_from_swept
 

@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
@@ -16,12 +16,19 @@ PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
 CAMPAIGN_KEY = "campaign"  # key that only a study of a campaign has
 
 
+class PublicFile(NamedTuple):
+    """A file that anybody can fetch: address, SHA-256, and where it is kept."""
+
+    url: str
+    sha256: str
+    path: Path
+
+
 @dataclass(frozen=True)
 class CampaignStudy(Heading):
     """Everything that the configuration of a campaign says, checked."""
 
-    # Address, SHA-256 and place of public files that are fetched if they are not there
-    fetch: tuple[tuple[str, str, Path], ...]
+    fetch: tuple[PublicFile, ...]  # Public files that are fetched if they are not there
     # Table of tests, its columns, and a table of other programs' outcomes or None
     tests: Path
     columns: Mapping[str, str]
@@ -60,7 +67,7 @@ class CampaignStudy(Heading):
     def files(self) -> list[str]:
         """Files that must be there before anything runs; those to be fetched are not among them."""
         motions = Path(self.motions) if self.motions.endswith(".npz") else None
-        fetched = {None, *(path for *_, path in self.fetch)}
+        fetched = {None, *(public.path for public in self.fetch)}
         named = (self.tests, self.other_codes, self.mesh, motions)
         return [str(path) for path in named if path not in fetched]
 
@@ -69,10 +76,10 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
     """Make the study of a campaign from a checked configuration that was read from ``source``."""
     campaign, thing = content[CAMPAIGN_KEY], content["object"]
     fetch = tuple(
-        (wanted["url"], wanted["sha256"], _kept(source, i, wanted["file"]))
+        PublicFile(wanted["url"], wanted["sha256"], _kept(source, i, wanted["file"]))
         for i, wanted in enumerate(content.get("fetch", ()))
     )
-    fetched = {path for *_, path in fetch}
+    fetched = {public.path for public in fetch}
 
     def existing(key: str, name: str) -> Path:
         path = beside(source, name)
