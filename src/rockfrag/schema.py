@@ -175,7 +175,8 @@ def _broken_rule(error: ValidationError) -> str:
     schema: _Schema = error.schema if isinstance(error.schema, Mapping) else {}
     if "says" not in schema:
         return ""
-    missing = [name for name in schema.get("required", ()) if name not in error.instance]
+    instance: Any = error.instance
+    missing = [name for name in schema.get("required", ()) if name not in instance]
     named = {"key": _key(error), "name": _key(error).rpartition(".")[2]}
     return str(schema["says"]).format(missing=next(iter(missing), ""), **named)
 
