@@ -41,8 +41,8 @@ def read_schema(name: str) -> dict[str, Any]:
 def checked(content: object, name: str, where: str) -> dict[str, Any]:
     """Check the content of a YAML file against a schema, and return it with quantities in usual units.
 
-    In the schema the ``description`` of a key says in words what is expected, and a key with ``quantity`` may be
-    given in any unit of its dimension.
+    In the schema the ``description`` of a key says in words what is expected, a key with ``quantity`` may be
+    given in any unit of its dimension, and a rule between keys ``says`` what is wrong where it is broken.
     """
     schema = read_schema(name)
     with errors_of(where):
@@ -162,9 +162,23 @@ def _places(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _importance(error: ValidationError) -> tuple[int, list[str]]:
+    if _broken_rule(error):
+        # keys that are right by themselves; the first rule in the order of the schema
+        return 3, []
     # a misspelt key is also a missing one: name the misspelling, which is what the user typed
     rank = {"additionalProperties": 0, "required": 2}.get(str(error.validator), 1)
     return rank, [str(part) for part in error.absolute_path]
+
+
+def _broken_rule(error: ValidationError) -> str:
+    """Sentence on a rule between keys that is broken; empty where one value is wrong."""
+    schema: _Schema = error.schema if isinstance(error.schema, Mapping) else {}
+    if "says" not in schema:
+        return ""
+    instance: Any = error.instance
+    missing = [name for name in schema.get("required", ()) if name not in instance]
+    named = {"key": _key(error), "name": _key(error).rpartition(".")[2]}
+    return str(schema["says"]).format(missing=next(iter(missing), ""), **named)
 
 
 _WHOLES = ("type", "const", "enum", "registered")  # keywords on a value as a whole
@@ -172,7 +186,7 @@ _WHOLES = ("type", "const", "enum", "registered")  # keywords on a value as a wh
 
 def _deepest(error: ValidationError) -> ValidationError:
     """Of the alternatives of a oneOf, take the errors of the one whose type was meant."""
-    if error.validator not in ("oneOf", "anyOf") or not error.context:
+    if error.validator not in ("oneOf", "anyOf") or not error.context or _broken_rule(error):
         return error
     meant = [inner for inner in error.context if inner.validator not in _WHOLES]
     return _deepest(meant[0]) if meant else error
@@ -188,6 +202,8 @@ def _key(error: ValidationError, last: str | None = None) -> str:
 
 
 def _sentence(error: ValidationError) -> str:
+    if broken := _broken_rule(error):
+        return broken
     schema: _Schema = error.schema if isinstance(error.schema, Mapping) else {}
     instance: Any = error.instance
     if error.validator == "additionalProperties" and "properties" in schema:
