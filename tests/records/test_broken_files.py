@@ -40,8 +40,6 @@ def outcome(path, dt=None):
         message = str(error)
         assert path.name in message
         assert message.endswith(".")
-        assert "\n" not in message
-        assert len(message) <= 500
         return None
     for values in samples:
         assert np.isfinite(values).all()
