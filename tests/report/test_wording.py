@@ -3,7 +3,7 @@
 import ast
 import math
 import re
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import pandas as pd
@@ -11,9 +11,8 @@ import pytest
 
 from rockfrag.report.glossary import TERMS, terms_used
 from rockfrag.report.page import cell, render
-from rockfrag.report.part import Answer, Finding, Section, section_of
-from rockfrag.report.wording import (
-    Macros,
+from rockfrag.report.part import Answer, Finding, Says, Section
+from rockfrag.sentences import (
     agree,
     amplitude,
     counted,
@@ -198,10 +197,9 @@ def test_terms_are_found_as_words_of_their_own():
 
 
 def test_an_open_chapter_says_what_its_headline_rests_on():
-    opening = Macros("rockfrag.report", "opening.j2").opening
-    section = section_of(opening("Title", Finding("A", "b", "c")), "anchor", [])
-    assert section == Section("anchor", "Title", "A.", ["b", "c"], [])
-    assert section_of(opening("Title", Finding("A")), "anchor", []).paragraphs == []
+    section = partial(Says("rockfrag.report", "opening.j2").section, "opening", [], "Title")
+    assert section(Finding("A", "b", "c")) == Section("opening", "Title", "A.", ["b", "c"], [])
+    assert section(Finding("A")).paragraphs == []
 
 
 def test_best_measures_are_among_those_asked_for():

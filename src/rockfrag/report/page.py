@@ -17,7 +17,7 @@ from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.glossary import terms_used
 from rockfrag.report.part import Answer, FigureSpec, Section
-from rockfrag.report.wording import estimates, number, probability
+from rockfrag.sentences import estimates, number, probability
 
 TEMPLATES = Environment(
     loader=PackageLoader("rockfrag.report"),
@@ -72,7 +72,7 @@ def by_row(words: Callable[[Row], str]) -> Words:
 def estimated(
     name: str, title: str, decimals: int | None = None, limits: tuple[str, str] | None = None
 ) -> Column:
-    """Return a column of estimates with their limits, see :func:`rockfrag.report.wording.estimates`."""
+    """Return a column of estimates with their limits, see :func:`rockfrag.sentences.estimates`."""
     return Column(name, title, lambda table: estimates(table, name, decimals, limits))
 
 

@@ -19,7 +19,7 @@ from rockfrag.report.page import MOST_TABLE_ROWS, Picture, render
 from rockfrag.report.part import Answer, FigureSpec, Part, Section
 from rockfrag.report.part import Results as StudyResults
 from rockfrag.report.sections import PARTS
-from rockfrag.report.wording import counted
+from rockfrag.sentences import counted
 from rockfrag.stages.job import Job, Results, package_digest
 from rockfrag.study.study import Study
 

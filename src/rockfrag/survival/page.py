@@ -16,8 +16,7 @@ from rockfrag.files import file_name, write_table, write_text
 from rockfrag.report.page import Column, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import page_text
-from rockfrag.report.wording import number
-from rockfrag.sentences import sayer
+from rockfrag.sentences import Macros, number
 from rockfrag.survival.answer import LIMITS, RULED_OUT, Constrained
 from rockfrag.survival.reweight import DECISION_RATE
 
@@ -90,7 +89,7 @@ def json_of(found: Constrained) -> str:
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
-_say = sayer("rockfrag.survival", "page.j2", {"RULED_OUT": RULED_OUT, "LIMITS": LIMITS})
+_say = Macros("rockfrag.survival", "page.j2", RULED_OUT=RULED_OUT, LIMITS=LIMITS)
 
 
 def _sentences(found: Constrained) -> list[str]:
