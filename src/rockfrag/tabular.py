@@ -168,6 +168,40 @@ class Row:
         return value
 
 
+@dataclass(frozen=True)
+class TextTable:
+    """Cells of a CSV file, none of which are lines of separators alone, as spreadsheets leave."""
+
+    path: str
+    titles: list[str]  # empty where there is no header line
+    body: list[tuple[int, list[str]]]  # number and cells of each line below it
+
+    def rows(self, names: Sequence[str], faults: list[str] | None = None) -> list[Row]:
+        """Return the rows with their cells by the usual names of the columns.
+
+        A row with too few or too many cells adds a sentence to ``faults`` and is left out; without that list the
+        table is refused.
+        """
+        for name, title in zip(names, self.titles, strict=True):
+            if names.count(name) > 1:
+                raise InputError(f"{self.path}: column {title!r} is given twice.")
+        pairs = zip(names, self.titles, strict=True)
+        titles = {name: title for name, title in pairs if name != title}
+        rows = []
+        for line, cells in self.body:
+            if len(cells) == len(names):
+                rows.append(Row(self.path, line, dict(zip(names, cells, strict=True)), titles))
+                continue
+            fault = (
+                f"{self.path}, line {line}: expected {len(names)} cells as in the header, found "
+                f"{len(cells)}; a text that holds the separator needs double quotes."
+            )
+            if faults is None:
+                raise InputError(fault)
+            faults.append(fault)
+        return rows
+
+
 def read_rows(
     path: str | os.PathLike[str],
     required: Iterable[str],
@@ -184,39 +218,24 @@ def read_rows(
     or too many cells adds a sentence to ``faults`` and is left out; without that list the table is refused.
     """
     needed, known = list(required), [*required, *optional]
-    # lines of separators alone, as spreadsheets leave, are none
-    lines = [(line, cells) for line, cells in read_cells(path) if any(cells)]
-    if not lines or len(lines) <= least:
+    table = read_table(path)
+    if not table.titles or len(table.body) < least:
         raise InputError(
-            f"{path}: expected a header line and {least} rows or more, found {len(lines)} lines."
+            f"{path}: expected a header line and {least} rows or more, found "
+            f"{bool(table.titles) + len(table.body)} lines."
         )
-    (_, header), body = lines[0], lines[1:]
     usual = {other: name for name in quantities for other in other_names(name)}
-    names = [usual.get(title, title) for title in header]
+    names = [usual.get(title, title) for title in table.titles]
     check_names(str(path), names, known)
-    for name, title in zip(names, header, strict=True):
+    for name, title in zip(names, table.titles, strict=True):
         if name not in known:
             raise InputError(
                 f"{path}: column {title[:60]!r} is not known; expected {', '.join(known)}."
             )
-        if names.count(name) > 1:
-            raise InputError(f"{path}: column {title!r} is given twice.")
+    rows = table.rows(names, faults)
     for name in needed:
         if name not in names:
             raise InputError(f"{path}: column {name} is missing; expected {', '.join(needed)}.")
-    titles = {name: title for name, title in zip(names, header, strict=True) if name != title}
-    rows = []
-    for line, cells in body:
-        if len(cells) != len(header):
-            fault = (
-                f"{path}, line {line}: expected {len(header)} cells as in the header, found "
-                f"{len(cells)}; a text that holds the separator needs double quotes."
-            )
-            if faults is None:
-                raise InputError(fault)
-            faults.append(fault)
-            continue
-        rows.append(Row(str(path), line, dict(zip(names, cells, strict=True)), titles))
     return rows
 
 
@@ -229,30 +248,26 @@ def _with_point(cell: str) -> str:
     return f"{found[1]}.{found[2].strip()}" if found else cell.strip()
 
 
-def read_cells(path: str | os.PathLike[str]) -> list[tuple[int, list[str]]]:
-    """Cells of every line of a CSV file that is neither empty nor a comment, with the number of the line."""
-    return cells_of(read_text(path, MOST_BYTES), path)
-
-
-def cells_of(text: str, path: str | os.PathLike[str]) -> list[tuple[int, list[str]]]:
-    """Cells of every line of a text that is neither empty nor a comment, with the number of the line."""
+def read_table(path: str | os.PathLike[str], text: str | None = None) -> TextTable:
+    """Read the cells of a CSV file, or of its text; empty lines and comments are left out."""
+    content = read_text(path, MOST_BYTES) if text is None else text
     numbered = [
         (number, line)
-        for number, line in enumerate(text.splitlines(), start=1)
+        for number, line in enumerate(content.splitlines(), start=1)
         if line.strip() and not line.startswith("#")
     ]
-    if not numbered:
-        return []
-    delimiter = max(DELIMITERS, key=numbered[0][1].count)
+    delimiter = max(DELIMITERS, key=numbered[0][1].count) if numbered else ","
     # whoever separates cells by semicolons does so because numbers there have commas
     point = _with_point if delimiter == ";" else str.strip
     try:
-        return [
+        lines = [
             (number, [point(cell) for cell in next(csv.reader([line], delimiter=delimiter))])
             for number, line in numbered
         ]
     except csv.Error as error:
         raise InputError(f"{path}: is not a readable CSV file ({error}).") from error
+    (_, titles), *body = [(line, cells) for line, cells in lines if any(cells)] or [(0, [])]
+    return TextTable(str(path), titles, body)
 
 
 def join_rows(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":

@@ -12,7 +12,6 @@ from rockfrag.campaign.comparison import MeasuredTests
 from rockfrag.campaign.standing import sample_trials, simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.report.campaign_page import says
-from rockfrag.report.wording import one_line
 from rockfrag.rocking import overturns
 from rockfrag.stages import model_error
 from rockfrag.stages.campaign import campaign_with_motions, standing_object
@@ -236,7 +235,7 @@ def test_a_mesh_is_simulated_in_space_and_in_one_plane_side_by_side(tmp_path, la
 def test_space_is_called_better_or_worse_only_where_the_numbers_say_so(better, p, said):
     row = {"right": 0.9, "lower": 0.8, "upper": 0.95, "missed": 3.0, "false_alarms": 1.0, "p": p}
     row |= dict(zip(("better", "better_lower", "better_upper"), better, strict=True))
-    assert said in one_line(says.beside_plane(row, row))
+    assert said in says.line("beside_plane", row, row)
 
 
 @pytest.mark.slow

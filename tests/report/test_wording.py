@@ -3,17 +3,16 @@
 import ast
 import math
 import re
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
 from rockfrag.report.glossary import TERMS, terms_used
-from rockfrag.report.page import cell, render
-from rockfrag.report.part import Answer, Finding, Section, section_of
-from rockfrag.report.wording import (
-    Macros,
+from rockfrag.report.page import Page, cell
+from rockfrag.report.part import Answer, Finding, Says, Section
+from rockfrag.sentences import (
     agree,
     amplitude,
     counted,
@@ -168,7 +167,7 @@ def test_no_report_speaks_in_riddles(riddle):
 def page(said: str = "AvgSA predicts best.", **answer) -> str:
     given = {"asked": "How strong?", "sentences": [Finding("It holds", "So far", "P/NP 1.01")]}
     section = Section("a", "A", "Short.", [said])
-    return render(title="T", lead="lead", answer=Answer(**given | answer), sections=[section])
+    return Page("T", "lead", Answer(**given | answer), [section]).html()
 
 
 def test_numbers_wait_behind_a_click():
@@ -198,10 +197,9 @@ def test_terms_are_found_as_words_of_their_own():
 
 
 def test_an_open_chapter_says_what_its_headline_rests_on():
-    opening = Macros("rockfrag.report", "opening.j2").opening
-    section = section_of(opening("Title", Finding("A", "b", "c")), "anchor", [])
-    assert section == Section("anchor", "Title", "A.", ["b", "c"], [])
-    assert section_of(opening("Title", Finding("A")), "anchor", []).paragraphs == []
+    section = partial(Says("rockfrag.report", "opening.j2").section, "opening", [], "Title")
+    assert section(Finding("A", "b", "c")) == Section("opening", "Title", "A.", ["b", "c"], [])
+    assert section(Finding("A")).paragraphs == []
 
 
 def test_best_measures_are_among_those_asked_for():

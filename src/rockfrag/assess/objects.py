@@ -269,7 +269,6 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
     is_round = bool(settings.get("round", False))
     scan = None
     if "mesh" in settings:
-        settings = _facing_mesh(settings)
         scan, block, plane = _from_mesh(settings, folder, assumed)
     else:
         block, plane = _from_dimensions(settings, assumed, quality_flags)
@@ -305,62 +304,31 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         quality_flags=tuple(quality_flags),
         pad_friction=settings.get("pad_friction"),
     )
-    if objects.round and objects.pad_friction is not None:
-        raise InputError("key pad_friction: is not simulated under a round base; leave it out.")
     _check_restitution(objects)
     return objects
-
-
-def _facing_mesh(settings: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Say of a mesh how it faces the shaking by the direction of that in the mesh."""
-    if "facing_deg" not in settings:
-        return settings
-    if "direction_deg" in settings["mesh"]:
-        raise InputError(
-            "key facing_deg: mesh.direction_deg says so already; leave out one of them."
-        )
-    mesh = settings["mesh"] | {"direction_deg": -settings["facing_deg"] % 360.0}
-    return {key: value for key, value in settings.items() if key != "facing_deg"} | {"mesh": mesh}
 
 
 def _in_plan(settings: Mapping[str, Any]) -> tuple[float | None, float]:
     """Side of a rectangular base across the plane in which it rocks, and the direction of that plane [degrees]."""
     width, depth = settings.get("width_m"), settings.get("depth_m")
-    facing = float(settings.get("facing_deg", 0.0))
     if depth is None or settings.get("round"):
-        if "facing_deg" in settings:
-            raise InputError(
-                "key facing_deg: needs width and depth of a rectangular base, or a mesh; leave it out."
-            )
         return None, 0.0
     # the plane is across the narrower side
     across = depth < width
-    return max(width, depth), facing + 90.0 * across
+    return max(width, depth), float(settings.get("facing_deg", 0.0)) + 90.0 * across
 
 
 def _tolerances(settings: Mapping[str, Any], on_points: bool) -> Mapping[str, float]:
     given = settings.get("tolerances", {})
-    if "mass" in given and "pedestal" not in settings:
-        raise InputError(
-            "key tolerances.mass: has no effect on an object without a pedestal; leave it out."
-        )
-    if "restitution" in given and settings.get("round"):
-        raise InputError("key tolerances.restitution: a round base loses nothing; leave it out.")
-    if "contact" in given and "mesh" not in settings:
-        raise InputError("key tolerances.contact: is that of a scan; leave it out.")
     usual = TOLERANCES | ({"restitution": ON_POINTS["restitution"]} if on_points else {})
     return usual | {key: float(given[key]) for key in given if key in TOLERANCES}
 
 
 def _check_restitution(objects: Objects) -> None:
-    """Refuse a restitution that has no effect, or with which an impact would gain energy."""
+    """Refuse a restitution with which an impact would gain energy."""
     e = objects.restitution
     if e is None:
         return
-    if objects.round:
-        raise InputError(
-            "key restitution: a round base rolls on its rim and is taken to lose nothing; leave it out."
-        )
     shapes = objects.body.system().carried
     most = min(geometry.largest_restitution(shape, pivot) for shape in shapes for pivot in (1, -1))
     if e > most:
@@ -373,11 +341,6 @@ def _check_restitution(objects: Objects) -> None:
 def _from_dimensions(
     settings: Mapping[str, Any], assumed: list[Assumption], quality_flags: list[str]
 ) -> tuple[Block, str]:
-    missing = [name for name in ("width", "height") if f"{name}_m" not in settings]
-    if missing:
-        raise InputError(
-            f"key {missing[0]} is missing; give at least width and height, such as 35 cm and 1.2 m."
-        )
     width, height = float(settings["width_m"]), float(settings["height_m"])
     is_round = settings.get("round", False)
     if is_round and settings.get("depth_m", width) != width:
@@ -420,17 +383,13 @@ def _from_dimensions(
     return Block(width, height, mass, inertia, cg_height=cg_height, cg_offset=offset), plane
 
 
-_FROM_MESH = ("width_m", "height_m", "depth_m", "cg_height_m", "cg_offset_m", "inertia_kg_m2")
-
-
 def _from_mesh(
     settings: Mapping[str, Any], folder: Path, assumed: list[Assumption]
 ) -> tuple[Scan, Block, str]:
     """The planar block of a scanned statue, in the direction towards which it leans over at the least angle."""
     mesh = settings["mesh"]
-    needless = [key for key in _FROM_MESH if key in settings]
-    if needless:
-        raise InputError(f"key {needless[0]} follows from the mesh; leave it out.")
+    if "facing_deg" in settings:
+        mesh = mesh | {"direction_deg": -settings["facing_deg"] % 360.0}
     mass = settings.get("mass_kg")
     if mass is None:
         assumed.append(assume("solid", "mass", density=STONE))

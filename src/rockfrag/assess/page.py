@@ -27,10 +27,9 @@ from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.live.space import Standing, live_in_space
-from rockfrag.report.page import text_table
-from rockfrag.report.part import Answer, FigureSpec, Section, figure_of, finding_of, section_of
-from rockfrag.report.study_report import page_text
-from rockfrag.report.wording import PART, number, one_line, said, sentence
+from rockfrag.report.page import Page, text_table
+from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.sentences import PART, number, sentence
 
 MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
 
@@ -50,37 +49,28 @@ def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
 
 def page_of(found: Assessment) -> str:
     """Return the page as HTML, which loads nothing from outside."""
-    return page_text(
-        _answer(found),
-        [
-            _mitigations(found),
-            _arrangements(found),
-            _sure(found),
-            section_of(page_says.assumed(found), "assumed", []),
-            *([_rules(found)] if found.rules else []),
-            _levels(found),
-            _motions(found),
-            _glossary(found),
-        ],
-        title=headline(found),
-        lead=one_line(page_says.lead(found)),
-        provenance={
-            "Program": f"rockfrag {version('rockfrag')}",
-            "Motions": found.motions.words,
-            "Hazard": found.hazard.source if found.hazard else "none",
-        },
-        live=live_of(found),
-    )
+    sections = [
+        *(_mitigations(found), _arrangements(found), _sure(found)),
+        page_says.section("assumed", [], found),
+        *([_rules(found)] if found.rules else []),
+        *(_levels(found), _motions(found), _glossary(found)),
+    ]
+    provenance = {
+        "Program": f"rockfrag {version('rockfrag')}",
+        "Motions": found.motions.words,
+        "Hazard": found.hazard.source if found.hazard else "none",
+    }
+    lead, answer, live = page_says.line("lead", found), _answer(found), live_of(found)
+    return Page(headline(found), lead, answer, sections, provenance, live=live).html()
 
 
 def _answer(found: Assessment) -> Answer:
-    figure = page_says.fractions_figure(found)
     return Answer(
         asked="Does it topple, how probable is that, and what helps?",
-        sentences=[finding_of(line) for line in said(page_says.findings(found))],
-        figure=figure_of(figure, "fractions", lambda: fractions_figure(found)),
-        rests_on=said(page_says.rests_on(found)),
-        could_change=said(page_says.could_change(found)),
+        sentences=[Finding(*line.split(PART)) for line in page_says("findings", found)],
+        figure=page_says.figure("fractions", lambda: fractions_figure(found), found),
+        rests_on=page_says("rests_on", found),
+        could_change=page_says("could_change", found),
         questions=[
             ("What helps?", "mitigations"),
             ("How does it stand best?", "arrangements"),
@@ -104,7 +94,7 @@ def _mitigations(found: Assessment) -> Section:
         "Each change is simulated with the same motions and compared with the object as it stands.",
         ["With it"],
     )
-    return section_of(page_says.mitigations(found), "mitigations", [table])
+    return page_says.section("mitigations", [table], found)
 
 
 def _arrangements(found: Assessment) -> Section:
@@ -116,15 +106,14 @@ def _arrangements(found: Assessment) -> Section:
         "The same object under the same motions.",
         ["Estimate"],
     )
-    return section_of(page_says.arrangements(found), "arrangements", [table])
+    return page_says.section("arrangements", [table], found)
 
 
 def _sure(found: Assessment) -> Section:
     parts: list[Markup | FigureSpec] = [_sources(found), _effects(found)]
     if found.main.sources:
-        text = page_says.sources_figure()
-        parts.insert(0, figure_of(text, "sources", lambda: sources_figure(found)))
-    return section_of(page_says.sure(found), "sure", parts)
+        parts.insert(0, page_says.figure("sources", lambda: sources_figure(found)))
+    return page_says.section("sure", parts, found)
 
 
 def _sources(found: Assessment) -> Markup:
@@ -169,7 +158,7 @@ def _rules(found: Assessment) -> Section:
     }
     caption = "Rules held against every motion that topples the object."
     table = text_table({"Rule": [rule.rule for rule in rules], **numbers}, caption, list(numbers))
-    return section_of(page_says.rules(), "rules", [table])
+    return page_says.section("rules", [table])
 
 
 def _levels(found: Assessment) -> Section:
@@ -197,7 +186,7 @@ def _levels(found: Assessment) -> Section:
             for level in levels[shown]
         ]
     caption = "Motions that make it rock, and that topple it, by the level of shaking."
-    return section_of(page_says.levels(found), "levels", [text_table(table, caption, list(table))])
+    return page_says.section("levels", [text_table(table, caption, list(table))], found)
 
 
 def _years(period: float) -> str:
@@ -207,12 +196,12 @@ def _years(period: float) -> str:
 
 
 def _glossary(found: Assessment) -> Section:
-    pairs = [line.split(PART) for line in said(page_says.words_used(found))]
+    pairs = [line.split(PART) for line in page_says("words_used", found)]
     words, meanings = zip(*sorted(pairs, key=lambda pair: pair[0].lower()), strict=True)
     table = text_table(
         {"Word": words, "What it means here": meanings}, "Words and abbreviations of this page."
     )
-    return section_of(page_says.glossary(), "glossary", [table])
+    return page_says.section("glossary", [table])
 
 
 def _motions(found: Assessment) -> Section:
@@ -235,7 +224,7 @@ def _motions(found: Assessment) -> Section:
         "The motions that need the least shaking.",
         list(numbers),
     )
-    return section_of(page_says.motions(found), "motions", [table])
+    return page_says.section("motions", [table], found)
 
 
 LIVE = (0.0, 0.1, 0.25, 0.5, 0.75)

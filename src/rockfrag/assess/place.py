@@ -106,25 +106,13 @@ def make_place(settings: Mapping[str, Any], folder: Path) -> Place:
     """Make a place of checked keys of ``statue.yaml``; its floor must exist, and its building be elastic."""
     floor = settings.get("floor")
     if settings.get("records", {}).get("recorded_on") == "floor":
-        if "building" in settings:
-            raise InputError(
-                "key building: records of the floor itself need no building; leave it out."
-            )
-        _refuse_unused_tolerances(settings, "records of the floor itself need no building")
         label = "" if floor is None else str(floor)
         return Place(label=label, assumed=(assume("on_floor"),))
     if "building" in settings:
         return _given(settings, floor, folder)
     if floor is None:
-        _refuse_unused_tolerances(settings, "the object stands on the ground")
         return Place(assumed=(assume("on_ground"),))
     return _sketched(str(floor), {}, settings)
-
-
-def _refuse_unused_tolerances(settings: Mapping[str, Any], reason: str) -> None:
-    for key in TOLERANCES:
-        if key in settings.get("tolerances", {}):
-            raise InputError(f"key tolerances.{key}: {reason}; leave it out.")
 
 
 def _tolerances(settings: Mapping[str, Any], usual: Mapping[str, float]) -> dict[str, float]:

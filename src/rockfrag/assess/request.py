@@ -133,10 +133,6 @@ def _checked(settings: Mapping[str, Any], source: str) -> dict[str, Any]:
 
 
 def _level(settings: Mapping[str, Any]) -> Level | None:
-    if "pga" in settings and "sa" in settings:
-        raise InputError(
-            "key pga and key sa are both given; give one of them, and key pgv beside it where it is known."
-        )
     found = None
     for key in [key for key in ("pgv", "pga", "sa") if key in settings]:
         level = _level_of(key, settings[key])
@@ -169,10 +165,6 @@ def _return_period(settings: Mapping[str, Any]) -> float | None:
     if "return_period" not in settings:
         years = settings.get("return_period_years")
         return None if years is None else float(years)
-    if "return_period_years" in settings:
-        raise InputError(
-            "key return_period and key return_period_years are both given; leave one out."
-        )
     given = settings["return_period"]
     found = _PERIOD.fullmatch(str(given))
     years = float(found[1]) if found else math.nan
@@ -185,37 +177,19 @@ def _return_period(settings: Mapping[str, Any]) -> float | None:
 
 
 def _hazard(settings: Mapping[str, Any], folder: Path) -> tuple[HazardCurve, ...]:
-    files = settings.get("hazard", [])
     level, years = _level(settings), _return_period(settings)
-    if files and years is not None:
-        raise InputError(
-            "key hazard and key return_period are both given; a hazard curve says it all, leave the period out."
-        )
-    if years is not None:
-        if level is None:
-            raise InputError("key return_period: give the level it belongs to, such as pga 0.25 g.")
-        curves = [curve_of_one_level(level.measure, level.value, years)]
-        if math.isfinite(level.pgv):
-            curves.append(curve_of_one_level(PGV, level.pgv, years))
-        return tuple(curves)
-    if not files and "years" in settings:
-        raise InputError(
-            "key years: a probability in some years needs a hazard; give key hazard or key return_period too."
-        )
-    if "friction" in settings and level is None and not files:
-        raise InputError(
-            "key friction: sliding is simulated at a level of shaking; give one, such as pga 0.25 g."
-        )
-    return tuple(read_hazard([folder / file for file in files]))
+    if years is None:
+        return tuple(read_hazard([folder / file for file in settings.get("hazard", [])]))
+    if level is None:
+        raise InputError("key return_period: give the level it belongs to, such as pga 0.25 g.")
+    curves = [curve_of_one_level(level.measure, level.value, years)]
+    if math.isfinite(level.pgv):
+        curves.append(curve_of_one_level(PGV, level.pgv, years))
+    return tuple(curves)
 
 
 def _records(settings: Mapping[str, Any], folder: Path) -> Records:
     given = settings.get("records", {})
-    away = [key for key in ("magnitude", "distance_km") if key in settings]
-    if given and away:
-        raise InputError(
-            f"key {away[0]}: chooses among the default motions, and records of your own are given; leave one out."
-        )
     return Records(
         paths=tuple(folder / path for path in given.get("paths", [])),
         on_floor=given.get("recorded_on", "ground") == "floor",

@@ -10,7 +10,7 @@ from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.outcomes import LARGEST_FACTOR
 from rockfrag.assess.risk import LEVEL, SCALE_WORDS, Estimate, classes, step_of
 from rockfrag.assess.sources import MEASUREMENTS, SOURCES, is_wide, narrowed, parts_of
-from rockfrag.report.wording import Macros, one_line, said
+from rockfrag.report.part import Says
 
 NAMES: Mapping[str, str] = {name: source.words for name, source in SOURCES.items()}
 """Sources of uncertainty and assumptions as a reader may know them."""
@@ -129,7 +129,7 @@ def _largest_sources(found: Assessment) -> list[str]:
 
 def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
     """A change and what it does to the risk, or to the shaking that the object bears."""
-    return one_line(says.mitigation(found, mitigation))
+    return says.line("mitigation", found, mitigation)
 
 
 _WORDS: dict[str, Any] = {
@@ -152,26 +152,26 @@ _FUNCTIONS = (
 _WORDS |= {function.__name__: function for function in _FUNCTIONS}
 
 says, page_says, gallery_says = (
-    Macros("rockfrag.assess", f"{name}.j2", _WORDS) for name in ("words", "page", "gallery")
+    Says("rockfrag.assess", f"{name}.j2", **_WORDS) for name in ("words", "page", "gallery")
 )
 """The macros of the answer, of its page, and of a gallery."""
 
 
 def headline(found: Assessment) -> str:
     """Say in a few words whether the object rocks and topples; the heading of the page."""
-    return one_line(says.headline(found))
+    return says.line("headline", found)
 
 
 def assumptions(found: Assessment) -> list[str]:
     """Sentences of all that was assumed and of all that a reader must know."""
-    return said(says.assumptions(found))
+    return says("assumptions", found)
 
 
 def quality_flags(found: Assessment) -> list[str]:
     """Sentences of what looks wrong."""
-    return said(says.quality_flags(found))
+    return says("quality_flags", found)
 
 
 def five_lines(found: Assessment) -> list[str]:
     """Return the answer in five lines."""
-    return said(says.five_lines(found))
+    return says("five_lines", found)

@@ -42,8 +42,6 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
             f"storey_heights_m has {len(heights)} entries and masses_kg {len(masses)}; give one of "
             "each for every storey."
         )
-    if ("first_period_s" in settings) == ("storey_stiffnesses_N_m" in settings):
-        raise InputError("give either first_period_s or storey_stiffnesses_N_m, and not both.")
     for key, values, unit, (least, most) in (
         ("storey_heights_m", heights, "m", STOREY_HEIGHTS),
         ("masses_kg", masses, "kg", FLOOR_MASSES),
@@ -85,6 +83,4 @@ def _damping(settings: Mapping[str, Any]) -> model.Damping:
     if settings.get("kind", "modal") == "rayleigh":
         first, second = settings.get("modes", (1, 2))
         return model.RayleighDamping(ratio, (first, second))
-    if "modes" in settings:
-        raise InputError("key damping.modes: expected only with the kind rayleigh.")
     return model.ModalDamping(ratio)

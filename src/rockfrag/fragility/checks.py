@@ -22,7 +22,7 @@ from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fra
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Observations, cells
-from rockfrag.sentences import sayer
+from rockfrag.sentences import Macros
 from rockfrag.short_repr import short_repr
 
 BINS = 10  # bins of about equal numbers of tests in which observed and fitted numbers are compared
@@ -176,11 +176,8 @@ REJECTION = re.compile(r"The lognormal curve is rejected \(p = .*?\.(?= [A-Z]|$)
 
 FEWEST_MOTIONS = 10  # below so many motions every table and export says how few they are
 
-_say = sayer(
-    "rockfrag.fragility",
-    "checks.j2",
-    {"REJECTED": REJECTED, "TAILS": TAILS, "FEWEST_MOTIONS": FEWEST_MOTIONS},
-)
+_words = {"REJECTED": REJECTED, "TAILS": TAILS, "FEWEST_MOTIONS": FEWEST_MOTIONS}
+_say = Macros("rockfrag.fragility", "checks.j2", **_words)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.fragility.observations import Floats
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
-from rockfrag.sentences import sayer
+from rockfrag.sentences import Macros
 
 REJECTED = 0.05  # a curve is said not to describe its data below this p value [-]
 OF_THE_MODEL = MODEL_ERRORS[CUT]
@@ -30,11 +30,11 @@ def total_beta(beta: float, beta_statistical: float) -> float:
     return math.sqrt(beta**2 + known**2 + OF_THE_MODEL.blind**2)
 
 
-_say = sayer(
+_say = Macros(
     "rockfrag.fragility",
     "curve_facts.j2",
-    {"REJECTED": REJECTED, "OF_THE_MODEL": OF_THE_MODEL, "CUT": CUT, "total_beta": total_beta}
-    | {"INFINITE": math.inf, "NAN": math.nan},
+    **{"REJECTED": REJECTED, "OF_THE_MODEL": OF_THE_MODEL, "CUT": CUT, "total_beta": total_beta},
+    **{"INFINITE": math.inf, "NAN": math.nan},
 )
 
 NUMBERS = (

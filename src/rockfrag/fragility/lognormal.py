@@ -17,7 +17,7 @@ from statsmodels.tools.sm_exceptions import (
 from rockfrag.fragility.batch_glm import Link, fit_batch, log_terms, separated
 from rockfrag.fragility.observations import Floats, Observations, cells
 from rockfrag.keywords import named_keywords
-from rockfrag.sentences import sayer
+from rockfrag.sentences import Macros
 from rockfrag.short_repr import short_repr
 
 ROUNDING = 1e-9  # levels whose logarithms differ by less are the same
@@ -33,7 +33,7 @@ _NAN = float("nan")
 NO_COVARIANCE: Covariance = ((_NAN, _NAN), (_NAN, _NAN))
 NO_CURVE: Curve = (_NAN, _NAN, NO_COVARIANCE)
 
-SAY = sayer("rockfrag.fragility", "fits.j2", {})  # what a reader must know of a fit, in sentences
+SAY = Macros("rockfrag.fragility", "fits.j2")  # what a reader must know of a fit, in sentences
 
 
 @dataclass(frozen=True)

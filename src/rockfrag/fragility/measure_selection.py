@@ -17,7 +17,7 @@ from rockfrag.fragility.ida_curves import scale_power, with_measures
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Floats, Observations, numbers
-from rockfrag.sentences import sayer
+from rockfrag.sentences import Macros
 from rockfrag.short_repr import short_repr
 
 DIFFERENCE_P = 0.05  # two measures differ below this p value of their held-out scores
@@ -246,12 +246,13 @@ def _best_pair(
     return found
 
 
-_say = sayer(
+_say = Macros(
     "rockfrag.fragility",
     "measure_selection.j2",
-    {"DIFFERENCE_P": DIFFERENCE_P, "SUFFICIENT_P": SUFFICIENT_P}
-    | {"FEWEST_GROUPS_TO_CHOOSE": FEWEST_GROUPS_TO_CHOOSE}
-    | {"COLUMNS": {"mean_period_s": "mean period", "d5_95_s": "significant duration"}},
+    DIFFERENCE_P=DIFFERENCE_P,
+    SUFFICIENT_P=SUFFICIENT_P,
+    FEWEST_GROUPS_TO_CHOOSE=FEWEST_GROUPS_TO_CHOOSE,
+    COLUMNS={"mean_period_s": "mean period", "d5_95_s": "significant duration"},
 )
 
 

@@ -1,4 +1,4 @@
-"""Somebody's own table of tests as a text file, read in pieces so that its length does not matter.
+"""Somebody's own table of tests as a text file.
 
 Commas, semicolons and tabs, decimal commas, comments above the header (lines that start with ``#``), UTF-8,
 UTF-16 and Western European text are understood; what
@@ -8,8 +8,7 @@ is not is refused in one sentence that names file, row (the header is row 1) and
 import csv
 import os
 import warnings
-from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,6 @@ from rockfrag.fragility.observations import Floats, name_and_unit
 from rockfrag.tabular import table_encoding
 from rockfrag.units import DIMENSIONS, LARGEST_PEAK, convert
 
-ROWS = 100_000  # rows that are read at a time
 Measures = Mapping[str, Sequence[str | float]] | Sequence[str]
 """Columns with measures, or for each new column the columns and numbers whose product it is."""
 
@@ -112,17 +110,48 @@ overturn nothing taller than a centimetre."""
 def read_columns(path: str | os.PathLike[str], kinds: Mapping[str, str]) -> pd.DataFrame:
     """Read columns of a table of tests, each as what it is: label, number, positive or outcome (0 and 1)."""
     source = Path(path).name
-    parts, first = [], 2
-    with closing(_pieces(path, kinds)) as pieces:
-        for piece in pieces:
-            columns = {
-                name: _READERS[kind](piece, name, source, first) for name, kind in kinds.items()
-            }
-            parts.append(pd.DataFrame(columns))
-            first += len(piece)
-    if not any(map(len, parts)):
+    encoding, comments, separator, titles = _head(path)
+    for name in kinds:
+        if name not in titles:
+            raise InputError(
+                f"{source}: there is no column {name!r}; the file has {', '.join(titles)}."
+            )
+        if titles.count(name) > 1:
+            raise InputError(
+                f"{source}: the title {name!r} stands over {titles.count(name)} columns; rename the one "
+                "that is not meant."
+            )
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", pd.errors.ParserWarning)
+            cells = pd.read_csv(
+                path,
+                header=None,
+                names=range(len(titles)),
+                skiprows=comments + 1,
+                dtype=str,
+                index_col=False,
+                sep=separator,
+                encoding=encoding,
+                skipinitialspace=True,
+            )
+    except (pd.errors.ParserError, pd.errors.ParserWarning, UnicodeError) as error:
+        reason = str(error).splitlines()[0]
+        raise InputError(
+            f"{source}: not a readable CSV table ({reason}); if its numbers have decimal commas, separate "
+            "the columns by semicolons."
+        ) from error
+    if cells.empty:
         raise InputError(f"{source}: there is no row below the header; give at least one test.")
-    return pd.concat(parts, ignore_index=True)
+    found = {}
+    for name, kind in kinds.items():
+        column = cells[[titles.index(name)]].set_axis([name], axis=1)
+        if kind in ("number", "positive"):
+            column[name] = column[name].str.strip()
+            if separator != ",":
+                column[name] = column[name].str.replace(",", ".")
+        found[name] = _READERS[kind](column, name, source, 2)
+    return pd.DataFrame(found)
 
 
 def product_of(raw: pd.DataFrame, recipe: Sequence[str | float]) -> Floats:
@@ -181,55 +210,3 @@ def _head(path: str | os.PathLike[str]) -> tuple[str, int, str, list[str]]:
     if not any(titles):
         raise InputError(f"{source}: not a readable CSV table (it has no header); mend the file.")
     return encoding, comments, separator, titles
-
-
-def _pieces(
-    path: str | os.PathLike[str], kinds: Mapping[str, str]
-) -> Generator[pd.DataFrame, None, None]:
-    """Yield columns as text, piece by piece, numbers with points for decimal commas."""
-    source = Path(path).name
-    encoding, comments, separator, titles = _head(path)
-    numeric = [name for name, kind in kinds.items() if kind in ("number", "positive")]
-    needed = list(kinds)
-    places = []
-    for name in needed:
-        if name not in titles:
-            raise InputError(
-                f"{source}: there is no column {name!r}; the file has {', '.join(titles)}."
-            )
-        if titles.count(name) > 1:
-            raise InputError(
-                f"{source}: the title {name!r} stands over {titles.count(name)} columns; rename the one "
-                "that is not meant."
-            )
-        places.append(titles.index(name))
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", pd.errors.ParserWarning)
-            reader = pd.read_csv(
-                path,
-                header=None,
-                names=range(len(titles)),
-                skiprows=comments + 1,
-                dtype=str,
-                index_col=False,
-                sep=separator,
-                encoding=encoding,
-                skipinitialspace=True,
-                chunksize=ROWS,
-            )
-            with reader:
-                for piece in reader:
-                    part = piece[places].set_axis(needed, axis=1)
-                    part[numeric] = part[numeric].apply(lambda values: values.str.strip())
-                    if separator != ",":
-                        part[numeric] = part[numeric].replace(",", ".", regex=True)
-                    yield part
-    except pd.errors.EmptyDataError:
-        return
-    except (pd.errors.ParserError, pd.errors.ParserWarning, UnicodeError) as error:
-        reason = str(error).splitlines()[0]
-        raise InputError(
-            f"{source}: not a readable CSV table ({reason}); if its numbers have decimal commas, separate "
-            "the columns by semicolons."
-        ) from error

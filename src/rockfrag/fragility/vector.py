@@ -18,7 +18,7 @@ from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.held_out import outcome_scores
 from rockfrag.fragility.intervals import FEWEST_GROUPS, all_but_one, jackknife_error, student
 from rockfrag.fragility.observations import Floats
-from rockfrag.sentences import sayer
+from rockfrag.sentences import Macros
 
 MOST_FOR_THE_PLANE = 20_000
 """Tests up to which separation is found exactly; a linear programme of more takes too long."""
@@ -29,7 +29,7 @@ INTERACTION_LEVEL = 0.05
 LARGEST_COEFFICIENT = 60.0
 """A replicate with a larger coefficient is separated; it is fitted with the penalised likelihood."""
 
-_say = sayer("rockfrag.fragility", "vector.j2", {"FEWEST_GROUPS": FEWEST_GROUPS})
+_say = Macros("rockfrag.fragility", "vector.j2", FEWEST_GROUPS=FEWEST_GROUPS)
 
 
 @dataclass(frozen=True)

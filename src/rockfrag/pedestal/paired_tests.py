@@ -16,15 +16,12 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.keywords import check_names
-from rockfrag.sentences import sayer
+from rockfrag.sentences import Macros
 from rockfrag.short_repr import short_repr
 
 MOST_NAMED = 100  # pairs and tests that notes call by their names; of more the number
-SAY = sayer(
-    "rockfrag.pedestal",
-    "words.j2",
-    {"MOST_NAMED": MOST_NAMED, "exp": math.exp, "expm1": math.expm1},
-)
+_words = {"MOST_NAMED": MOST_NAMED, "exp": math.exp, "expm1": math.expm1}
+SAY = Macros("rockfrag.pedestal", "words.j2", **_words)
 """What the pairs can say and what not, in notes."""
 
 KEY = ["object", "earthquake", "floor", "motion"]

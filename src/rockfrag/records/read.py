@@ -1,6 +1,7 @@
 """Any record as a :class:`Motion` in m/s²: unit, channel and zero level settled, not guessed."""
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -193,7 +194,7 @@ def motion_of(
         **({"member": channel.member} if channel.member else {}),
         **({"left_out": [name for name, _ in record.left_out]} if record.left_out else {}),
     }
-    steps: list[dict[str, Any]] = [read, *channel.details.get("steps", ())]
+    steps: list[Mapping[str, Any]] = [read, *channel.steps]
     mean = float(acceleration.mean())
     # the sensor's zero, or the weight of its mass, which is not motion
     if mean and (channel.raw or abs(abs(mean) - GRAVITY) < _GRAVITY_FRACTION * GRAVITY):
@@ -251,7 +252,7 @@ def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
         "format": record.format,
         "unit": unit,
     }
-    return {**{k: v for k, v in channel.details.items() if k != "steps"}, **facts}
+    return {**channel.details, **facts}
 
 
 def _settled_unit(

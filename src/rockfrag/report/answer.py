@@ -1,6 +1,7 @@
 """What stands first on the page of any study: the question, what was found, what to do, and what it rests on."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -10,8 +11,8 @@ from matplotlib.lines import Line2D
 from rockfrag.figure_style import BLACK, COLUMN_WIDTH, one_panel, plain_log
 from rockfrag.report import findings
 from rockfrag.report.figures import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
-from rockfrag.report.part import Answer, FigureSpec, Finding, Results, figure_of
-from rockfrag.report.wording import Macros, said, sentence, shortened
+from rockfrag.report.part import Answer, FigureSpec, Finding, Results, Says
+from rockfrag.sentences import sentence, shortened
 
 FEW = 10
 """Intervals over fewer earthquakes than this rest on little."""
@@ -20,13 +21,13 @@ MOST_NAMED = 4
 """So many objects are named in the question."""
 
 
-says = Macros("rockfrag.report", "answer.j2", {"FEW": FEW, "FRICTION": findings.FRICTION})
+says = Says("rockfrag.report", "answer.j2", FEW=FEW, FRICTION=findings.FRICTION)
 
 
 def study_answer(results: Results) -> Answer:
     """Return what stands first on the page of a study, made of its tables alone."""
     return Answer(
-        asked=said(says.asked(results.objects, results.study, MOST_NAMED))[0],
+        asked=says("asked", results.objects, results.study, MOST_NAMED)[0],
         sentences=sentences(results),
         figure=_figure(results),
         advice=advice(results),
@@ -78,7 +79,7 @@ def advice(results: Results) -> list[str]:
         # within what three digits tell
         weakest = list(curves.loc[theta < 1.005 * theta.min(), "configuration"])
     may_slide = not results.study.slides and _needs_friction(results)
-    return said(says.advice(weakest, may_slide, _earthquakes(results)))
+    return says("advice", weakest, may_slide, _earthquakes(results))
 
 
 def _headline_curves(results: Results) -> pd.DataFrame:
@@ -102,8 +103,8 @@ def _figure(results: Results) -> FigureSpec:
     # amplitudes are peaks of acceleration; a median in another measure has no place beside them
     curves = curves[curves["unit"] == "g"]
     names = [configuration.name for configuration in results.study.configurations]
-    text = says.answer_figure(sentences(results)[0], results.level if len(curves) else "")
-    return figure_of(text, "answer", lambda: strength_figure(results.tests, curves, names))
+    draw, level = partial(strength_figure, results.tests, curves, names), results.level
+    return says.figure("answer", draw, sentences(results)[0], level if len(curves) else "")
 
 
 MOST_ROWS = 24
@@ -157,7 +158,7 @@ def _median(figure: Figure, curve: pd.DataFrame, y: float) -> None:
 
 def rests_on(results: Results) -> list[str]:
     """What the numbers rest on: model, motions, building, steps."""
-    return said(says.rests_on(results.study, _earthquakes(results)))
+    return says("rests_on", results.study, _earthquakes(results))
 
 
 def could_change(results: Results) -> list[str]:
@@ -174,10 +175,10 @@ def could_change(results: Results) -> list[str]:
     fallen = results.table("resurrections").dropna(subset=["first_upper"])
     rejected = curves.loc[curves["p_fit"] < 0.05, "configuration"]
     words = [
-        *said(says.sliding(study.slides, friction, needed)),
-        *said(says.flight(int((ratios < LIGHT).sum()), ratios.size)),
-        *said(says.few(_earthquakes(results))),
-        *said(says.resurrections(int((fallen["resurrections"] > 0).sum()), len(fallen))),
-        *said(says.shape(rejected.nunique(), curves["configuration"].nunique())),
+        *says("sliding", study.slides, friction, needed),
+        *says("flight", int((ratios < LIGHT).sum()), ratios.size),
+        *says("few", _earthquakes(results)),
+        *says("resurrections", int((fallen["resurrections"] > 0).sum()), len(fallen)),
+        *says("shape", rejected.nunique(), curves["configuration"].nunique()),
     ]
     return [sentence(word) for word in words]

@@ -25,27 +25,10 @@ from rockfrag.report.page import (
     table_html,
     text_table,
 )
-from rockfrag.report.part import (
-    Answer,
-    FigureSpec,
-    Finding,
-    Section,
-    figure_of,
-    finding_of,
-    section_of,
-)
+from rockfrag.report.part import Answer, FigureSpec, Finding, Says, Section
 from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import (
-    Macros,
-    estimate,
-    estimates,
-    label,
-    number,
-    one_line,
-    probability,
-    said,
-)
+from rockfrag.sentences import estimate, estimates, label, number, probability
 from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
@@ -63,7 +46,7 @@ def run(job: Job[CampaignStudy]) -> Results:
     sections += [both] if both else []
     sections += [part(study, tables) for part in (_tests, _object, _conditioning)]
     tests = tables["tests"]
-    lead, about = one_line(says.lead(tests, motion)), {"Tests": study.tests.name}
+    lead, about = says.line("lead", tests, motion), {"Tests": study.tests.name}
     answer = _answer(found, tests, motion, sections)
     write_page(job, answer, sections, about, lead=lead, basis="measured")
     yield from ()
@@ -87,11 +70,11 @@ def _p(value: float) -> str:
     return text if text.startswith("<") else f"= {text}"
 
 
-says = Macros(
+says = Says(
     "rockfrag.report",
     "campaign_page.j2",
-    {"better": _better, "estimate": estimate, "p": _p, "percent": _percent}
-    | {"FEWEST_VOTERS": FEWEST_VOTERS, "LEVEL": LEVEL},
+    **{"better": _better, "estimate": estimate, "p": _p, "percent": _percent},
+    **{"FEWEST_VOTERS": FEWEST_VOTERS, "LEVEL": LEVEL},
 )
 
 
@@ -116,9 +99,9 @@ def _answer(
         asked="How often does the simulation predict what happened on the shaking table?",
         sentences=found[:3],
         figure=next((spec for spec in specs if spec.name == "tests"), specs[0]),
-        rests_on=said(says.rests_on(tests, motion)),
+        rests_on=says("rests_on", tests, motion),
         could_change=[
-            *said(says.near_critical(near, len(tests))),
+            *says("near_critical", near, len(tests)),
             *(finding.headline + "." for finding in found[3:]),
         ],
     )
@@ -126,15 +109,15 @@ def _answer(
 
 def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
     ours, *others = tables["agreement"].to_dict("records")
-    found = [finding_of(says.predicted(ours))]
+    found = [says.finding("predicted", ours)]
     # whether three dimensions predict better than one plane
-    found += [finding_of(says.beside_plane(ours, row)) for row in others if row["who"] == IN_PLANE]
+    found += [says.finding("beside_plane", ours, row) for row in others if row["who"] == IN_PLANE]
     found += _against_rivals(others) + _fragility_found(tables["fragility"])
     tests = tables["tests"]
     near, wrong = tests["near_critical"], ~tests["right"]
     if wrong.any():
         counts = (int((wrong & near).sum()), int(wrong.sum()), int(near.sum()), len(tests))
-        found.append(finding_of(says.wrong(*counts)))
+        found.append(says.finding("wrong", *counts))
     return found
 
 
@@ -144,7 +127,7 @@ def _against_rivals(others: Sequence[Row]) -> list[Finding]:
     if not rivals:
         return []
     best = max(rivals, key=lambda row: float(row["right"]))
-    return [finding_of(says.beside_rivals(best, _who(best["who"]), len(rivals)))]
+    return [says.finding("beside_rivals", best, _who(best["who"]), len(rivals))]
 
 
 def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
@@ -155,7 +138,7 @@ def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
     # simulated over measured median and dispersion, with limits
     texts = zip(*(estimates(rows, f"{key}_ratio", 2) for key in ("theta", "beta")), strict=True)
     found = dict(zip(rows["who"], texts, strict=True))
-    return [finding_of(says.fragility(name_and_unit(measure)[0], found[OURS], found[VOTES]))]
+    return [says.finding("fragility_found", name_and_unit(measure)[0], found[OURS], found[VOTES])]
 
 
 def _ordering(fragility: pd.DataFrame) -> str:
@@ -192,14 +175,13 @@ def _agreement(tables: dict[str, pd.DataFrame], found: Finding, level: str) -> S
     agreement, rocking = tables["agreement"], tables["rocking"]
     named = agreement.assign(who=[_who(name) for name in agreement["who"]])
     best = max(named.to_dict("records"), key=lambda row: float(row["right"]))
-    text = says.agreement_figure(best, best["who"], level)
     parts: list[Markup | FigureSpec] = [
-        figure_of(text, "agreement", lambda: agreement_figure(named)),
+        says.figure("agreement", lambda: agreement_figure(named), best, best["who"], level),
         table_html(named, _AGREEMENT, "Outcomes predicted, and the difference on the same tests."),
         # empty where the laboratory noted nothing of it
         table_html(rocking, _ROCKING, "Whether the object rocked at all, simulated and noted."),
     ]
-    return section_of(says.agreement(found), "agreement", parts)
+    return says.section("agreement", parts, found)
 
 
 _OUTCOMES = {
@@ -228,9 +210,9 @@ def _fragility(tables: dict[str, pd.DataFrame], level: str) -> Section:
     found = _fragility_found(fragility)
     own = fragility[fragility["measure"] == measure]
     draw = partial(beside_figure, tests, own, measure, f"{name} [{unit}]")
-    figure = figure_of(says.beside_figure(found, name), "fragility_beside", draw)
+    figure = says.figure("fragility_beside", draw, found, name)
     table = table_html(shown, _FRAGILITY, "Curves of measured and of simulated outcomes.")
-    return section_of(says.curves(found, level), "fragility", [figure, table])
+    return says.section("fragility", [figure, table], found, level)
 
 
 def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
@@ -265,12 +247,12 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     if len(names) == 2:
         x, y = names
         draw = partial(tests_figure, tests, x, y, (labels[x], labels[y]))
-        parts.append(figure_of(says.tests_figure(tests), "tests", draw))
+        parts.append(says.figure("tests", draw, tests))
     parts += [
         table_html(shown, columns, "Tests by thirds of two measures."),
         table_html(wrong, wrong_columns, "Tests predicted wrong."),
     ]
-    return section_of(says.tests(tests), "tests", parts)
+    return says.section("tests", parts, tests)
 
 
 _PROPERTIES = {
@@ -302,9 +284,8 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     names = [name for name in _PROPERTIES if name in trials]
     parts: list[Markup | FigureSpec] = []
     if not footprint.empty:
-        text = says.footprint_figure(100 * (likely["left_m"] + likely["right_m"]))
         draw = partial(footprint_figure, footprint, trials)
-        parts.append(figure_of(text, "footprint", draw))
+        parts.append(says.figure("footprint", draw, 100 * (likely["left_m"] + likely["right_m"])))
     texts = {
         "Property": [_PROPERTIES[name] for name in names],
         "Range tried": [_range(trials[name]) for name in names],
@@ -322,8 +303,7 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
         for name, edge in preferred_edges(trials, likely.index, study.unknowns).items()
     ]
     blocks = len(study.object.get("pedestal", ()))
-    text = says.how_it_stood(blocks, len(likely), len(trials), edges)
-    return section_of(text, "object", parts)
+    return says.section("object", parts, blocks, len(likely), len(trials), edges)
 
 
 def _range(values: pd.Series) -> str:
@@ -334,7 +314,7 @@ def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Sect
     steps = [" ".join(str(value) for value in step.values()) for step in study.conditioning]
     caption = "Outcomes predicted right, by conditioning."
     table = table_html(tables["conditioning"], _CONDITIONING, caption)
-    return section_of(says.conditioning(steps), "conditioning", [table])
+    return says.section("conditioning", [table], steps)
 
 
 _GREY = "#999999"

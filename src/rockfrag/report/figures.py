@@ -19,7 +19,7 @@ from matplotlib.path import Path
 from rockfrag import figure_style as style
 from rockfrag.arrays import Floats
 from rockfrag.report.findings import WITH_PEDESTAL, Sides
-from rockfrag.report.wording import shortened
+from rockfrag.sentences import shortened
 
 GREY = "#777777"
 BAND = "#e9e9e9"

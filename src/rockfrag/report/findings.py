@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from rockfrag import sentences as wording
 from rockfrag.fragility.curve_facts import Compared, compared_curves
-from rockfrag.report import wording
-from rockfrag.report.part import Finding, finding_of
+from rockfrag.report.part import Finding, Says
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.study.study import Study
 
@@ -82,7 +82,7 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     # what differs in no digit that is shown is named together
     low, high = (list(rows.loc[printed == end, "configuration"]) for end in ends)
     about = (low, high, *ends, list(named), level, found.rejected, found.nonparametric)
-    return finding_of(says.strength(rows["im"].iloc[0], rows["unit"].iloc[0], *about))
+    return says.finding("strength", rows["im"].iloc[0], rows["unit"].iloc[0], *about)
 
 
 def headline_curves(curves: pd.DataFrame) -> Compared:
@@ -105,7 +105,7 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
     low, high = (end(counts, key=counts.__getitem__) for end in (min, max))
     motions, fallen = recorded["configuration"].value_counts().max(), sum(counts.values())
     near = recorded["fraction_near"].between(0, 1, inclusive="neither").sum()
-    return finding_of(says.recorded(counts, low, high, motions, fallen, len(recorded), near))
+    return says.finding("recorded", counts, low, high, motions, fallen, len(recorded), near)
 
 
 def amplitudes_found(tests: pd.DataFrame) -> Finding:
@@ -116,7 +116,7 @@ def amplitudes_found(tests: pd.DataFrame) -> Finding:
     on_pedestal = tests[(tests["pedestal"] == "P") & (tests["overturned_body"] != "")]
     fell = on_pedestal["overturned_body"]
     below = int((~fell.isin(["statue"]) & (fell != on_pedestal["object"])).sum())
-    return finding_of(says.amplitudes(tests, known, first, never, below, len(on_pedestal)))
+    return says.finding("amplitudes", tests, known, first, never, below, len(on_pedestal))
 
 
 def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> list[Finding]:
@@ -135,14 +135,14 @@ def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> l
         most = max(most, int(own["motions"].max()))
     if not parts:
         return []
-    return [finding_of(says.slenderness(all(falling), most, parts))]
+    return [says.finding("slenderness", all(falling), most, parts)]
 
 
 def mean_sentence(means: pd.DataFrame) -> str:
     """Say over which motions means are taken, and which had to be left out."""
     rows = means[means["by"] == "configuration"]
     most, of = int(rows["motions"].max()), int(rows["of"].max())
-    return wording.one_line(says.means(most, of))
+    return says.line("means", most, of)
 
 
 def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Finding:
@@ -152,7 +152,7 @@ def resurrections_found(resurrections: pd.DataFrame, tests: pd.DataFrame) -> Fin
     both = wide.reindex(columns=["first_overturning", "always_overturning"]).dropna().astype(float)
     factor = np.exp(np.log(both["always_overturning"] / both["first_overturning"]).mean())
     survived = int((fallen["resurrections"] > 0).sum())
-    return finding_of(says.resurrections(len(fallen), survived, float(factor), len(both)))
+    return says.finding("resurrections", len(fallen), survived, float(factor), len(both))
 
 
 def ratio_text(row: Mapping[Any, Any]) -> str:
@@ -160,17 +160,15 @@ def ratio_text(row: Mapping[Any, Any]) -> str:
     return wording.estimate(row["ratio"], row["lower"], row["upper"], _RATIO_DECIMALS)
 
 
-says = wording.Macros(
+says = Says(
     "rockfrag.report",
     "findings.j2",
-    {
-        "FRICTION": FRICTION,
-        "MOST_CONFIGURATIONS": 6,  # so many are named with their numbers in a sentence
-        "RATIO_DECIMALS": _RATIO_DECIMALS,
-        "analyses": lambda n, total: wording.of_all(n, total, "analysis", "analyses"),
-        "has_interval": wording.has_interval,
-        "ratio_text": ratio_text,
-    },
+    FRICTION=FRICTION,
+    MOST_CONFIGURATIONS=6,  # so many are named with their numbers in a sentence
+    RATIO_DECIMALS=_RATIO_DECIMALS,
+    analyses=lambda n, total: wording.of_all(n, total, "analysis", "analyses"),
+    has_interval=wording.has_interval,
+    ratio_text=ratio_text,
 )
 
 
@@ -193,11 +191,11 @@ def pedestal_effect(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> list
     whole = effects[effects["scope"] == "whole"]
     here = whole[whole["definition"] == DEFINITION]
     if here.empty:
-        return [finding_of(says.no_effect(about))]
+        return [says.finding("no_effect", about)]
     row = here.to_dict("records")[0]
     others = whole[whole["definition"] != DEFINITION].to_dict("records")
     floors = effects[(effects["scope"] == "floor") & (effects["definition"] == DEFINITION)]
-    return [finding_of(says.effect(row, about, others)), *_by_floor(floors, about)]
+    return [says.finding("effect", row, about, others), *_by_floor(floors, about)]
 
 
 def _by_floor(rows: pd.DataFrame, about: Sides) -> list[Finding]:
@@ -207,7 +205,7 @@ def _by_floor(rows: pd.DataFrame, about: Sides) -> list[Finding]:
     known = np.array([wording.has_interval(low, high, _RATIO_DECIMALS) for low, high in limits])
     clear = known & ((rows["lower"] > 1) | (rows["upper"] < 1))
     each = rows.to_dict("records")
-    return [finding_of(says.floors(each, known.any(), int(clear.sum()), about))]
+    return [says.finding("floors", each, known.any(), int(clear.sum()), about)]
 
 
 def model_allowed(validity: pd.DataFrame) -> Finding:
@@ -216,7 +214,7 @@ def model_allowed(validity: pd.DataFrame) -> Finding:
     beyond = len(validity) - sum(map(len, demands.values()))
     lifted = int((validity["least_normal_force_n"] <= 0).sum())
     headline = friction_sentence(validity)
-    return finding_of(says.model(headline, demands, beyond, lifted, len(validity)))
+    return says.finding("model", headline, demands, beyond, lifted, len(validity))
 
 
 def _demands(validity: pd.DataFrame) -> dict[str, pd.Series]:
@@ -231,11 +229,11 @@ def friction_sentence(validity: pd.DataFrame) -> str:
     """Say how many tests need more friction than dry stone has, with and without a pedestal; no full stop."""
     parts = _demands(validity).items()
     beyond = [(int((~(part <= FRICTION)).sum()), len(part), where) for where, part in parts]
-    return wording.one_line(says.friction(beyond))
+    return says.line("friction", beyond)
 
 
 def sliding_found(sliding: pd.DataFrame) -> Finding:
     """Say in how many analyses bodies slid and flew, how far, and how many outcomes that changed."""
     counts = sliding[["cases", "slid", "flew", "saved", "felled"]].sum()
     where = sliding.iloc[int(sliding["largest_slip_m"].argmax())]
-    return finding_of(says.sliding(*counts, 100 * where["largest_slip_m"], where["configuration"]))
+    return says.finding("sliding", *counts, 100 * where["largest_slip_m"], where["configuration"])

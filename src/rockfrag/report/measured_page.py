@@ -19,15 +19,7 @@ from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
 from rockfrag.report.figures import GREY
 from rockfrag.report.page import Column, estimated, p_values, table_html
-from rockfrag.report.part import (
-    Answer,
-    FigureSpec,
-    Finding,
-    Section,
-    figure_of,
-    finding_of,
-    section_of,
-)
+from rockfrag.report.part import Answer, FigureSpec, Finding, Says, Section
 from rockfrag.report.sections.curves import (
     axis_label,
     draw_fractions,
@@ -35,11 +27,11 @@ from rockfrag.report.sections.curves import (
     two_measures_section,
 )
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import Macros, estimates, one_line, said
+from rockfrag.sentences import estimates
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.measured_table import MeasuredTable
 
-says = Macros("rockfrag.report", "measured_page.j2")
+says = Says("rockfrag.report", "measured_page.j2")
 
 
 def run(job: Job[MeasuredTable]) -> Results:
@@ -76,7 +68,7 @@ def run(job: Job[MeasuredTable]) -> Results:
         sections.append(both)
     digest = found.table["record_set_sha256"].iloc[0]
     values = f"{study.table.name}, SHA-256 of the values used {digest}"
-    lead = one_line(says.lead(found.tests))
+    lead = says.line("lead", found.tests)
     write_page(job, answer, sections, {"Table": values}, lead=lead, basis="measured")
     job.log.info("%s", found.choice.words)
 
@@ -92,33 +84,32 @@ def _figures(found: UserFragility) -> tuple[FigureSpec, FigureSpec]:
         calibration = partial(calibration_figure, found.goodness)
     best = found.choice.words
     return (
-        figure_of(says.measures_figure(best), "measures", over),
-        figure_of(says.calibration_figure(best), "calibration", calibration),
+        says.figure("measures", over, best),
+        says.figure("calibration", calibration, best),
     )
 
 
 def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) -> Answer:
     """What stands first: which measure, how strong it must be, and whether the curve fits."""
     name = found.choice.name
-    sentences = [finding_of(says.choice(found.choice))]
+    sentences = [says.finding("choice", found.choice)]
     best = found.table[found.table["theta"].notna()]
     best = best[best["im"] == name] if name in set(best["im"]) else best
     if len(best):
         (theta,), (beta,) = (estimates(best.head(1), key) for key in ("theta", "beta"))
-        median = says.median(best.iloc[0], theta, beta, _level(study))
-        sentences.append(finding_of(median))
+        sentences.append(says.finding("median", best.iloc[0], theta, beta, _level(study)))
     doubtful = [
         found.fits[measure].fit.im
         for measure, goodness in found.goodness.items()
         if goodness.p_value < 0.05
     ]
     if found.goodness:
-        sentences.append(finding_of(says.shape(doubtful, len(found.goodness))))
+        sentences.append(says.finding("shape", doubtful, len(found.goodness)))
     return Answer(
         asked="How strong must shaking be to overturn the tested object, and which measure predicts it best?",
         sentences=sentences,
         figure=measures,
-        rests_on=said(says.rests_on(found.tests)),
+        rests_on=says("rests_on", found.tests),
         could_change=list(dict.fromkeys(note for note in found.table["warnings"] if note)),
     )
 
@@ -156,7 +147,7 @@ def _choice(choice: pd.DataFrame, best: Finding) -> Section:
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
     columns = [*_CHOICE, *(p_values(name, f"p, {name.removeprefix('p_')}") for name in given)]
     table = table_html(choice, columns, "Measures compared on the same tests, best first.")
-    return section_of(says.measures(best), "measure", [table])
+    return says.section("measure", [table], best)
 
 
 def _curves(
@@ -169,7 +160,7 @@ def _curves(
         table_html(goodness, _FITS, "Goodness of fit."),
         calibration,
     ]
-    return section_of(says.curves(len(goodness), level, notes), "fragility", parts)
+    return says.section("fragility", parts, len(goodness), level, notes)
 
 
 def measures_figure(

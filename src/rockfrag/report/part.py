@@ -17,13 +17,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
-from rockfrag.report.wording import PART, Macros, one_line, said
+from rockfrag.sentences import Macros
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.shaketable.swept import read_swept
 from rockfrag.study.study import Study
-
-says = Macros("rockfrag.report.sections", "sections.j2")
-"""What the parts of a report say, a macro of ``sections.j2`` by their anchors, and names with ``_figure``."""
 
 MOST_MOTIONS = 50
 """Motions of which a report shows every outcome; of a larger study it shows the first."""
@@ -37,12 +34,6 @@ class FigureSpec:
     alt: str  # What it shows, for readers who do not see it
     caption: str  # What stands below it
     draw: Callable[[], Figure]  # Draws it
-
-
-def figure_of(text: str, name: str, draw: Callable[[], Figure]) -> FigureSpec:
-    """A figure of which a macro says what it shows, and what stands below it."""
-    alt, caption = _parted(text)
-    return FigureSpec(name, alt, caption, draw)
 
 
 @dataclass(frozen=True)
@@ -62,15 +53,6 @@ class Finding:
     def said(self) -> str:
         """All of it in a row."""
         return f"{self.shown} {self.numbers}".strip()
-
-
-def finding_of(text: str) -> Finding:
-    """What a macro says, parted into headline, text and numbers."""
-    return Finding(*_parted(text))
-
-
-def _parted(text: str) -> list[str]:
-    return [one_line(words) for words in text.split(PART)]
 
 
 @dataclass(frozen=True)
@@ -100,10 +82,30 @@ class Section:
     parts: Sequence[Markup | FigureSpec] = ()  # Its figures, and the tables behind them
 
 
-def section_of(text: str, anchor: str, parts: Sequence[Markup | FigureSpec]) -> Section:
-    """A chapter of which a macro says title, message and paragraphs, of these each in a line."""
-    title, message, paragraphs = text.split(PART)
-    return Section(anchor, one_line(title), one_line(message), said(paragraphs), parts)
+class Says(Macros):
+    """What the parts of a page say: macros that part what they say by ``{{ part }}``."""
+
+    def finding(self, macro: str, *about: Any) -> Finding:
+        """A finding of which a macro says headline, text and numbers."""
+        return Finding(*map(" ".join, self.parts(macro, *about)))
+
+    def figure(
+        self, name: str, draw: Callable[[], Figure], *about: Any, of: str = ""
+    ) -> FigureSpec:
+        """A figure of which ``<name>_figure``, or that ``of`` others, says what it shows and its caption."""
+        alt, caption = map(" ".join, self.parts(f"{of or name}_figure", *about))
+        return FigureSpec(name, alt, caption, draw)
+
+    def section(
+        self, anchor: str, parts: Sequence[Markup | FigureSpec], *about: Any, of: str = ""
+    ) -> Section:
+        """A chapter of which the macro of its anchor, or another, says title, message and paragraphs."""
+        title, message, paragraphs = self.parts(of or anchor.replace("-", "_"), *about)
+        return Section(anchor, " ".join(title), " ".join(message), paragraphs, parts)
+
+
+says = Says("rockfrag.report.sections", "sections.j2")
+"""What the parts of a report say."""
 
 
 class Results:

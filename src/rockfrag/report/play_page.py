@@ -11,9 +11,8 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import AMPLITUDES_G, live_kernel, space
-from rockfrag.report.page import render
-from rockfrag.report.part import Answer, Finding, finding_of
-from rockfrag.report.wording import Macros, one_line
+from rockfrag.report.page import Page
+from rockfrag.report.part import Answer, Finding, Says
 from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import in_page
 from rockfrag.system.blocks import SystemLike, as_system
@@ -25,7 +24,7 @@ MOST_SAMPLES = 20_000
 """Times of a record for which the page stays below 400 kB, and below 700 kB with two components."""
 
 
-says = Macros("rockfrag.report", "play_page.j2")
+says = Says("rockfrag.report", "play_page.j2")
 
 
 def write_play_page(
@@ -48,14 +47,14 @@ def write_play_page(
     # at every amplitude, and last as recorded
     found = overturns([system], [motion], scales=np.append(amplitudes * GRAVITY / peak, 1.0))
     *fell, recorded = found.overturned.ravel().tolist()
-    page = render(
+    page = Page(
         title=f"{name} under {motion.name}",
-        lead=one_line(says.lead(samples, motion.dt, peak / GRAVITY)),
+        lead=says.line("lead", samples, motion.dt, peak / GRAVITY),
         answer=Answer(
             asked="How strong must this motion be to overturn it?",
             sentences=[
                 _strength(amplitudes.tolist(), fell),
-                finding_of(says.recorded(recorded, int(found.impacts.flat[-1]))),
+                says.finding("recorded", recorded, int(found.impacts.flat[-1])),
             ],
             rests_on=rests_on,
         ),
@@ -66,7 +65,7 @@ def write_play_page(
         },
         live=live,
     )
-    write_text(page, path)
+    write_text(page.html(), path)
 
 
 def _samples(motion: Motion | GroundMotion) -> int:
@@ -108,4 +107,4 @@ def _strength(amplitudes: Sequence[float], fell: Sequence[bool]) -> Finding:
     apart = amplitudes[1] / amplitudes[0] - 1
     first = fell.index(True) if any(fell) else None
     later = 0 if first is None else len(fell) - first - sum(fell[first:])
-    return finding_of(says.strength(amplitudes, apart, first, later))
+    return says.finding("strength", amplitudes, apart, first, later)

@@ -11,35 +11,34 @@ from rockfrag import figure_style as style
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Column, estimated, table_html
-from rockfrag.report.part import Answer, Finding, Section, figure_of, finding_of
+from rockfrag.report.part import Answer, Finding, Says, Section
 from rockfrag.report.study_report import write_page
-from rockfrag.report.wording import Macros, one_line, said
 from rockfrag.rocking.space_medians import LOSS, NO_LOSS, PLANAR, body_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.space import SpaceStudy
 
-says = Macros("rockfrag.report", "space_page.j2")
+says = Says("rockfrag.report", "space_page.j2")
 
 
 def run(job: Job[SpaceStudy]) -> Results:
     """Draw the figures of a study of bodies in space and write its page, ``report.html``."""
     study, medians, fractions = job.study, job.table("medians"), job.table("fractions")
-    ratios = figure_of(says.ratios_figure(), "ratios", lambda: ratios_figure(medians))
-    levels = figure_of(says.fractions_figure(), "fractions", lambda: fractions_figure(fractions))
+    ratios = says.figure("ratios", lambda: ratios_figure(medians))
+    levels = says.figure("fractions", lambda: fractions_figure(fractions))
     findings = [_finding(base, medians) for base in study.bases]
     answer = Answer(
         asked="At which shaking does a body topple under both components, beside planar rocking under one?",
         sentences=findings[:3],
         figure=ratios,
-        rests_on=said(says.rests_on()),
-        could_change=said(says.could_change(medians["flip_rate"].max())),
+        rests_on=says("rests_on"),
+        could_change=says("could_change", medians["flip_rate"].max()),
     )
     sections = [
         Section("medians", "Medians", f"{findings[0].headline}.", [], [_table(medians), ratios]),
         Section("fractions", "Fractions by level", "What the medians come from.", [], [levels]),
     ]
     live = _live(study, job.motions("motions/ground"))
-    write_page(job, answer, sections, {}, lead=one_line(says.lead(study)), live=live)
+    write_page(job, answer, sections, {}, lead=says.line("lead", study), live=live)
     yield from ()
 
 
@@ -60,7 +59,7 @@ def _finding(base: str, medians: pd.DataFrame) -> Finding:
     """What the second component does to one base, as the range of its rows."""
     rows = medians[(medians["base"] == base) & (medians["planar_impacts"] == LOSS)]
     spans = {name: f"{rows[name].min():.2f} to {rows[name].max():.2f}" for name in PLANAR}
-    return finding_of(says.finding(base, spans))
+    return says.finding("finding", base, spans)
 
 
 def _table(medians: pd.DataFrame) -> Markup:

@@ -26,7 +26,7 @@ import os
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.tabular import Row, read_cells, read_rows
+from rockfrag.tabular import Row, read_rows, read_table
 from rockfrag.units import GRAVITY
 
 COLUMNS = (
@@ -70,8 +70,7 @@ def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:
     -------
     Table of tests, as this module describes it, in the order of the file.
     """
-    lines = read_cells(path)
-    header = set(lines[0][1]) if lines else set()
+    header = set(read_table(path).titles)
     units = [unit for unit in _IN_G if {f"lower_{unit}", f"upper_{unit}"} & header]
     if len(units) != 1:
         raise InputError(

@@ -1,7 +1,7 @@
 """A study of a campaign on a shake table: every test simulated with its own motion, and compared."""
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -90,8 +90,12 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
             )
         return path
 
-    for fault in _faults(campaign, thing, content["unknowns"]):
-        raise InputError(f"{source}: key {fault}")
+    for key, (low, high) in content["unknowns"].items():
+        above = ", above 0" if key == "contact_tolerance_mm" else ""
+        if low > high or (above and low <= 0):
+            raise InputError(
+                f"{source}: key unknowns.{key}: expected the lowest value first{above}, found [{low}, {high}]."
+            )
     conditioning = checked_steps(source, "conditioning", content.get("conditioning", ()))
     varied = {
         name: checked_steps(source, f"varied_conditioning.{name}", steps)
@@ -139,79 +143,3 @@ def _kept(source: Path, number: int, name: str) -> Path:
             f"{source}: key fetch[{number}].file: {path} is outside of this folder; name a file in it."
         )
     return path
-
-
-_BY_HAND = ("left_m", "right_m", "cg_height_m", "height_m", "mass_kg", "inertia_kg_m2")
-_OF_A_MESH = ("direction_deg", "contact_tolerance_mm")
-
-
-def _faults(
-    campaign: Mapping[str, Any], thing: Mapping[str, Any], unknowns: Mapping[str, Any]
-) -> Iterator[str]:
-    """Yield what is wrong in a configuration, each from its key on."""
-    pulses = isinstance(campaign["motions"], Mapping)
-    yield from _faults_of_object(thing, unknowns)
-    yield from _faults_of_columns(campaign["columns"], pulses)
-    for key, (low, high) in unknowns.items():
-        above = ", above 0" if key == "contact_tolerance_mm" else ""
-        if low > high or (above and low <= 0):
-            yield f"unknowns.{key}: expected the lowest value first{above}, found [{low}, {high}]."
-    if pulses:
-        yield from _faults_of_pulses(campaign)
-
-
-def _faults_of_object(thing: Mapping[str, Any], unknowns: Mapping[str, Any]) -> Iterator[str]:
-    slides, bounces, piled = "friction" in unknowns, "restitution" in unknowns, "pedestal" in thing
-    in_space = slides and "mesh" in thing
-    if not (in_space or (slides != bounces and slides == piled)):
-        yield (
-            "unknowns: expected the range of restitution, of a planar body, that of friction, of a "
-            "mesh in space or an object on a pedestal, or both, of a mesh in space beside the planar body."
-        )
-    if "mesh" in thing:
-        for key in (*_BY_HAND, "pedestal"):
-            if key in thing and key != "mass_kg":
-                yield f"object: {key} is of an object by hand; leave it out beside a mesh."
-        if ("mass_kg" in thing) == ("density_kg_m3" in thing):
-            yield "object: give either mass_kg or density_kg_m3."
-        for key in _OF_A_MESH:
-            if key not in unknowns:
-                yield f"unknowns: {key} is needed for a mesh; give its range."
-        return
-    for key in _BY_HAND:
-        if key not in thing:
-            yield f"object: {key} is missing; without a mesh all of {', '.join(_BY_HAND)} are needed."
-    for key in _OF_A_MESH:
-        if key in unknowns:
-            yield f"unknowns: {key} has a meaning for a mesh only; leave it out."
-
-
-def _faults_of_pulses(campaign: Mapping[str, Any]) -> Iterator[str]:
-    """A commanded pulse follows from PGA and PGV/PGA of its test."""
-    for name in PULSE_MEASURES:
-        if name not in campaign.get("measures", {}):
-            yield (
-                f"campaign.measures: {name} is missing; a pulse follows from {' and '.join(PULSE_MEASURES)} "
-                "of each test."
-            )
-    for key in ("unit", "dt_s", "channel", "without_motion"):
-        if key in campaign:
-            yield (
-                f"campaign.{key}: is of measured motions, and the motions here are pulses; leave it out."
-            )
-
-
-def _faults_of_columns(columns: Mapping[str, str], pulses: bool) -> Iterator[str]:
-    if not pulses and "motion" not in columns:
-        yield (
-            "campaign.columns.motion is missing; expected the column with the key or file name of the "
-            "table's motion."
-        )
-    brackets = ("lower_g" in columns, "upper_g" in columns)
-    if any(brackets) and not all(brackets):
-        yield "campaign.columns: lower_g and upper_g belong together; give both."
-    if ("overturned" in columns) == all(brackets):
-        yield (
-            "campaign.columns: give either overturned, an outcome per test, or lower_g and upper_g, between "
-            "which the object overturned."
-        )

@@ -8,7 +8,7 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.study.heading import Heading, beside, heading_of
-from rockfrag.tabular import read_cells
+from rockfrag.tabular import read_table
 
 TABLE_KEY = "table"  # key that only a study of a measured table has
 
@@ -59,8 +59,7 @@ def measured_table_from(content: Mapping[str, Any], source: Path) -> MeasuredTab
 
 def _check_columns(source: Path, table: Path, content: Mapping[str, Any]) -> None:
     """Refuse columns that the table does not have."""
-    lines = read_cells(table)
-    header = lines[0][1] if lines else []
+    header = read_table(table).titles
     columns = content["columns"]
     wanted = [
         *((f"columns.{key}", columns.get(key)) for key in ("overturned", "motion", "earthquake")),

@@ -52,10 +52,6 @@ class SpaceStudy(Heading):
 def space_study_from(content: Mapping[str, Any], source: Path) -> SpaceStudy:
     """Make a study of bodies in space from a checked configuration that was read from ``source``."""
     space = content[SPACE_KEY]
-    if ("every" in space) == ("catalogue" in space):
-        raise InputError(
-            f"{source}: key space: give either every, for records of FEMA P-695, or catalogue, for your own."
-        )
     catalogue_file = None
     if "catalogue" in space:
         catalogue_file = existing_file(source, "space.catalogue", space["catalogue"])

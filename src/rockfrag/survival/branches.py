@@ -14,17 +14,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rockfrag.assess.hazard.curve import HazardCurve, make_curve
-from rockfrag.assess.hazard.reading import (
-    LARGEST_FILE,
-    annual_rates,
-    level_column,
-    measure_of,
-    read_openquake,
-)
+from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.hazard.reading import LARGEST_FILE, read_levels, read_openquake
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.tabular import Row, read_cells, read_rows, read_text
+from rockfrag.tabular import Row, read_table, read_text
 
 MOST_BRANCHES = 10_000  # Branches of one site
 
@@ -108,32 +102,19 @@ def _add(curve: HazardCurve, branch: Branch, name: str, path: str | os.PathLike[
 
 def _table(path: str | os.PathLike[str]) -> dict[str, tuple[float, HazardCurve]]:
     """Weight and curve of every branch of one table."""
-    lines = read_cells(path)
-    header = [title.strip().lower() for title in lines[0][1]] if lines else []
-    levels = [title for title in header if level_column(title)]
-    rates = [title for title in header if title not in (*levels, "branch", "weight")]
-    if len(levels) != 1 or len(rates) != 1 or not {"branch", "weight"} <= set(header):
-        raise InputError(
-            f"{path}: expected the columns branch, weight, one of levels such as pga_g and one of annual_rate, "
-            f"return_period_years or such as poe_50_years; found {', '.join(header)[:120] or 'nothing'}."
-        )
-    measure, factor = measure_of(levels[0], str(path))
+    every, curve = read_levels(path, labels=("branch", "weight"))
     rows: dict[str, list[Row]] = {}
-    for row in read_rows(path, header, least=2):
+    for row in every:
         rows.setdefault(row.text("branch"), []).append(row)
     found = {}
     for name, mine in rows.items():
-        weight, points = mine[0].number("weight"), []
+        weight = mine[0].number("weight")
         for row in mine:
             if row.number("weight") != weight:
                 raise row.error(
                     "weight", f"branch {name} has the weight {weight:g} in an earlier row"
                 )
-            points.append((row.positive(levels[0]) * factor, row.number(rates[0])))
-        x, y = zip(*sorted(points), strict=True)
-        where = f"{path}, branch {name[:60]}"
-        curve = make_curve(measure, x, annual_rates(rates[0], list(y), where), where)
-        found[name] = (weight, curve)
+        found[name] = (weight, curve(mine, f"{path}, branch {name[:60]}"))
     return found
 
 
@@ -153,24 +134,22 @@ def _of_openquake(
 
 def _realizations(path: str | os.PathLike[str]) -> dict[int, Branch]:
     """Branches without curves, by the number of the realization."""
-    lines = read_cells(path)
-    header = lines[0][1] if lines else []
-    places = {title: i for i, title in enumerate(header)}
-    if not {"rlz_id", "weight"} <= set(places):
+    table = read_table(path)
+    if not {"rlz_id", "weight"} <= set(table.titles):
         raise InputError(
             f"{path}: expected OpenQuake's realizations with the columns rlz_id, branch_path and weight; found "
-            f"{', '.join(header)[:120] or 'nothing'}."
+            f"{', '.join(table.titles)[:120] or 'nothing'}."
         )
     found: dict[int, Branch] = {}
-    for line, cells in lines[1:]:
+    for row in table.rows(table.titles):
         try:
-            number, weight = int(cells[places["rlz_id"]]), float(cells[places["weight"]])
-            path_of = cells[places["branch_path"]] if "branch_path" in places else ""
-        except (ValueError, IndexError):
-            raise InputError(f"{path}, line {line}: expected a number and a weight.") from None
+            number = int(row.cells["rlz_id"])
+        except ValueError:
+            raise row.error("rlz_id", "expected a whole number") from None
         if number in found:
             raise InputError(f"{path}: realization {number} is given twice.")
-        found[number] = Branch(f"rlz-{number:03d} {path_of}".strip(), weight)
+        name = f"rlz-{number:03d} {row.cells.get('branch_path', '')}".strip()
+        found[number] = Branch(name, row.number("weight"))
     return found
 
 

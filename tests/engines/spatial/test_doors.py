@@ -15,8 +15,8 @@ from rockfrag.engines.spatial.outcome import run_case
 from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import AMPLITUDES_G
-from rockfrag.report.wording import number
 from rockfrag.rocking.parquet import stream_overturns
+from rockfrag.sentences import number
 from rockfrag.system import Block, Contact, System, as_system
 from rockfrag.system.system import box, cylinder
 from rockfrag.units import GRAVITY

@@ -13,7 +13,7 @@ from typing import Any
 from rockfrag.assess.hazard.curve import HazardCurve, make_curve, rates_of, read_measure
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.tabular import cells_of, read_text
+from rockfrag.tabular import Row, read_table, read_text
 from rockfrag.units import GRAVITY
 
 LARGEST_FILE = 50_000_000  # Bytes of a hazard file; that of one site has some thousand
@@ -57,7 +57,7 @@ def _reader(text: str) -> Callable[[str, str], Sequence[Found]]:
         return _read_usgs
     if "poe-" in text[:20_000] and start.startswith(("#", '"#', "lon", "custom_site_id")):
         return lambda text, path: [read_openquake(text, path)]
-    return lambda text, path: [(_read_table(text, path), "")]
+    return _read_levels
 
 
 def _statistic(kind: str, where: str) -> str:
@@ -253,34 +253,38 @@ _UNITS = {
 _LEVEL = re.compile(r"(pga|pgv|sa_(\d+(?:_\d+)?)s)_(g|cm_s|m_s|m_s2|cm_s2)")
 
 
-def _read_table(text: str, path: str) -> HazardCurve:
-    """Read the curve of a table of levels and rates, as people write it by hand.
+def _read_levels(text: str, path: str) -> list[Found]:
+    rows, curve = read_levels(path, text)
+    return [(curve(rows, path), "")]
 
-    Two columns: levels, as ``pga_g``, ``pgv_cm_s`` or ``sa_0_3s_g``, and how often they are exceeded:
-    ``annual_rate``, ``return_period_years`` or such as ``poe_50_years``.
+
+def read_levels(
+    path: str | os.PathLike[str], text: str | None = None, labels: Sequence[str] = ()
+) -> tuple[list[Row], Callable[[Sequence[Row], str], HazardCurve]]:
+    """Read a table of levels and rates, as people write it by hand.
+
+    Beside the columns ``labels`` it has levels, as ``pga_g``, ``pgv_cm_s`` or ``sa_0_3s_g``, and how often they
+    are exceeded: ``annual_rate``, ``return_period_years`` or such as ``poe_50_years``. Returns the rows, and what
+    makes the curve of some of them, whose messages say where it stands.
     """
-    lines = cells_of(text, path)
-    if len(lines) < 3:
-        raise InputError(f"{path}: expected a header and two rows or more, with {_EXPECTED}.")
-    (_, header), body = lines[0], lines[1:]
-    titles = [_plain(title) for title in header]
-    places = [i for i, title in enumerate(titles) if level_column(title)]
-    others = [i for i, title in enumerate(titles) if i not in places]
-    if len(places) != 1 or len(others) != 1:
-        raise InputError(f"{path}: expected {_EXPECTED}; found {', '.join(titles)[:120]}.")
-    rows = []
-    for line, cells in body:
-        if len(cells) != 2:
-            raise InputError(f"{path}, line {line}: expected 2 cells, found {len(cells)}.")
-        try:
-            rows.append((float(cells[places[0]]), float(cells[others[0]])))
-        except ValueError as error:
-            raise InputError(f"{path}, line {line}: {error}.") from None
-    measure, factor = measure_of(titles[places[0]], path)
-    rows.sort()
-    levels = [level * factor for level, _ in rows]
-    rates = annual_rates(titles[others[0]], [value for _, value in rows], path)
-    return make_curve(measure, levels, rates, path)
+    table = read_table(path, text)
+    titles = [_plain(title) for title in table.titles]
+    levels = [title for title in titles if _LEVEL.fullmatch(title)]
+    others = [title for title in titles if title not in (*levels, *labels)]
+    if len(levels) != 1 or len(others) != 1 or not set(labels) <= set(titles):
+        raise InputError(
+            f"{path}: expected {', '.join([*labels, _EXPECTED])}; its header has "
+            f"{', '.join(titles)[:120] or 'nothing'}."
+        )
+    (level,), (often,) = levels, others
+    measure, factor = _measure_of(level, str(path))
+
+    def curve(rows: Sequence[Row], where: str) -> HazardCurve:
+        points = sorted((row.number(level) * factor, row.number(often)) for row in rows)
+        rates = _annual_rates(often, [value for _, value in points], where)
+        return make_curve(measure, [level for level, _ in points], rates, where)
+
+    return table.rows(titles), curve
 
 
 def _plain(title: str) -> str:
@@ -289,12 +293,7 @@ def _plain(title: str) -> str:
     return "return_period_years" if _RETURN_PERIOD.fullmatch(words) else words
 
 
-def level_column(title: str) -> bool:
-    """Tell whether a title is of levels of a measure, such as ``pga_g``."""
-    return _LEVEL.fullmatch(title) is not None
-
-
-def measure_of(title: str, path: str) -> tuple[IntensityMeasure, float]:
+def _measure_of(title: str, path: str) -> tuple[IntensityMeasure, float]:
     """Return measure and factor to its unit of a title such as ``pga_cm_s2``."""
     found = _LEVEL.fullmatch(title)
     assert found is not None
@@ -305,12 +304,12 @@ def measure_of(title: str, path: str) -> tuple[IntensityMeasure, float]:
     return read_measure(f"SA({period.replace('_', '.')})" if period else name, path), units[unit]
 
 
-def annual_rates(title: str, values: list[float], path: str) -> list[float]:
+def _annual_rates(title: str, values: list[float], path: str) -> list[float]:
     """Annual rates of a column whose title says how often levels are exceeded [1/year]."""
     if title == "annual_rate":
         return values
     if title == "return_period_years":
-        if min(values) <= 0:
+        if min(values, default=1) <= 0:
             raise InputError(f"{path}: a return period must be above 0 years.")
         return [1 / value for value in values]
     poe = _POE.fullmatch(title)

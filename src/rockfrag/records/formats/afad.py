@@ -9,13 +9,15 @@ import re
 
 from rockfrag.records.formats.esm import time_of
 from rockfrag.records.parsing import format as form
-from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
 _FIRST = re.compile(r"^\s*STRONG\s+GROUND\s+MOTION\s+RECORDS?\s+OF\s+TURK", re.I)
 _TITLES = re.compile(r"^\s*(?:[NSEWUD]\s*-?\s*[NSEWUD]\b\s*){1,3}$")
 _UNIT = r"\bPGA\b[^()]*\(([^()]+)\)"
-_DISTANT = re.compile(r"(?P<north>-?\d+\.\d+)\s*N\s*-?\s*(?P<east>-?\d+\.\d+)\s*E", re.I)
+_PLACE = {
+    "latitude": r"(-?\d+\.\d+)\s*N\s*-?\s*-?\d+\.\d+\s*E",
+    "longitude": r"-?\d+\.\d+\s*N\s*-?\s*(-?\d+\.\d+)\s*E",
+}
 _MAX_HEADER = 40
 
 
@@ -31,26 +33,20 @@ def _parse(text: TextFile) -> list[form.Channel]:
     values = text.counted(titles + 1, None, count * len(components))
     table = values[: values.size // len(components) * len(components)].reshape(-1, len(components))
     time = facts["record time"]
+    known = {
+        "unit": form.stated(_UNIT, header),
+        "network": "TK",
+        "station": facts["station id"],
+        "station_name": facts["place"],
+        "earthquake": facts["earthquake date"],
+        "magnitude": facts["earthquake magnitude"],
+        "instrument": facts["recorder type"],
+        **form.facts_in([facts["station coordinates"]], _PLACE),
+    }
     # only times in GMT are known to be UTC
-    known = re.search(r"\((?:GMT|UTC)\)", time, re.I)
-    place = _DISTANT.search(facts["station coordinates"])
-    shared = form.Channel(
-        npts=count,
-        dt=dt,
-        samples=table.copy,
-        unit=canonical_unit(form.stated(_UNIT, header)),
-        start_time=time_of(time.split("(")[0].strip()) if known else None,
-        network="TK",
-        station=facts["station id"],
-        details={
-            "station_name": facts["place"],
-            "earthquake": facts["earthquake date"],
-            "magnitude": form.leading_number(facts["earthquake magnitude"]),
-            "latitude": float(place["north"]) if place else None,
-            "longitude": float(place["east"]) if place else None,
-            "instrument": facts["recorder type"],
-        },
-    )
+    in_utc = re.search(r"\((?:GMT|UTC)\)", time, re.I)
+    start = time_of(time.split("(")[0].strip()) if in_utc else None
+    shared = form.Channel(count, dt, table.copy, start_time=start).saying(known)
     return form.in_columns(shared, table, [name.replace(" ", "") for name in components])
 
 

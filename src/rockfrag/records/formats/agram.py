@@ -7,7 +7,6 @@ rows of ten (F8.2), which need no blank between them.
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import pairwise
 
 from rockfrag.records.parsing.format import Channel, Format, section
@@ -45,14 +44,13 @@ def _parse(text: TextFile) -> Iterator[Channel]:
             year, day, hour, minute = (int(part) for part in match.groups()[:4])
             component = f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
             start = time_at(float(match[5]), year=year, julday=day, hour=hour, minute=minute)
-        earthquake = next((line.strip() for line in words if "EARTHQUAKE" in line.upper()), "")
-        yield replace(
-            values,
-            start_time=start,
-            station=words[0].strip() if words else "",
-            component=component,
-            details={"earthquake": earthquake},
-        )
+        facts = {
+            "start_time": start,
+            "station": words[0].strip() if words else "",
+            "component": component,
+            "earthquake": next((x.strip() for x in words if "EARTHQUAKE" in x.upper()), ""),
+        }
+        yield values.saying(facts)
 
 
 def _section(text: TextFile, line: int, stop: int) -> Channel:

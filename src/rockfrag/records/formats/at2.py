@@ -112,16 +112,8 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     if quantity not in ("", "acceleration"):
         held = f"{quantity} history" + (f" in {unit}" if unit else "")
         text.refuse(f"this is a {held}, not acceleration; give the record's .AT2 file")
-    facts = _facts(header[:-1])
-    yield Channel(
-        npts=npts,
-        dt=dt,
-        samples=lambda: _samples(text, size + 1, npts),
-        unit=unit,
-        station=facts.pop("station"),
-        component=facts.pop("component"),
-        details=facts,
-    )
+    values = Channel(npts, dt, lambda: _samples(text, size + 1, npts), unit)
+    yield values.saying(_facts(header[:-1]))
 
 
 def _samples(text: TextFile, start: int, npts: int) -> NDArray[np.float64]:

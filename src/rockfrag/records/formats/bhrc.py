@@ -11,22 +11,25 @@ import re
 from collections.abc import Iterator
 
 from rockfrag.records.parsing import format as form
-from rockfrag.records.parsing.format import leading_number, stated
-from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
 _FIRST = re.compile(r"^\s*\*\s*VOL1DS\s+FILE", re.I)
 _HEAD = re.compile(rb"^[ \t]*\*[ \t]*VOL1DS[ \t]+FILE", re.I | re.M)
 _UNITS_LINE = re.compile(rb"^[ \t]*UNITS\b.*\bAND\b", re.I | re.M)
-_UNIT = re.compile(r"\bUNITS\s+ARE\s+SEC\w*\s+AND\s+(?P<unit>\S+)", re.I)
-_SIZE = re.compile(
-    r"NO\.?\s+OF\s+POINTS\s*=\s*(?P<count>\d+)\s+DURATION\s*=\s*(?P<duration>[\d.]+)", re.I
-)
-_STATION = re.compile(
-    r"^\s*(?P<name>.*?)\s+Station\s+(?P<north>[\d.]+)\s*N\s*(?P<east>[\d.]+)\s*E"
-    r"(?:.*?Azimuth(?P<azimuths>.*))?$",
-    re.I | re.M,
-)
+_UNIT = r"\bUNITS\s+ARE\s+SEC\w*\s+AND\s+(\S+)"
+_POINTS = r"NO\.?\s+OF\s+POINTS\s*="
+_FACTS = {
+    "unit": _UNIT,
+    "count": rf"{_POINTS}\s*(\d+)\s+DURATION\s*=\s*[\d.]",
+    "duration": rf"{_POINTS}\s*\d+\s+DURATION\s*=\s*([\d.]+)",
+    "component": r"^\s*COMP\.?\s+([A-Z]+)",
+    "station": r"^\s*(.*?)\s+Station\s+[\d.]+\s*N",
+    "latitude": r"\sStation\s+([\d.]+)\s*N",
+    "longitude": r"\sStation\s+[\d.]+\s*N\s*([\d.]+)\s*E",
+    "azimuths": r"\sStation\s+[\d.]+\s*N.*?Azimuth(.*)",
+    "earthquake": r"Origin\s+Time\s*:\s*(.*)",
+    "magnitude": r"\b(?-i:M[wsblL]?)\s*(\d\.\d)",
+}
 _INTEGER_LINES, _REAL_LINES, _WIDTH = 7, 7, 13
 _MAX_HEADER = 30
 
@@ -34,27 +37,20 @@ _MAX_HEADER = 30
 def _parse(text: TextFile) -> Iterator[form.Channel]:
     for first, stop in text.parts(_HEAD, form.CHANNEL_END):
         at_units = text.find(_UNITS_LINE, first, min(stop, first + _MAX_HEADER))
-        lines = text.lines(first, at_units + 1)
-        words = "\n".join(lines)
-        unit, size = _UNIT.search(words), _SIZE.search(words)
-        if unit is None or size is None:
+        facts = form.facts_in(text.lines(first, at_units + 1), _FACTS)
+        if not (facts["unit"] and facts["count"]):
             text.fail("no number of points, duration or unit below this line", first)
         at_integers = at_units + 1
         while at_integers < stop and not text.line(at_integers).strip():
             at_integers += 1
         at_reals = at_integers + _INTEGER_LINES
-        count, component = int(size["count"]), stated(r"^\s*COMP\.?\s+([A-Z]+)", lines).upper()
-        station = _STATION.search(words)
-        yield form.Channel(
-            npts=count,
-            dt=_step(text, at_reals, count, float(size["duration"])),
-            samples=text.counted(at_reals + _REAL_LINES, stop, count, _WIDTH).copy,
-            unit=canonical_unit(unit["unit"]),
-            network="I1",
-            component=component,
-            station=station["name"].strip() if station else "",
-            details=_details(lines, station, component),
-        )
+        count, component = int(facts.pop("count")), facts["component"].upper()
+        dt = _step(text, at_reals, count, float(facts.pop("duration")))
+        samples = text.counted(at_reals + _REAL_LINES, stop, count, _WIDTH)
+        azimuth = re.search(rf"\b{component or 'none'}\s*(\d{{1,3}})\b", facts.pop("azimuths"))
+        facts |= {"network": "I1", "component": component}
+        facts |= {"azimuth_deg": azimuth[1]} if azimuth else {}
+        yield form.Channel(count, dt, samples.copy).saying(facts)
 
 
 def _step(text: TextFile, at_reals: int, count: int, duration: float) -> float:
@@ -76,16 +72,6 @@ def _step(text: TextFile, at_reals: int, count: int, duration: float) -> float:
     return float(f"{dt:.9g}")
 
 
-def _details(lines: list[str], station: re.Match[str] | None, component: str) -> dict[str, object]:
-    azimuths = (station["azimuths"] or "") if station and component else ""
-    azimuth = re.search(rf"\b{component}\s*(\d{{1,3}})\b", azimuths)
-    return {
-        "earthquake": " ".join(stated(r"Origin\s+Time\s*:\s*(.*)", lines).split()),
-        "magnitude": leading_number(stated(r"\b(?-i:M[wsblL]?)\s*(\d\.\d)", lines)),
-        "latitude": float(station["north"]) if station else None,
-        "longitude": float(station["east"]) if station else None,
-        "azimuth_deg": float(azimuth[1]) if azimuth else None,
-    }
-
-
-FORMAT = form.Format("BHRC", form.headed(_FIRST, _UNIT, within=_MAX_HEADER), _parse)
+FORMAT = form.Format(
+    "BHRC", form.headed(_FIRST, re.compile(_UNIT, re.I), within=_MAX_HEADER), _parse
+)

@@ -7,7 +7,6 @@ have several channels, and several quantities of one channel.
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import Any, TypeVar
 
 from rockfrag.records.parsing import format as form
@@ -44,9 +43,18 @@ _AZIMUTH = 53
 _SECOND = 29
 _STEP_MS = 61
 _RECORDER_STEP = 33
-_PLACE = (0, 1)
+_PLACE = ("latitude", "longitude")
 _NAMED_AZIMUTHS = {400: "UP", 401: "DOWN", 402: "VERT", 500: "RADL", 501: "TRAN", 600: "LONG"}
 _NAMED_AZIMUTHS |= {601: "TRAN", 700: "H1", 701: "H2", 800: "OTHER"}
+
+_FACTS = {
+    "network": r"Code\s*:\s*(\w+)-\w+",
+    "station": r"Code\s*:\s*\w+-(\w+)",
+    "station_name": r"Code\s*:\s*\w+-\w+\s*(.*)$",
+    "component": r"Sta\s+Cha\w*\s*:?\s*[\d?]+\s*:\s*(.*?)\s*(?:\(|Location|$)",
+    "code": r"SCNL\W+\w+\.(\w+)\.\w+\.[\w-]+",
+    "location": r"SCNL\W+\w+\.\w+\.\w+\.([\w-]+)",
+}
 
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:
@@ -57,7 +65,7 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
         at_values, dt, facts = _header(text, line)
         while at_values >= 0:
             stop = text.until(_END, at_values + 1)
-            yield replace(_section(text, at_values, stop, dt), **facts)
+            yield _section(text, at_values, stop, dt).saying(facts)
             line = text.find(_HEAD, stop)
             at_values = text.find(_VALUES, stop, None if line < 0 else line)
 
@@ -76,8 +84,7 @@ def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
     stated = numbers[_STEP_MS] != unknown
     dt = numbers[_STEP_MS] / 1000 if stated else numbers[_RECORDER_STEP]
     facts = _facts([*words, *comments], whole[_AZIMUTH])
-    latitude, longitude = (None if numbers[i] == unknown else numbers[i] for i in _PLACE)
-    facts["details"] |= {"latitude": latitude, "longitude": longitude}
+    facts |= {name: None if numbers[i] == unknown else numbers[i] for i, name in enumerate(_PLACE)}
     year, _, month, day, hour, minute = whole[_RECORD_TIME : _RECORD_TIME + 6]
     if unknown not in (year, month, day, hour, minute) and year > 0:
         second = 0.0 if numbers[_SECOND] == unknown else numbers[_SECOND]
@@ -130,21 +137,15 @@ def _section(text: TextFile, line: int, stop: int, dt: float) -> form.Channel:
 
 
 def _facts(words: list[str], azimuth: int) -> dict[str, Any]:
-    """Return the fields of a channel that the text header states."""
-    network = station = location = code = name = component = ""
-    for line in words:
-        if found := re.search(r"Code\s*:\s*(\w+)-(\w+)\s*(.*)$", line):
-            network, station, name = found[1], found[2], found[3].strip()
-        if found := re.search(r"Sta\s+Cha\w*\s*:?\s*[\d?]+\s*:\s*(.*?)\s*(?:\(|Location|$)", line):
-            component = re.sub(r"\s*deg\w*$", "", found[1], flags=re.I)
-        if found := re.search(r"SCNL\W+(\w+)\.(\w+)\.(\w+)\.([\w-]+)", line):
-            code, location = found[2], found[4].strip("-")
+    """Return what the text header states of a channel."""
+    facts = form.facts_in(words[::-1], _FACTS)
+    component = re.sub(r"\s*deg\w*$", "", facts["component"], flags=re.I)
     if component.lower() in ("", "other", "unknown"):
-        component = f"{azimuth:03d}" if 1 <= azimuth <= 360 else _NAMED_AZIMUTHS.get(azimuth, code)
+        named = _NAMED_AZIMUTHS.get(azimuth, facts["code"])
+        component = f"{azimuth:03d}" if 1 <= azimuth <= 360 else named
     earthquake = " ".join(words[1].split()) if len(words) > 1 else ""
-    seed = {"network": network, "station": station, "location": location, "code": code}
-    details = {"station_name": name, "earthquake": earthquake}
-    return {**seed, "component": component, "details": details}
+    location = facts["location"].strip("-")
+    return {**facts, "location": location, "component": component, "earthquake": earthquake}
 
 
 FORMAT = form.Format("COSMOS", form.headed(_FIRST, _INTEGERS, within=60), _parse)

@@ -9,10 +9,8 @@ pairs of time and acceleration in g/10.
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 
 from rockfrag.records.parsing import format as form
-from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import american_time, is_pairs_header, read_pairs
 
@@ -83,7 +81,7 @@ def _section(text: TextFile, line: int, stop: int) -> form.Channel:
     width = form.field_width(match["rest"]) or (10 if second else 9)
     unit = _DEFAULT_UNITS[quantity] if second else ""
     if stated := _UNIT.search(match["rest"]):
-        unit = canonical_unit(stated["unit"]).replace("1/10g", "g/10")
+        unit = stated["unit"]
     return form.section(text, line, stop, int(match["count"]), dt, unit, width, quantity)
 
 
@@ -96,15 +94,15 @@ def _described(values: form.Channel, lines: list[str]) -> form.Channel:
     words = [re.split(r"\s{3,}|\(origin", line.strip(), flags=re.I)[0] for line in lines[1:4]]
     words = [word for word in words if word and not word.upper().startswith("UNCORRECTED")]
     starts = (american_time(match[1]) for match in map(_START.search, lines) if match)
-    name = re.split(r"\s{3,}", below.strip())[0]
-    return replace(
-        values,
-        start_time=next(filter(None, starts), None),
-        network=form.stated(r"^\s*\d+\.(\w\w)\.\w+\.[\w-]{2}\.", lines),
-        station=form.stated(_STATION.pattern, lines[at_station : at_station + 1]),
-        component=re.sub(r"\s*deg\w*\.?$", "", component, flags=re.I),
-        details={"station_name": name, "earthquake": ", ".join(words[:2]), **values.details},
-    )
+    facts = {
+        "start_time": next(filter(None, starts), None),
+        "network": form.stated(r"^\s*\d+\.(\w\w)\.\w+\.[\w-]{2}\.", lines),
+        "station": form.stated(_STATION.pattern, lines[at_station : at_station + 1]),
+        "component": re.sub(r"\s*deg\w*\.?$", "", component, flags=re.I),
+        "station_name": re.split(r"\s{3,}", below.strip())[0],
+        "earthquake": ", ".join(words[:2]),
+    }
+    return values.saying(facts)
 
 
 FORMAT = form.Format("CSMIP", _recognise, _parse)

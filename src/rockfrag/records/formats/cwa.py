@@ -8,7 +8,6 @@ local (UTC+8) where the key says ``GMT+08``.
 import re
 
 from rockfrag.records.parsing import format as form
-from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import clock_time, step_of_times
 
@@ -42,20 +41,16 @@ def _parse(text: TextFile) -> list[form.Channel]:
     match = _TIME.search(facts["starttime"])
     began = clock_time(*match.groups()) if match else None
     zone = form.stated(r"^\s*#\s*starttime\s*\(.*(?:GMT|UTC)\s*([+-]\d+)[^)]*\)\s*:", header)
-    shared = form.Channel(
-        npts=table.shape[0],
-        dt=dt,
-        samples=table.copy,
-        unit=canonical_unit(facts["amplitudeunit"].split(".")[0]),
-        start_time=began and began - 3600.0 * int(zone or 0),
-        network="TW",
-        station=facts["stationcode"],
-        details={
-            "station_name": facts["stationname"],
-            "earthquake": f"{facts['origin time']} M {facts['magnitude']}".strip(" M"),
-            "instrument": facts["instrumentkind"],
-        },
-    )
+    known = {
+        "unit": facts["amplitudeunit"].split(".")[0],
+        "start_time": began and began - 3600.0 * int(zone or 0),
+        "network": "TW",
+        "station": facts["stationcode"],
+        "station_name": facts["stationname"],
+        "earthquake": f"{facts['origin time']} M {facts['magnitude']}".strip(" M"),
+        "instrument": facts["instrumentkind"],
+    }
+    shared = form.Channel(table.shape[0], dt, table.copy).saying(known)
     return form.in_columns(shared, table[:, 1:], order)
 
 

@@ -6,7 +6,6 @@ line without a key above it.
 
 import re
 from collections.abc import Iterator
-from contextlib import suppress
 
 from obspy import UTCDateTime
 
@@ -18,6 +17,19 @@ from rockfrag.records.parsing.timestamps import clock_time
 _KEY = re.compile(r"^(?P<key>[A-Z][A-Z0-9_/^ ]*?)\s*:(?P<value>.*)$")
 _NEEDED = ("SAMPLING_INTERVAL_S", "NDATA", "UNITS")
 _MAX_HEADER = 120
+_FACTS = {
+    "network": "NETWORK",
+    "station": "STATION_CODE",
+    "location": "LOCATION",
+    "code": "STREAM",
+    "distance_km": "EPICENTRAL_DISTANCE_KM",
+    "latitude": "STATION_LATITUDE_DEGREE",
+    "longitude": "STATION_LONGITUDE_DEGREE",
+    "station_name": "STATION_NAME",
+    "processing": "PROCESSING",
+    "licence": "DATA_LICENSE",
+}
+_EARTHQUAKE = ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "EVENT_TIME_HHMMSS")
 _SAMPLE_TIME = "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"
 _CLOCK = r"[ T_]+(?P<h>\d{1,2}):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)$"
 _DATES = (
@@ -61,21 +73,15 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         text.fail("NDATA or SAMPLING_INTERVAL_S is not a number")
     if count < 1:
         text.fail(f"the header promises {count} samples")
-    location = facts.get("LOCATION", "")
-    yield Channel(
-        npts=count,
-        dt=text.interval(dt, 0),
-        samples=lambda: text.counted(start, None, count),
-        unit=unit,
-        start_time=time_of(facts.get(_SAMPLE_TIME, "")),
-        network=facts.get("NETWORK", ""),
-        station=facts.get("STATION_CODE", ""),
-        # the Turkish variant has the name of a place here
-        location=location if len(location) <= 2 else "",
-        code=facts.get("STREAM", ""),
-        component=facts.get("STREAM") or facts.get("COMPONENT", ""),
-        details=_details(facts),
-    )
+    samples = text.interval(dt, 0), lambda: text.counted(start, None, count)
+    known = {name: facts.get(key, "") for name, key in _FACTS.items()}
+    # the Turkish variant has the name of a place here
+    known["location"] = known["location"] if len(known["location"]) <= 2 else ""
+    known["component"] = known["code"] or facts.get("COMPONENT", "")
+    known["magnitude"] = facts.get("MAGNITUDE_W") or facts.get("MAGNITUDE_L", "")
+    known["earthquake"] = " ".join(facts[key] for key in _EARTHQUAKE if facts.get(key))
+    start_time = time_of(facts.get(_SAMPLE_TIME, ""))
+    yield Channel(count, *samples, unit, start_time=start_time).saying(known)
 
 
 def time_of(words: str) -> UTCDateTime | None:
@@ -83,26 +89,6 @@ def time_of(words: str) -> UTCDateTime | None:
     patterns = (_DIGITS, *(date + _CLOCK for date in _DATES))
     match = next(filter(None, (re.match(pattern, words) for pattern in patterns)), None)
     return clock_time(*match.group("y", "m", "d", "h", "min", "s")) if match else None
-
-
-def _details(facts: dict[str, str]) -> dict[str, object]:
-    named = ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "EVENT_TIME_HHMMSS")
-    numbers = {
-        "magnitude": facts.get("MAGNITUDE_W") or facts.get("MAGNITUDE_L"),
-        "distance_km": facts.get("EPICENTRAL_DISTANCE_KM"),
-        "latitude": facts.get("STATION_LATITUDE_DEGREE"),
-        "longitude": facts.get("STATION_LONGITUDE_DEGREE"),
-    }
-    details: dict[str, object] = {
-        "earthquake": " ".join(facts[key] for key in named if facts.get(key)),
-        "station_name": facts.get("STATION_NAME", ""),
-        "processing": facts.get("PROCESSING", ""),
-        "licence": facts.get("DATA_LICENSE", ""),
-    }
-    for key, words in numbers.items():
-        with suppress(ValueError):
-            details[key] = float(words) if words else None
-    return details
 
 
 FORMAT = Format("ESM", _recognise, _parse)

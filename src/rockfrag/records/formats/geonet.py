@@ -68,23 +68,19 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
     values = found[0] * float(stated(r"\bunits of\s+([\d.]+)\s*mm/s/s", words) or 1)
     year, month, day, hour, minute = (str(whole[place]) for place in _START)
     began = clock_time(year, month, day, hour, minute, "0") if whole[_START[0]] > 0 else None
-    yield Channel(
-        npts=counts[0],
-        dt=text.interval(dt, at_reals + 2),
-        samples=values.copy,
-        unit="mm/s2",
-        start_time=began and began + whole[_START_MS] / 1000,
-        network="NZ",
-        station=stated(r"\bsite\s+(\S+)", words),
-        component=stated(r"\bcomponent\s+(\S+)", words),
-        details={
-            "station_name": words[2].strip(),
-            "earthquake": ", ".join(" ".join(line.split()) for line in words[6:8]),
-            "magnitude": numbers[_MAGNITUDE] or None,
-            "latitude": -abs(numbers[_LATITUDE]),
-            "longitude": numbers[_LONGITUDE],
-        },
-    )
+    facts = {
+        "start_time": began and began + whole[_START_MS] / 1000,
+        "network": "NZ",
+        "station": stated(r"\bsite\s+(\S+)", words),
+        "component": stated(r"\bcomponent\s+(\S+)", words),
+        "station_name": words[2].strip(),
+        "earthquake": ", ".join(" ".join(line.split()) for line in words[6:8]),
+        "magnitude": numbers[_MAGNITUDE] or None,
+        "latitude": -abs(numbers[_LATITUDE]),
+        "longitude": numbers[_LONGITUDE],
+    }
+    dt = text.interval(dt, at_reals + 2)
+    yield Channel(counts[0], dt, values.copy, "mm/s2").saying(facts)
     return line
 
 

@@ -201,7 +201,8 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
         code=stats.channel,
         # MiniSEED of floating point has been computed: its mean is meant
         raw=not (format_name == "MSEED" and trace.data.dtype.kind == "f"),
-        details={**earthquake, "steps": tuple(steps)},
+        details=earthquake,
+        steps=tuple(steps),
     )
     channel.check(str(path))
     return channel

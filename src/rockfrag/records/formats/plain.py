@@ -88,11 +88,8 @@ class _Layout:
             unit=column.unit or stated,
             component=component,
             station=self.facts.details.get("station", ""),
-            details={
-                "title": title,
-                "earthquake": self.facts.details.get("earthquake", ""),
-                "steps": tuple(self.steps),
-            },
+            details={"title": title, "earthquake": self.facts.details.get("earthquake", "")},
+            steps=tuple(self.steps),
         )
 
 

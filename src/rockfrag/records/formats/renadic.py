@@ -6,7 +6,6 @@ second line.
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import PurePath
 
 from rockfrag.records.parsing.format import CHANNEL_END, Channel, Format, headed, stated
@@ -23,15 +22,15 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         values = read_pairs(text, first, stop)
         header = text.lines(first, first + _HEADER)
         number = header[1].strip()
-        earthquake = re.split(r"\s*\(ORIGIN", " ".join(header[2].split()))[0]
-        yield replace(
-            values,
-            start_time=american_time(stated(r"TRIGGER\s+TIME\s*:(.*)$", header)),
+        facts = {
+            "start_time": american_time(stated(r"TRIGGER\s+TIME\s*:(.*)$", header)),
             # the station that the file is named by, without the record's number
-            station=PurePath(text.name).name.split(".")[0].replace(number, "").strip(" _-"),
-            component=stated(r"^\s*CHAN\s*\d+\s*:\s*(\S+)", header),
-            details={"earthquake": earthquake, "record": number, **values.details},
-        )
+            "station": PurePath(text.name).name.split(".")[0].replace(number, "").strip(" _-"),
+            "component": stated(r"^\s*CHAN\s*\d+\s*:\s*(\S+)", header),
+            "earthquake": re.split(r"\s*\(ORIGIN", " ".join(header[2].split()))[0],
+            "record": number,
+        }
+        yield values.saying(facts)
 
 
 FORMAT = Format("RENADIC", headed(_FIRST, re.compile("RENADIC", re.I), within=_HEADER), _parse)

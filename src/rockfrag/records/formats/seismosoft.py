@@ -47,20 +47,17 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     # TOLMEZZO(000) or 090 CDMG STATION 47381
     found = _BEFORE_COMPONENT.match(place) or _BEHIND_COMPONENT.match(place)
     station, component = found.group("station", "component") if found else (place, "")
-    yield Channel(
-        npts=table.shape[0],
-        dt=step_of_times(table[:, 0], text, columns + 1),
-        samples=lambda: table[:, 1].copy(),
-        unit=unit,
-        station=station.strip(),
-        component=component.strip(),
-        details={
-            "earthquake": text.line(0).rstrip("."),
-            "source": header["source"],
-            "frequency_range": header["frequency range"],
-            "recording_station": place,
-        },
-    )
+    facts = {
+        "unit": unit,
+        "station": station.strip(),
+        "component": component.strip(),
+        "earthquake": text.line(0).rstrip("."),
+        "source": header["source"],
+        "frequency_range": header["frequency range"],
+        "recording_station": place,
+    }
+    dt = step_of_times(table[:, 0], text, columns + 1)
+    yield Channel(table.shape[0], dt, lambda: table[:, 1].copy()).saying(facts)
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)

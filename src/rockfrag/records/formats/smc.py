@@ -67,25 +67,23 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     else:
         dt = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
         values = Channel(count, text.interval(dt, at_reals), samples.copy, "cm/s2")
-    step = {"step": "leave out values beyond the count of the header", "values": left_out}
-    steps = (*([step] if left_out else []), *values.details.get("steps", ()))
+    if left_out:
+        step = {"step": "leave out values beyond the count of the header", "values": left_out}
+        values = replace(values, steps=(step, *values.steps))
     place = {"latitude": numbers[_LATITUDE], "longitude": numbers[_LONGITUDE]}
     # a fifth character of the code names the channel
     number = "" if whole[_STATION] == whole[_MISSING] else str(whole[_STATION])
     station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.I)
-    yield replace(
-        values,
-        start_time=_start(whole),
-        station=words[2][:4].strip().strip("\x00*") or number,
-        component=_component(whole, station[2].strip() if station else ""),
-        details={
-            "station_name": station[1] if station else "",
-            "earthquake": " ".join(words[3].split()),
-            "corrected": held.startswith("CORRECTED"),
-            **{k: value for k, value in place.items() if value != numbers[_MISSING_REAL]},
-            **({"steps": steps} if steps else {}),
-        },
-    )
+    facts = {
+        "start_time": _start(whole),
+        "station": words[2][:4].strip().strip("\x00*") or number,
+        "component": _component(whole, station[2].strip() if station else ""),
+        "station_name": station[1] if station else "",
+        "earthquake": " ".join(words[3].split()),
+        "corrected": held.startswith("CORRECTED"),
+        **{key: value for key, value in place.items() if value != numbers[_MISSING_REAL]},
+    }
+    yield values.saying(facts)
 
 
 def _without_surplus_lines(

@@ -7,12 +7,10 @@ of samples more may follow.
 """
 
 import re
-from dataclasses import replace
 
 from obspy import UTCDateTime
 
 from rockfrag.records.parsing import format as form
-from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
 _TITLE = re.compile(r"^\s*ARCHIVO\s+EST.NDAR\s+DE\s+ACELERACI.N", re.I)
@@ -53,15 +51,13 @@ def _parse(text: TextFile) -> list[form.Channel]:
         npts=max(table.shape[0], promised),
         dt=dt,
         samples=table.copy,
-        unit=canonical_unit(facts["unidades de los datos"].split("(")[0]),
         start_time=_start(facts),
-        station=facts["clave de la estacion"],
-        details={**_details(facts), "steps": (step,) if extra > 0 else ()},
-    )
+        steps=(step,) if extra > 0 else (),
+    ).saying(_facts(facts))
     # "rumbo;orientacion": the sense of a vertical stands behind it
     found = form.in_columns(shared, table, [side[0].strip() for side in sides])
     return [
-        replace(channel, details={**channel.details, "sense": side[2].strip()})
+        channel.saying({"sense": side[2].strip()})
         for channel, side in zip(found, sides, strict=True)
     ]
 
@@ -85,7 +81,7 @@ def _start(facts: dict[str, str]) -> UTCDateTime | None:
     return start + shift
 
 
-def _details(facts: dict[str, str]) -> dict[str, object]:
+def _facts(facts: dict[str, str]) -> dict[str, object]:
     stated = facts["coordenadas de la estacion"]
     coordinates = re.findall(r"(\d+(?:\.\d+)?)\s*(LAT|LONG)\.?\s*([NSEW])", stated)
     place = {
@@ -95,6 +91,8 @@ def _details(facts: dict[str, str]) -> dict[str, object]:
     magnitudes = re.findall(r"M\w*\s*=\s*(\d+(?:\.\d+)?)", facts.get("magnitud(es)", ""))
     magnitudes = magnitudes or re.findall(r"=\s*(\d\.\d)", facts["magnitud"])
     return {
+        "unit": facts["unidades de los datos"].split("(")[0],
+        "station": facts["clave de la estacion"],
         "station_name": facts["nombre de la estacion"],
         "earthquake": f"{facts['fecha del sismo']} {facts['hora epicentro']}".strip(),
         "magnitude": max(map(float, magnitudes), default=None),

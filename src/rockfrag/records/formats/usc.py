@@ -5,7 +5,6 @@ Each text line has its length in columns 73 and 74, which tells the format from 
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 
 from rockfrag.records.parsing.format import CHANNEL_END, Channel, Format, stated
 from rockfrag.records.parsing.text_file import TextFile
@@ -40,16 +39,13 @@ def place_of(words: list[str], values: Channel) -> Channel:
     station = next((i for i, line in enumerate(lines) if _STATION.match(line)), len(lines))
     # the earthquake's name and date stand below the line that names the volume
     volume = next((i for i, line in enumerate(lines) if "OF VOLUME" in line.upper()), 0)
-    return replace(
-        values,
-        station=stated(_STATION.pattern, lines),
-        component=stated(r"^COMP\w*\s+(\S+)", lines),
-        details={
-            "station_name": next(iter(lines[station + 1 :]), ""),
-            "earthquake": ", ".join(lines[volume + 1 : volume + 3]),
-            **values.details,
-        },
-    )
+    facts = {
+        "station": stated(_STATION.pattern, lines),
+        "component": stated(r"^COMP\w*\s+(\S+)", lines),
+        "station_name": next(iter(lines[station + 1 :]), ""),
+        "earthquake": ", ".join(lines[volume + 1 : volume + 3]),
+    }
+    return values.saying(facts)
 
 
 FORMAT = Format("USC", _recognise, _parse)

@@ -16,7 +16,7 @@ from obspy.core import AttribDict
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.parsing import text_file
-from rockfrag.records.parsing.quantities import TO_SI
+from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
 from rockfrag.tabular import printable
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
@@ -32,6 +32,19 @@ def cut_short_step(promised: int, found: int) -> dict[str, Any]:
     }
 
 
+_STATED = ("unit", "start_time", "network", "station", "location", "code", "component")
+_NUMBERS = ("magnitude", "distance_km", "latitude", "longitude", "azimuth_deg")
+_NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:E[+-]?\d+)?", re.I)
+
+
+def _fact(key: str, value: Any) -> Any:
+    """Return what a header says as text that can be shown, or as the number that its words begin with."""
+    if not isinstance(value, str):
+        return value
+    number = _NUMBER.match(value)
+    return (float(number[0]) if number else None) if key in _NUMBERS else printable(value)
+
+
 @dataclass(frozen=True)
 class Channel:
     """One acceleration history as a file stores it."""
@@ -40,7 +53,9 @@ class Channel:
     dt: float  # sampling interval [s]
     # gives the samples in the unit of the file, shape (npts,)
     samples: Callable[[], NDArray[np.float64]]
-    unit: str = ""  # canonical unit (``g``, ``cm/s2``, …); empty if the file does not state it
+    unit: str = (
+        ""  # unit (``g``, ``cm/s2``, …), made canonical; empty if the file does not state it
+    )
     quantity: str = "acceleration"  # other quantities of a file are left out
     # time of the first sample, or None if the file does not state it; a time before 1900 or after
     # 2100 is a mistake of the header and counts as not stated
@@ -55,16 +70,19 @@ class Channel:
     member: str = ""  # name of the file within an archive of several records, else empty
     # whether this is a raw recording, whose mean is the zero of the sensor and not motion
     raw: bool = False
-    # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …
+    # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …; numbers may be words
     details: Mapping[str, Any] = field(default_factory=dict)
+    # what was done to the samples, for the provenance
+    steps: tuple[Mapping[str, Any], ...] = ()
 
     def __post_init__(self) -> None:
         # what a file says goes to terminals and tables, and may hold anything
         for name in ("network", "station", "location", "code", "component", "member"):
             object.__setattr__(self, name, printable(getattr(self, name)))
-        known = {k: v for k, v in self.details.items() if v not in ("", None)}
-        shown = {k: printable(v) if isinstance(v, str) else v for k, v in known.items()}
-        object.__setattr__(self, "details", shown)
+        object.__setattr__(self, "unit", canonical_unit(self.unit))
+        known = {key: _fact(key, value) for key, value in self.details.items()}
+        details = {key: value for key, value in known.items() if value not in ("", None)}
+        object.__setattr__(self, "details", details)
         if self.start_time is not None and not _FIRST < self.start_time < _LAST:
             object.__setattr__(self, "start_time", None)
 
@@ -77,6 +95,12 @@ class Channel:
                 f"{name}: a sampling interval of {self.dt:g} s is none of a strong-motion record (from "
                 f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} s); mend the header, or give the true one with dt=."
             )
+
+    def saying(self, facts: Mapping[str, Any]) -> "Channel":
+        """Return the channel with what its header says; what is no field of a channel is a detail."""
+        own = {key: facts[key] for key in _STATED if key in facts}
+        others = {key: value for key, value in facts.items() if key not in own}
+        return replace(self, **own, details={**others, **self.details})
 
     @property
     def label(self) -> str:
@@ -91,6 +115,7 @@ class Channel:
             "component": self.component,
             "start_time_stated": self.start_time is not None,
             **self.details,
+            **({"steps": self.steps} if self.steps else {}),
         }
         header = {
             **{key: getattr(self, key) for key in ("network", "station", "location", "npts")},
@@ -202,8 +227,8 @@ def _shortened(channel: Channel) -> Channel:
     if samples.size == channel.npts:
         return channel
     step = cut_short_step(channel.npts, int(samples.size))
-    details = {**channel.details, "steps": (*channel.details.get("steps", ()), step)}
-    return replace(channel, npts=int(samples.size), samples=samples.copy, details=details)
+    steps = (*channel.steps, step)
+    return replace(channel, npts=int(samples.size), samples=samples.copy, steps=steps)
 
 
 def head_lines(source: text_file.Source) -> list[str]:
@@ -297,10 +322,9 @@ def stated(pattern: str, lines: Iterable[str]) -> str:
     return next(filter(None, found), "")
 
 
-def leading_number(words: str) -> float | None:
-    """Return the number that words are or begin with, or None."""
-    match = re.match(r"\s*\d+(?:\.\d*)?", words)
-    return float(match[0]) if match else None
+def facts_in(lines: Iterable[str], patterns: Mapping[str, str]) -> dict[str, str]:
+    """Return what lines state of each pattern, by its name, see :func:`stated`, with single blanks."""
+    return {name: " ".join(stated(pattern, lines).split()) for name, pattern in patterns.items()}
 
 
 def section(

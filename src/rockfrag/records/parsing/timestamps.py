@@ -192,8 +192,7 @@ def pairs_of(
         accelerations = np.interp(times[0] + np.arange(count) * dt, times, accelerations)
         found = {"dt_s": dt, "digitised_points": int(times.size)}
         steps.append({"step": "interpolate linearly to even intervals", **found})
-    details = {"steps": tuple(steps)}
-    return Channel(accelerations.size, dt, accelerations.copy, unit, details=details)
+    return Channel(accelerations.size, dt, accelerations.copy, unit, steps=tuple(steps))
 
 
 def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:

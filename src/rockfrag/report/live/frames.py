@@ -9,8 +9,8 @@ from markupsafe import Markup
 from rockfrag.engines.response import Response
 from rockfrag.motions.processing import scale_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.report.wording import listed, number
 from rockfrag.rocking import simulate
+from rockfrag.sentences import listed, number
 from rockfrag.system.blocks import Vector
 from rockfrag.system.body import RigidBody
 from rockfrag.system.system import System

@@ -17,8 +17,8 @@ from rockfrag.files import file_name
 from rockfrag.pedestal.paired_tests import with_counterparts
 from rockfrag.report import figures, findings
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Results, Section, figure_of, says, section_of
-from rockfrag.report.wording import amplitude, label, shortened
+from rockfrag.report.part import FigureSpec, Results, Section, says
+from rockfrag.sentences import amplitude, label, shortened
 
 _MOTION = (Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion"))
 _MEANS = (
@@ -45,13 +45,13 @@ def as_recorded(results: Results) -> Section:
     columns = [*_MOTION, Column("pga_g", "Peak [g]", 3), *(Column(name, name) for name in names)]
     found = findings.recorded_found(recorded)
     motions = recorded["motion"].nunique()
-    text = says.as_recorded_figure(found, motions, MOST_MOTIONS)
-    figure = figure_of(text, "as_recorded", lambda: recorded_map(recorded))
+    draw = partial(recorded_map, recorded)
+    figure = says.figure("as_recorded", draw, found, motions, MOST_MOTIONS)
     texts = [_outcome(row) for row in recorded.to_dict("records")]
     shown = _wide(recorded, texts, ("earthquake", "floor", "motion", "pga_g"))
     caption = "Outcome under each motion as recorded."
     table = table_html(shown, columns, caption, "as_recorded.csv")
-    return section_of(says.as_recorded(found), "as_recorded", [figure, table])
+    return says.section("as_recorded", [figure, table], found)
 
 
 def _outcome(row: dict[Any, Any]) -> str:
@@ -71,8 +71,8 @@ def amplitudes(results: Results) -> Section:
     shown = _wide(tests, texts, ("earthquake", "floor", "motion"))
     caption = "Overturning amplitude of every test (step protocol)."
     table = table_html(shown, columns, caption, "tests.csv")
-    text = says.amplitudes(findings.amplitudes_found(results.tests), resurrections)
-    return section_of(text, "amplitudes", [table, *_maps(results)])
+    found = findings.amplitudes_found(results.tests)
+    return says.section("amplitudes", [table, *_maps(results)], found, resurrections)
 
 
 def _maps(results: Results) -> list[FigureSpec]:
@@ -83,9 +83,9 @@ def _maps(results: Results) -> list[FigureSpec]:
         configurations = list(dict.fromkeys(own["configuration"]))
         curves = resurrections[resurrections["configuration"].isin(configurations)]
         fallen, motions = curves["first_upper"].count(), curves["motion"].nunique()
-        text = says.outcomes_figure(name, fallen, len(curves), motions, MOST_ROWS)
         draw = partial(outcome_map, own, configurations)
-        specs.append(figure_of(text, f"outcomes_{file_name(name)}", draw))
+        about = (name, fallen, len(curves), motions, MOST_ROWS)
+        specs.append(says.figure(f"outcomes_{file_name(name)}", draw, *about, of="outcomes"))
     return specs
 
 
@@ -101,20 +101,19 @@ def comparisons(results: Results) -> Section | None:
     floors = known[known["by"] == "floor"].assign(
         what=lambda t: t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
     )
-    texts = {"object": says.by_object_figure(len(results.objects), words, study.has_pairs)}
+    draw, about = figures.amplitudes_by, (len(results.objects), words, study.has_pairs)
+    by_object = partial(draw, "object", tests, means)
+    parts: list[Any] = [says.figure("amplitudes_by_object", by_object, *about)]
     if (of_floors := len(set(tests["floor"]))) > 1:
-        texts["floor"] = says.by_floor_figure(of_floors)
-    parts: list[Any] = [
-        figure_of(text, f"amplitudes_by_{by}", partial(figures.amplitudes_by, by, tests, means))
-        for by, text in texts.items()
-    ]
+        by_floor = partial(draw, "floor", tests, means)
+        parts.append(says.figure("amplitudes_by_floor", by_floor, of_floors))
     if study.has_pairs:
         parts.append(_scatter(results))
     if len(whole) > 1:
         parts.append(table_html(whole, _MEANS, "Means over the same motions."))
     if len(set(floors["floor"])) > 1:
         parts.append(table_html(floors, _MEANS, "Means over the same records and objects."))
-    return section_of(says.comparisons(found, words), "comparisons", parts)
+    return says.section("comparisons", parts, found, words)
 
 
 def _scatter(results: Results) -> FigureSpec:
@@ -122,7 +121,7 @@ def _scatter(results: Results) -> FigureSpec:
     ratio = findings.ratio_of(results.table("pedestal/effects"), about)("whole", "all")
     tests, _ = with_counterparts(results.tests, results.study.counterparts)
     draw = partial(figures.pedestal_scatter, tests, ratio, about)
-    return figure_of(says.pedestal_scatter_figure(about, ratio), "with_and_without_pedestal", draw)
+    return says.figure("with_and_without_pedestal", draw, about, ratio)
 
 
 MOST_MOTIONS = 30

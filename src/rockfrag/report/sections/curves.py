@@ -23,8 +23,8 @@ from rockfrag.report.answer import has_one_record
 from rockfrag.report.figures import GREY
 from rockfrag.report.findings import ONE_MOTION, strength_found
 from rockfrag.report.page import Column, Row, estimated, p_values, table_html
-from rockfrag.report.part import FigureSpec, Results, Section, figure_of, says, section_of
-from rockfrag.report.wording import decimals_of, estimates, number, sentence, shortened
+from rockfrag.report.part import FigureSpec, Results, Section, says
+from rockfrag.sentences import decimals_of, estimates, number, sentence, shortened
 from rockfrag.stages.fragility import best_of
 
 _TWO_MEASURES = (
@@ -70,9 +70,9 @@ def fragility(results: Results) -> Section:
     found = strength_found(known_curves, results.level)
     rejected = int((known_curves["p_fit"] < REJECTED).sum())
     total, notes = len(known_curves), _notes(curves)
-    text = says.fragility(found, results.level, rejected, total, REJECTED, without, notes)
     figures, tables = _figures(results, curves), _tables(known_curves, results.level)
-    return section_of(text, "fragility", [*figures, *tables])
+    about = (found, results.level, rejected, total, REJECTED, without, notes)
+    return says.section("fragility", [*figures, *tables], *about)
 
 
 def _notes(curves: pd.DataFrame) -> list[str]:
@@ -96,13 +96,13 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
             f"{row['configuration']} {number(row['theta'], decimals_of(row['theta']))} {row['unit']}"
             for row in chosen.dropna(subset=["theta"]).to_dict("records")
         ]
-        text = says.fragility_figure(name, measure, results.level, nonparametric, medians)
         band, points = (
             table[table["configuration"].isin(own) & (table["im"] == measure)]
             for table in (bands, bins)
         )
         draw = partial(fragility_figure, chosen, band, points, nonparametric)
-        specs.append(figure_of(text, f"fragility_{file_name(name)}", draw))
+        about = (name, measure, results.level, nonparametric, medians)
+        specs.append(says.figure(f"fragility_{file_name(name)}", draw, *about, of="fragility"))
     return specs
 
 
@@ -153,7 +153,11 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
     if found.empty:
         return None
     pairs = [describe_pair(a, b) for a, b in zip(found["first"], found["second"], strict=True)]
-    text = says.two_measures(
+    shown, caption = found.assign(pair=pairs), "Fits in two measures."
+    table = table_html(shown, _TWO_MEASURES, caption, "fragility_two_measures")
+    return says.section(
+        "two-measures",
+        [*_contours(tables, shown), table],
         ", ".join(dict.fromkeys(pairs)),
         len(found),
         int((found["p_fit"] < REJECTED).sum()),
@@ -161,9 +165,6 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
         f"{100 * confidence:g} %",
         list(dict.fromkeys(fits["warnings"])),
     )
-    shown, caption = found.assign(pair=pairs), "Fits in two measures."
-    table = table_html(shown, _TWO_MEASURES, caption, "fragility_two_measures")
-    return section_of(text, "two-measures", [*_contours(tables, shown), table])
 
 
 def _contours(tables: VectorTables, found: pd.DataFrame) -> list[FigureSpec]:
@@ -174,8 +175,8 @@ def _contours(tables: VectorTables, found: pd.DataFrame) -> list[FigureSpec]:
             t[(t[keys] == pd.Series(row)).all(axis=1)] for t in (tables.contours, tables.cells)
         )
         name = file_name(f"two_measures_{'_'.join(map(str, row.values()))}")
-        text = says.two_measures_figure(row["configuration"], pair)
-        specs.append(figure_of(text, name, partial(two_measures_figure, own, tests)))
+        draw, about = partial(two_measures_figure, own, tests), (row["configuration"], pair)
+        specs.append(says.figure(name, draw, *about, of="two_measures"))
     return specs
 
 
@@ -196,7 +197,7 @@ def floor_curves(results: Results) -> Section | None:
     weakest = min(fallen, key=lambda row: float(row["theta"]), default=None)
     caption = f"Curves by floor, with {results.level} intervals where there are any."
     table = table_html(shown, _FLOORS, caption)
-    return section_of(says.floor_curves(weakest, files), "floor_curves", [table])
+    return says.section("floor_curves", [table], weakest, files)
 
 
 def measures(results: Results) -> Section:
@@ -208,9 +209,9 @@ def measures(results: Results) -> Section:
     none = [name for name in dict.fromkeys(choice["configuration"]) if name not in named]
     better = list(dict.fromkeys(best.loc[~best["measure"].isin(list(asked)), "im"]))
     compared = choice["measure"].nunique()
-    text = says.measures(best_of(choice, asked), better, compared, none)
     caption = "Recommended measure of each configuration, with reasons."
-    return section_of(text, "measures", [table_html(best, _MEASURES, caption)])
+    about = (best_of(choice, asked), better, compared, none)
+    return says.section("measures", [table_html(best, _MEASURES, caption)], *about)
 
 
 def fragility_figure(

@@ -17,14 +17,8 @@ from rockfrag.report import figures, page
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import WITH_PEDESTAL, Sides, pedestal_effect, ratio_of, sides_of
 from rockfrag.report.page import Column, by_row, estimated, table_html
-from rockfrag.report.part import FigureSpec, Results, Section, figure_of, says, section_of
-from rockfrag.report.wording import (
-    amplitude,
-    counted,
-    has_interval,
-    sentence,
-    shortened,
-)
+from rockfrag.report.part import FigureSpec, Results, Section, says
+from rockfrag.sentences import amplitude, counted, has_interval, sentence, shortened
 from rockfrag.shaketable.definitions import DEFINITION
 
 MOST_ROWS = 45
@@ -86,9 +80,7 @@ def pedestal(results: Results) -> Section | None:
         parts = [_forest(here, about), _table(here, ratio), table_html(methods, columns, caption)]
     notes = results.table("pedestal/notes")
     notes = notes[notes["definition"] == DEFINITION] if len(notes) else notes
-    return section_of(
-        says.pedestal(found, about, study.counterparts, notes["note"]), "pedestal", parts
-    )
+    return says.section("pedestal", parts, found, about, study.counterparts, notes["note"])
 
 
 def _table(effects: pd.DataFrame, ratio: str) -> Markup:
@@ -108,8 +100,8 @@ def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
             shown = shown[shown["scope"] != scope]
             left_out.append(words)
     ratio = ratio_of(effects, about)("whole", "all")
-    text = says.pedestal_effect_figure(about, left_out, ratio)
-    return figure_of(text, "pedestal_effect", lambda: forest_figure(shown, about))
+    draw = partial(forest_figure, shown, about)
+    return says.figure("pedestal_effect", draw, about, left_out, ratio)
 
 
 NONE = (1 / 1.1, 1.1)
@@ -204,11 +196,10 @@ def measured(results: Results) -> Section | None:
         return None
     beside = results.table("measured/beside")
     ratio = np.log(beside["ratio"].dropna())
-    words = says.beside(len(beside), len(ratio), np.exp(ratio.mean()), ratio.std())
+    words = says.line("beside", len(beside), len(ratio), np.exp(ratio.mean()), ratio.std())
     parts: list[Markup | FigureSpec] = []
     if beside["simulated_g"].notna().any():
-        text = says.measured_beside_figure(words)
-        parts.append(figure_of(text, "measured_beside", lambda: measured_beside(beside)))
+        parts.append(says.figure("measured_beside", lambda: measured_beside(beside), words))
     curves, effects = results.table("measured/fragility"), results.table("measured/effects")
     parts += [
         table_html(beside, _MEASURED, "Measured tests beside simulated ones."),
@@ -218,7 +209,7 @@ def measured(results: Results) -> Section | None:
         caption = "Measured effect of the pedestal."
         parts.append(table_html(shown_effects(effects), effect_columns(), caption))
     notes = results.table("measured/notes")["note"]
-    return section_of(says.measured(words, notes), "measured", parts)
+    return says.section("measured", parts, words, notes)
 
 
 def measured_beside(beside: pd.DataFrame) -> Figure:

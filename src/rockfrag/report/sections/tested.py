@@ -1,6 +1,7 @@
 """What was tested: bodies, motions and shaking table, what the model assumes, and what a study went on without."""
 
 from collections.abc import Sequence
+from functools import partial
 from itertools import cycle
 
 import numpy as np
@@ -15,9 +16,9 @@ from rockfrag.records.motion import Motion
 from rockfrag.report.figures import GREY, MARKERS, drawn_tests
 from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Results, Section, figure_of, says, section_of
+from rockfrag.report.part import Results, Section, says
 from rockfrag.report.sections.amplitudes import MOST_ROWS
-from rockfrag.report.wording import label, number, shortened
+from rockfrag.sentences import label, number, shortened
 from rockfrag.stages.tests import LIMITED
 from rockfrag.stages.validity import MOST_TESTED
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
@@ -66,8 +67,7 @@ def left_out(results: Results) -> Section | None:
     if not results.study.keep_going or (table := results.table("left_out")).empty:
         return None
     shown = table_html(table, _LEFT_OUT, "Records that could not be used.", "left_out.csv")
-    text = says.left_out(list(table["motion"]), len(results.study.catalogue))
-    return section_of(text, "left-out", [shown])
+    return says.section("left-out", [shown], list(table["motion"]), len(results.study.catalogue))
 
 
 def shaker(results: Results) -> Section | None:
@@ -80,11 +80,11 @@ def shaker(results: Results) -> Section | None:
     free = results.tests[results.tests["censored"] == "right"]
     new = ended[~ended["test"].isin(free["test"])]
     names = [f"{row['test']} ({row['remark']})" for row in new.to_dict("records")]
-    text = says.shaker_figure(names, len(limited))
-    figure = figure_of(text, "shaker_limits", lambda: shaker_limits(limits, results.tests))
+    draw = partial(shaker_limits, limits, results.tests)
+    figure = says.figure("shaker_limits", draw, names, len(limited))
     caption = "What each motion requires of the shaking table, per g of its peak."
     table = table_html(limits, _SHAKER, caption, "shaker.csv")
-    return section_of(says.shaker(names, len(limited)), "shaker", [figure, table])
+    return says.section("shaker", [figure, table], names, len(limited))
 
 
 def motions(results: Results) -> Section:
@@ -99,10 +99,10 @@ def motions(results: Results) -> Section:
     table = table_html(measures, columns, caption, "measures.csv")
     shown = min(len(ground), MOST_PANELS)
     peak = max(ground[:shown], key=lambda motion: motion.pga)
-    text = says.accelerations_figure(shown, len(results.records), peak, peak.pga / GRAVITY)
-    figure = figure_of(text, "accelerations", lambda: acceleration_histories(ground))
-    text = says.motions(list(dict.fromkeys(measures["floor"])), results.study.building)
-    return section_of(text, "motions", [table, figure])
+    about = (shown, len(results.records), peak, peak.pga / GRAVITY)
+    figure = says.figure("accelerations", lambda: acceleration_histories(ground), *about)
+    floors = list(dict.fromkeys(measures["floor"]))
+    return says.section("motions", [table, figure], floors, results.study.building)
 
 
 def bodies(results: Results) -> Section:
@@ -117,7 +117,7 @@ def bodies(results: Results) -> Section:
     ends = (number(value, 2) for value in (shown["uplift_g"].min(), shown["uplift_g"].max()))
     may_differ = results.study.slides or results.study.vertical
     drawn = table_html(shown, _BODIES, "The objects, alone and on their pedestals.")
-    return section_of(says.bodies(len(shown), *ends, may_differ), "bodies", [drawn])
+    return says.section("bodies", [drawn], len(shown), *ends, may_differ)
 
 
 def validity(results: Results) -> Section | None:
@@ -126,7 +126,7 @@ def validity(results: Results) -> Section | None:
         sliding = results.table("sliding")
         shown = sliding.assign(largest_slip_cm=100 * sliding["largest_slip_m"])
         table = table_html(shown, _SLIDING, "Sliding and flight in all analyses.")
-        return section_of(says.sliding(sliding_found(sliding)), "validity", [table])
+        return says.section("validity", [table], sliding_found(sliding), of="sliding")
     tests = results.table("validity")
     if tests.empty:
         return None
@@ -146,8 +146,8 @@ def validity(results: Results) -> Section | None:
         beyond=shown["tests"] - shown["known"],
     )
     caption = "Friction coefficient needed, and tests with lift-off."
-    text = says.validity(model_allowed(tests), shown["tests"].max() < MOST_TESTED)
-    return section_of(text, "validity", [table_html(shown, _VALIDITY, caption)])
+    table, all_tests = table_html(shown, _VALIDITY, caption), shown["tests"].max() < MOST_TESTED
+    return says.section("validity", [table], model_allowed(tests), all_tests)
 
 
 def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:

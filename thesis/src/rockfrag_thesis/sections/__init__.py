@@ -1,5 +1,5 @@
 """Sections of the report that only a study with the keys of the thesis has; `parts` puts them in order."""
 
-from rockfrag.report.wording import Macros
+from rockfrag.report.part import Says
 
-says = Macros("rockfrag_thesis.sections", "sections.j2")
+says = Says("rockfrag_thesis.sections", "sections.j2")

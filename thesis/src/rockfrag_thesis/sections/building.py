@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from rockfrag.figure_style import COLUMN_WIDTH, OKABE_ITO, one_panel
 from rockfrag.report.figures import GREY, MARKERS
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Results, Section, figure_of, section_of
-from rockfrag.report.wording import shortened
+from rockfrag.report.part import Results, Section
+from rockfrag.sentences import shortened
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.settings import settings_of
 
@@ -42,18 +42,18 @@ def building(results: Results) -> Section | None:
     variants = means.drop_duplicates("label")
     doubtful = int((~variants["credible"].astype(bool)).sum())
     figures = [
-        figure_of(
-            says.building_figure(AXIS_NAMES[axis]),
+        says.figure(
             f"building_{axis}",
             partial(floor_amplitudes, means, axis),
+            AXIS_NAMES[axis],
+            of="building",
         )
         for axis in dict.fromkeys(varied["axis"])
     ]
     table = table_html(span, _COLUMNS, "Range of the mean amplitude on each floor.")
     known = span[span["min"] > 0].to_dict("records")
     most = max(known, key=lambda row: float(row["max"] / row["min"]), default=None)
-    text = says.building(most, doubtful, len(variants))
-    return section_of(text, "building", [*figures, table])
+    return says.section("building", [*figures, table], most, doubtful, len(variants))
 
 
 def floor_amplitudes(means: pd.DataFrame, axis: str) -> Figure:

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from rockfrag import figure_style as style
 from rockfrag.report import figures as amplitudes
 from rockfrag.report.findings import mean_sentence, objects_compared, ratio_of
-from rockfrag.report.part import Results, Section, figure_of, section_of
+from rockfrag.report.part import Results, Section
 from rockfrag.report.sections.amplitudes import comparisons
 from rockfrag_thesis.sections import says
 
@@ -29,16 +29,15 @@ def counterparts(results: Results) -> Section | None:
         for level in dict.fromkeys(tests[scope])
     ]
     whole = ratio("whole", "all")
-    slenderness = says.slenderness_figure(found[0].said if found else words)
     draw = partial(slenderness_figure, tests, means, results.slenderness)
     scatter = partial(amplitudes.pedestal_scatter, tests, whole)
     by_floor = partial(amplitudes.amplitudes_by, "floor", tests, means)
     parts = [
-        figure_of(slenderness, "figure_4_1", draw),
-        figure_of(says.scatter_figure(whole, levels), "figure_4_3", scatter),
-        figure_of(says.floors_figure(words), "figure_4_6", by_floor),
+        says.figure("figure_4_1", draw, found[0].said if found else words, of="slenderness"),
+        says.figure("figure_4_3", scatter, whole, levels, of="scatter"),
+        says.figure("figure_4_6", by_floor, words, of="floors"),
     ]
-    return section_of(says.counterparts(found, words), "counterparts", parts)
+    return says.section("counterparts", parts, found, words)
 
 
 def slenderness_figure(

@@ -15,9 +15,9 @@ from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, one_panel
 from rockfrag.report.answer import could_change, questions, rests_on, study_answer
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import FRICTION, ratio_text
-from rockfrag.report.part import Answer, Finding, Results, figure_of, finding_of
+from rockfrag.report.part import Answer, Finding, Results
 from rockfrag.report.sections.pedestal import NONE, ratio_axis
-from rockfrag.report.wording import counted, listed, one_line, said
+from rockfrag.sentences import counted, listed
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag_thesis.hypotheses.floors import FIFTH, FLOORS, GROUND, THIRD
 from rockfrag_thesis.hypotheses.hypothesis import Finding as Evidence
@@ -59,11 +59,12 @@ def thesis_answer(results: Results) -> Answer:
         settings_of(study).wanted_percent,
     )
     here = effects[effects["definition"] == DEFINITION]
-    text = says.answer_figure(found[0].headline, has_thesis_floors(here))
     return Answer(
         asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
         sentences=found,
-        figure=figure_of(text, "answer", lambda: ratios_figure(here)),
+        figure=says.figure(
+            "answer", lambda: ratios_figure(here), found[0].headline, has_thesis_floors(here)
+        ),
         advice=_advice(results),
         rests_on=rests_on(results),
         could_change=could_change(results),
@@ -78,7 +79,7 @@ def _advice(results: Results) -> list[str]:
         return []
     with_pedestal = validity[validity["pedestal"] == "P"]
     beyond = int((~(with_pedestal["friction_demand"].astype(float) <= FRICTION)).sum())
-    return said(says.advice(beyond, len(with_pedestal), FRICTION))
+    return says("advice", beyond, len(with_pedestal), FRICTION)
 
 
 def first_page(
@@ -113,7 +114,7 @@ def _reported(effects: pd.DataFrame, hypotheses: pd.DataFrame) -> Finding:
     all_pairs = effects[effects["scope"] == "whole"].to_dict("records")
     whole = ratio_text(all_pairs[0]) if all_pairs else "no pair with both amplitudes known"
     if not set(FLOORS) <= set(on_floors):
-        return finding_of(says.other_floors(whole))
+        return says.finding("other_floors", whole)
     ratios = [f"{floor} {ratio_text(on_floors[floor])}" for floor in FLOORS]
     pairs = sum(int(on_floors[floor]["pairs"]) for floor in FLOORS)
     stated = {GROUND: (35, "a gain"), THIRD: (36, "a decrease"), FIFTH: (37, "a decrease")}
@@ -124,7 +125,7 @@ def _reported(effects: pd.DataFrame, hypotheses: pd.DataFrame) -> Finding:
     # the pedestal matters so little where C12 is true of all landings
     lifts_briefly = hypotheses["estimate"].to_dict().get(12) == 1
     about = (found[35].name, ratios, whole, pairs, outcomes, lifts_briefly)
-    return finding_of(says.reported(*about))
+    return says.finding("reported", *about)
 
 
 def _what_would(sensitivity_analysis: pd.DataFrame) -> Finding:
@@ -137,7 +138,7 @@ def _what_would(sensitivity_analysis: pd.DataFrame) -> Finding:
     largest = simulated.loc[size.nlargest(MOST_NAMED).index].to_dict("records")
     strong = [f"{row['name']} ({ratio_text(row)})" for row in largest]
     about = (patterned, len(table), len(changing), len(simulated), DISCOVERY_RATE)
-    return finding_of(says.what_would(*about, strong, computed["ratio"]))
+    return says.finding("what_would", *about, strong, computed["ratio"])
 
 
 def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]) -> str:
@@ -156,7 +157,7 @@ def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]
             mechanism = mechanism_name(row) + _ACTING[row["acts_on"]]
             nearest.append(f"the closest {what} gives {both} ({mechanism})")
     reached = int(inverse_problem["reaches"].sum())
-    return one_line(says.inverted(reached, len(inverse_problem), goals(wanted_percent), nearest))
+    return says.line("inverted", reached, len(inverse_problem), goals(wanted_percent), nearest)
 
 
 _ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above the ground alone"}

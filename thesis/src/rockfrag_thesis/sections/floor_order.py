@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, GREEN, ORANGE, WIDEST, one_panel
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Results, Section, figure_of, section_of
+from rockfrag.report.part import FigureSpec, Results, Section
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag_thesis.floor_order import HYPOTHESES, TIE
 from rockfrag_thesis.sections import says
@@ -52,17 +52,18 @@ def floor_order_found(results: Results) -> Section | None:
     shown = ((100 * span).round(1) + 0.0).reset_index()
     shown["axis"] = shown["axis"].map(AXIS_NAMES)
     ends = (100 * float(value) for value in (span["min"].min(), span["max"].max()))
-    section = section_of(says.floor_order(holds, len(order), *ends), "sensitivity", [])
+    section = says.section("sensitivity", [], holds, len(order), *ends, of="floor_order")
     parts: list[Markup | FigureSpec] = []
     if len(order):
         draw = partial(
             floor_order, results.table("building_sensitivity/means"), margins, DEFINITION
         )
-        parts.append(figure_of(says.order_figure(section.message), "sensitivity_order", draw))
+        parts.append(says.figure("sensitivity_order", draw, section.message))
     for axis in dict.fromkeys(varied["axis"]):
         draw = partial(floor_hypotheses, margins, axis, DEFINITION)
-        text = says.margins_figure(AXIS_NAMES[axis])
-        parts.append(figure_of(text, f"sensitivity_hypotheses_{axis}", draw))
+        parts.append(
+            says.figure(f"sensitivity_hypotheses_{axis}", draw, AXIS_NAMES[axis], of="margins")
+        )
     parts.append(table_html(shown, _COLUMNS, "Range of the margins of each hypothesis."))
     return replace(section, parts=parts)
 

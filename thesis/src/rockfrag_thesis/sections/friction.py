@@ -7,8 +7,7 @@ import pandas as pd
 
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, table_html
-from rockfrag.report.part import Results, Section, section_of
-from rockfrag.report.wording import said
+from rockfrag.report.part import Results, Section
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.sections.inverse_problem import PLACES, goals
 from rockfrag_thesis.settings import settings_of
@@ -67,7 +66,7 @@ def friction(results: Results) -> Section | None:
     caption = "Ratio of overturning amplitudes with/without pedestal by friction."
     table = table_html(pd.DataFrame(rows), _COLUMNS, caption)
     words = _found(tables, settings_of(results.study).wanted_percent)
-    return section_of(says.friction(words), "friction", [table])
+    return says.section("friction", [table], words)
 
 
 def _by_pair(effects: pd.DataFrame, place: str) -> Means:
@@ -100,4 +99,4 @@ def _found(tables: Mapping[str, Means], wanted: Mapping[str, float]) -> list[str
     named = [f"{_coefficient(first)} and {_coefficient(other)}" for first, other in signs]
     usual = sum(map(_is_ordinary, signs))
     about = (ordinary, *ORDINARY, goal, len(tables["ground"]), named, len(clear), usual)
-    return said(says.friction_found(*about))
+    return says("friction_found", *about)

@@ -8,8 +8,8 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.report.page import Column, Row, table_html
-from rockfrag.report.part import Results, Section, section_of
-from rockfrag.report.wording import probability
+from rockfrag.report.part import Results, Section
+from rockfrag.sentences import probability
 from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
 from rockfrag_thesis.sections import says
 
@@ -69,7 +69,7 @@ def outcomes_section(
     outcomes = hypotheses["outcome"].value_counts()
     counts = [f"{count} {SHORT.get(str(outcome), outcome)}" for outcome, count in outcomes.items()]
     inferred, tested = int(hypotheses["p"].notna().sum()), hypotheses["number"].nunique()
-    return section_of(says.hypotheses(title, tested, counts, inferred), anchor, parts)
+    return says.section(anchor, parts, title, tested, counts, inferred, of="hypotheses")
 
 
 def spelled(words: str) -> str:

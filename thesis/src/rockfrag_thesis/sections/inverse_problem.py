@@ -6,8 +6,8 @@ from collections.abc import Mapping
 import pandas as pd
 
 from rockfrag.report.page import Column, Row, by_row, table_html
-from rockfrag.report.part import Results, Section, section_of
-from rockfrag.report.wording import said, sentence
+from rockfrag.report.part import Results, Section
+from rockfrag.sentences import sentence
 from rockfrag.study.study import Study
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.sections.sensitivity_analysis import FACTORS, asks_sensitivity_analysis
@@ -57,8 +57,8 @@ def inverse_problem(results: Results) -> Section | None:
     left_out = {"ground", "above"} - set(wanted)
     columns = [column for column in _COLUMNS if column.name not in left_out]
     caption = f"The closest of {len(table)} mechanisms (single perturbed parameters and pairs)."
-    text = says.inverse_problem(inverse_problem_words(readable, wanted))
-    return section_of(text, "inverse_problem", [table_html(shown, columns, caption)])
+    words = inverse_problem_words(readable, wanted)
+    return says.section("inverse_problem", [table_html(shown, columns, caption)], words)
 
 
 PLACES = {"ground": "on the ground", "above": "above it"}
@@ -86,7 +86,7 @@ def inverse_problem_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> l
         f"{row['factor_1']} {PLACES[row['acts_on']]} alone" for row in can if row not in everywhere
     ]
     excluded, several = int((~table["plausible"]).sum()), len(wanted) > 1
-    return said(says.mechanisms(asked, alone, pairs, several, local, excluded, len(table)))
+    return says("mechanisms", asked, alone, pairs, several, local, excluded, len(table))
 
 
 def mechanism_name(row: Row) -> str:

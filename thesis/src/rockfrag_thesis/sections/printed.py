@@ -7,8 +7,8 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.report.page import framed
-from rockfrag.report.part import Results, Section, section_of
-from rockfrag.report.wording import number
+from rockfrag.report.part import Results, Section
+from rockfrag.sentences import number
 from rockfrag_thesis.sections import says
 
 _CAPTIONS = {
@@ -28,8 +28,7 @@ def printed(results: Results) -> Section:
     wrong = known[~known["agrees"].astype(bool)]
     names = list(wrong["name"] + " " + wrong["quantity"])
     parts = [comparison_html(results.table(name), caption) for name, caption in _CAPTIONS.items()]
-    text = says.printed(len(known) - len(wrong), len(known), names)
-    return section_of(text, "printed", parts)
+    return says.section("printed", parts, len(known) - len(wrong), len(known), names)
 
 
 def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:

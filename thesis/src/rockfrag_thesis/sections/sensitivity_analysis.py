@@ -16,9 +16,9 @@ from rockfrag.pedestal.cluster_means import benjamini_hochberg
 from rockfrag.report.figures import BAND, GREY, MARKERS
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, estimated, table_html
-from rockfrag.report.part import Results, Section, figure_of, section_of
+from rockfrag.report.part import Results, Section
 from rockfrag.report.sections.pedestal import NONE, ratio_axis
-from rockfrag.report.wording import has_interval, one_line, probability, sentence, shortened
+from rockfrag.sentences import has_interval, probability, sentence, shortened
 from rockfrag.study.study import Study
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.sensitivity_analysis.simulated import LAW_OF, REFERENCE
@@ -141,7 +141,7 @@ def sensitivity_analysis(results: Results) -> Section | None:
     named = whole.assign(name=whole["name"].map(sentence))
     simulated = whole[~whole["arithmetic"]]
     small = int(simulated["ratio"].between(*NONE).sum())
-    message = one_line(says.within(small, len(simulated)))
+    message = says.line("within", small, len(simulated))
     tables = [
         table_html(
             named[~named["arithmetic"]],
@@ -154,12 +154,11 @@ def sensitivity_analysis(results: Results) -> Section | None:
             "Ratio over all floors, errors of arithmetic (not simulated).",
         ),
     ]
-    text = says.sensitivity_figure(message, len(simulated), MOST_DRAWN)
     draw = partial(sensitivity_analysis_figure, effects, list(results.study.floors))
-    figures = [figure_of(text, "sensitivity_analysis", draw)] if len(simulated) else []
+    figure = says.figure("sensitivity_analysis", draw, message, len(simulated), MOST_DRAWN)
+    figures = [figure] if len(simulated) else []
     about = (*_beyond(simulated), adjusted_words(simulated), len(whole) - len(simulated))
-    text = says.sensitivity_analysis(message, *about)
-    return section_of(text, "sensitivity_analysis", [*figures, *tables])
+    return says.section("sensitivity_analysis", [*figures, *tables], message, *about)
 
 
 def adjusted_words(simulated: pd.DataFrame, level: float = 0.05) -> str:
@@ -167,7 +166,7 @@ def adjusted_words(simulated: pd.DataFrame, level: float = 0.05) -> str:
     tests = len(simulated)
     outside = int(((simulated["lower"] > 1) | (simulated["upper"] < 1)).sum())
     left = int((simulated["p_adjusted"] < level).sum())
-    return one_line(says.adjusted(outside, left, tests, level))
+    return says.line("adjusted", outside, left, tests, level)
 
 
 def _beyond(simulated: pd.DataFrame) -> list[list[str]]:

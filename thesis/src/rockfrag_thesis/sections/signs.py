@@ -3,8 +3,8 @@
 import pandas as pd
 
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Results, Section, section_of
-from rockfrag.report.wording import sentence
+from rockfrag.report.part import Results, Section
+from rockfrag.sentences import sentence
 from rockfrag_thesis.hypotheses.floors import FLOORS, GROUND
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.sections.sensitivity_analysis import asks_sensitivity_analysis, perturbations
@@ -49,5 +49,4 @@ def signs(results: Results) -> Section | None:
         **{kind: table[kind].map({True: "yes", False: "no"}) for kind in kinds},
     )
     caption = "Mean ratio of amplitudes with/without pedestal by floor."
-    text = says.signs(named, clear, len(table))
-    return section_of(text, "signs", [table_html(shown, _COLUMNS, caption)])
+    return says.section("signs", [table_html(shown, _COLUMNS, caption)], named, clear, len(table))
