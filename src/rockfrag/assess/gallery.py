@@ -20,9 +20,8 @@ from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, one_panel, plain_log
 from rockfrag.files import write_table, write_text
-from rockfrag.report.page import Column, table_html, text_table
+from rockfrag.report.page import Column, Page, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import page_text
 from rockfrag.sentences import number
 
 MOST_DRAWN = 40  # Objects of which the correlation is drawn: those that add most
@@ -64,7 +63,7 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
     numbers = says.figure("numbers", lambda: numbers_figure(joint, years), years)
     losses = says.figure("losses", lambda: losses_figure(joint, years), years)
     count = len(inventory.found)
-    return page_text(
+    return Page(
         title=f"What {count} objects risk together",
         lead=f"{count} objects, shaken by the same {len(inventory.motions.ground)} motions.",
         answer=Answer(
@@ -81,7 +80,7 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
             _correlation(joint),
         ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
-    )
+    ).html()
 
 
 def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:

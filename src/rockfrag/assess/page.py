@@ -27,9 +27,8 @@ from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.live.space import Standing, live_in_space
-from rockfrag.report.page import text_table
+from rockfrag.report.page import Page, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import page_text
 from rockfrag.sentences import PART, number, sentence
 
 MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
@@ -50,27 +49,19 @@ def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
 
 def page_of(found: Assessment) -> str:
     """Return the page as HTML, which loads nothing from outside."""
-    return page_text(
-        _answer(found),
-        [
-            _mitigations(found),
-            _arrangements(found),
-            _sure(found),
-            page_says.section("assumed", [], found),
-            *([_rules(found)] if found.rules else []),
-            _levels(found),
-            _motions(found),
-            _glossary(found),
-        ],
-        title=headline(found),
-        lead=page_says.line("lead", found),
-        provenance={
-            "Program": f"rockfrag {version('rockfrag')}",
-            "Motions": found.motions.words,
-            "Hazard": found.hazard.source if found.hazard else "none",
-        },
-        live=live_of(found),
-    )
+    sections = [
+        *(_mitigations(found), _arrangements(found), _sure(found)),
+        page_says.section("assumed", [], found),
+        *([_rules(found)] if found.rules else []),
+        *(_levels(found), _motions(found), _glossary(found)),
+    ]
+    provenance = {
+        "Program": f"rockfrag {version('rockfrag')}",
+        "Motions": found.motions.words,
+        "Hazard": found.hazard.source if found.hazard else "none",
+    }
+    lead, answer, live = page_says.line("lead", found), _answer(found), live_of(found)
+    return Page(headline(found), lead, answer, sections, provenance, live=live).html()
 
 
 def _answer(found: Assessment) -> Answer:

@@ -5,15 +5,17 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from types import MappingProxyType
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED
+from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
+from rockfrag.processes import in_processes
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.glossary import terms_used
 from rockfrag.report.part import Answer, FigureSpec, Section
@@ -194,56 +196,76 @@ def inline_svg(svg: str, name: str, alt: str) -> Markup:
     ).format(box[1] if box else "", alt, Markup(inner.strip()))
 
 
-def _texts(answer: Answer, sections: Sequence[Section]) -> str:
-    """All that a page says in words, its tables included."""
-    words = [sentence.said for sentence in answer.sentences]
-    words += [*answer.advice, *answer.rests_on, *answer.could_change]
-    for section in sections:
-        words += [section.title, section.message, *section.paragraphs]
-        words += [
-            part.caption if isinstance(part, FigureSpec) else part.striptags()
-            for part in section.parts
-        ]
-    return " ".join(words)
+def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int = 1) -> dict[str, Picture]:
+    """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
+    # what processes hand over should be small: the name of a file, and not what is in it
+    files = in_processes(lambda spec: _drawn(spec, folder), specs, processes)
+    return {
+        spec.name: Picture(spec, file.read_text(encoding="utf-8"))
+        for spec, file in zip(specs, files, strict=True)
+    }
 
 
-def render(
-    *,
-    title: str,
-    lead: str,
-    answer: Answer,
-    sections: Sequence[Section] = (),
-    pictures: Mapping[str, Picture] = MappingProxyType({}),
-    provenance: Mapping[str, str] = MappingProxyType({}),
-    basis: str = "simulated",
-    live: Markup = _NOTHING,
-) -> str:
-    """Return the page as HTML; the same arguments give the same bytes.
+def _drawn(spec: FigureSpec, folder: Path) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    svg = folder / f"{spec.name}.svg"
+    save_figure(spec.draw(), svg, folder / f"{spec.name}.png")
+    return svg
 
-    ``sections`` are chapters in order, which open on demand, ``pictures`` the figures of the answer and of all
-    sections by name, and ``provenance`` what a reader needs to get the same results again. The page warns of a
-    ``basis`` that is ``simulated`` and not ``measured``. For ``live`` see
-    :func:`rockfrag.report.live.live_kernel`.
-    """
-    environment = TEMPLATES.overlay(
-        trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
-    )
-    return environment.get_template("report.html.j2").render(
-        title=title,
-        lead=lead,
-        answer=answer,
-        sections=sections,
-        pictures=pictures,
-        glossary=terms_used(_texts(answer, sections)),
-        provenance=provenance,
-        basis=basis,
-        live=live,
-        style=Markup(
-            environment.get_template("style.css").render()
-            + (environment.get_template("live.css").render() if live else "")
-        ),
-        script=Markup(environment.get_template("page.js").render()),
-    )
+
+@dataclass(frozen=True)
+class Page:
+    """A page; the same contents give the same bytes."""
+
+    title: str
+    lead: str
+    answer: Answer
+    sections: Sequence[Section] = ()  # Chapters in order, which open on demand
+    provenance: Mapping[str, str] = field(default_factory=dict)  # What gives the same results again
+    basis: str = "simulated"  # The page warns of what is not ``measured``
+    live: Markup = _NOTHING  # See :func:`rockfrag.report.live.live_kernel`
+
+    @property
+    def figures(self) -> dict[str, tuple[FigureSpec, str]]:
+        """Figures by name, each with the title of the chapter where it stands first."""
+        parts: list[tuple[Any, str]] = [(self.answer.figure, "The answer")]
+        parts += [(part, section.title) for section in self.sections for part in section.parts]
+        found: dict[str, tuple[FigureSpec, str]] = {}
+        for part, title in parts:
+            if isinstance(part, FigureSpec):
+                found.setdefault(part.name, (part, title))
+        return found
+
+    @property
+    def words(self) -> str:
+        """All that the page says in words, its tables included."""
+        answer = self.answer
+        words = [sentence.said for sentence in answer.sentences]
+        words += [*answer.advice, *answer.rests_on, *answer.could_change]
+        for section in self.sections:
+            words += [section.title, section.message, *section.paragraphs]
+            words += [
+                part.caption if isinstance(part, FigureSpec) else part.striptags()
+                for part in section.parts
+            ]
+        return " ".join(words)
+
+    def html(self, folder: Path | None = None, processes: int = 1) -> str:
+        """Return the page, which loads nothing from outside; its figures are drawn into a folder, if any."""
+        environment = TEMPLATES.overlay(
+            trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
+        )
+        style = ["style.css", "live.css"] if self.live else ["style.css"]
+        with TemporaryDirectory(prefix="rockfrag.") as scratch:
+            specs = [spec for spec, _ in self.figures.values()]
+            pictures = draw_all(specs, folder or Path(scratch), processes)
+        return environment.get_template("report.html.j2").render(
+            vars(self),
+            pictures=pictures,
+            glossary=terms_used(self.words),
+            style=Markup("".join(environment.get_template(name).render() for name in style)),
+            script=Markup(environment.get_template("page.js").render()),
+        )
 
 
 def scripts_of(*names: str) -> Markup:

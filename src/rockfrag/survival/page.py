@@ -13,9 +13,8 @@ from matplotlib.figure import Figure
 
 from rockfrag import figure_style as style
 from rockfrag.files import file_name, write_table, write_text
-from rockfrag.report.page import Column, table_html, text_table
+from rockfrag.report.page import Column, Page, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import page_text
 from rockfrag.sentences import Macros, number
 from rockfrag.survival.answer import LIMITS, RULED_OUT, Constrained
 from rockfrag.survival.reweight import DECISION_RATE
@@ -121,7 +120,7 @@ def page_of(found: Constrained) -> str:
     objects = table_html(found.by_object, OBJECTS, caption)
     caption = "One assumption at a time taken otherwise."
     assumed = table_html(found.sensitivity, ASSUMED, caption)
-    return page_text(
+    return Page(
         title=title,
         lead=lead,
         answer=Answer(
@@ -137,7 +136,7 @@ def page_of(found: Constrained) -> str:
             Section("hangs-on", "What it hangs on", hangs_on, LIMITS, [assumed]),
         ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
-    )
+    ).html()
 
 
 def _hazard(found: Constrained) -> Markup:
