@@ -9,8 +9,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockfrag.report.glossary import TERMS, terms_used
-from rockfrag.report.page import Page, cell
+from rockfrag.report.page import TERMS, Page, cell, terms_used
 from rockfrag.report.part import Answer, Finding, Says, Section
 from rockfrag.sentences import (
     agree,

@@ -17,7 +17,7 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import ON_POINTS, Objects, stretched_block
-from rockfrag.assess.outcomes import make_intensity_levels, outcomes_of_all
+from rockfrag.assess.outcomes import make_intensity_levels
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import amplitude_target, fraction_target
@@ -132,7 +132,7 @@ def world(seed: int, kind: str, outside: float = 1.0) -> tuple[bool, ...]:
         seed, kind, outside, random, {"pgv": f"{random.uniform(20, 60):.1f} cm/s"}
     )
     everything = _set(np.arange(EARTHQUAKES)).at(place)
-    (outcomes,) = outcomes_of_all([truth], everything, make_intensity_levels(everything, PGV))
+    (outcomes,) = make_intensity_levels(everything, PGV).outcomes_of([truth])
     found = assess_with(request, _seen(request, random), brief=True)
     truths = (
         (found.amplitudes[0.5], amplitude_target(0.5).value(outcomes) * np.exp(error)),
@@ -185,7 +185,7 @@ def world_of_both(seed: int) -> bool:
     near = np.argsort(abs(logs - ratio), kind="stable")[:OF_A_SITE]
     chosen = tuple(everything.ground[i] for i in near)
     motions = MotionSet(chosen, chosen, (), "synthetic motions").at(place)
-    (outcomes,) = outcomes_of_all([truth], motions, make_intensity_levels(motions, PGA))
+    (outcomes,) = make_intensity_levels(motions, PGA).outcomes_of([truth])
     fraction = fraction_target(request.level.value / np.exp(error)).value(outcomes)
     found = assess_with(request, _seen(request, random), brief=True).fraction
     return bool(found.lower <= fraction <= found.upper)
