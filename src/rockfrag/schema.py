@@ -12,16 +12,15 @@ import reprlib
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Any
-
-from jsonschema import Draft202012Validator, ValidationError
-from jsonschema.validators import extend
+from typing import TYPE_CHECKING, Any
 
 from rockfrag.errors import InputError, errors_of
 from rockfrag.keywords import renamed
-from rockfrag.plugins import plugins
 from rockfrag.tabular import unfit_character
 from rockfrag.units import other_names, quantity, split_name
+
+if TYPE_CHECKING:
+    from jsonschema import Draft202012Validator, ValidationError
 
 LARGEST_WHOLE = 2**53  # up to here each whole number is exact as a float, and fits into every file
 _Schema = Mapping[str, Any]
@@ -33,6 +32,8 @@ def read_schema(name: str) -> dict[str, Any]:
     text = files("rockfrag").joinpath("schema.json").read_text(encoding="utf-8")
     schema: dict[str, Any] = json.loads(text)["$defs"][name]
     if name == "study":
+        from rockfrag.plugins import plugins
+
         for plugin in plugins().values():
             schema["properties"] |= plugin.schema
     return schema
@@ -70,7 +71,11 @@ def checked(content: object, name: str, where: str) -> dict[str, Any]:
 
 
 @cache
-def _validator(name: str) -> Draft202012Validator:
+def _validator(name: str) -> "Draft202012Validator":
+    # loaded where a file is checked: the command line only reads its options from a schema
+    from jsonschema import Draft202012Validator
+    from jsonschema.validators import extend
+
     # JSON knows no difference between 1 and 1.0; a seed or a count is a whole number
     types = Draft202012Validator.TYPE_CHECKER.redefine(
         "integer", lambda checker, value: isinstance(value, int) and not isinstance(value, bool)
@@ -97,8 +102,10 @@ def registered(kind: str) -> tuple[str, ...]:
 
 def _registered(
     validator: Any, kind: str, value: Any, schema: _Schema
-) -> Iterator[ValidationError]:
+) -> "Iterator[ValidationError]":
     """Keyword ``registered``: the name of something that is declared."""
+    from jsonschema import ValidationError
+
     if value not in registered(kind):
         yield ValidationError(f"one of {', '.join(registered(kind))}")
 
@@ -161,7 +168,7 @@ def _places(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
             yield from _places(inner, f"{key}[{i}]")
 
 
-def _importance(error: ValidationError) -> tuple[int, list[str]]:
+def _importance(error: "ValidationError") -> tuple[int, list[str]]:
     if _broken_rule(error):
         # keys that are right by themselves; the first rule in the order of the schema
         return 3, []
@@ -170,7 +177,7 @@ def _importance(error: ValidationError) -> tuple[int, list[str]]:
     return rank, [str(part) for part in error.absolute_path]
 
 
-def _broken_rule(error: ValidationError) -> str:
+def _broken_rule(error: "ValidationError") -> str:
     """Sentence on a rule between keys that is broken; empty where one value is wrong."""
     schema: _Schema = error.schema if isinstance(error.schema, Mapping) else {}
     if "says" not in schema:
@@ -184,7 +191,7 @@ def _broken_rule(error: ValidationError) -> str:
 _WHOLES = ("type", "const", "enum", "registered")  # keywords on a value as a whole
 
 
-def _deepest(error: ValidationError) -> ValidationError:
+def _deepest(error: "ValidationError") -> "ValidationError":
     """Of the alternatives of a oneOf, take the errors of the one whose type was meant."""
     if error.validator not in ("oneOf", "anyOf") or not error.context or _broken_rule(error):
         return error
@@ -192,7 +199,7 @@ def _deepest(error: ValidationError) -> ValidationError:
     return _deepest(meant[0]) if meant else error
 
 
-def _key(error: ValidationError, last: str | None = None) -> str:
+def _key(error: "ValidationError", last: str | None = None) -> str:
     key = ""
     for part in error.absolute_path:
         key = f"{key}[{part}]" if isinstance(part, int) else _joined(key, str(part))
@@ -201,7 +208,7 @@ def _key(error: ValidationError, last: str | None = None) -> str:
     return key or "(top level)"
 
 
-def _sentence(error: ValidationError) -> str:
+def _sentence(error: "ValidationError") -> str:
     if broken := _broken_rule(error):
         return broken
     schema: _Schema = error.schema if isinstance(error.schema, Mapping) else {}

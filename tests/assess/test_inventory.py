@@ -12,7 +12,7 @@ from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.inventory import assess_inventory, inventory_table, joint_lines
 from rockfrag.assess.mitigations import mitigations_of, on_plate, with_ballast
 from rockfrag.assess.motions import motion_set
-from rockfrag.assess.outcomes import make_intensity_levels, on_pad, outcomes_of_all
+from rockfrag.assess.outcomes import make_intensity_levels
 from rockfrag.assess.request import make_request
 from rockfrag.cli import main
 from rockfrag.errors import InputError
@@ -122,14 +122,14 @@ def test_a_pad_lets_it_slide_instead(motions):
     """Friction below b/h never lets it rock; a rough pad is as none."""
     request = make_request({"width": "35 cm", "height": "1.2 m"}, "test")
     few = replace(motions, ground=motions.ground[:8], base=motions.base[:8], pairs=())
-    intensity_levels = make_intensity_levels(few, PGA, count=8)
-    smooth, slip = on_pad(request.objects, 0.15, few, intensity_levels)
-    assert not smooth.overturned[intensity_levels.allowed].any()
-    assert slip[intensity_levels.allowed].max() > 0.01
-    rough, _ = on_pad(request.objects, 2.0, few, intensity_levels)
-    (bare,) = outcomes_of_all([request.objects], few, intensity_levels)
+    shaking = make_intensity_levels(few, PGA, count=8)
+    smooth, slip = shaking.on_pad(request.objects, 0.15)
+    assert not smooth.overturned[shaking.allowed].any()
+    assert slip[shaking.allowed].max() > 0.01
+    rough, _ = shaking.on_pad(request.objects, 2.0)
+    (bare,) = shaking.outcomes_of([request.objects])
     differs = rough.overturned != bare.overturned
-    assert differs[intensity_levels.allowed].mean() < 0.05
+    assert differs[shaking.allowed].mean() < 0.05
 
 
 def test_pad_and_gallery_from_the_command_line(own_records, tmp_path, capsys):

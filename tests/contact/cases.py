@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from rockfrag.engines.contract import Case, Request
-from rockfrag.engines.planar.cases import contact_run, response_of
+from rockfrag.engines.planar.cases import ContactRun
 from rockfrag.engines.response import Response
 from rockfrag.rocking.inputs import ground_motion
 from rockfrag.rocking.options import system_of
@@ -55,7 +55,7 @@ def run(system, motion, dt=DT, *, vertical=None, theta=None, closing=1e-6, g=GRA
     if theta:
         system = replace(system, start=Start(tuple(theta), (0.0,) * system.count))
     case = Case(system, ground_motion(motion, dt, vertical), request=Request(g=g))
-    return response_of(contact_run(case, closing))
+    return ContactRun(case, closing).response()
 
 
 def simulate_with_friction(body, motion, dt, *, friction, omega0=None, **more) -> Response:

@@ -9,9 +9,10 @@ import pytest
 
 from rockfrag.engines.contract import Case
 from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.planar.cases import contact_run
+from rockfrag.engines.kernels.single import Shaking
+from rockfrag.engines.planar.cases import ContactRun
 from rockfrag.engines.planar.impact import kinetic_energy, strike
-from rockfrag.engines.planar.integrate import Book, Shaking, contact_event_columns, integrate
+from rockfrag.engines.planar.integrate import contact_event_columns, integrate
 from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory
 from rockfrag.engines.planar.solve import look_at
 from rockfrag.engines.steps import STEP, step_count
@@ -182,16 +183,16 @@ def stops_by_momentum(system: System, motion: np.ndarray, when: float) -> bool:
     A couple multiplies what that leaves, which of squat bodies may be nothing.
     """
     i, n = int(when / DT), 3 * system.count
-    history = contact_run(Case(system, ground_motion(motion, DT)), 1e-6).history
+    history = ContactRun(Case(system, ground_motion(motion, DT)), 1e-6).history
     mus = [contact.friction for contact in system.contacts]
     p = system_record(with_contacts(system, mus, [ImpactLaw()] * system.count), G)
     start = np.zeros((2, 3 * MOST))
     start[:, :n] = history[i, : 2 * n].reshape(2, n)
-    book = Book(np.zeros((0, 0)), np.zeros((9, contact_event_columns(system.count))))
+    found = np.zeros((9, contact_event_columns(system.count)))
     substeps = int(step_count(system, DT, G, STEP))
-    shaking = Shaking(motion[i : i + 2], np.zeros(0), DT, 1.0, substeps, 0)
-    _, count, _ = integrate(p, shaking, start, 1e-6, book, working_memory())
-    at = book.contact_events[:count]
+    shaking = Shaking(motion[i : i + 2], np.zeros(0), 1.0, DT, substeps, 0)
+    _, count = integrate(p, shaking, start, 1e-6, np.zeros((0, 0)), found, working_memory())
+    at = found[:count]
     return bool((at[np.abs(at[:, 0] + i * DT - when) < 1e-9, 5] == 0).any())
 
 

@@ -8,7 +8,7 @@ import pytest
 from rockfrag import Block
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import AMPLITUDES_G, Standing, live_in_space
-from rockfrag.report.page import render
+from rockfrag.report.page import Page
 from rockfrag.report.part import Answer
 from rockfrag.system.system import turned_about_vertical
 
@@ -97,7 +97,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("live") / "space.html"
     element = live_in_space(bodies, [waves()])
     answer = Answer(asked="Does it topple?", sentences=[])
-    path.write_text(render(title="In space", lead="Live.", answer=answer, live=element))
+    path.write_text(Page("In space", "Live.", answer, live=element).html())
     assert len(element) < 130_000
     return path
 

@@ -1,6 +1,7 @@
 """Behind one contract the first engine that supports a wish answers; at every door, or a sentence says why not."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -208,3 +209,15 @@ def test_what_a_spectrum_takes_works():
             options["restitution"] = 0.8
         found = rocking_spectrum(Motion(SHAKE, DT), [2.0], 0.25, **options)
         assert found.rotation.shape == (1, 1)
+
+
+def test_a_history_of_what_slides_takes_the_steps_that_are_asked_for():
+    wave = motion(x=4.0 * np.sin(0.1 * np.arange(150)))
+    system = BLOCK.system()
+    system = replace(system, contacts=(Contact(friction=Friction(0.2, 0.2)),))
+
+    def slip(step):
+        case = contract.Case(system, wave, 1.0, Request(history=True, step=step))
+        return contract.engine_for(system, wave, case.request).history(case).slip
+
+    assert 0 < np.abs(slip(0.01) - slip(0.1)).max() < 1e-6

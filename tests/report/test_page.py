@@ -12,9 +12,8 @@ from matplotlib.figure import Figure
 from rockfrag.errors import InputError
 from rockfrag.figure_style import figure_style, new_figure
 from rockfrag.report import pdf
-from rockfrag.report.page import MOST_TABLE_ROWS, Column, render, table_html
+from rockfrag.report.page import MOST_TABLE_ROWS, Column, Page, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import draw_all
 
 
 def drawing() -> Figure:
@@ -35,13 +34,9 @@ def page(folder: Path) -> str:
     columns = [Column("name", "Name"), Column("value", "Value [g]", 2)]
     specs = [spec("one"), spec("two")]
     parts = [table_html(table, columns, "A"), *specs]
-    return render(
-        title="T",
-        lead="lead",
-        answer=Answer("Does it fall?", [Finding("Found", "this")], specs[0]),
-        sections=[Section("one", "One", "Message <s>", ["Text & more"], [parts[0], specs[1]])],
-        pictures=draw_all(specs, folder),
-    )
+    answer = Answer("Does it fall?", [Finding("Found", "this")], specs[0])
+    section = Section("one", "One", "Message <s>", ["Text & more"], [parts[0], specs[1]])
+    return Page("T", "lead", answer, [section]).html(folder)
 
 
 def test_the_page_loads_nothing_from_outside_and_escapes_what_users_name(tmp_path):

@@ -9,8 +9,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockfrag.report.glossary import TERMS, terms_used
-from rockfrag.report.page import cell, render
+from rockfrag.report.page import TERMS, Page, cell, terms_used
 from rockfrag.report.part import Answer, Finding, Says, Section
 from rockfrag.sentences import (
     agree,
@@ -167,7 +166,7 @@ def test_no_report_speaks_in_riddles(riddle):
 def page(said: str = "AvgSA predicts best.", **answer) -> str:
     given = {"asked": "How strong?", "sentences": [Finding("It holds", "So far", "P/NP 1.01")]}
     section = Section("a", "A", "Short.", [said])
-    return render(title="T", lead="lead", answer=Answer(**given | answer), sections=[section])
+    return Page("T", "lead", Answer(**given | answer), [section]).html()
 
 
 def test_numbers_wait_behind_a_click():

@@ -5,7 +5,7 @@ import re
 import pandas as pd
 import pytest
 
-from rockfrag.report.page import render
+from rockfrag.report.page import Page
 from rockfrag.report.part import Answer, Finding
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.stages.pedestal import pedestal_tables
@@ -225,7 +225,7 @@ def test_the_first_page_stands_open_in_few_words(effects, hypotheses):
     sensitivity_analysis = departing({"GF": 1.2, "F3": 1.0, "F5": 1.0})
     wanted = {"ground": 10.0, "above": -5.0}
     found = first_page(effects, hypotheses, sensitivity_analysis, inverted(), wanted)
-    page = render(title="T", lead="lead", answer=Answer("Does a pedestal help?", found))
+    page = Page("T", "lead", Answer("Does a pedestal help?", found)).html()
     answer = page[page.index('<section id="answer"') : page.index("</section>")]
     assert len(open_words(answer)) <= MOST_WORDS - 40
     assert "[" not in " ".join(open_words(answer))

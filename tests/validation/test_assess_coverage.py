@@ -17,13 +17,13 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import ON_POINTS, Objects, stretched_block
-from rockfrag.assess.outcomes import make_intensity_levels, outcomes_of_all
+from rockfrag.assess.outcomes import make_intensity_levels
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import amplitude_target, fraction_target
 from rockfrag.assess.scan import make_scan
 from rockfrag.assess.sources import SPACE
-from rockfrag.campaign.standing import Unknown, body_of, unknowns_of, ways_to_stand
+from rockfrag.campaign.standing import Quantile, body_of, unknowns_of, ways_to_stand
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions import scale_to_pga
 from rockfrag.motions.processing import bandpass
@@ -90,10 +90,10 @@ def _told_of(shape: Shape, objects: Objects) -> Objects:
     )
 
 
-def _stretched(unknown: Unknown, factor: float) -> Unknown:
-    """The same unknown with quantiles that lie further from the middle, in logarithm."""
-    middle = unknown.quantile(0.5)
-    return replace(unknown, quantile=lambda u: middle * (unknown.quantile(u) / middle) ** factor)
+def _stretched(quantile: Quantile, factor: float) -> Quantile:
+    """The same distribution with quantiles that lie further from the middle, in logarithm."""
+    middle = quantile(0.5)
+    return lambda u: middle * (quantile(u) / middle) ** factor
 
 
 def _true_scan(shape: Shape, told: Objects, seed: int, outside: float) -> Objects:
@@ -132,7 +132,7 @@ def world(seed: int, kind: str, outside: float = 1.0) -> tuple[bool, ...]:
         seed, kind, outside, random, {"pgv": f"{random.uniform(20, 60):.1f} cm/s"}
     )
     everything = _set(np.arange(EARTHQUAKES)).at(place)
-    (outcomes,) = outcomes_of_all([truth], everything, make_intensity_levels(everything, PGV))
+    (outcomes,) = make_intensity_levels(everything, PGV).outcomes_of([truth])
     found = assess_with(request, _seen(request, random), brief=True)
     truths = (
         (found.amplitudes[0.5], amplitude_target(0.5).value(outcomes) * np.exp(error)),
@@ -185,7 +185,7 @@ def world_of_both(seed: int) -> bool:
     near = np.argsort(abs(logs - ratio), kind="stable")[:OF_A_SITE]
     chosen = tuple(everything.ground[i] for i in near)
     motions = MotionSet(chosen, chosen, (), "synthetic motions").at(place)
-    (outcomes,) = outcomes_of_all([truth], motions, make_intensity_levels(motions, PGA))
+    (outcomes,) = make_intensity_levels(motions, PGA).outcomes_of([truth])
     fraction = fraction_target(request.level.value / np.exp(error)).value(outcomes)
     found = assess_with(request, _seen(request, random), brief=True).fraction
     return bool(found.lower <= fraction <= found.upper)

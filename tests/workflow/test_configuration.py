@@ -15,7 +15,7 @@ from rockfrag.building.floors import vertical_motions
 from rockfrag.building.settings import make_building
 from rockfrag.cli import main
 from rockfrag.errors import InputError
-from rockfrag.motions.directions import motion_and_vertical
+from rockfrag.motions.directions import motions_of_row
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
@@ -334,8 +334,8 @@ def with_vertical(study_folder: Path) -> Path:
 
 def test_the_vertical_component_is_the_catalogues_with_the_factor_of_its_row(with_vertical: Path):
     row = read_catalogue(with_vertical / "motions.csv").to_dict("records")[0]
-    motion, up = motion_and_vertical(
-        {str(k): v for k, v in row.items()}, with_vertical, with_vertical
+    motion, up = motions_of_row(
+        {str(k): v for k, v in row.items()}, with_vertical, with_vertical, vertical=True
     )
     raw = np.loadtxt(with_vertical / "up0.txt")[:, 1]
     assert motion.name == up.name == "motion 0"

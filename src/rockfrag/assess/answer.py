@@ -15,7 +15,7 @@ from rockfrag.assess.conversion import Conversion, find_conversion
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
 from rockfrag.assess.mitigations import Mitigation, compare, mitigations_of
 from rockfrag.assess.motions import MotionSet, motion_set
-from rockfrag.assess.outcomes import Directions, IntensityLevels, ObjectOutcomes
+from rockfrag.assess.outcomes import Directions, ObjectOutcomes, Shaking
 from rockfrag.assess.request import Level, Request
 from rockfrag.assess.risk import Estimate
 from rockfrag.assess.rules import RuleCheck, check_rules
@@ -108,14 +108,12 @@ class Assessment:
 class Plan:
     """Under which levels of which motions objects are compared; the same for all in one place."""
 
-    motions: MotionSet  # The motions
-    fewer: MotionSet  # Those under which changes are compared
     # The hazard that counts, and that of PGV beside it if there is one
     curves: tuple[HazardCurve, ...]
     level: Level | None  # Level of shaking at the site
-    # Levels of both sets
-    intensity_levels: IntensityLevels
-    fewer_intensity_levels: IntensityLevels
+    # The motions at their levels, and those under which changes are compared
+    shaking: Shaking
+    fewer: Shaking
     brief: bool  # Whether directions, and ways to stand other than its own, are left out
     # Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space
     compares_few: bool
@@ -181,9 +179,9 @@ def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
     fewer = fewer.thinned() if coarse else fewer
     count = outcomes.FEW_LEVELS if few else outcomes.LEVELS
     least = outcomes.FEWEST_LEVELS if coarse else outcomes.FEW_LEVELS
-    levels = outcomes.make_intensity_levels(motions, measure, asked, count)
-    fewer_levels = outcomes.make_intensity_levels(fewer, measure, asked, least)
-    return Plan(motions, fewer, curves, level, levels, fewer_levels, brief, compares_few=few)
+    shaking = outcomes.make_intensity_levels(motions, measure, asked, count)
+    compared = outcomes.make_intensity_levels(fewer, measure, asked, least)
+    return Plan(curves, level, shaking, compared, brief, compares_few=few)
 
 
 def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
@@ -192,10 +190,8 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     ways = [
         dict(list(object_.arrangements.items())[: 1 if plan.brief else None]) for object_ in objects
     ]
-    under = (plan.motions, plan.intensity_levels)
-    arrangements = outcomes.outcomes_of_each(objects, ways, *under)
-    if plan.compares_few:
-        under = (plan.fewer, plan.fewer_intensity_levels)
+    arrangements = plan.shaking.outcomes_of_each(objects, ways)
+    under = plan.fewer if plan.compares_few else plan.shaking
     changes, alike = [], []
     for object_, bodies in zip(objects, ways, strict=True):
         tried = mitigations_of(object_)
@@ -204,42 +200,41 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
         first = {"": object_.body} if plan.compares_few else {}
         changes.append(first | {name: tried[name] for name in tried if name not in known})
         alike.append(known)
-    compared = outcomes.outcomes_of_each(objects, changes, *under)
+    compared = under.outcomes_of_each(objects, changes)
     moved = _moved(requests, plan)
     found = []
     each = zip(objects, arrangements, compared, moved, alike, strict=True)
     for object_, way, change, sides, known in each:
         before = change.pop("") if plan.compares_few else next(iter(way.values()))
         if object_.pad_friction is not None:
-            on_it, slip = outcomes.on_pad(object_, object_.pad_friction, *under)
-            change[_pad_words(object_.pad_friction, slip, plan, under[1])] = on_it
+            on_it, slip = under.on_pad(object_, object_.pad_friction)
+            change[_pad_words(object_.pad_friction, slip, plan.level, under)] = on_it
         planar = None
-        if plan.motions.both and not plan.brief:
-            flat = [object_.in_plane()]
-            (planar,) = outcomes.outcomes_of_all(flat, plan.motions, plan.intensity_levels)
+        if plan.shaking.motions.both and not plan.brief:
+            (planar,) = plan.shaking.outcomes_of([object_.in_plane()])
         found.append(Shaken(way, sides, before, planar, change, known))
     return found
 
 
 def _pad_words(
-    friction: float, slip: NDArray[np.float64], plan: Plan, intensity_levels: IntensityLevels
+    friction: float, slip: NDArray[np.float64], level: Level | None, shaking: Shaking
 ) -> str:
     """The pad, and how far the object slides on it at the site's level."""
     words = f"a pad of friction {friction:g}"
-    if plan.level is None:
+    if level is None:
         return words
-    at = intensity_levels.place_of(plan.level.value)
-    here = slip[intensity_levels.allowed[:, at], at]
+    at = shaking.place_of(level.value)
+    here = slip[shaking.allowed[:, at], at]
     if not here.size:
         return words
-    return f"{words}, on which it slides up to {100 * here.max():.3g} cm at {plan.level.words},"
+    return f"{words}, on which it slides up to {100 * here.max():.3g} cm at {level.words},"
 
 
 def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     """Say what follows from what the motions of a plan do to an object."""
-    objects, motions, level = request.objects, plan.motions, plan.level
+    objects, motions, level = request.objects, plan.shaking.motions, plan.level
     hazard = plan.hazard
-    measure = plan.intensity_levels.measure
+    measure = plan.shaking.measure
     counted = next(iter(shaken.arrangements.values()))
     target = risk.fraction_target(level.value) if level else risk.amplitude_target(0.5)
     if hazard:
@@ -281,6 +276,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         rocking = replace(rocking, lower=limits[0], upper=limits[1])
     at = level.value if level else None
     brief = plan.brief
+    here = None if brief or at is None else outcomes.scaled_to(np.array([at]), motions, measure)
     return Assessment(
         request=request,
         motions=motions,
@@ -307,11 +303,9 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         effects=tuple(change.turned(target.value) for change in moved),
         rules=() if brief or motions.both else tuple(check_rules(objects, motions, counted)),
         sliding_fraction=math.nan
-        if brief or at is None or objects.friction is None
-        else outcomes.fraction_with_sliding(objects, motions, measure, at),
-        flip_rate=math.nan
-        if brief or at is None or not motions.both
-        else outcomes.flip_rate(objects, motions, measure, at),
+        if here is None or objects.friction is None
+        else here.fraction_with_sliding(objects),
+        flip_rate=math.nan if here is None or not motions.both else here.flip_rate(objects),
     )
 
 
@@ -319,7 +313,7 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
     """Outcomes under motions with the velocity of the site."""
     if conversion is None or conversion.known is None:
         return shaken
-    few = conversion.of(plan.fewer)
+    few = conversion.of(plan.fewer.motions)
     compared = few if plan.compares_few else conversion
     return replace(
         shaken,
@@ -350,8 +344,8 @@ def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
         return (*others, *velocity)
 
     def scatter(curve: HazardCurve) -> float:
-        intensity_levels = outcomes.make_intensity_levels(motions, curve.measure)
-        (found,) = outcomes.outcomes_of_all([request.objects], motions, intensity_levels)
+        shaking = outcomes.make_intensity_levels(motions, curve.measure)
+        (found,) = shaking.outcomes_of([request.objects])
         first = found.first_levels()
         known = np.log(first[np.isfinite(first)])
         return float(known.std()) if known.size > 1 else math.inf
@@ -396,15 +390,11 @@ def _moved(requests: Sequence[Request], plan: Plan) -> list[list[Moved[ObjectOut
     """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
     variants = [request.objects.variants() for request in requests]
     sides = [side for each in variants for variant in each for side in variant.sides]
-    shaken = iter(outcomes.outcomes_of_all(sides, plan.fewer, plan.fewer_intensity_levels))
+    shaken = iter(plan.fewer.outcomes_of(sides))
     found = [[variant.turned(lambda _: next(shaken)) for variant in each] for each in variants]
     objects = [request.objects for request in requests]
     for moved in requests[0].place.variants():
-        floors = moved.turned(
-            lambda place: outcomes.outcomes_of_all(
-                objects, plan.fewer.at(place), plan.fewer_intensity_levels
-            )
-        )
+        floors = moved.turned(lambda place: plan.fewer.at(place).outcomes_of(objects))
         for each, lower, upper in zip(found, *floors.sides, strict=True):
             each.append(Moved(moved.name, moved.spread, lower, upper))
     return found

@@ -5,15 +5,18 @@ import re
 import shutil
 import sys
 import textwrap
-from collections.abc import Callable, Collection, Mapping, Sequence
-from itertools import chain
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from rockfrag.errors import InputError, errors_of
+from rockfrag.schema import read_schema
+from rockfrag.units import convert, quantity
 
 _INVENTORY = ".csv"
-_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+_UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|s)$")
 
 
 class _Once(argparse.Action):
@@ -76,91 +79,47 @@ class _Option(NamedTuple):
     """An option that tells of an object, its place or its motions."""
 
     name: str
-    metavar: str | tuple[str, str] | None  # word for its value
-    help: str
-    reads: Mapping[str, Any] = {}  # how a parser reads it, if not as one word
-    key: str = ""  # of ``statue.yaml``, if it is called otherwise there
-
-    def add_to(self, group: Any) -> None:
-        """Add it to a group of options, to be given once."""
-        shown = {"metavar": self.metavar} if self.metavar else {}
-        group.add_argument(
-            f"--{self.name}", help=self.help, **{"action": _Once, **shown, **self.reads}
-        )
+    key: str  # of ``statue.yaml``, whose unit may stand beside the number
+    group: str
+    arguments: Mapping[str, Any]  # how a parser shows and reads it
 
 
-_NUMBER = {"type": float}
-_SEVERAL = {"nargs": "+"}
-_OPTIONS = {
-    "the object": (
-        _Option("name", "NAME", "what it is called"),
-        _Option("width", "SIZE", "of the base, or the diameter of a round one"),
-        _Option("height", "SIZE", "of the whole"),
-        _Option("depth", "SIZE", "of the base, as the width if not given"),
-        _Option("mass", "MASS", "of stone if not given"),
-        _Option("cg-height", "SIZE", "of the centre of gravity, half the height if not given"),
-        _Option("cg-offset", "SIZE", "of the centre of gravity from the middle of the base"),
-        _Option("facing", "DEGREES", "direction of the width, or of a mesh's x axis, from the first component "
-            "of each record", _NUMBER, key="facing_deg"),
-        _Option("base-spread", "FRACTION", "by how much corners of the base lie elsewhere in space, over its "
-            "size, and it is turned: 0.001", _NUMBER),
-        _Option("round", None, "the base is round", {"action": "store_true"}),
-        _Option("mesh", "FILE", "mesh of it (OBJ, PLY, STL, GLB) instead", key="mesh.file"),
-        _Option("up", None, "axis of the mesh that points up", {"choices": ["x", "y", "z"]}, key="mesh.up"),
-        _Option("hull", None, "take the convex hull of a mesh that is not closed",
-            {"action": "store_true"}, key="mesh.hull"),
-        _Option("mesh-unit", None, "unit of the mesh, m if not given",
-            {"choices": list(_METRES)}, key="mesh.metres_per_unit"),
-        _Option("contact-tolerance", "SIZE", "height up to which points of the mesh carry, 2mm if not given",
-            key="mesh.contact_tolerance"),
-        _Option("restitution", None, "measured ratio of angular velocities", _NUMBER),
-        _Option("friction", None, "coefficient: it may slide at that level", _NUMBER),
-        _Option("pad-friction", None, "coefficient of a pad under the object, tried as a mitigation", _NUMBER),
-        _Option("pedestal", "SIZE", "width, height and, if known, mass of the block it stands on; again for "
-            "what that stands on", {"nargs": "+", "action": "append"}),
-    ),
-    "the place": (
-        _Option("floor", "LEVEL/STOREYS", "such as 2/4, with 0 for the ground: level 2 is the second floor in "
-            "Europe, the third in America"),
-        _Option("building", "FILE", "YAML file with the building"),
-        _Option("storey-height", "SIZE", "of every storey, or of each from below; 3.5m if not given",
-            _SEVERAL, key="building.storey_height"),
-        _Option("period", "TIME", "first period of the building: 0.4s", key="building.first_period_s"),
-        _Option("material", None, "of the building: its period follows from that and its height",
-            {"choices": ["masonry", "concrete", "steel"]}, key="building.material"),
-        _Option("pga", "ACCELERATION", "of the ground: 0.25g"),
-        _Option("pgv", "VELOCITY", "of the ground, alone or beside the other: 20cm/s"),
-        _Option("sa", ("PERIOD", "ACCELERATION"), "0.3s 0.6g", {"nargs": 2}),
-        _Option("return-period", "YEARS", "of that level"),
-        _Option("hazard", "FILE", "hazard curves of the site", _SEVERAL),
-        _Option("years", None, "time of the probability, 50 if not given", _NUMBER),
-        _Option("magnitude", None, "of the earthquakes that matter most there", _NUMBER),
-        _Option("distance", "KM", "of these earthquakes", _NUMBER, key="distance_km"),
-    ),
-    "the motions": (
-        _Option("record", "PATH", "own records, folders or catalogues instead of the default set",
-            _SEVERAL, key="records.paths"),
-        _Option("on-floor", None, "they were recorded on that floor",
-            {"action": "store_true"}, key="records.recorded_on"),
-        _Option("unit", "UNIT", "unit of records that do not state theirs: g, m/s2, cm/s2", key="records.unit"),
-        _Option("dt", "S", "sampling interval of records without one", _NUMBER, key="records.dt_s"),
-    ),
-}  # fmt: skip
-"""Options by their group."""
+def _options(keys: Mapping[str, Any], above: str = "") -> Iterator[_Option]:
+    """Yield the options of the keys of a schema, and of the keys in them."""
+    for key, about in keys.items():
+        if told := about.get("option"):
+            plain = _UNITS.sub("", key)
+            reads = told.get("reads", _reading(about)) | {"help": told["help"]}
+            if word := told.get("metavar"):
+                reads["metavar"] = tuple(word) if isinstance(word, list) else word
+            whole = above + (plain if about.get("quantity") else key)
+            yield _Option(told.get("name", plain.replace("_", "-")), whole, told["group"], reads)
+        known = read_schema("known_of_building") if key == "building" else about
+        yield from _options(known.get("properties", {}), f"{key}.")
 
 
-def _all_options() -> list[tuple[str, str]]:
-    """Name of each option and its key of ``statue.yaml``."""
-    options = chain.from_iterable(_OPTIONS.values())
-    return [(option.name, option.key or option.name.replace("-", "_")) for option in options]
+def _reading(about: Mapping[str, Any]) -> dict[str, Any]:
+    """How a parser reads the value of a key."""
+    kind = about.get("type")
+    if kind == "boolean":
+        return {"action": "store_true"}
+    if kind == "array":
+        return {"nargs": about["minItems"] if about["minItems"] == about.get("maxItems") else "+"}
+    if "enum" in about:
+        return {"choices": about["enum"]}
+    return {"type": float} if kind == "number" and not about.get("quantity") else {}
+
+
+def _all_options() -> list[_Option]:
+    return list(_options(read_schema("statue")["properties"]))
 
 
 def add_request_options(parser: argparse.ArgumentParser) -> None:
     """Add what an object, its place and its motions are told by."""
-    for title, options in _OPTIONS.items():
+    for title, options in groupby(_all_options(), key=attrgetter("group")):
         group = parser.add_argument_group(title)
         for option in options:
-            option.add_to(group)
+            group.add_argument(f"--{option.name}", **{"action": _Once, **option.arguments})
     group.add_argument(
         "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
     )
@@ -249,7 +208,7 @@ def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:
 def settings_of(options: argparse.Namespace) -> dict[str, Any]:
     """What the command line says, with the keys of ``statue.yaml``; options without effect are refused."""
     found: dict[str, Any] = {}
-    for name, key in _all_options():
+    for name, key, *_ in _all_options():
         value = getattr(options, name.replace("-", "_"))
         if value is None or value is False:
             continue
@@ -275,14 +234,12 @@ _WHOLE = {"mesh": "mesh", "records": "record"}
 
 
 def _seconds(period: str) -> float:
-    from rockfrag.units import quantity
-
     with errors_of("--period"):
         return quantity(period, "s", None)
 
 
 _MADE: dict[str, Callable[[Any], Any]] = {
-    "mesh-unit": _METRES.__getitem__,
+    "mesh-unit": lambda unit: convert(1.0, unit, "m"),
     "on-floor": lambda _: "floor",
     "period": _seconds,
 }
@@ -328,7 +285,6 @@ def _rules(options: argparse.Namespace) -> int:
     return 0
 
 
-_UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|s)$")
 _KEY = re.compile(
     r"(?<!\w)key ([a-z_][a-z0-9_.]*[a-z0-9_])(\[\d+\](?:\.[a-z_]+)?)?(: true\b|: (?=[xyz]\b))?"
 )
@@ -339,7 +295,7 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
 
     All of them are taken as given if None.
     """
-    names = {_UNITS.sub("", key): name for name, key in _all_options()}
+    names = {_UNITS.sub("", key): name for name, key, *_ in _all_options()}
     names |= {"records": "record", "building.storey_heights": "storey-height"}
 
     def option(found: re.Match[str]) -> str:

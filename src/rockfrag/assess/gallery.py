@@ -20,10 +20,8 @@ from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, one_panel, plain_log
 from rockfrag.files import write_table, write_text
-from rockfrag.report.page import Column, table_html, text_table
+from rockfrag.report.page import Column, Page, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import page_text
-from rockfrag.sentences import number
 
 MOST_DRAWN = 40  # Objects of which the correlation is drawn: those that add most
 
@@ -33,6 +31,13 @@ RANKING = (
     Column("probability", "Topples (90 % interval)", numeric=True),
     Column("contribution", "Part of the mean [%]", 1),
     Column("change", "What helps most"),
+)
+NUMBERS = (
+    Column("at_least", "At least so many", 0),
+    Column("rate", "Earthquakes that topple so many [1/year]", numeric=True),
+    Column("probability", "Probability [%]", 2),
+    Column("probability_lower", "Lower limit [%]", 2),
+    Column("probability_upper", "Upper limit [%]", 2),
 )
 
 
@@ -64,7 +69,7 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
     numbers = says.figure("numbers", lambda: numbers_figure(joint, years), years)
     losses = says.figure("losses", lambda: losses_figure(joint, years), years)
     count = len(inventory.found)
-    return page_text(
+    return Page(
         title=f"What {count} objects risk together",
         lead=f"{count} objects, shaken by the same {len(inventory.motions.ground)} motions.",
         answer=Answer(
@@ -81,7 +86,7 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
             _correlation(joint),
         ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
-    )
+    ).html()
 
 
 def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
@@ -104,14 +109,11 @@ def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
     numbers = joint.numbers
     most, rate = int(numbers["at_least"].max()), numbers["annual_rate"].iloc[-1]
     years = float(f"{1 / rate:.2g}") if rate else 0.0
-    shown = {
-        "At least so many": [number(n, 0) for n in numbers["at_least"]],
-        "Earthquakes that topple so many [1/year]": [f"{x:.2g}" for x in numbers["annual_rate"]],
-        "Probability [%]": [number(100 * p, 2) for p in numbers["probability"]],
-        "Lower limit [%]": [number(100 * p, 2) for p in numbers["probability_lower"]],
-        "Upper limit [%]": [number(100 * p, 2) for p in numbers["probability_upper"]],
-    }
-    table = text_table(shown, "How many objects topple in one earthquake.", list(shown))
+    chances = [f"probability{end}" for end in ("", "_lower", "_upper")]
+    shown = numbers.assign(
+        rate=numbers["annual_rate"].map("{:.2g}".format), **100 * numbers[chances]
+    )
+    table = table_html(shown, NUMBERS, "How many objects topple in one earthquake.")
     return gallery_says.section("numbers", [table, *figures], most, years)
 
 

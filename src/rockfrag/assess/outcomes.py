@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rockfrag.arrays import Floats
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
+from rockfrag.assess.place import Place
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.fragility.empirical import wilson_interval
@@ -63,29 +64,22 @@ def believable_scales(base: Sequence[Motion]) -> Floats:
     return np.array([[(1 - 1e-9) * LARGEST_PEAK / motion.pga] for motion in base])
 
 
-def _factors(
-    intensity_levels: IntensityLevels, shaking: Sequence[Motion], rows: Any = slice(None)
-) -> Floats:
-    """Factors on what shakes, by the rows of the levels; at rest what is not counted, shape (rows, levels)."""
-    scales = np.minimum(intensity_levels.scales[rows], believable_scales(shaking))
-    return np.where(intensity_levels.allowed[rows], scales, AT_REST)
-
-
 def make_intensity_levels(
     motions: MotionSet, measure: IntensityMeasure, asked: Sequence[float] = (), count: int = LEVELS
-) -> IntensityLevels:
+) -> "Shaking":
     """Make ``count`` levels for a set of motions, and those that are asked for exactly, in the measure's unit."""
     middle = motions.median(measure)
     levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
     levels = np.unique(np.append(levels, list(asked)))
-    found = _scaled_to(levels, motions, measure)
+    found = scaled_to(levels, motions, measure)
     return replace(found, allowed=found.allowed & (found.scales <= believable_scales(motions.base)))
 
 
-def _scaled_to(levels: Floats, motions: MotionSet, measure: IntensityMeasure) -> IntensityLevels:
+def scaled_to(levels: Floats, motions: MotionSet, measure: IntensityMeasure) -> "Shaking":
+    """Levels in the measure's unit, shape (levels,), as far as motions may be scaled to them."""
     scales = levels / motions.values(measure)[:, np.newaxis]
     allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
-    return IntensityLevels(measure, levels, scales, allowed)
+    return Shaking(measure, levels, scales, allowed, motions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,101 +160,162 @@ class ObjectOutcomes:
         )
 
 
-def outcomes_of_all(
-    objects: Sequence[Objects], motions: MotionSet, intensity_levels: IntensityLevels
-) -> list[ObjectOutcomes]:
-    """Shake several objects as they stand by every motion at every level."""
-    bodies = [{"": object_.body} for object_ in objects]
-    return [found[""] for found in outcomes_of_each(objects, bodies, motions, intensity_levels)]
+@dataclass(frozen=True, eq=False)
+class Shaking(IntensityLevels):
+    """Motions at all their levels, by which objects are shaken."""
 
+    motions: MotionSet
 
-def outcomes_of_each(
-    objects: Sequence[Objects],
-    bodies: Sequence[Mapping[str, Body]],
-    motions: MotionSet,
-    intensity_levels: IntensityLevels,
-) -> list[dict[str, ObjectOutcomes]]:
-    """Shake several bodies of each of several objects by every motion at every level."""
-    every = [
-        (object_, body)
-        for object_, named in zip(objects, bodies, strict=True)
-        for body in named.values()
-    ]
-    most = max(1, MOST_TESTS // intensity_levels.scales.size)
-    parts = (every[i : i + most] for i in range(0, len(every), most))
-    each = iter([found for part in parts for found in _shaken(part, motions, intensity_levels)])
-    return [{name: next(each) for name in named} for named in bodies]
+    def at(self, place: Place) -> "Shaking":
+        """The same levels of the ground at another place."""
+        return replace(self, motions=self.motions.at(place))
 
+    def outcomes_of(self, objects: Sequence[Objects]) -> list[ObjectOutcomes]:
+        """Shake several objects as they stand by every motion at every level."""
+        bodies = [{"": object_.body} for object_ in objects]
+        return [found[""] for found in self.outcomes_of_each(objects, bodies)]
 
-def _shaken(
-    every: Sequence[tuple[Objects, Body]], motions: MotionSet, intensity_levels: IntensityLevels
-) -> list[ObjectOutcomes]:
-    """Outcomes in space where both components act and a body is known in space, in a plane elsewhere.
+    def outcomes_of_each(
+        self, objects: Sequence[Objects], bodies: Sequence[Mapping[str, Body]]
+    ) -> list[dict[str, ObjectOutcomes]]:
+        """Shake several bodies of each of several objects by every motion at every level."""
+        every = [
+            (object_, body)
+            for object_, named in zip(objects, bodies, strict=True)
+            for body in named.values()
+        ]
+        most = max(1, MOST_TESTS // self.scales.size)
+        parts = (every[i : i + most] for i in range(0, len(every), most))
+        each = iter([found for part in parts for found in self._shaken(part)])
+        return [{name: next(each) for name in named} for named in bodies]
 
-    On a pedestal that may lift both answers count: what falls in either falls. Planar answers of round bases are
-    those of the worst direction of each record.
-    """
-    systems = [object_.system_of(body) for object_, body in every]
-    if not motions.both:
-        return _shaken_in_plane(systems, motions, intensity_levels)
-    solids = [object_.solid(body) for object_, body in every]
-    planar = [i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1]
-    worst = any(object_.round for object_, _ in every)
-    shake = _shaken_from_all_sides if worst else _shaken_in_plane
-    fallen = shake([systems[i] for i in planar], motions, intensity_levels)
-    found = dict(zip(planar, fallen, strict=True))
-    for i, body in enumerate(solids):
-        if body is not None:
-            solid = in_space(body, motions, intensity_levels, every[i][0].base_spread)
-            found[i] = found[i].joined(solid) if i in found else solid
-    return [found[i] for i in range(len(systems))]
+    def _shaken(self, every: Sequence[tuple[Objects, Body]]) -> list[ObjectOutcomes]:
+        """Outcomes in space where both components act and a body is known in space, in a plane elsewhere.
 
+        On a pedestal that may lift both answers count: what falls in either falls. Planar answers of round bases
+        are those of the worst direction of each record.
+        """
+        systems = [object_.system_of(body) for object_, body in every]
+        if not self.motions.both:
+            return self._in_plane(systems)
+        solids = [object_.solid(body) for object_, body in every]
+        planar = [i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1]
+        worst = any(object_.round for object_, _ in every)
+        shake = self._from_all_sides if worst else self._in_plane
+        found = dict(zip(planar, shake([systems[i] for i in planar]), strict=True))
+        for i, body in enumerate(solids):
+            if body is not None:
+                solid = self.in_space(body, every[i][0].base_spread)
+                found[i] = found[i].joined(solid) if i in found else solid
+        return [found[i] for i in range(len(systems))]
 
-def _shaken_in_plane(
-    systems: Sequence[System], motions: MotionSet, intensity_levels: IntensityLevels
-) -> list[ObjectOutcomes]:
-    """Outcomes of planar bodies, by components as recorded."""
-    if not systems:
-        return []
-    result, light = simulated(systems, motions.base, _factors(intensity_levels, motions.base))
-    return _each_system(_reached(result), motions, intensity_levels, light)
+    def _in_plane(self, systems: Sequence[System]) -> list[ObjectOutcomes]:
+        """Outcomes of planar bodies, by components as recorded."""
+        if not systems:
+            return []
+        base = self.motions.base
+        return self._each_system(*simulated(systems, base, self._factors(base)))
 
+    def _from_all_sides(self, systems: Sequence[System]) -> list[ObjectOutcomes]:
+        """Outcomes by records, each in its worst direction; both components get that of the record.
 
-def _reached(result: Outcomes) -> dict[str, NDArray[np.bool_]]:
-    """Which cases of bodies that cannot slide reached each limit state, shape (systems, motions, levels)."""
-    return {state.name: state.reached(result) for state in limit_states() if not state.slipping}
+        Half a turn is enough: a round body falls either way alike.
+        """
+        if not systems:
+            return []
+        motions = self.motions
+        records = [motions.turned(record, range(0, 180, STEP_DEG)) for record in motions.records]
+        shaking = [motion for turned in records for motion in turned]
+        of_row = np.repeat(np.arange(len(records)), [len(turned) for turned in records])
+        first = [record[0] for record in motions.records]
+        result, light = simulated(systems, shaking, self._factors(shaking, np.take(first, of_row)))
+        return self._each_system(result, light, of_row)
 
+    def in_space(self, body: System, spread: float) -> ObjectOutcomes:
+        """Outcomes of a body in space under both components of each record, where it has two.
 
-def _each_system(
-    states: Mapping[str, NDArray[np.bool_]],
-    motions: MotionSet,
-    intensity_levels: IntensityLevels,
-    light: Sequence[bool] = (False,),
-    place: Any = slice(None),
-) -> list[ObjectOutcomes]:
-    """Outcomes of each system, of the row of the states in whose place each motion stands."""
-    found = []
-    for i, may_fly in enumerate(light):
-        own = {name: cases[i][place] for name, cases in states.items()}
-        fell, rocked = own.pop(OVERTURNS), own.pop(ROCKS)
-        earthquakes = motions.earthquakes
-        found.append(ObjectOutcomes(intensity_levels, fell, rocked, earthquakes, may_fly, own))
-    return found
+        Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
+        """
+        motions = self.motions
+        shaking = [GroundMotion(*motions.components(record)) for record in motions.records]
+        first = [record[0] for record in motions.records]
+        scales = self._factors([motions.base[i] for i in first], first)
+        result = run_in_space([body], shaking, scales, spread=spread, threads=checked_threads(None))
+        return self._each_system(result, of_row=np.arange(len(first)))[0]
 
+    def on_pad(self, objects: Objects, friction: float) -> tuple[ObjectOutcomes, Floats]:
+        """Outcomes of the object on a pad on which it may slide, and how far it does [m], (motions, levels)."""
+        system = objects.system_of(objects.body)
+        *below, pad = system.contacts
+        pad = replace(pad, friction=Friction(friction, friction))
+        system = replace(system, contacts=(*below, pad))
+        result = overturns(system, self.motions.base, scales=self._factors(self.motions.base))
+        return self._each_system(result)[0], result.peak_slip[0, ..., -1]
 
-def flip_rate(
-    objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float
-) -> float:
-    """Fraction of the outcomes in space at a level that a perturbation turns round [-]; NaN without any."""
-    solid = objects.solid(objects.body)
-    here = _scaled_to(np.array([level]), motions, measure)
-    if solid is None or not here.allowed.any():
-        return math.nan
-    first, other = (
-        in_space(solid, motions, here, objects.base_spread + more).overturned[here.allowed]
-        for more in (0.0, PERTURBATION)
-    )
-    return float((first != other).mean())
+    def _factors(self, shaking: Sequence[Motion], rows: Any = slice(None)) -> Floats:
+        """Factors on what shakes, by the rows of the levels; at rest what is not counted, shape (rows, levels)."""
+        scales = np.minimum(self.scales[rows], believable_scales(shaking))
+        return np.where(self.allowed[rows], scales, AT_REST)
+
+    def _each_system(
+        self,
+        result: Outcomes,
+        light: Sequence[bool] = (False,),
+        of_row: NDArray[np.intp] | None = None,
+    ) -> list[ObjectOutcomes]:
+        """Outcomes of each system, which cannot slide.
+
+        ``of_row`` is the record of each motion of the result where several may be of one; what happens to a record
+        from one side happens.
+        """
+        states = {
+            state.name: state.reached(result) for state in limit_states() if not state.slipping
+        }
+        if of_row is not None:
+            place = self.motions.place_of_record()
+            starts = np.flatnonzero(np.diff(of_row, prepend=-1))
+            states = {
+                name: np.logical_or.reduceat(cases, starts, axis=1)[:, place]
+                for name, cases in states.items()
+            }
+        found = []
+        for i, may_fly in enumerate(light):
+            own = {name: cases[i] for name, cases in states.items()}
+            fell, rocked = own.pop(OVERTURNS), own.pop(ROCKS)
+            earthquakes = self.motions.earthquakes
+            found.append(ObjectOutcomes(self, fell, rocked, earthquakes, may_fly, own))
+        return found
+
+    def flip_rate(self, objects: Objects) -> float:
+        """Fraction of the outcomes in space that a perturbation turns round [-]; NaN without any."""
+        solid = objects.solid(objects.body)
+        if solid is None or not self.allowed.any():
+            return math.nan
+        first, other = (
+            self.in_space(solid, objects.base_spread + more).overturned[self.allowed]
+            for more in (0.0, PERTURBATION)
+        )
+        return float((first != other).mean())
+
+    def fraction_with_sliding(self, objects: Objects) -> float:
+        """Fraction of the motions at the first level that topple the object as it stands if it may slide.
+
+        Simulations with friction take some hundred times as long as those without, so that they are made for one
+        level.
+        """
+        motions, allowed = self.motions, self.allowed[:, 0]
+        solid = objects.solid(objects.body) if motions.both else None
+        if solid is not None and objects.friction is not None and not objects.pedestals:
+            friction = Friction(objects.friction, objects.friction)
+            slides = replace(solid, contacts=(replace(solid.contacts[0], friction=friction),))
+            return float(self.in_space(slides, objects.base_spread).fractions()[0])
+        fallen = overturns(
+            objects.system_of(objects.body),
+            motions.base,
+            scales=np.minimum(self.scales[:, :1], believable_scales(motions.base)),
+            friction=objects.friction,
+        ).overturned[0, :, 0]
+        return float(fallen[allowed].mean())
 
 
 def fraction_at(level: float, levels: Floats, fractions: Floats, shift: float = 0.0) -> float:
@@ -288,82 +343,6 @@ def simulated(
             warnings.warn_explicit(warning.message, warning.category, *about)
     # more than two bodies leave the ground where they have to
     return result, [light and system.count < 3 for system in systems]
-
-
-def in_space(
-    body: System, motions: MotionSet, intensity_levels: IntensityLevels, spread: float
-) -> ObjectOutcomes:
-    """Outcomes of a body in space under both components of each record, where it has two.
-
-    Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
-    """
-    shaking = [GroundMotion(*motions.components(record)) for record in motions.records]
-    first = [record[0] for record in motions.records]
-    scales = _factors(intensity_levels, [motions.base[i] for i in first], first)
-    result = run_in_space([body], shaking, scales, spread=spread, threads=checked_threads(None))
-    place = motions.place_of_record()
-    return _each_system(_reached(result), motions, intensity_levels, place=place)[0]
-
-
-def _shaken_from_all_sides(
-    systems: Sequence[System], motions: MotionSet, intensity_levels: IntensityLevels
-) -> list[ObjectOutcomes]:
-    """Outcomes by records, each in its worst direction; both components get that of the record.
-
-    Half a turn is enough: a round body falls either way alike.
-    """
-    if not systems:
-        return []
-    records = [motions.turned(record, range(0, 180, STEP_DEG)) for record in motions.records]
-    shaking = [motion for turned in records for motion in turned]
-    of_row = np.repeat(np.arange(len(records)), [len(turned) for turned in records])
-    first = [record[0] for record in motions.records]
-    scales = _factors(intensity_levels, shaking, np.take(first, of_row))
-    result, light = simulated(systems, shaking, scales)
-    # what happens from one side happens
-    shape, states = (len(systems), len(records), scales.shape[1]), {}
-    for name, cases in _reached(result).items():
-        states[name] = np.zeros(shape, dtype=bool)
-        np.logical_or.at(states[name].swapaxes(0, 1), of_row, cases.swapaxes(0, 1))
-    return _each_system(states, motions, intensity_levels, light, motions.place_of_record())
-
-
-def on_pad(
-    objects: Objects, friction: float, motions: MotionSet, intensity_levels: IntensityLevels
-) -> tuple[ObjectOutcomes, Floats]:
-    """Outcomes of the object on a pad on which it may slide, and how far it does [m], shape (motions, levels)."""
-    system = objects.system_of(objects.body)
-    *below, pad = system.contacts
-    pad = replace(pad, friction=Friction(friction, friction))
-    system = replace(system, contacts=(*below, pad))
-    scales = _factors(intensity_levels, motions.base)
-    result = overturns(system, motions.base, scales=scales)
-    (outcomes,) = _each_system(_reached(result), motions, intensity_levels)
-    return outcomes, result.peak_slip[0, ..., -1]
-
-
-def fraction_with_sliding(
-    objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float
-) -> float:
-    """Fraction of the motions at a level that topple the object as it stands if it may slide.
-
-    Simulations with friction take some hundred times as long as those without, so that they are made for one
-    level.
-    """
-    at_level = _scaled_to(np.array([level]), motions, measure)
-    allowed, scales = at_level.allowed[:, 0], at_level.scales[:, 0]
-    solid = objects.solid(objects.body) if motions.both else None
-    if solid is not None and objects.friction is not None and not objects.pedestals:
-        friction = Friction(objects.friction, objects.friction)
-        slides = replace(solid, contacts=(replace(solid.contacts[0], friction=friction),))
-        return float(in_space(slides, motions, at_level, objects.base_spread).fractions()[0])
-    fallen = overturns(
-        objects.system_of(objects.body),
-        motions.base,
-        scales=np.minimum(scales[:, np.newaxis], believable_scales(motions.base)),
-        friction=objects.friction,
-    ).overturned[0, :, 0]
-    return float(fallen[allowed].mean())
 
 
 @dataclass(frozen=True)

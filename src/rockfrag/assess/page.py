@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 from markupsafe import Markup
+from matplotlib.figure import Figure
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.export import as_json, as_nrml
-from rockfrag.assess.figures import fractions_figure, sources_figure
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.sources import SOURCES, parts_of
@@ -22,14 +22,14 @@ from rockfrag.assess.words import (
     page_says,
     value_words,
 )
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, one_panel, plain_log
 from rockfrag.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.live.space import Standing, live_in_space
-from rockfrag.report.page import text_table
+from rockfrag.report.page import Page, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import page_text
 from rockfrag.sentences import PART, number, sentence
 
 MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
@@ -50,27 +50,19 @@ def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
 
 def page_of(found: Assessment) -> str:
     """Return the page as HTML, which loads nothing from outside."""
-    return page_text(
-        _answer(found),
-        [
-            _mitigations(found),
-            _arrangements(found),
-            _sure(found),
-            page_says.section("assumed", [], found),
-            *([_rules(found)] if found.rules else []),
-            _levels(found),
-            _motions(found),
-            _glossary(found),
-        ],
-        title=headline(found),
-        lead=page_says.line("lead", found),
-        provenance={
-            "Program": f"rockfrag {version('rockfrag')}",
-            "Motions": found.motions.words,
-            "Hazard": found.hazard.source if found.hazard else "none",
-        },
-        live=live_of(found),
-    )
+    sections = [
+        *(_mitigations(found), _arrangements(found), _sure(found)),
+        page_says.section("assumed", [], found),
+        *([_rules(found)] if found.rules else []),
+        *(_levels(found), _motions(found), _glossary(found)),
+    ]
+    provenance = {
+        "Program": f"rockfrag {version('rockfrag')}",
+        "Motions": found.motions.words,
+        "Hazard": found.hazard.source if found.hazard else "none",
+    }
+    lead, answer, live = page_says.line("lead", found), _answer(found), live_of(found)
+    return Page(headline(found), lead, answer, sections, provenance, live=live).html()
 
 
 def _answer(found: Assessment) -> Answer:
@@ -91,30 +83,26 @@ def _answer(found: Assessment) -> Answer:
 
 
 def _mitigations(found: Assessment) -> Section:
-    changes = found.mitigations
-    table = text_table(
-        {
-            "Change": [sentence(change.name) for change in changes],
-            "With it": [value_words(found, change.value) for change in changes],
-            "What it does (90 % interval)": [
-                sentence(mitigation_words(found, change)) for change in changes
-            ],
-        },
-        "Each change is simulated with the same motions and compared with the object as it stands.",
-        ["With it"],
+    rows = [
+        (
+            sentence(change.name),
+            value_words(found, change.value),
+            sentence(mitigation_words(found, change)),
+        )
+        for change in found.mitigations
+    ]
+    titles = ("Change", "With it", "What it does (90 % interval)")
+    caption = (
+        "Each change is simulated with the same motions and compared with the object as it stands."
     )
+    table = text_table(titles, rows, caption, titles[1:2])
     return page_says.section("mitigations", [table], found)
 
 
 def _arrangements(found: Assessment) -> Section:
-    table = text_table(
-        {
-            "How it stands": list(found.by_arrangement),
-            "Estimate": [value_words(found, value) for value in found.by_arrangement.values()],
-        },
-        "The same object under the same motions.",
-        ["Estimate"],
-    )
+    rows = [(name, value_words(found, value)) for name, value in found.by_arrangement.items()]
+    titles, caption = ("How it stands", "Estimate"), "The same object under the same motions."
+    table = text_table(titles, rows, caption, titles[1:])
     return page_says.section("arrangements", [table], found)
 
 
@@ -127,47 +115,39 @@ def _sure(found: Assessment) -> Section:
 
 def _sources(found: Assessment) -> Markup:
     """The sources of the interval, what each adds to it, where its size comes from, and what would narrow it."""
-    parts = parts_of(found.main.sources)
-    sources = [SOURCES[name] for name in parts]
-    return text_table(
-        {
-            "Not known": [sentence(source.words) for source in sources],
-            "Part of the variance": [f"{100 * part:.0f} %" for part in parts.values()],
-            "Where its size comes from": [source.basis for source in sources],
-            "What would narrow it": [
-                sentence(source.measurement.words) if source.measurement else "–"
-                for source in sources
-            ],
-        },
-        "Sources of the interval, the largest first.",
-        ["Part of the variance"],
-    )
+    rows = []
+    for name, part in parts_of(found.main.sources).items():
+        source = SOURCES[name]
+        narrows = sentence(source.measurement.words) if source.measurement else "–"
+        rows.append((sentence(source.words), f"{100 * part:.0f} %", source.basis, narrows))
+    titles = ("Not known", "Part of the variance", "Where its size comes from")
+    caption = "Sources of the interval, the largest first."
+    return text_table((*titles, "What would narrow it"), rows, caption, titles[1:2])
 
 
 def _effects(found: Assessment) -> Markup:
-    effects = found.effects
-    return text_table(
-        {
-            "What is not known exactly": [sentence(NAMES[effect.name]) for effect in effects],
-            "Standard deviation": [f"± {100 * effect.spread:g} %" for effect in effects],
-            "If less": [value_words(found, effect.lower) for effect in effects],
-            "If more": [value_words(found, effect.upper) for effect in effects],
-        },
-        "What the answer is with each property moved by its standard deviation.",
-        ["Standard deviation", "If less", "If more"],
-    )
+    titles = ("What is not known exactly", "Standard deviation", "If less", "If more")
+    rows = [
+        (
+            sentence(NAMES[effect.name]),
+            f"± {100 * effect.spread:g} %",
+            *(value_words(found, side) for side in effect.sides),
+        )
+        for effect in found.effects
+    ]
+    caption = "What the answer is with each property moved by its standard deviation."
+    return text_table(titles, rows, caption, titles[1:])
 
 
 def _rules(found: Assessment) -> Section:
-    rules = found.rules
-    numbers = {
-        "Its amplitude over the simulated one (median)": [number(rule.bias, 2) for rule in rules],
-        "Scatter (ln)": [number(rule.scatter, 2) for rule in rules],
-        "Motions that topple it earlier": [fraction_words(rule.unsafe) for rule in rules],
-    }
+    rows = [
+        (rule.rule, number(rule.bias, 2), number(rule.scatter, 2), fraction_words(rule.unsafe))
+        for rule in found.rules
+    ]
+    numbers = ("Its amplitude over the simulated one (median)", "Scatter (ln)")
+    titles = ("Rule", *numbers, "Motions that topple it earlier")
     caption = "Rules held against every motion that topples the object."
-    table = text_table({"Rule": [rule.rule for rule in rules], **numbers}, caption, list(numbers))
-    return page_says.section("rules", [table])
+    return page_says.section("rules", [text_table(titles, rows, caption, titles[1:])])
 
 
 def _levels(found: Assessment) -> Section:
@@ -195,7 +175,8 @@ def _levels(found: Assessment) -> Section:
             for level in levels[shown]
         ]
     caption = "Motions that make it rock, and that topple it, by the level of shaking."
-    return page_says.section("levels", [text_table(table, caption, list(table))], found)
+    rows = zip(*table.values(), strict=True)
+    return page_says.section("levels", [text_table(list(table), rows, caption, list(table))], found)
 
 
 def _years(period: float) -> str:
@@ -206,33 +187,24 @@ def _years(period: float) -> str:
 
 def _glossary(found: Assessment) -> Section:
     pairs = [line.split(PART) for line in page_says("words_used", found)]
-    words, meanings = zip(*sorted(pairs, key=lambda pair: pair[0].lower()), strict=True)
-    table = text_table(
-        {"Word": words, "What it means here": meanings}, "Words and abbreviations of this page."
-    )
-    return page_says.section("glossary", [table])
+    pairs.sort(key=lambda pair: pair[0].lower())
+    titles, caption = ("Word", "What it means here"), "Words and abbreviations of this page."
+    return page_says.section("glossary", [text_table(titles, pairs, caption)])
 
 
 def _motions(found: Assessment) -> Section:
     first = found.counted.first_levels()
     order = np.argsort(first, kind="stable")[:MOTIONS_SHOWN]
-    shaking = [found.motions.ground[i] for i in order]
-    stations = [str(motion.metadata.get("station", "")) for motion in shaking]
-    places = zip(found.motions.earthquakes[order], stations, strict=True)
     unit, recorded = found.measure.unit, found.motions.values(found.measure)
-    numbers = {
-        f"As recorded [{unit}]": [number(recorded[i], 2) for i in order],
-        f"Topples it from [{unit}]": [number(first[i], 2) for i in order],
-    }
-    table = text_table(
-        {
-            "Motion": [motion.name for motion in shaking],
-            "Earthquake and station": [", ".join(dict.fromkeys(at)).strip(", ") for at in places],
-            **numbers,
-        },
-        "The motions that need the least shaking.",
-        list(numbers),
-    )
+    rows = []
+    for i in order:
+        motion = found.motions.ground[i]
+        places = [found.motions.earthquakes[i], str(motion.metadata.get("station", ""))]
+        at = ", ".join(dict.fromkeys(places)).strip(", ")
+        rows.append((motion.name, at, number(recorded[i], 2), number(first[i], 2)))
+    numbers = (f"As recorded [{unit}]", f"Topples it from [{unit}]")
+    titles = ("Motion", "Earthquake and station", *numbers)
+    table = text_table(titles, rows, "The motions that need the least shaking.", numbers)
     return page_says.section("motions", [table], found)
 
 
@@ -278,3 +250,48 @@ def _named(motions: MotionSet, motion: Motion, i: int) -> Motion:
     earthquake, station = (str(about.metadata.get(key, "")) for key in ("earthquake", "station"))
     known = f"{earthquake}, {station} ({about.name})" if earthquake and station else about.name
     return replace(motion, name=known)
+
+
+_REACHED = 0.995  # Fraction of motions up to which the curves are shown
+
+
+def fractions_figure(found: Assessment) -> Figure:
+    """Fraction of the motions that topple the object over the level of shaking, for each arrangement."""
+    with one_panel(COLUMN_WIDTH, 2.7) as (figure, axes):
+        ends = []
+        for colour, (name, outcomes) in zip(OKABE_ITO, found.arrangements.items(), strict=False):
+            levels, fractions = outcomes.intensity_levels.levels, outcomes.fractions()
+            if outcomes is found.outcomes:
+                low, high = outcomes.band()
+                axes.fill_between(
+                    levels, 100 * low, 100 * high, color=colour, alpha=0.18, linewidth=0
+                )
+            axes.plot(levels, 100 * fractions, color=colour, label=name)
+            shown = levels[(fractions > 0) & (fractions < _REACHED)]
+            ends += [shown.min(), shown.max()] if shown.size else [levels[0], levels[-1]]
+        if found.level is not None:
+            axes.axvline(found.level.value, color="#555555", linestyle="--", linewidth=0.9)
+            at = (found.level.value, 98)
+            words = axes.annotate("the site", at, (3, 0), textcoords="offset points", va="top")
+            words.set_color("#555555")
+            ends.append(found.level.value)
+        axes.set(
+            xlim=(0.8 * min(ends), 1.25 * max(ends)),
+            ylim=(0, 100),
+            xlabel=f"{found.measure.imt} of the ground [{found.measure.unit}]",
+            ylabel="Motions that topple it [%]",
+        )
+        plain_log(axes, "x")
+        if len(found.arrangements) > 1:
+            axes.legend(loc="upper left" if found.level is None else "center right")
+    return figure
+
+
+def sources_figure(found: Assessment) -> Figure:
+    """How much each source of uncertainty adds to the interval."""
+    ranked = sorted(found.main.sources.items(), key=lambda item: item[1])
+    known = {NAMES[name]: value for name, value in ranked if np.isfinite(value)}
+    with one_panel(COLUMN_WIDTH, 0.6 + 0.24 * len(known)) as (figure, axes):
+        axes.barh(list(known), list(known.values()), color=BLUE, height=0.6)
+        axes.set(xlabel="Standard deviation on the scale of the interval")
+    return figure

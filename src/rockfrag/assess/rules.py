@@ -10,7 +10,7 @@ import pandas as pd
 from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.objects import Objects
-from rockfrag.assess.outcomes import ObjectOutcomes, make_intensity_levels, outcomes_of_all
+from rockfrag.assess.outcomes import ObjectOutcomes, make_intensity_levels
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, make_request
 from rockfrag.rocking.rules_of_thumb import RULES, bias, predicted
@@ -57,11 +57,11 @@ def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFra
         for i, object_ in enumerate(given["objects"], start=1)
     ]
     motions = motion_set(Records(), Place(), Path(records))
-    intensity_levels = make_intensity_levels(motions, PGA)
+    shaking = make_intensity_levels(motions, PGA)
     rows = []
     for request in requests:
         objects = request.objects
-        (outcomes,) = outcomes_of_all([objects], motions, intensity_levels)
+        (outcomes,) = shaking.outcomes_of([objects])
         rows += [
             {"object": request.name, **vars(check)}
             for check in check_rules(objects, motions, outcomes)

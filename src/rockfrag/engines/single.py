@@ -47,7 +47,9 @@ class Single(PureRocking):
             case = Case(
                 cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request
             )
-            summaries[place] = run_integration(records[i], shaking_of(case), starts[i], *nothing)[1]
+            summaries[place] = run_integration(
+                records[i], shaking_of(case, case.request.g), starts[i], *nothing
+            )[1]
 
         with ThreadPoolExecutor(cases.threads) as pool:
             list(pool.map(work, np.ndindex(*cases.shape)))
@@ -85,7 +87,7 @@ def _integrated(case: Case, capacity: int) -> tuple[np.void, Any, Records, Recor
     from rockfrag.engines.records import body_record
 
     record = body_record(case.system, case.request.linear, case.request.g)
-    shaking = shaking_of(case)
+    shaking = shaking_of(case, case.request.g)
     most = case.motion.x.acceleration.size + shaking.free_samples
     if most > MOST_SAMPLES:
         raise InputError(
@@ -125,14 +127,17 @@ def initial_state(system: System) -> np.void:
     return initial
 
 
-def shaking_of(case: Case) -> Any:
-    """Return what a system is shaken with (``kernels.single.Shaking``), in steps that follow from the system."""
+def shaking_of(case: Case, unit: float) -> Any:
+    """Return what a system is shaken with (``kernels.single.Shaking``), in steps that follow from the system.
+
+    The vertical acceleration is over ``unit`` [m/s²].
+    """
     from rockfrag.engines.kernels.single import Shaking
 
     motion, request = case.motion, case.request
     return Shaking(
         samples=motion.x.acceleration,
-        vertical=np.zeros(0) if motion.z is None else motion.z.acceleration / request.g,
+        vertical=np.zeros(0) if motion.z is None else motion.z.acceleration / unit,
         scale=float(case.scale),
         dt=motion.dt,
         substeps=int(step_count(case.system, motion.dt, request.g, request.step)),

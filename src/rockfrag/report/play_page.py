@@ -11,7 +11,7 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import AMPLITUDES_G, live_kernel, space
-from rockfrag.report.page import render
+from rockfrag.report.page import Page
 from rockfrag.report.part import Answer, Finding, Says
 from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import in_page
@@ -47,7 +47,7 @@ def write_play_page(
     # at every amplitude, and last as recorded
     found = overturns([system], [motion], scales=np.append(amplitudes * GRAVITY / peak, 1.0))
     *fell, recorded = found.overturned.ravel().tolist()
-    page = render(
+    page = Page(
         title=f"{name} under {motion.name}",
         lead=says.line("lead", samples, motion.dt, peak / GRAVITY),
         answer=Answer(
@@ -65,7 +65,7 @@ def write_play_page(
         },
         live=live,
     )
-    write_text(page, path)
+    write_text(page.html(), path)
 
 
 def _samples(motion: Motion | GroundMotion) -> int:

@@ -18,13 +18,12 @@ from rockfrag.errors import InputError
 from rockfrag.files import file_name
 from rockfrag.motions.intensity import pgd, pgv, predominant_period
 from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
-from rockfrag.records.catalogue import is_catalogue
+from rockfrag.records.catalogue import record_files
 from rockfrag.records.motion import Motion, integrate
 from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
-from rockfrag.records.read import Record, motion_of, read_record
-from rockfrag.records.sources.archive import files_of
+from rockfrag.records.read import Record, motion_of, read_untold
 from rockfrag.tabular import printable
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
@@ -59,9 +58,9 @@ def describe_files(
     reason in ``error`` and does not stop the others.
     """
     rows: list[dict[str, Any]] = []
-    for path in _files(paths):
+    for path in record_files(*paths):
         try:
-            record = _read(path, dt)
+            record, _ = read_untold(path, dt)
         except InputError as error:
             rows.append(_error_row(str(path), error))
             continue
@@ -72,24 +71,6 @@ def describe_files(
     for column in ("quality_flags", "error"):
         table[column] = table[column].fillna("")
     return table
-
-
-def _read(path: Path, dt: float | None) -> Record:
-    """Read a record; the named interval is for files that do not state theirs."""
-    try:
-        return read_record(path)
-    except InputError:
-        if dt is None:
-            raise
-    return read_record(path, dt)
-
-
-def _files(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
-    found: list[Path] = []
-    for path in map(Path, paths):
-        inside = path.is_dir()
-        found += [f for f in files_of(path) if not is_catalogue(f)] if inside else [path]
-    return found
 
 
 def _error_row(file: str, error: InputError) -> dict[str, Any]:
@@ -134,9 +115,9 @@ def draw_files(
 ) -> list[Path]:
     """Draw every channel of every file that can be read into a folder, and return the pictures."""
     drawn: list[Path] = []
-    for path in _files(paths):
+    for path in record_files(*paths):
         try:
-            record = _read(path, dt)
+            record, _ = read_untold(path, dt)
             motions = [_motion(record, channel, unit, force) for channel in record.channels]
         except InputError:
             continue

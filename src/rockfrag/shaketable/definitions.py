@@ -27,23 +27,21 @@ _NEEDED = (*ABOUT, "amplitude_g", "overturned", "overturned_body")
 
 def first_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
     """Bounds of the least amplitude that overturns, of rising ones [g], shape (n,)."""
-    first = int(overturned.argmax()) if overturned.any() else overturned.size
-    survived = float(amplitudes[first - 1]) if first else 0.0
-    if first == overturned.size:
-        return Outcome(survived, math.nan, "limit reached" if first else "no step fits")
-    remark = "" if first else "overturned at the first step"
-    return Outcome(survived, float(amplitudes[first]), remark)
+    return _between(amplitudes, int(overturned.argmax()) if overturned.any() else overturned.size)
 
 
 def always_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
     """Bounds of the amplitude above which all overturn; censored if the largest was survived."""
-    survived = np.flatnonzero(~overturned)
-    if survived.size == 0:
-        return Outcome(0.0, float(amplitudes[0]), "overturned at the first step")
-    last = int(survived[-1])
-    if last == amplitudes.size - 1:
-        return Outcome(float(amplitudes[-1]), math.nan, "limit reached")
-    return Outcome(float(amplitudes[last]), float(amplitudes[last + 1]))
+    return _between(amplitudes, int(np.flatnonzero(~overturned).max(initial=-1)) + 1)
+
+
+def _between(amplitudes: Floats, place: int) -> Outcome:
+    """Bounds where the amplitude of a place overturned and the one below it did not."""
+    survived = float(amplitudes[place - 1]) if place else 0.0
+    if place == amplitudes.size:
+        return Outcome(survived, math.nan, "limit reached" if place else "no step fits")
+    remark = "" if place else "overturned at the first step"
+    return Outcome(survived, float(amplitudes[place]), remark)
 
 
 def step_protocol(amplitudes: Floats, overturned: Flags, protocol: Protocol) -> Outcome:
@@ -120,52 +118,43 @@ def tests_from_swept(
     for part in parts:
         _check_amplitudes(part)
         levels = cache(partial(_levels, part.amplitude_g, protocol))
+        every = np.arange(part.amplitude_g.size)
         for place, about in enumerate(part.about.to_dict("records")):
             limit = None if limits_g is None else limits_g.get(about["motion"])
             climbed = [levels(limit, number) for number in range(1, protocol.repetitions + 1)]
             for definition in definitions:
-                rows.extend(_rows(part, place, about, protocol, definition, climbed))
+                series = climbed if definition == DEFINITION else [every]
+                rows += [
+                    {"repetition": repetition, "definition": definition}
+                    | _row(part, place, about, protocol, definition, amplitudes)
+                    for repetition, amplitudes in enumerate(series, start=1)
+                ]
     return as_tests_table(rows)
 
 
-def _rows(
+def _row(
     part: Swept,
     place: int,
     about: Mapping[Hashable, object],
     protocol: Protocol,
     definition: str,
-    level_series: Sequence[NDArray[np.intp]],
-) -> list[dict[str, object]]:
-    amplitudes, overturned = part.amplitude_g, part.overturned[place]
-    if definition == "step_protocol":
-        outcomes = [
-            first_overturning(amplitudes[levels], overturned[levels]) for levels in level_series
-        ]
-    elif definition == "first_overturning":
-        outcomes = [first_overturning(amplitudes, overturned)]
-    else:
-        outcomes = [always_overturning(amplitudes, overturned)]
-    rows = []
-    for repetition, true in enumerate(outcomes, start=1):
-        shown = measured(true, protocol.measurement, str(about["configuration"]))
-        body = ""
-        if not true.censored:
-            body = part.bodies[part.fallen[place, int(np.searchsorted(amplitudes, true.upper_g))]]
-        rows.append(
-            {
-                "test": f"{about['configuration']} {about['motion']}",
-                **{key: about[key] for key in ABOUT},
-                "lower_g": shown.lower_g,
-                "upper_g": shown.upper_g,
-                "amplitude_g": protocol.report(shown),
-                "censored": "right" if shown.censored else "none",
-                "overturned_body": body,
-                "repetition": repetition,
-                "remark": shown.remark,
-                "definition": definition,
-            }
-        )
-    return rows
+    climbed: NDArray[np.intp],
+) -> dict[str, object]:
+    """Outcome of a motion at the amplitudes that were climbed."""
+    bounds = always_overturning if definition == "always_overturning" else first_overturning
+    true = bounds(part.amplitude_g[climbed], part.overturned[place][climbed])
+    shown = measured(true, protocol.measurement, str(about["configuration"]))
+    upper = int(np.searchsorted(part.amplitude_g, true.upper_g))
+    return {
+        "test": f"{about['configuration']} {about['motion']}",
+        **{key: about[key] for key in ABOUT},
+        "lower_g": shown.lower_g,
+        "upper_g": shown.upper_g,
+        "amplitude_g": protocol.report(shown),
+        "censored": "right" if shown.censored else "none",
+        "overturned_body": "" if true.censored else part.bodies[part.fallen[place, upper]],
+        "remark": shown.remark,
+    }
 
 
 def _check_amplitudes(part: Swept) -> None:

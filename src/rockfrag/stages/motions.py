@@ -57,7 +57,7 @@ def _felt(
     Kinds are ``records`` as read, ``ground`` as they shake it, ``floors`` as every floor feels them, and with
     vertical motion ``vertical``, as they shake it up and down.
     """
-    from rockfrag.motions.directions import motion_and_vertical, motion_of_row
+    from rockfrag.motions.directions import motions_of_row
     from rockfrag.motions.processing import process
     from rockfrag.records.sources.wheel import NotFetched
 
@@ -71,16 +71,13 @@ def _felt(
             if source in unfetched:
                 # asked for once in a run, which takes a minute where there is no network
                 raise unfetched[source]
-            found: dict[str, list[Motion]] = {}
-            if study.vertical:
-                record, up = motion_and_vertical(named, *_place(study))
-                found["vertical"] = _floors(study, process(up, study.processing), vertical=True)
-            else:
-                record = motion_of_row(named, *_place(study))
+            record, *up = motions_of_row(named, *_place(study), study.vertical)
             if record.pga == 0:
                 raise InputError(f"{record.name}: the record is zero throughout; leave it out.")
             ground = process(record, study.processing)
-            found |= {"records": [record], "ground": [ground], "floors": _floors(study, ground)}
+            found = {"records": [record], "ground": [ground], "floors": _floors(study, ground)}
+            if up:
+                found["vertical"] = _floors(study, process(up[0], study.processing), vertical=True)
             for kind, motions in found.items():
                 felt[kind] += motions
             rows.append(named)

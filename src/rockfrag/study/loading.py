@@ -234,7 +234,7 @@ def _state(path: Path) -> tuple[str, int, int]:
 
 
 def _read_all(study: Study) -> list[str]:
-    from rockfrag.motions.directions import motion_and_vertical, motion_of_row
+    from rockfrag.motions.directions import motions_of_row
 
     warnings = [f"{study.catalogue_file}: {line}" for line in repeated_motions(study.catalogue)]
     folder = study.catalogue_file.parent
@@ -242,10 +242,7 @@ def _read_all(study: Study) -> list[str]:
     for row in cast("list[dict[str, Any]]", own.to_dict("records")):
         where = f"{study.catalogue_file}, motion {row['name']}"
         try:
-            if study.vertical:
-                motion, _ = motion_and_vertical(row, folder, Path(RECORDS_FOLDER))
-            else:
-                motion = motion_of_row(row, folder, Path(RECORDS_FOLDER))
+            motion = motions_of_row(row, folder, Path(RECORDS_FOLDER), study.vertical)[0]
             if motion.pga == 0:
                 raise InputError("the record is zero throughout; leave it out.")
         except InputError as error:

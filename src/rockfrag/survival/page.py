@@ -13,10 +13,9 @@ from matplotlib.figure import Figure
 
 from rockfrag import figure_style as style
 from rockfrag.files import file_name, write_table, write_text
-from rockfrag.report.page import Column, table_html, text_table
+from rockfrag.report.page import Column, Page, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import page_text
-from rockfrag.sentences import Macros, number
+from rockfrag.sentences import Macros
 from rockfrag.survival.answer import LIMITS, RULED_OUT, Constrained
 from rockfrag.survival.reweight import DECISION_RATE
 
@@ -121,7 +120,7 @@ def page_of(found: Constrained) -> str:
     objects = table_html(found.by_object, OBJECTS, caption)
     caption = "One assumption at a time taken otherwise."
     assumed = table_html(found.sensitivity, ASSUMED, caption)
-    return page_text(
+    return Page(
         title=title,
         lead=lead,
         answer=Answer(
@@ -137,19 +136,20 @@ def page_of(found: Constrained) -> str:
             Section("hangs-on", "What it hangs on", hangs_on, LIMITS, [assumed]),
         ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
-    )
+    ).html()
 
 
 def _hazard(found: Constrained) -> Markup:
-    unit, rows = found.site.measure.unit, found.result.ratios().to_dict("list")
-    shown = {
-        "Annual rate [1/year]": [f"{rate:g}" for rate in rows["annual_rate"]],
-        f"Before [{unit}]": [number(level, 3) for level in rows["level_before"]],
-        f"After [{unit}]": [number(level, 3) for level in rows["level_after"]],
-        "Level after / before": [number(ratio, 2) for ratio in rows["level_ratio"]],
-        "Rate of the level before, after / before": [number(r, 2) for r in rows["rate_ratio"]],
-    }
-    return text_table(shown, "Mean hazard at annual rates of 1e-2 to 1e-5.", list(shown))
+    unit, table = found.site.measure.unit, found.result.ratios()
+    table = table.assign(rate=table["annual_rate"].map("{:g}".format))
+    shown = [
+        Column("rate", "Annual rate [1/year]", numeric=True),
+        Column("level_before", f"Before [{unit}]", 3),
+        Column("level_after", f"After [{unit}]", 3),
+        Column("level_ratio", "Level after / before", 2),
+        Column("rate_ratio", "Rate of the level before, after / before", 2),
+    ]
+    return table_html(table, shown, "Mean hazard at annual rates of 1e-2 to 1e-5.")
 
 
 def _branches(found: Constrained) -> list[Markup | FigureSpec]:

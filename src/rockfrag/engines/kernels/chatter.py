@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.arrays import fields
 from rockfrag.elementary import hypot
 from rockfrag.engines.kernels.contact_states import at_rest
 from rockfrag.engines.kernels.equations import accelerations, upper_balance
@@ -51,11 +52,9 @@ RESTORING = np.dtype(
     [
         # angular accelerations that bring the body back to rest on the four ways in which it can leave it: with a
         # still ground, and per unit of the ground's acceleration
-        ("still", np.float64, 4),
-        ("per_ground", np.float64, 4),
-        ("frequency2", np.float64),  # p² of the statue
-        # 0.2 D/p with the D of a still ground: above it no chatter is closed
-        ("fastest", np.float64),
+        *fields("still per_ground", 4),
+        # p² of the statue, and 0.2 D/p with the D of a still ground: above it no chatter is closed
+        *fields("frequency2 fastest"),
     ]
 )
 """With what chatter of a body at θ1 = θ2 = 0 is closed."""

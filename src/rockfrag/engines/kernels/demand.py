@@ -8,19 +8,13 @@ import math
 
 import numpy as np
 
+from rockfrag.arrays import fields
 from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.equations import arm1, arm2, pivot, reach
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
-DEMAND = np.dtype(
-    [
-        # of ground and interface: largest |T|/N, infinite where N ≤ 0, and least N [N]
-        ("friction1", np.float64), ("friction2", np.float64),
-        ("normal1", np.float64), ("normal2", np.float64),
-    ],
-    align=True,
-)  # fmt: skip
-"""What a response has asked of its contacts."""
+DEMAND = np.dtype(fields("friction1 friction2 normal1 normal2"), align=True)
+"""What a response has asked of ground and interface: largest |T|/N, infinite where N ≤ 0, and least N [N]."""
 
 
 @kernel

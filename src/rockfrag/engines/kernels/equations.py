@@ -9,43 +9,41 @@ import math
 
 import numpy as np
 
+from rockfrag.arrays import fields, whole
 from rockfrag.elementary import atan2, hypot, sin, sin_cos
 from rockfrag.engines.kernels.jit import kernel
 
-IMPACT_LAW = np.dtype([("law", np.int64), ("value", np.float64)])
+IMPACT_LAW = np.dtype([*whole("law"), *fields("value")])
 """How a contact comes off an impact: by momentum (0) or by a law with its number, which is a factor on the rate
 that momentum gives (COUPLE), the place of the impulse from the middle (0) to the new pivot (1) of the base
 (POSITION), or the ratio of the rates after and before (RATIO)."""
 
 BODY = np.dtype(
     [
-        # pedestal: mass, inertia, half width, centre of gravity
-        ("m1", np.float64), ("i1", np.float64), ("b1", np.float64), ("c1x", np.float64), ("c1y", np.float64),
-        # middle and direction of the statue's footing
-        ("tx", np.float64), ("ty", np.float64), ("ex", np.float64), ("ey", np.float64),
-        # statue: likewise, centre from the middle of its footing
-        ("m2", np.float64), ("i2", np.float64), ("b2", np.float64), ("c2x", np.float64), ("c2y", np.float64),
+        *fields("m1 i1 b1 c1x c1y"),  # pedestal: mass, inertia, half width, centre of gravity
+        *fields("tx ty ex ey"),  # middle and direction of the statue's footing
+        *fields("m2 i2 b2 c2x c2y"),  # statue: likewise, centre from the middle of its footing
         # how ground and interface come off impacts that end rocking on the right and on the left pivot
-        ("after1r", IMPACT_LAW), ("after1l", IMPACT_LAW), ("after2r", IMPACT_LAW), ("after2l", IMPACT_LAW),
-        ("gravity", np.float64),  # of a ground that does not move vertically
-        ("linear", np.int64),  # 0 exact; 1 eq. 2.60-2.65; 2 eq. 2.9 (lone block)
-        ("fixed", np.bool_),  # block 1 cannot move
-        ("measured", np.bool_),  # some impact follows another law than momentum's
+        *fields("after1r after1l after2r after2l", of=IMPACT_LAW),
+        *fields("gravity"),  # of a ground that does not move vertically
+        *whole("linear"),  # 0 exact; 1 eq. 2.60-2.65; 2 eq. 2.9 (lone block)
+        # whether block 1 cannot move, and whether some impact follows another law than momentum's
+        *fields("fixed measured", of=np.bool_),
     ],
     align=True,
-)  # fmt: skip
+)
 """What the kernels know of a body: lengths [m], masses [kg], moments of inertia [kg m²], gravity [m/s²]."""
 
 STATE = np.dtype(
     [
-        ("c1", np.int64), ("c2", np.int64),  # contact states of ground and interface
-        ("theta1", np.float64), ("omega1", np.float64),  # rotation [rad] and its rate [rad/s] of the pedestal
-        ("theta2", np.float64), ("omega2", np.float64),  # and of the statue
-        ("ground", np.float64),  # acceleration of the ground [m/s²]
-        ("gravity", np.float64),  # gravity and the ground's upward acceleration [m/s²]
+        *whole("c1 c2"),  # contact states of ground and interface
+        # rotation [rad] and rate [rad/s] of pedestal, statue
+        *fields("theta1 omega1 theta2 omega2"),
+        *fields("ground"),  # acceleration of the ground [m/s²]
+        *fields("gravity"),  # gravity and the ground's upward acceleration [m/s²]
     ],
     align=True,
-)  # fmt: skip
+)
 """Where a body is at an instant, and how the ground moves then."""
 
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from rockfrag.arrays import fields, whole
 from rockfrag.elementary import hypot, sin_cos
 from rockfrag.engines.kernels import equations
 from rockfrag.engines.kernels.demand import DEMAND, add_demand, ask_forces, no_demand
@@ -12,51 +13,49 @@ from rockfrag.engines.kernels.roots import NEVER, bend, slope, value
 
 SUMMARY = np.dtype(
     [
-        ("fallen", np.int64),  # 0 none, 1 pedestal (or both as one), 2 statue or lone block
-        ("fall_time", np.float64),  # [s], NaN if none
-        ("peak1", np.float64), ("peak2", np.float64),  # max |θ| [rad]
-        ("speed1", np.float64), ("speed2", np.float64),  # max |θ'| [rad/s]
-        ("ratio1", np.float64),  # max θ/θcritical of the pedestal (with what stands on it)
-        ("ratio2", np.float64),
-        ("impacts", np.int64),
-        ("grazings", np.int64),  # contacts that closed without speed
-        ("unstable_distance", np.float64),  # least distance to an unstable equilibrium, in units of (θc, p θc)
-        ("work", np.float64),  # of the ground acceleration on the moving body [J]
-        ("contact_events", np.int64),
-        ("given_way", np.int64),  # impacts in which the law of a measured restitution had to give way
-        ("lost_contact", np.float64),  # when a normal force first was none [s], NaN if it never was
-        ("demand", DEMAND),  # until the fall is certain
-        ("beyond", DEMAND),  # since a block has last passed balance
+        *whole("fallen"),  # 0 none, 1 pedestal (or both as one), 2 statue or lone block
+        *fields("fall_time"),  # [s], NaN if none
+        *fields("peak1 peak2 speed1 speed2"),  # max |θ| [rad], max |θ'| [rad/s]
+        # max θ/θcritical of the pedestal (with what stands on it), of the statue
+        *fields("ratio1 ratio2"),
+        *whole("impacts grazings"),  # a graze: a contact that closed without speed
+        # least distance to an unstable equilibrium, in units of (θc, p θc), and work of the ground [J]
+        *fields("unstable_distance work"),
+        # given_way: impacts in which the law of a measured restitution had to give way
+        *whole("contact_events given_way"),
+        *fields("lost_contact"),  # when a normal force first was none [s], NaN if it never was
+        # until the fall is certain, and since a block has last passed balance
+        *fields("demand beyond", of=DEMAND),
     ],
     align=True,
-)  # fmt: skip
+)
 """Summary of a history."""
 
 SAMPLE = np.dtype(
     [
-        ("theta1", np.float64), ("omega1", np.float64), ("theta2", np.float64), ("omega2", np.float64),
-        ("c1", np.int64), ("c2", np.int64),
-        ("alpha1", np.float64), ("alpha2", np.float64),
-        ("work", np.float64),  # so far
+        *fields("theta1 omega1 theta2 omega2"),
+        *whole("c1 c2"),
+        *fields("alpha1 alpha2 work"),  # work so far
     ],
     align=True,
-)  # fmt: skip
+)
 """State at a sample."""
 
 CONTACT_EVENT = np.dtype(
     [
-        ("time", np.float64), ("kind", np.int64),
-        ("before", equations.STATE), ("after", equations.STATE),
-        ("energy_before", np.float64), ("energy_after", np.float64),  # kinetic [J]
+        *fields("time"),
+        *whole("kind"),
+        *fields("before after", of=equations.STATE),
+        *fields("energy_before energy_after"),  # kinetic [J]
     ],
     align=True,
-)  # fmt: skip
+)
 """A change of the contact state."""
 
 OPENING, CLOSING, CHATTER, LIFTING = 0, 1, 2, 3
 """Kinds of contact events; a contact that lifts would have to pull as a whole; integration goes on as if so."""
 
-BALANCE = np.dtype([("critical", np.float64), ("frequency2", np.float64)])
+BALANCE = np.dtype(fields("critical frequency2"))
 """A way to balance: critical angle [rad] and squared frequency parameter [1/s²]."""
 
 

@@ -8,29 +8,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rockfrag.arrays import fields
 from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels import equations
 from rockfrag.engines.kernels.jit import fma, inlined_kernel, kernel
 
 ORDER = 7  # order of the series: with p h ≤ 0.1 the remainder is below 1e-13 rad
 
-ROTATION = np.dtype(
-    [
-        ("angle", np.float64, ORDER + 1),
-        ("sine", np.float64, ORDER + 1),
-        ("cosine", np.float64, ORDER + 1),
-    ]
-)
+ROTATION = np.dtype(fields("angle sine cosine", ORDER + 1))
 """Coefficients of an angle θ(τ) = Σ θ_k τ^k, and of its sine and cosine; τ runs from 0 to 1 over a step."""
 
-SERIES = np.dtype(
-    [
-        ("one", ROTATION), ("two", ROTATION),  # pedestal and statue
-        ("between", ROTATION),  # θ2 - θ1
-        ("gap", np.float64, ORDER + 1),  # opening angle of the contact that is looked at
-    ]
-)  # fmt: skip
-"""The series of a step."""
+SERIES = np.dtype([*fields("one two between", of=ROTATION), *fields("gap", ORDER + 1)])
+"""Series of a step: of pedestal, statue, θ2 - θ1, and the opening of the contact that is looked at."""
 
 
 class Step(NamedTuple):

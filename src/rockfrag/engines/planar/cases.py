@@ -2,7 +2,6 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -15,7 +14,8 @@ from rockfrag.engines.lanes import intervals_of
 from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar import records
 from rockfrag.engines.response import FLIGHT, Response
-from rockfrag.engines.steps import STEP, free_samples, step_count
+from rockfrag.engines.single import shaking_of
+from rockfrag.engines.steps import free_samples, step_count
 from rockfrag.system.system import System
 
 Array = NDArray[np.float64]
@@ -35,19 +35,14 @@ _STATES = np.array([FLIGHT, -1, +1, 0])
 
 
 def contact_outcomes(grid: Cases, wanted: NDArray[np.bool_] | None = None) -> NDArray[np.void]:
-    """Integrate the ``wanted`` cases of systems × motions × scales, all if None; the others are left zero."""
+    """Integrate the ``wanted`` cases of systems × motions × scales, all if None; others are left zero."""
     g, step, dts = grid.request.g, grid.request.step, intervals_of(grid)
-    wanted = np.ones(grid.shape, dtype=bool) if wanted is None else wanted
-    table = np.zeros(len(grid.systems), records.BODY)
-    starts = np.zeros((len(grid.systems), 2, 3 * records.MOST))
-    for i, system in enumerate(grid.systems):
-        table[i] = records.system_record(system, g)
-        starts[i] = records.posed(table[i], *started(system))
+    described = [_described(system, g) for system in grid.systems]
     ups = [motion.z.acceleration for motion in grid.motions if motion.z is not None]
     sizes = [motion.x.acceleration.size for motion in grid.motions]
     cases = contact.Cases(
-        bodies=table,
-        starts=starts,
+        bodies=np.array([body for body, _ in described], records.BODY),
+        starts=np.array([start for _, start in described]),
         horizontal=np.concatenate([motion.x.acceleration for motion in grid.motions]),
         vertical=np.concatenate(ups) if ups else np.zeros(0),
         offsets=np.concatenate([[0], np.cumsum(sizes)]),
@@ -56,117 +51,127 @@ def contact_outcomes(grid: Cases, wanted: NDArray[np.bool_] | None = None) -> ND
         substeps=np.array([step_count(system, dts, g, step) for system in grid.systems]),
         free_samples=np.array([free_samples(system, dts, g) for system in grid.systems]),
     )
-    outcome = np.zeros(wanted.size, records.OUTCOME)
-    numbers = np.flatnonzero(wanted)
-    book = contact.Book(np.zeros((0, 0)), np.zeros((0, 0)))
+    numbers = np.flatnonzero(np.ones(grid.shape) if wanted is None else wanted)
+    outcome, nothing = np.zeros(grid.shape, records.OUTCOME), np.zeros((0, 0))
 
     def work(chunk: Ints) -> None:
         memory = records.working_memory()
-        contact.integrate_cases(chunk, cases, CLOSING, book, memory, outcome)
+        contact.integrate_cases(chunk, cases, CLOSING, nothing, memory, outcome.ravel())
 
     # compiled before threads begin
     work(numbers[:0])
     with ThreadPoolExecutor(grid.threads) as pool:
         list(pool.map(work, np.array_split(numbers, 1 + numbers.size // CHUNK)))
-    return outcome.reshape(wanted.shape)
+    return outcome
 
 
-def started(system: System) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Rotations [rad] and angular velocities [rad/s] of the bodies at the start."""
+def _described(system: System, g: float) -> tuple[np.void, Array]:
+    """Record ``BODY`` of a system, and the coordinates and velocities that it starts with."""
+    body, start = records.system_record(system, g), system.start
     zeros = (0.0,) * system.count
-    return (
-        (zeros, zeros) if system.start is None else (system.start.rotation, system.start.velocity)
-    )
+    pose = (zeros, zeros) if start is None else (start.rotation, start.velocity)
+    return body, records.posed(body, *pose)
 
 
-class ContactRun(NamedTuple):
-    """What the contact kernels wrote of one system under one motion."""
+class ContactRun:
+    """One planar system that may slide, rock and fly, integrated by the contact kernels."""
 
-    case: Case  # what was shaken, and by what
-    # body, work: the records ``BODY`` and ``WORK``
-    body: np.void
-    work: np.void
-    # history, contact_events: rows of the columns that the kernels write
-    history: Array
-    contact_events: Array
-    fall: float  # time of the fall [s], NaN if there was none
+    def __init__(self, case: Case, closing: float = CLOSING) -> None:
+        self.case, self.count, self.work = case, case.system.count, records.working_memory()
+        self.body, start = _described(case.system, case.request.g)
+        shaking = shaking_of(case, 1.0)
+        samples, most = shaking.samples.size + shaking.free_samples, 4096
+        history = np.zeros((samples, contact.history_columns(self.count)))
+        while True:
+            contact_events = np.zeros((most, contact.contact_event_columns(self.count)))
+            done, found = contact.integrate(
+                self.body, shaking, start, closing, history, contact_events, self.work
+            )
+            if found <= most:
+                break
+            most = found
+        # rows of the columns that the kernels write
+        self.history, self.contact_events = history[:done], contact_events[:found]
 
     @property
     def loose(self) -> bool:
         """Whether a contact reached its friction, opened as a whole or had no consistent mode."""
-        work = self.work
-        return bool(work["slid"].max() > 0 or np.any(work["flights"]) or work["paradoxes"] > 0)
+        told = self.work["told"]
+        return bool(told["slid"].any() or told["flights"].any() or told["paradoxes"] > 0)
 
-
-def contact_run(case: Case, closing: float = CLOSING) -> ContactRun:
-    """Integrate one planar system that may slide, rock and fly; :func:`response_of` makes a response of it."""
-    system, motion, g = case.system, case.motion, case.request.g
-    values, interval = motion.x.acceleration, motion.dt
-    up = np.zeros(0) if motion.z is None else motion.z.acceleration
-    p = records.system_record(system, g)
-    blocks = int(p["count"])
-    start = records.posed(p, *started(system))
-    substeps = int(step_count(system, interval, g, STEP))
-    free = int(free_samples(system, interval, g))
-    shaking = contact.Shaking(values, up, interval, float(case.scale), substeps, free)
-    history = np.zeros((values.size + free, contact.history_columns(blocks)))
-    work = records.working_memory()
-    capacity = 4096
-    while True:
-        contact_events = np.zeros((capacity, contact.contact_event_columns(blocks)))
-        done, count, fall = contact.integrate(
-            p, shaking, start, closing, contact.Book(history, contact_events), work
+    def response(self) -> Response:
+        """Return the response that the contact kernels wrote."""
+        system, history, told, blocks = (
+            self.case.system,
+            self.history,
+            self.work["told"],
+            self.count,
         )
-        if count <= capacity:
-            break
-        capacity = count
-    return ContactRun(case, p, work, history[:done], contact_events[:count], float(fall))
+        done = len(history)
+        values = self.case.scale * self.case.motion.x.acceleration
+        time = np.arange(done, dtype=np.float64) * self.case.motion.dt
+        kept = history[:, : 6 * blocks].reshape(done, 2, blocks, 3)
+        centres, speeds = kept.transpose(1, 0, 2, 3)
+        slips, normal, shear, alpha = (
+            history[:, 6 * blocks : 10 * blocks].reshape(done, 4, blocks).transpose(1, 0, 2)
+        )
+        state, slides = _modes(history[:, -1], blocks)
+        fallen = int(told["overturned_body"])
+        table = _contact_events(self.contact_events, blocks)
+        meets = np.array([np.abs(np.diff([0.0, *w])).max() for w in table["omega_before"]])
+        ground = np.zeros(done)
+        ground[: min(done, values.size)] = values[:done]
+        return Response(
+            system=system,
+            time=time,
+            ground_acceleration=ground,
+            position=centres[:, :, :2],
+            theta=centres[:, :, 2],
+            omega=speeds[:, :, 2],
+            alpha=alpha,
+            state=state,
+            slides=slides,
+            slip=slips,
+            contact_events=table,
+            overturned=fallen > 0,
+            overturned_body=("", *system.names)[fallen],
+            overturning_time=float(told["overturning_time"]),
+            energy=self._energies(time),
+            normal_force=normal,
+            friction_force=shear,
+            friction_demand=responses.sampled_demand(normal, shear),
+            least_normal_force=np.asarray(normal.min(axis=0)),
+            lost_contact=math.nan,
+            unstable_distance=math.nan,
+            grazings=int((table["kind"].eq("impact") & (meets < GRAZING_SPEED)).sum()),
+            forced=int(self.work["forced"]),
+            **{name: int(told[name]) for name in ("impacts", "paradoxes", "given_way")},
+        )
 
-
-def response_of(run: ContactRun) -> Response:
-    """Return the response that the contact kernels wrote."""
-    system, p, work, history = run.case.system, run.body, run.work, run.history
-    done, blocks = len(history), int(p["count"])
-    values = run.case.scale * run.case.motion.x.acceleration
-    time = np.arange(done, dtype=np.float64) * run.case.motion.dt
-    centres, speeds = history[:, : 6 * blocks].reshape(done, 2, blocks, 3).transpose(1, 0, 2, 3)
-    slips, normal, shear, alpha = (
-        history[:, 6 * blocks : 10 * blocks].reshape(done, 4, blocks).transpose(1, 0, 2)
-    )
-    state, slides = _modes(history[:, -1], blocks)
-    fallen = int(work["fallen"])
-    table = _contact_events(run.contact_events, blocks)
-    meets = np.array([np.abs(np.diff([0.0, *omega])).max() for omega in table["omega_before"]])
-    ground = np.zeros(done)
-    ground[: min(done, values.size)] = values[:done]
-    return Response(
-        system=system,
-        time=time,
-        ground_acceleration=ground,
-        position=centres[:, :, :2],
-        theta=centres[:, :, 2],
-        omega=speeds[:, :, 2],
-        alpha=alpha,
-        state=state,
-        slides=slides,
-        slip=slips,
-        contact_events=table,
-        overturned=fallen > 0,
-        overturned_body=("", *system.names)[fallen],
-        overturning_time=run.fall,
-        energy=_energies(p, time, history, run.contact_events),
-        normal_force=normal,
-        friction_force=shear,
-        impacts=int(work["impacts"]),
-        grazings=int((table["kind"].eq("impact") & (meets < GRAZING_SPEED)).sum()),
-        given_way=int(work["given_way"]),
-        friction_demand=responses.sampled_demand(normal, shear),
-        least_normal_force=np.asarray(normal.min(axis=0)),
-        lost_contact=math.nan,
-        paradoxes=int(work["paradoxes"]),
-        forced=int(work["forced"]),
-        unstable_distance=float("nan"),
-    )
+    def _energies(self, time: Array) -> pd.DataFrame:
+        """Balance of energy by cause over time [J]."""
+        p, history, contact_events, blocks = (
+            self.body,
+            self.history,
+            self.contact_events,
+            self.count,
+        )
+        inertia = 1.0 / p["inverse"][: 3 * blocks]
+        kinetic = (inertia * history[:, 3 * blocks : 6 * blocks] ** 2).sum(axis=1) / 2
+        potential = float(p["g"]) * (p["mass"][:blocks] * history[:, 1 : 3 * blocks : 3]).sum(
+            axis=1
+        )
+        struck = np.isin(contact_events[:, 1], (contact.IMPACT, contact.PARADOX))
+        loss = np.where(struck, contact_events[:, 4] - contact_events[:, 5], 0.0)
+        # the lowest contact whose mode changes as it comes down, or the uppermost
+        before, after = (_modes(contact_events[:, column], blocks)[0] for column in (2, 3))
+        closes = (before != 0) & (before != after)
+        closes[:, -1] = True
+        losses = contact_events[:, 0], closes.argmax(axis=1), loss
+        work, rubbed = history[:, -4], history[:, -3]
+        return responses.energy_table(
+            time, kinetic, potential, work, losses, rubbed, contacts=blocks
+        )
 
 
 def _modes(numbers: Array, blocks: int) -> tuple[Ints, Ints]:
@@ -202,20 +207,3 @@ def _kind_of_change(before: Ints, after: Ints, slid: Ints, slides: Ints) -> str:
     if np.any(after != before):
         return "closing"
     return "slip" if np.any((slides != 0) & (slides != slid)) else "stick"
-
-
-def _energies(p: np.void, time: Array, history: Array, contact_events: Array) -> pd.DataFrame:
-    """Balance of energy by cause over time [J]."""
-    blocks = int(p["count"])
-    inertia = 1.0 / p["inverse"][: 3 * blocks]
-    kinetic = (inertia * history[:, 3 * blocks : 6 * blocks] ** 2).sum(axis=1) / 2
-    potential = float(p["g"]) * (p["mass"][:blocks] * history[:, 1 : 3 * blocks : 3]).sum(axis=1)
-    struck = np.isin(contact_events[:, 1], (contact.IMPACT, contact.PARADOX))
-    loss = np.where(struck, contact_events[:, 4] - contact_events[:, 5], 0.0)
-    # the lowest contact whose mode changes as it comes down, or the uppermost
-    before, after = (_modes(contact_events[:, column], blocks)[0] for column in (2, 3))
-    closes = (before != 0) & (before != after)
-    closes[:, -1] = True
-    losses = contact_events[:, 0], closes.argmax(axis=1), loss
-    work, rubbed = history[:, -4], history[:, -3]
-    return responses.energy_table(time, kinetic, potential, work, losses, rubbed, contacts=blocks)

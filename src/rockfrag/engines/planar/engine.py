@@ -13,6 +13,12 @@ from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 
+_OF_CASES = (
+    *("overturned_body", "overturning_time", "impacts", "paradoxes", "given_way"),
+    *("parted_contact", "several_modes"),
+)
+"""Columns of cases that the kernels tell under the same names."""
+
 
 class PlanarContact:
     """Bodies whose contacts have friction: pure rocking where nothing slides or flies, and contact otherwise.
@@ -70,33 +76,27 @@ class PlanarContact:
         other |= everything
         place: tuple[Any, ...] = (i, *np.nonzero(other))
         left = found[other]
-        fell = left["fallen"]
+        fell = left["overturned_body"]
         into.engine[place] = 0
         into.overturned[place] = fell > 0
-        into.overturned_body[place] = fell
-        into.overturning_time[place] = np.where(fell > 0, left["time"], np.nan)
-        into.certain_time[place] = np.nan
-        into.impacts[place] = left["impacts"]
+        into.certain_time[place] = into.unstable_distance[place] = np.nan
         into.flights[place] = flights[other]
-        into.paradoxes[place] = left["paradoxes"]
-        into.given_way[place] = left["given_way"]
-        into.parted_contact[place] = left["parted"]
-        into.several_modes[place] = left["several"]
-        into.unstable_distance[place] = np.nan
+        for name in _OF_CASES:
+            getattr(into, name)[place] = left[name]
         own, first = (*place, slice(0, count)), fell[:, np.newaxis] == np.arange(1, count + 1)
-        into.peak_rotation[own] = np.where(first, np.inf, left["peak"][:, :count])
-        into.peak_velocity[own] = left["peak_speed"][:, :count]
-        into.slip[own], into.peak_slip[own] = left["slip"][:, :count], left["peak_slip"][:, :count]
+        for name in ("peak_velocity", "slip", "peak_slip"):
+            getattr(into, name)[own] = left[name][:, :count]
+        into.peak_rotation[own] = np.where(first, np.inf, left["peak_rotation"][:, :count])
 
     def history(self, case: contract.Case) -> Response:
         """Return the response of a case."""
-        from rockfrag.engines.planar.cases import contact_run, response_of
+        from rockfrag.engines.planar.cases import ContactRun
 
-        found = contact_run(case)
+        found = ContactRun(case)
         pure = replace(case, system=case.system.held())
         engine = self._pure(pure.system, case.motion, pure.request)
         if found.loose or engine is None:
-            return response_of(found)
+            return found.response()
         return without_slip(replace(engine.history(pure), system=case.system))
 
 

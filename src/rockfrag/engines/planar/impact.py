@@ -107,7 +107,7 @@ def remember_slides(p, w):
     """Keep which interfaces have reached their limit."""
     for k in range(p.count):
         if w.slides[k] != 0:
-            w.slid[k] = 1
+            w.told.slid[k] = 1
 
 
 @kernel
@@ -152,7 +152,7 @@ def strike(p, w, ah, av, closing, push):
             w.v[d] = w.out[d]
     project(p, w)
     w.struck += before - kinetic_energy(p, w.v)
-    w.impacts += 1
+    w.told.impacts += 1
 
 
 @kernel
@@ -199,7 +199,7 @@ def _obey(p, w, ah, av, force, motion):
             w.falls[k] = -1
     if _outcome(p, w, ah, av, force, motion, 1.0, energy):
         return
-    w.given_way += 1
+    w.told.given_way += 1
     low, high = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.engines.kernels.jit import entry_kernel, kernel
+from rockfrag.engines.kernels.single import Shaking
 from rockfrag.engines.planar import impact
 from rockfrag.engines.planar import step as stepping
 from rockfrag.engines.planar.search import mode_number
@@ -40,26 +41,6 @@ CHANGE, IMPACT, PARADOX, FALLEN, PASSING = 0, 1, 2, 3, 4
 Array = NDArray[np.float64]
 
 
-class Shaking(NamedTuple):
-    """One motion, and in what steps it is integrated."""
-
-    # horizontal, vertical: samples [m/s²], zero after the last; an empty ``vertical`` is zero
-    # throughout
-    horizontal: Array
-    vertical: Array
-    dt: float  # sampling interval [s]
-    scale: float  # factor on the samples
-    substeps: int  # steps per sample
-    free_samples: int  # samples that the integration goes on after the last one at most
-
-
-class Book(NamedTuple):
-    """What is written down on the way."""
-
-    history: Array  # (samples, history_columns), or of no rows
-    contact_events: Array  # (capacity, contact_event_columns), or of no rows
-
-
 class Cases(NamedTuple):
     """Bodies × motions × scales, the scale running fastest."""
 
@@ -85,8 +66,8 @@ class Instant(NamedTuple):
 
 
 @entry_kernel
-def integrate_cases(numbers, cases, closing, book, w, outcome):
-    """Integrate the cases of some ``numbers``, and keep their outcomes; ``book`` has no rows."""
+def integrate_cases(numbers, cases, closing, nothing, w, outcome):
+    """Integrate the cases of some ``numbers``, and keep their outcomes; ``nothing`` is a table without rows."""
     motions, scales = cases.factors.shape
     for number in numbers:
         b = number // (motions * scales)
@@ -96,50 +77,37 @@ def integrate_cases(numbers, cases, closing, book, w, outcome):
         shaking = Shaking(
             cases.horizontal[begin:end],
             up,
-            cases.dts[m],
             cases.factors[m, number % scales],
+            cases.dts[m],
             cases.substeps[b, m],
             cases.free_samples[b, m],
         )
-        _, _, fall = integrate(cases.bodies[b], shaking, cases.starts[b], closing, book, w)
-        out = outcome[number]
-        out.fallen = w.fallen
-        out.time = fall
-        out.impacts = w.impacts
-        out.paradoxes = w.paradoxes
-        out.several = w.several
-        out.given_way = w.given_way
-        out.parted = w.parted
+        integrate(cases.bodies[b], shaking, cases.starts[b], closing, nothing, nothing, w)
         look_at(cases.bodies[b], w, w.q)
         for k in range(cases.bodies[b].count):
-            out.peak[k] = w.peak[k]
-            out.peak_speed[k] = w.peak_speed[k]
-            out.peak_slip[k] = w.peak_slip[k]
-            out.slid[k] = w.slid[k]
-            out.flights[k] = w.flights[k]
-            out.slip[k] = slip(cases.bodies[b], w, k)
+            w.told.slip[k] = slip(cases.bodies[b], w, k)
+        outcome[number] = w.told
 
 
 @entry_kernel
-def integrate(p, shaking, start, closing, book, w):
+def integrate(p, shaking, start, closing, history, contact_events, w):
     """Integrate one column, a BODY, from ``start`` through its shaking and on until it rests or has fallen.
 
-    ``closing`` is the speed over √(g b) below which a contact stays closed after an impact; ``w`` is a WORK.
-    Returned are the samples done, the contact events met, and the time of the fall [s] (NaN if none; ``w.fallen``
-    says which).
+    ``closing`` is the speed over √(g b) below which a contact stays closed after an impact; ``history``, of
+    ``history_columns``, and ``contact_events``, of ``contact_event_columns``, may have no rows; ``w`` is a WORK.
+    Returned are the samples done, and the contact events met.
     """
     _begin(p, w, start)
     dt, substeps = shaking.dt, shaking.substeps
-    n = shaking.horizontal.size
-    energy_balance = book.history.shape[0] > 0
+    n = shaking.samples.size
+    energy_balance = history.shape[0] > 0
     now = _now(shaking, 0)
-    count = _handle(p, w, now, closing, True, False, book.contact_events, 0)
+    count = _handle(p, w, now, closing, True, False, contact_events, 0)
     fresh = True  # the acceleration in w.a is not that of this state and mode
     if energy_balance:
-        _keep(p, w, 0, now, book.history)
+        _keep(p, w, 0, now, history)
     known_rest = False
     done = 1
-    fall = math.nan
     idle = 0
     jolts = 0
     for i in range(n - 1 + shaking.free_samples):
@@ -159,7 +127,7 @@ def integrate(p, shaking, start, closing, book, w):
                 fresh = True
                 ah, av = stepping.ground_at(sample, tau)
                 instant = Instant((i + tau) * dt, ah, av)
-                count = _handle(p, w, instant, closing, True, True, book.contact_events, count)
+                count = _handle(p, w, instant, closing, True, True, contact_events, count)
                 w.met += 1
                 if w.resting == 1:
                     # it failed by rounding only
@@ -205,7 +173,7 @@ def integrate(p, shaking, start, closing, book, w):
                 if when <= 1.0:
                     jolts += 1
                     instant = Instant((i + tau) * dt, ah, av)
-                    count = _jolt(p, w, instant, closing, book.contact_events, count)
+                    count = _jolt(p, w, instant, closing, contact_events, count)
                     fresh = True
                     continue
             if when > 1.0:
@@ -243,33 +211,33 @@ def integrate(p, shaking, start, closing, book, w):
                     w.forced += 1
                 ah, av = stepping.ground_at(sample, tau)
                 instant = Instant((i + tau) * dt, ah, av)
-                count = _handle(p, w, instant, coarser, False, False, book.contact_events, count)
+                count = _handle(p, w, instant, coarser, False, False, contact_events, count)
                 fresh = True
                 if w.met > 10 * MOST_CONTACT_EVENTS:
                     tau = 1.0
             w.work += work
             w.rubbed += rubbed
             _track(p, w)
-            if w.fallen > 0:
-                fall = (i + tau) * dt
+            if w.told.overturned_body > 0:
+                w.told.overturning_time = (i + tau) * dt
                 break
         done = i + 2
         now = late
         if energy_balance:
-            _keep(p, w, i + 1, now, book.history)
-        if w.fallen > 0:
+            _keep(p, w, i + 1, now, history)
+        if w.told.overturned_body > 0:
             break
         if i >= n - 1 and w.resting == 1:
             break
-    return done, count, fall
+    return done, count
 
 
 @kernel
 def _now(shaking, i):
     """Sample i of a motion."""
     ah, av = 0.0, 0.0
-    if i < shaking.horizontal.size:
-        ah = shaking.horizontal[i] * shaking.scale
+    if i < shaking.samples.size:
+        ah = shaking.samples[i] * shaking.scale
         if shaking.vertical.size > 0:
             av = shaking.vertical[i] * shaking.scale
     return Instant(i * shaking.dt, ah, av)
@@ -291,10 +259,12 @@ def _begin(p, w, start):
             w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
     w.work = w.rubbed = w.struck = 0.0
     for k in range(p.count):
-        w.peak[k] = w.peak_speed[k] = w.peak_slip[k] = 0.0
-        w.slid[k] = w.flights[k] = 0
-    w.impacts = w.paradoxes = w.forced = w.fallen = w.parted = w.resting = 0
-    w.met = w.several = w.given_way = 0
+        w.told.peak_rotation[k] = w.told.peak_velocity[k] = w.told.peak_slip[k] = 0.0
+        w.told.slid[k] = w.told.flights[k] = 0
+    told = w.told
+    told.impacts = told.paradoxes = told.overturned_body = told.parted_contact = 0
+    told.several_modes = told.given_way = w.forced = w.met = w.resting = 0
+    told.overturning_time = math.nan
 
 
 @kernel
@@ -305,9 +275,9 @@ def _track(p, w):
         limit = p.critical[k, 1] if theta > 0.0 else p.critical[k, 0]
         if not (w.closed[k, 0] and w.closed[k, 1]):
             # a body on its whole base is carried along
-            w.peak[k] = max(w.peak[k], abs(theta) / limit)
-        w.peak_speed[k] = max(w.peak_speed[k], abs(w.v[3 * k + 2]))
-        w.peak_slip[k] = max(w.peak_slip[k], abs(slip(p, w, k)))
+            w.told.peak_rotation[k] = max(w.told.peak_rotation[k], abs(theta) / limit)
+        w.told.peak_velocity[k] = max(w.told.peak_velocity[k], abs(w.v[3 * k + 2]))
+        w.told.peak_slip[k] = max(w.told.peak_slip[k], abs(slip(p, w, k)))
 
 
 @kernel
@@ -344,8 +314,8 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
     if not all_ends:
         for k in range(p.count):
             if w.fails[k, stepping.FALL] == 1:
-                w.fallen = k + 1
-                w.parted = _parted(w, k)
+                w.told.overturned_body = k + 1
+                w.told.parted_contact = _parted(w, k)
                 return _note(p, w, now.time, FALLEN, contact_events, count)
     look_at(p, w, w.q)
     for k in range(p.count):
@@ -393,14 +363,14 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
         kind = IMPACT
         exclude = False
     if not impact.settle(p, w, now.ah, now.av, exclude):
-        w.paradoxes += 1
+        w.told.paradoxes += 1
         impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
         _touch_closed(p, w)
         impact.settle(p, w, now.ah, now.av, False)
         kind = PARADOX
     for k in range(p.count):
         if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
-            w.flights[k] += 1
+            w.told.flights[k] += 1
     return _note(p, w, now.time, kind, contact_events, count)
 
 

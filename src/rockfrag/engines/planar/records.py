@@ -9,13 +9,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.arrays import fields, whole
 from rockfrag.elementary import atan2, sin_cos
 from rockfrag.engines.records import after_impact
 from rockfrag.system import geometry
 from rockfrag.system.contact import ROUGHEST
 from rockfrag.system.system import System
 
-F, INT = np.float64, np.int64
 Array = NDArray[np.float64]
 
 MOST = 12  # bodies of the longest column
@@ -23,109 +23,99 @@ TRIES = 1024  # modes that a search tries at most: more than three interfaces ha
 
 BODY = np.dtype(
     [
-        ("count", INT),  # bodies: 1 to MOST
-        ("g", F),
-        ("mass", F, (MOST,)),
-        ("inertia", F, (MOST,)),
-        ("inverse", F, (3 * MOST,)),  # 1/m, 1/m, 1/I of each body
-        ("corner", F, (MOST, 2, 2)),  # [body, end] of its base from its centre, x and y [m]
+        *whole("count"),  # bodies: 1 to MOST
+        *fields("g"),
+        *fields("mass inertia", MOST),
+        *fields("inverse", 3 * MOST),  # 1/m, 1/m, 1/I of each body
+        *fields("corner", MOST, 2, 2),  # [body, end] of its base from its centre, x and y [m]
         # [interface] middle of the face below from the centre of the body below
-        ("face", F, (MOST, 2)),
-        ("half", F, (MOST,)),  # [interface] half width of the face below; infinite for the ground
+        *fields("face", MOST, 2),
+        *fields("half", MOST),  # [interface] half width of the face below; infinite for the ground
         # [interface] tilt of face and base as all stand, coefficients of friction
-        *((name, F, (MOST,)) for name in ("tilt_cos", "tilt_sin", "static", "kinetic")),
-        ("law", INT, (MOST, 2)),  # [interface, corner that comes down] law of the impact ...
-        ("number", F, (MOST, 2)),  # ... and its number
+        *fields("tilt_cos tilt_sin static kinetic", MOST),
+        *whole("law", MOST, 2),  # [interface, corner that comes down] law of the impact ...
+        *fields("number", MOST, 2),  # ... and its number
         # [body, side] its critical angle to the left, to the right [rad]
-        ("critical", F, (MOST, 2)),
-        ("standing", F, (3 * MOST,)),  # x, y, θ of each body as it stands
-        ("weight", F),  # of everything [N]: unit of forces
-        ("size", F),  # half width of the uppermost body [m]: unit of lengths
-        ("speed", F),  # √(g size) [m/s]: unit of speeds
+        *fields("critical", MOST, 2),
+        *fields("standing", 3 * MOST),  # x, y, θ of each body as it stands
+        # units: of forces the weight of everything [N], of lengths half the width of the uppermost body [m], of
+        # speeds √(g size) [m/s]
+        *fields("weight size speed"),
     ]
 )
 
-TOLD = [
-    ("peak", F, (MOST,)),  # largest |θ| over the critical angle of its sign, and ...
-    ("peak_speed", F, (MOST,)),  # ... largest |θ'| [rad/s] of each body
-    ("peak_slip", F, (MOST,)),  # largest |slip| of each interface [m]
-    ("slid", INT, (MOST,)),  # whether an interface has ever reached its limit, in impacts too
-    ("flights", INT, (MOST,)),  # times that an interface opened at both ends
-    ("impacts", INT),
-    ("paradoxes", INT),
-    ("several", INT),  # times that more than one mode was found consistent
-    ("given_way", INT),  # impacts in which a law would have gained energy
-    ("fallen", INT),  # 0 none, or the body that fell first, from 1 below
-    ("parted", INT),  # 0 none, or the interface that is open furthest as a body falls, from 1 below
-]
+OUTCOME = np.dtype(
+    [
+        # of each body the largest |θ| over the critical angle of its sign, and |θ'| [rad/s]
+        *fields("peak_rotation peak_velocity", MOST),
+        # of each interface the largest |slip| and the last slip [m]; whether it ever reached its limit, in impacts
+        # too; times that it opened at both ends
+        *fields("peak_slip slip", MOST),
+        *whole("slid flights", MOST),
+        *whole("impacts paradoxes"),
+        *whole("several_modes"),  # times that more than one mode was found consistent
+        *whole("given_way"),  # impacts in which a law would have gained energy
+        # from 1 below, 0 none: the body that fell first, and the interface that is open furthest as it falls
+        *whole("overturned_body parted_contact"),
+        *fields("overturning_time"),  # [s], NaN without a fall
+    ]
+)
 """What is told of a case."""
 
 WORK = np.dtype(
     [
-        ("q", F, (3 * MOST,)),  # x, y, θ of each body relative to the ground
-        ("v", F, (3 * MOST,)),
-        ("a", F, (3 * MOST,)),
-        ("closed", INT, (MOST, 2)),  # [interface, end] the mode: closed ends ...
-        ("slides", INT, (MOST,)),  # ... and the sign of slip, 0 where an interface sticks
+        *fields("q v a", 3 * MOST),  # x, y, θ of each body relative to the ground, and their rates
+        *whole("closed", MOST, 2),  # [interface, end] the mode: closed ends ...
+        *whole("slides", MOST),  # ... and the sign of slip, 0 where an interface sticks
         # of closed ends: 1 a corner on the face, 0 the edge of the face on the base
-        ("kind", INT, (MOST, 2)),
-        ("normal", F, (MOST, 2)),  # forces, or impulses
-        ("shear", F, (MOST,)),
-        ("out", F, (3 * MOST,)),  # accelerations, or velocities after an impact
-        # geometry of the configuration that was looked at last
-        ("cos", F, (MOST,)),
-        ("sin", F, (MOST,)),
+        *whole("kind", MOST, 2),
+        *fields("normal", MOST, 2),  # forces, or impulses
+        *fields("shear", MOST),
+        *fields("out", 3 * MOST),  # accelerations, or velocities after an impact
+        *fields("cos sin", MOST),  # of the configuration that was looked at last
         # one row per closed end and per interface that sticks: what it takes of the body below (3) and above (3)
-        ("row", F, (3 * MOST, 6)),
-        ("column", F, (3 * MOST, 6)),
-        ("light", F, (6,)),
-        ("matrix", F, (3 * MOST, 3 * MOST)),
-        ("right", F, (3 * MOST,)),
-        ("owner", INT, (3 * MOST,)),  # 3 k + end, or 3 k + 2 for shear
-        ("upto", INT, (MOST + 2,)),  # number of unknowns of the interfaces up to this one
+        *fields("row column", 3 * MOST, 6),
+        *fields("light", 6),
+        *fields("matrix", 3 * MOST, 3 * MOST),
+        *fields("right", 3 * MOST),
+        *whole("owner", 3 * MOST),  # 3 k + end, or 3 k + 2 for shear
+        *whole("upto", MOST + 2),  # number of unknowns of the interfaces up to this one
         # a step: start, end, stages
-        *((name, F, (3 * MOST,)) for name in ("q0", "v0", "a0", "q1", "v1", "a1")),
-        *((name, F, (3 * MOST, 7)) for name in ("kv", "ka")),
-        ("early", F, (MOST, 2)),  # speeds at which open ends part at the start of a step
-        ("fails", INT, (MOST, 6)),  # [interface, channel] what has become negative
+        *fields("q0 v0 a0 q1 v1 a1", 3 * MOST),
+        *fields("kv ka", 3 * MOST, 7),
+        *fields("early", MOST, 2),  # speeds at which open ends part at the start of a step
+        *whole("fails", MOST, 6),  # [interface, channel] what has become negative
         # search for a mode
-        ("touching", INT, (MOST, 2)),
-        ("moves", INT, (MOST,)),
-        ("limit", F, (MOST,)),
+        *whole("touching", MOST, 2),
+        *whole("moves", MOST),
+        *fields("limit", MOST),
         # normal and tangent of each touching end: motions along them per coordinate, bodies below and above
-        ("arm", F, (4 * MOST, 6)),
-        ("free", F, (4 * MOST,)),  # acceleration or velocity along these without any contact
+        *fields("arm", 4 * MOST, 6),
+        *fields("free", 4 * MOST),  # acceleration or velocity along these without any contact
         # ... and what a unit force along one of the interfaces below, here and above gives along it
-        ("give", F, (4 * MOST, 12)),
-        ("along", INT, (3 * MOST,)),  # of each unknown of a mode: its row in the three above ...
-        ("rub", F, (3 * MOST,)),  # ... and the fraction of the tangent after it that friction adds
-        ("old_v", F, (3 * MOST,)),
-        ("old_closed", INT, (MOST, 2)),
-        ("old_slides", INT, (MOST,)),
-        ("flip", INT, (3,)),  # interface, what and how: the change that mends the worst of a mode
-        ("tried", INT, (TRIES,)),  # numbers of the modes that a search has tried ...
-        ("wrong", F, (TRIES,)),  # ... and how far each is from consistent
+        *fields("give", 4 * MOST, 12),
+        *whole("along", 3 * MOST),  # of each unknown of a mode: its row in the three above ...
+        *fields("rub", 3 * MOST),  # ... and the fraction of the tangent after it that friction adds
+        *fields("old_v", 3 * MOST),
+        *whole("old_closed", MOST, 2),
+        *whole("old_slides", MOST),
+        *whole("flip", 3),  # interface, what and how: the change that mends the worst of a mode
+        *whole("tried", TRIES),  # numbers of the modes that a search has tried ...
+        *fields("wrong", TRIES),  # ... and how far each is from consistent
         # laws of an impact: fraction of an end's impulse that the other end gets too, end that leaves at a given
         # speed (-1: none), and that speed
-        ("fraction", F, (MOST, 2)),
-        ("drive", INT, (MOST,)),
-        ("depart", F, (MOST,)),
-        ("falls", INT, (MOST,)),  # end that comes down while the other is closed, -1: none
-        ("goal", F, (MOST, 2)),  # speed at which the other end departs: without the law, with it
-        # margins of rest, linear in the two accelerations
-        ("rest", F, (4 * MOST, 3)),
-        # ledgers [J] and counts
-        ("work", F),
-        ("rubbed", F),  # lost to friction
-        ("struck", F),  # lost in impacts
-        *TOLD,
-        ("forced", INT),
-        ("met", INT),  # contact events within the sample
-        ("resting", INT),
+        *fields("fraction", MOST, 2),
+        *whole("drive", MOST),
+        *fields("depart", MOST),
+        *whole("falls", MOST),  # end that comes down while the other is closed, -1: none
+        *fields("goal", MOST, 2),  # speed at which the other end departs: without the law, with it
+        *fields("rest", 4 * MOST, 3),  # margins of rest, linear in the two accelerations
+        # ledgers [J]: of the ground, lost to friction, lost in impacts
+        *fields("work rubbed struck"),
+        *fields("told", of=OUTCOME),
+        *whole("forced met resting"),  # counts; contact events met within the sample
     ]
 )
-
-OUTCOME = np.dtype([*TOLD, ("time", F), ("slip", F, (MOST,))])  # time of the fall [s]
 
 
 def fill_geometry(p: np.void, system: System) -> None:

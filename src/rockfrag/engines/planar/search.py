@@ -415,7 +415,7 @@ def search(p, w, ah, av, impact, force, motion, exclude):
         count, found, more = _try_slips(p, w, impact, force, motion, found, count)
         several = several or more
     if several:
-        w.several += 1
+        w.told.several_modes += 1
     best = _least_wrong(w, count)
     if found < 0 and w.wrong[best] > ROUNDING:
         count, found = _try_neighbours(p, w, impact, force, motion, exclude, count)

@@ -7,6 +7,7 @@ the energy lost by friction (14).  Everything is for a unit of mass: energies in
 
 import numpy as np
 
+from rockfrag.arrays import fields, whole
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import cross, dot, norm, plus, times, to_world
 
@@ -18,25 +19,20 @@ MOST_VERTICES = 64
 
 BODY = np.dtype(
     [
-        ("count", np.int64),  # vertices of the base; of a round one, some points of its rim
-        ("rim", np.float64),  # radius of a round base [m]; 0 for a polygon
-        ("centre", np.float64, (2,)),  # centre of a round base [m]
-        ("height", np.float64),  # of the centre of mass over the base [m]
-        # distance in the base of its furthest point from below the centre of mass [m]
-        ("furthest", np.float64),
-        ("nearest", np.float64),  # distance of the nearest edge of its base from there [m]
-        ("static", np.float64),  # coefficients of friction [-]
-        ("kinetic", np.float64),
-        # energy over rest below which nothing falls on ground at rest [J/kg]
-        ("barrier", np.float64),
-        # turn of the contact of a round base that passes through flat, rolling [rad]
-        ("pass_turn", np.float64),
-        ("slide_turn", np.float64),  # the same where it slides without friction [rad]
-        ("inertia", np.float64, (3, 3)),  # tensor over the mass, about the centre of mass [m²]
-        ("inverse", np.float64, (3, 3)),
-        ("points", np.float64, (MOST_VERTICES, 3)),  # vertices, anticlockwise [m]
-        ("about", np.float64, (MOST_VERTICES, 3, 3)),  # tensor about each vertex [m²]
-        ("about_inverse", np.float64, (MOST_VERTICES, 3, 3)),
+        *whole("count"),  # vertices of the base; of a round one, some points of its rim
+        *fields("rim"),  # radius of a round base [m]; 0 for a polygon
+        *fields("centre", 2),  # centre of a round base [m]
+        *fields("height"),  # of the centre of mass over the base [m]
+        # distances in the base from below the centre of mass: of its furthest point, of its nearest edge [m]
+        *fields("furthest nearest"),
+        *fields("static kinetic"),  # coefficients of friction [-]
+        *fields("barrier"),  # energy over rest below which nothing falls on ground at rest [J/kg]
+        # turn of the contact of a round base that passes through flat, rolling, and sliding without friction [rad]
+        *fields("pass_turn slide_turn"),
+        # tensor over the mass, about the centre of mass [m²], and its inverse
+        *fields("inertia inverse", 3, 3),
+        *fields("points", MOST_VERTICES, 3),  # vertices, anticlockwise [m]
+        *fields("about about_inverse", MOST_VERTICES, 3, 3),  # tensor about each vertex [m²]
     ],
     align=True,
 )

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from rockfrag.arrays import fields, whole
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial._algebra import (
@@ -34,37 +35,31 @@ STAGES = 7
 
 CASE = np.dtype(
     [
-        # the mode: number of closed points, their numbers, which of them slide and where to, where they stick
-        ("count", np.int64),
-        ("rests", np.int64),
-        ("jammed", np.int64),  # nothing holds but what sticks; cones are not looked at
-        ("goes_on", np.int64),  # the rates at the end of the last step are still right
-        ("closed", np.int64, (MOST,)),
-        ("slides", np.int64, (MOST,)),
-        ("direction", np.float64, (MOST, 2)),
-        ("anchor", np.float64, (MOST, 2)),
-        ("lam", np.float64, (MOST, 3)),  # contact forces or impulses in the world
+        # the mode: number of closed points, whether it rests; whether nothing holds but what sticks, so that cones
+        # are not looked at; whether the rates at the end of the last step are still right
+        *whole("count rests jammed goes_on"),
+        *whole("closed slides", MOST),  # numbers of the closed points, and which of them slide ...
+        *fields("direction anchor", MOST, 2),  # ... and where to, or where they stick
+        *fields("lam", MOST, 3),  # contact forces or impulses in the world
         # effective gravity at the beginning of the interval, its rate, and gravity on ground at rest
-        ("field", np.float64, (7,)),
+        *fields("field", 7),
         # a small system: contacts, whether and which way of slip is given, coefficients, directions between
-        ("which", np.int64, (MOST,)),
-        ("given", np.int64, (MOST,)),
-        ("way", np.float64, (MOST, 2)),
-        ("friction", np.float64, (MOST,)),
-        ("edge", np.float64, (MOST, MOST, 2)),
-        *((name, np.float64, (3 * MOST, 3 * MOST)) for name in ("delassus", "matrix")),
-        *((name, np.float64, (3 * MOST,)) for name in ("free", "vector", "right", "unknown")),
-        *((name, np.float64, (3 * MOST,)) for name in ("impulse", "after", "best", "trial")),
-        ("order", np.int64, (3 * MOST,)),
-        ("member", np.int64, (MOST,)),  # contacts of a set
+        *whole("which given", MOST),
+        *fields("way", MOST, 2),
+        *fields("friction", MOST),
+        *fields("edge", MOST, MOST, 2),
+        *fields("delassus matrix", 3 * MOST, 3 * MOST),
+        *fields("free vector right unknown impulse after best trial", 3 * MOST),
+        *whole("order", 3 * MOST),
+        *whole("member", MOST),  # contacts of a set
         # a step: rates at its stages, the state at its end, slip at its beginning
-        ("slopes", np.float64, (STAGES, solid.SIZE)),
-        ("new", np.float64, (solid.SIZE,)),
-        ("slip", np.float64, (MOST, 2)),
-        ("armed", np.int64, (MOST,)),
-        ("counters", np.int64, (8,)),
+        *fields("slopes", STAGES, solid.SIZE),
+        *fields("new", solid.SIZE),
+        *fields("slip", MOST, 2),
+        *whole("armed", MOST),
+        *whole("counters", 8),
         # velocity after an impact below which a point that touches stays closed [m/s]
-        ("close", np.float64),
+        *fields("close"),
     ],
     align=True,
 )

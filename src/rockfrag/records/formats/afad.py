@@ -30,7 +30,7 @@ def _parse(text: TextFile) -> list[form.Channel]:
     count = int(_number_of(text, facts, "number of data"))
     dt = text.interval(_number_of(text, facts, "sampling interval"), 0)
     components = re.findall(r"[NSEWUD]\s*-?\s*[NSEWUD]", header[titles])
-    values = text.counted(titles + 1, None, count * len(components))
+    values = text.numbers(titles + 1, count=count * len(components))
     table = values[: values.size // len(components) * len(components)].reshape(-1, len(components))
     time = facts["record time"]
     known = {

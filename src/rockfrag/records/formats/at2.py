@@ -8,11 +8,8 @@ any case), then values in rows. The header may be longer and freer in files made
 import re
 from collections.abc import Iterator
 
-import numpy as np
-from numpy.typing import NDArray
 from obspy import Trace
 
-from rockfrag.errors import InputError
 from rockfrag.records.parsing.format import QUANTITIES, Channel, Format, stated, text_writer
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile, last_row
@@ -112,22 +109,11 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     if quantity not in ("", "acceleration"):
         held = f"{quantity} history" + (f" in {unit}" if unit else "")
         text.refuse(f"this is a {held}, not acceleration; give the record's .AT2 file")
-    values = Channel(npts, dt, lambda: _samples(text, size + 1, npts), unit)
+    start, stop = size + 1, last_row(text, size + 1)
+    # PEER's columns, where neighbours may touch
+    widths = (None, _WIDTH) if len(text.raw(start).rstrip()) == 5 * _WIDTH else ()
+    values = Channel(npts, dt, lambda: text.numbers(start, stop, *widths, count=npts), unit)
     yield values.saying(_facts(header[:-1]))
-
-
-def _samples(text: TextFile, start: int, npts: int) -> NDArray[np.float64]:
-    """Return the samples: separated numbers, or PEER's columns of 15 where neighbours touch."""
-    stop = last_row(text, start)
-    try:
-        return text.counted(start, stop, npts)
-    except InputError as error:
-        if len(text.raw(start).rstrip()) != 5 * _WIDTH:
-            raise
-        try:
-            return text.counted(start, stop, npts, _WIDTH)
-        except InputError:
-            raise error from None
 
 
 def _facts(header: list[str]) -> dict[str, str]:

@@ -73,7 +73,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         text.fail("NDATA or SAMPLING_INTERVAL_S is not a number")
     if count < 1:
         text.fail(f"the header promises {count} samples")
-    samples = text.interval(dt, 0), lambda: text.counted(start, None, count)
+    samples = text.interval(dt, 0), lambda: text.numbers(start, count=count)
     known = {name: facts.get(key, "") for name, key in _FACTS.items()}
     # the Turkish variant has the name of a place here
     known["location"] = known["location"] if len(known["location"]) <= 2 else ""

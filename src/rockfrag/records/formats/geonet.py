@@ -63,8 +63,9 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
         text.fail(f"the header promises {counts[0]} samples of acceleration", at_integers + 3)
     found = []
     for count in counts:
-        found.append(text.counted(line, line - (-count // _A_LINE), count, _WIDTH))
-        line -= -count // _A_LINE
+        after = line - (-count // _A_LINE)
+        found.append(text.numbers(line, after, _WIDTH, count=count))
+        line = after
     values = found[0] * float(stated(r"\bunits of\s+([\d.]+)\s*mm/s/s", words) or 1)
     year, month, day, hour, minute = (str(whole[place]) for place in _START)
     began = clock_time(year, month, day, hour, minute, "0") if whole[_START[0]] > 0 else None

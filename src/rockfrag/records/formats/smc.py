@@ -100,7 +100,7 @@ def _without_surplus_lines(
     ends = accumulate(-(-each // width) for each in widths)
     if 0 < surplus <= _SURPLUS_LINES * _PER_LINE and count in takewhile(lambda n: n <= count, ends):
         return values[:count], surplus
-    return text.counted(start, None, count, width), 0
+    return text.numbers(start, None, width, count=count), 0
 
 
 def _width(text: TextFile, start: int, whole: list[int]) -> int:

@@ -339,7 +339,7 @@ def section(
 ) -> Channel:
     """Return the ``count`` values in the lines below ``line``, which states them, up to ``stop``."""
     dt = text.interval(dt, line)
-    samples = text.counted(line + 1, stop, count, width)
+    samples = text.numbers(line + 1, stop, width, count=count)
     return Channel(count, dt, samples.copy, unit, quantity)
 
 

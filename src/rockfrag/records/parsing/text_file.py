@@ -6,7 +6,6 @@ import os
 import re
 import zlib
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -176,23 +175,29 @@ class TextFile:
         self.fail(what, line, NotAcceleration)
 
     def numbers(
-        self, start: int, stop: int | None = None, width: int | None = None
+        self, start: int, stop: int | None = None, *widths: int | None, count: int | None = None
     ) -> NDArray[np.float64]:
-        """Parse lines ``start`` up to ``stop`` as numbers, shape (n,).
+        """Parse lines ``start`` up to ``stop`` as numbers, shape (n,), of ``count`` if one is promised.
 
-        With ``width`` the lines are first taken as Fortran fields of that width; where they do not
-        fit it (blanks edited away), as separated numbers.
+        ``widths`` are of Fortran fields, None of separated numbers; the first that the lines (blanks may be edited
+        away) and the count fit is taken. Separated numbers are tried at last.
         """
         body = self._body(start, stop)
+        found: list[NDArray[np.float64]] = []
         wrong: list[NumberError] = []
-        for columns in (width, None) if width else (None,):
+        for width in dict.fromkeys((*widths, None)):
             try:
-                return (
-                    parse_columns(body.split(b"\n"), columns) if columns else parse_separated(body)
-                )
+                values = parse_columns(body.split(b"\n"), width) if width else parse_separated(body)
             except NumberError as error:
                 wrong.append(error)
-        self.fail(str(wrong[0]), start + wrong[0].line)
+                continue
+            if count in (None, values.size):
+                return values
+            found.append(values)
+        if not found:
+            self.fail(str(wrong[0]), start + wrong[0].line)
+        self.check_count(count or 0, found[0].size, start)
+        return found[0]
 
     def reals(
         self, start: int, stop: int, width: int, count: int, kind: str = "numbers"
@@ -230,19 +235,6 @@ class TextFile:
 
     def _body(self, start: int, stop: int | None) -> bytes:
         return self.data[self.offset(start) : self.offset(len(self) if stop is None else stop)]
-
-    def counted(
-        self, start: int, stop: int | None, count: int, width: int | None = None
-    ) -> NDArray[np.float64]:
-        """Parse lines as numbers and check that there are ``count`` of them, shape (count,)."""
-        values = self.numbers(start, stop, width)
-        if values.size != count and width is not None:
-            # columns that are not where the format puts them may still be separated numbers
-            with suppress(NumberError):
-                separated = parse_separated(self._body(start, stop))
-                values = separated if separated.size == count else values
-        self.check_count(count, values.size, start)
-        return values
 
     def table(self, start: int, columns: int) -> NDArray[np.float64]:
         """Parse lines as rows of numbers, shape (rows, columns), separated as in :meth:`rows`."""

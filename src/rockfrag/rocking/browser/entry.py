@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from rockfrag.arrays import fields, whole
 from rockfrag.engines.kernels.chatter import RESTORING
 from rockfrag.engines.kernels.equations import BODY, STATE
 from rockfrag.engines.kernels.jit import kernel
@@ -16,35 +17,36 @@ from rockfrag.engines.kernels.taylor import SERIES
 from rockfrag.laws import position, ratio
 from rockfrag.system import geometry
 
-_F, _I = np.float64, np.int64
-
-BLOCK = np.dtype(
-    [
-        ("width", _F), ("height", _F), ("mass", _F),
-        ("inertia", _F), ("cg_height", _F),  # NaN if not given
-        ("cg_offset", _F), ("lean", _F),
-    ]
-)  # fmt: skip
-"""A block as it is given (``bodies.Block``)."""
+BLOCK = np.dtype(fields("width height mass inertia cg_height cg_offset lean"))
+"""A block as it is given (``bodies.Block``), with NaN for an inertia or a cg_height that is not."""
 
 CALL = np.dtype(
     [
         # what describe reads
-        ("statue", BLOCK), ("pedestal", BLOCK), ("offset", _F), ("stacked", _I),
-        ("ground", _F), ("interface", _F),  # measured restitution, NaN where momentum is conserved
+        *fields("statue pedestal", of=BLOCK),
+        *fields("offset"),
+        *whole("stacked"),
+        *fields("ground interface"),  # measured restitution, NaN where momentum is conserved
         # what it leaves: whether the body stands (``geometry``), and the frequency parameters that steps and the
         # length of free rocking follow from [1/s]
-        ("fault", _I), ("fastest", _F), ("slowest", _F),
+        *whole("fault"),
+        *fields("fastest slowest"),
         # what integrate reads, the body among it, and leaves
-        ("body", BODY), ("initial", STATE),
-        ("scale", _F), ("dt", _F), ("substeps", _I), ("free_samples", _I),
-        ("summary", SUMMARY), ("done", _I),
+        *fields("body", of=BODY),
+        *fields("initial", of=STATE),
+        *fields("scale dt"),
+        *whole("substeps free_samples"),
+        *fields("summary", of=SUMMARY),
+        *whole("done"),
         # what it works in
-        ("state", STATE), ("before", STATE), ("trial", STATE),
-        ("series", SERIES), ("restoring", RESTORING), ("balances", BALANCE, 8), ("beyond", _I, (1,)),
+        *fields("state before trial", of=STATE),
+        *fields("series", of=SERIES),
+        *fields("restoring", of=RESTORING),
+        *fields("balances", 8, of=BALANCE),
+        *whole("beyond", 1),
     ],
     align=True,
-)  # fmt: skip
+)
 """What a page and the module hand to each other."""
 
 

@@ -141,7 +141,7 @@ def survived_amplitudes(
             for p, m in np.argwhere(chosen):
                 slid = found[p, m]["slid"][: mu.shape[1]] > 0
                 holds = np.where(slid, same[p], higher[p]).all(axis=1) & open_[:, m]
-                if found[p, m]["fallen"]:
+                if found[p, m]["overturned_body"]:
                     first[holds, m] = level
                     alive[holds, m] = False
                 open_[holds, m] = False

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rockfrag.arrays import fields, whole
 from rockfrag.elementary import acos, cos
 from rockfrag.engines.kernels import taylor
 from rockfrag.engines.kernels.by_reference import by_reference
@@ -22,49 +23,43 @@ from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP
 
 LANES = 64  # as many as ``next_samples`` has bits for
 TOUCHES, FALLS = 1.0, 2.0  # flags of a lane: it may have touched, or falls for certain
-_F, _I = np.float64, np.int64
 
 PIVOT = np.dtype(
     [
-        ("alpha", _F), ("tan", _F), ("sine", _F), ("cosine", _F),  # critical angle
-        ("swing", _F),  # p² dt²
-        ("restitution", _F),  # ratio of angular velocities of the impact that ends rocking on this pivot
-        ("per_alpha", _F), ("per_swing", _F),  # 1/θc and 1/(p² dt² θc²)
+        *fields("alpha tan sine cosine"),  # critical angle
+        *fields("swing"),  # p² dt²
+        # ratio of angular velocities of the impact that ends rocking on this pivot
+        *fields("restitution"),
+        *fields("per_alpha per_swing"),  # 1/θc and 1/(p² dt² θc²)
     ]
-)  # fmt: skip
+)
 """What the lanes know of a block on one pivot."""
 
 LANE = np.dtype(
     [
-        ("case", _I, LANES),  # its number, -1 for none
-        ("body", _I, LANES), ("motion", _I, LANES),
-        ("k", _I, LANES), ("first", _I, LANES), ("last", _I, LANES),  # samples: reached; of its motion
-        ("following", _I, LANES),  # the sample after the one it has reached, if its motion has one
-        ("side", _I, LANES),  # 1 on the right pivot, -1 on the left, 0 at rest
-        ("fell", _I, LANES),
-        ("crowded", _I, LANES), ("crowd", _I, LANES),  # sample of the last impact, and how many that has had
-        ("psi", _F, LANES), ("omega", _F, LANES),  # the state, ψ and ψ'
-        ("ground", _F, LANES), ("ground_end", _F, LANES),  # A now and at the end of the sample
-        ("weight", _F, LANES), ("weight_end", _F, LANES),  # W now and at the end of the sample
-        ("part_left", _F, LANES),  # part of the sample that is left
-        ("tau", _F, LANES),  # time since sample k, between contact events
-        # extremes of the case so far: ψ/θc, ψ', distance from balance squared
-        ("low", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
+        # number of its case, -1 for none; samples: reached, first and last of its motion, and the one after the
+        # one reached, if its motion has one
+        *whole("case body motion k first last following", LANES),
+        *whole("side", LANES),  # 1 on the right pivot, -1 on the left, 0 at rest
+        *whole("fell crowded crowd", LANES),  # sample of the last impact, and how many that has had
+        *fields("psi omega", LANES),  # the state, ψ and ψ'
+        # A and W now, at the end of the sample
+        *fields("ground ground_end weight weight_end", LANES),
+        *fields("part_left tau", LANES),  # part of the sample that is left, and time since sample k
+        # so far: least ψ/θc, most |ψ'|, distance from balance squared
+        *fields("low fast near", LANES),
         # these where the step began
-        ("was_psi", _F, LANES), ("was_omega", _F, LANES), ("was_left", _F, LANES),
-        ("was_low", _F, LANES), ("was_fast", _F, LANES), ("was_near", _F, LANES),
-        ("angle", _F, LANES), ("kappa", _F, LANES),  # θc and κ = p² dt² of the pivot
-        ("per_angle", _F, LANES), ("per_speed", _F, LANES),  # 1/θc and 1/(κ θc²)
-        ("bound", _F, LANES),  # the most that A can be from here on
-        ("heavy", _F, LANES),  # the most that W can be
-        ("crest", _F, LANES),  # √(light² + bound²) + heavy - light, with the least that W can be
-        ("factor", _F, LANES), ("signed", _F, LANES),  # scale of the motion over g, and that times the side
-        ("flag", _F, LANES),
-        ("when", _F, LANES),  # time in the step at which ψ passes θc
-        ("rates", _F, (taylor.ORDER - 1, LANES)),  # Taylor coefficients 1 to 6 of ψ'
+        *fields("was_psi was_omega was_left was_low was_fast was_near", LANES),
+        # θc, κ = p² dt², 1/θc and 1/(κ θc²) of the pivot
+        *fields("angle kappa per_angle per_speed", LANES),
+        # the most that A and W can be from here on, and √(light² + bound²) + heavy - light, with the least W
+        *fields("bound heavy crest", LANES),
+        *fields("factor signed", LANES),  # scale of the motion over g, and that times the side
+        *fields("flag when", LANES),  # when: time in the step at which ψ passes θc
+        *fields("rates", taylor.ORDER - 1, LANES),  # Taylor coefficients 1 to 6 of ψ'
     ],
     align=True,
-)  # fmt: skip
+)
 """The lanes: a row of LANES numbers for each quantity."""
 
 

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.arrays import fields, whole
 from rockfrag.engines.kernels.by_reference import by_reference
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
@@ -19,14 +20,14 @@ OUTCOME = np.dtype(
     [
         # what fell (0 none, 1 the pedestal, 2 the statue or lone block), and the samples after which that was
         # certain
-        ("fallen", np.int64), ("certain", np.int64),
+        *whole("fallen certain"),
         # extremes: of θ/θcritical of pedestal and statue, |θ'| of the statue per sample, distance from balance
-        ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("unstable_distance", np.float64),
-        ("impacts", np.int64),
-        ("given_way", np.int64),  # impacts in which the law of a measured restitution had to give way
+        *fields("peak1 peak2 fast unstable_distance"),
+        # given_way: impacts in which the law of a measured restitution had to give way
+        *whole("impacts given_way"),
     ],
     align=True,
-)  # fmt: skip
+)
 """What remains of a case; time is counted in samples."""
 
 

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rockfrag.arrays import fields, whole
 from rockfrag.engines.kernels import chatter, contact_states, equations
 from rockfrag.engines.kernels.by_reference import by_reference
 from rockfrag.engines.kernels.impact import ground_impact, interface_impact
@@ -23,30 +24,26 @@ SLOTS = 2 * lanes.LANES
 
 CASE = np.dtype(
     [
-        ("number", np.int64),  # of the case, -1 for none
-        ("slot", np.int64), ("body", np.int64),
+        *whole("number slot body"),  # number of the case, -1 for none
         # sampling interval [s], the largest part of it that a step of two rotations may take, and the scale
-        ("interval", np.float64), ("part", np.float64), ("factor", np.float64),
+        *fields("interval part factor"),
         # ground accelerations between which the body rests, and the least energy that overturns it
-        ("low", np.float64), ("high", np.float64), ("barrier", np.float64),
-        # samples: of its motion the first and the last, and the last of free rocking
-        ("first", np.int64), ("last", np.int64), ("free_last", np.int64),
-        # the sample it has reached, and the time since then
-        ("k", np.int64), ("tau", np.float64),
-        # the state, with rates per sample
-        ("c1", np.int64), ("c2", np.int64),
-        ("theta1", np.float64), ("omega1", np.float64), ("theta2", np.float64), ("omega2", np.float64),
-        # gravity of a ground that does not move vertically
-        ("gravity", np.float64),
+        *fields("low high barrier"),
+        # samples: of its motion the first and the last, the last of free rocking, and the one it has reached
+        *whole("first last free_last k"),
+        *fields("tau"),  # time since then
+        *whole("c1 c2"),  # the state, with rates per sample
+        *fields("theta1 omega1 theta2 omega2"),
+        *fields("gravity"),  # of a ground that does not move vertically
         # of its last contact event the ground acceleration, gravity over the above, the sample, and how many that
         # has had
-        ("ground", np.float64), ("weight", np.float64), ("crowded", np.int64), ("crowd", np.int64),
-        # extremes so far, as in the lanes; impacts; what fell, 1 the pedestal, 2 the statue
-        ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("near", np.float64),
-        ("impacts", np.int64), ("given_way", np.int64), ("fallen", np.int64),
+        *fields("ground weight"),
+        *whole("crowded crowd"),
+        *fields("peak1 peak2 fast near"),  # extremes so far, as in the lanes
+        *whole("impacts given_way fallen"),  # what fell: 1 the pedestal, 2 the statue
     ],
     align=True,
-)  # fmt: skip
+)
 """A case in flight; time is counted in samples."""
 
 

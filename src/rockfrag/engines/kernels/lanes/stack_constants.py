@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from rockfrag.arrays import fields, whole
 from rockfrag.elementary import hypot
 from rockfrag.engines.kernels import equations
 from rockfrag.engines.kernels.impact import impact
@@ -19,36 +20,28 @@ HOLD = 12
 ONE = np.dtype(
     [
         # first moments about the pivot times g over the moment of inertia, per sample²
-        ("gx", np.float64), ("gy", np.float64),
-        ("per_angle", np.float64),  # 1 over the critical angle, positive on the side of the pivot
-        ("per_speed", np.float64),  # (1 over critical angle, frequency and interval)²
-        ("right", np.float64, (HOLD, 1)), ("left", np.float64, (HOLD, 1)),  # corners of the closed contact
+        *fields("gx gy"),
+        *fields("per_angle"),  # 1 over the critical angle, positive on the side of the pivot
+        *fields("per_speed"),  # (1 over critical angle, frequency and interval)²
+        *fields("right left", HOLD, 1),  # corners of the closed contact
     ]
-)  # fmt: skip
+)
 """A contact state in which one rotates: the statue (pattern 4), or both blocks as one (pattern 3)."""
 
-TWO = np.dtype(
-    [
-        # first moments per sample²
-        ("v1x", np.float64), ("v1y", np.float64), ("v2x", np.float64), ("v2y", np.float64),
-        ("m11", np.float64), ("m22", np.float64), ("e", np.float64), ("f", np.float64),
-        ("per_angle1", np.float64), ("per_angle2", np.float64),
-        ("per_speed1", np.float64), ("per_speed2", np.float64),
-    ]
-)  # fmt: skip
-"""A contact state in which both rotate (patterns 1 and 2)."""
+TWO = np.dtype(fields("v1x v1y v2x v2y m11 m22 e f per_angle1 per_angle2 per_speed1 per_speed2"))
+"""A contact state in which both rotate (patterns 1 and 2), with first moments v per sample²."""
 
 IMPACT = np.dtype(
     [
         # products of the velocity fields before and after one contact of two closes
-        ("ground", np.float64),
-        ("both11", np.float64), ("both12", np.float64), ("both21", np.float64), ("both22", np.float64),
+        *fields("ground both11 both12 both21 both22"),
         # landing of what rocks alone: contacts and velocities after it at unit speed, √ of the energy left, and
         # whether the law of a measured restitution has to give way in it
-        ("next1", np.int64), ("next2", np.int64),
-        ("after1", np.float64), ("after2", np.float64), ("fraction", np.float64), ("gives_way", np.int64),
+        *whole("next1 next2"),
+        *fields("after1 after2 fraction"),
+        *whole("gives_way"),
     ]
-)  # fmt: skip
+)
 """Impacts out of a contact state."""
 
 

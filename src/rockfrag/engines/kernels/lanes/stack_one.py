@@ -6,45 +6,41 @@ samples.
 
 import numpy as np
 
+from rockfrag.arrays import fields, whole
 from rockfrag.engines.kernels import roots, taylor
 from rockfrag.engines.kernels.contact_states import HALF_TURN
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.lanes.case import CLOSES, LANES, NEARS, QUIET, RELEASE
 from rockfrag.engines.kernels.lanes.stack_constants import HOLD
 
-_F = np.float64
-
 LANE = np.dtype(
     [
-        ("slot", np.int64, LANES),  # of the case, -1 for none
-        ("k", np.int64, LANES), ("last", np.int64, LANES),  # sample it has reached, last one of its motion
-        ("following", np.int64, LANES),  # the sample after the one it has reached, if its motion has one
+        # its case, -1 for none; sample it has reached, the last of its motion, and the one after the one reached,
+        # if its motion has one
+        *whole("slot k last following", LANES),
         # constants of its contact state (stack_constants.ONE), and the side that the rocking contact opens to
-        ("gx", _F, LANES), ("gy", _F, LANES), ("per_angle", _F, LANES), ("per_speed", _F, LANES),
-        ("right", _F, (HOLD, LANES)), ("left", _F, (HOLD, LANES)),
-        ("side", _F, LANES),
-        ("factor", _F, LANES),  # scale of its motion
-        ("ground_end", _F, LANES),  # acceleration of the ground at the end of the sample
-        # gravity over that of a ground that does not move vertically, at the end of the sample
-        ("weight_end", _F, LANES),
+        *fields("gx gy per_angle per_speed", LANES),
+        *fields("right left", HOLD, LANES),
+        *fields("side", LANES),
+        *fields("factor", LANES),  # scale of its motion
+        # at the end of the sample: acceleration of the ground, and gravity over that of a ground that does not
+        # move vertically
+        *fields("ground_end weight_end", LANES),
         # the state; the acceleration of the ground, and the weight; the part of the sample that is left
-        ("theta", _F, LANES), ("omega", _F, LANES), ("ground", _F, LANES), ("weight", _F, LANES),
-        ("part_left", _F, LANES),
-        # extremes so far: of θ/θcritical, |θ'|, and distance from balance squared
-        ("ratio", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
-        ("flag", _F, LANES),
+        *fields("theta omega ground weight part_left", LANES),
+        # so far: θ/θcritical, |θ'|, distance from balance squared
+        *fields("ratio fast near", LANES),
+        *fields("flag", LANES),
         # these where the step began ...
-        ("was_theta", _F, LANES), ("was_omega", _F, LANES), ("was_ground", _F, LANES), ("was_left", _F, LANES),
-        ("was_weight", _F, LANES),
-        ("was_ratio", _F, LANES), ("was_fast", _F, LANES), ("was_near", _F, LANES),
+        *fields("was_theta was_omega was_ground was_left was_weight", LANES),
+        *fields("was_ratio was_fast was_near", LANES),
         # ... and where the step before that began, if it was of the same lane's case
-        ("before_theta", _F, LANES), ("before_omega", _F, LANES), ("before_ground", _F, LANES),
-        ("before_weight", _F, LANES), ("before_left", _F, LANES),
-        ("has_before", _F, LANES), ("has_step", _F, LANES),
-        ("rates", _F, (taylor.ORDER - 1, LANES)),  # Taylor coefficients 1 to 6 of θ'
+        *fields("before_theta before_omega before_ground before_weight before_left", LANES),
+        *fields("has_before has_step", LANES),
+        *fields("rates", taylor.ORDER - 1, LANES),  # Taylor coefficients 1 to 6 of θ'
     ],
     align=True,
-)  # fmt: skip
+)
 """The lanes: a row of LANES numbers for each quantity."""
 
 

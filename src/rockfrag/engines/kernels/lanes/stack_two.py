@@ -6,6 +6,7 @@ allowed. Time is counted in samples.
 
 import numpy as np
 
+from rockfrag.arrays import fields, whole
 from rockfrag.engines.kernels import taylor
 from rockfrag.engines.kernels.contact_states import GROUND, HALF_TURN, INTERFACE
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
@@ -13,43 +14,31 @@ from rockfrag.engines.kernels.lanes.case import CLOSES, LANES, NEARS, QUIET, WIT
 from rockfrag.engines.kernels.roots import NEVER, crossing_time, dips, hops
 from rockfrag.engines.kernels.single import fill_gap, first_closing
 
-_F = np.float64
-
 LANE = np.dtype(
     [
-        ("slot", np.int64, LANES),  # of the case, -1 for none
-        ("k", np.int64, LANES), ("last", np.int64, LANES),  # sample it has reached, last one of its motion
-        ("following", np.int64, LANES),  # the sample after the one it has reached, if its motion has one
+        *whole("slot k last following", LANES),  # as in ``stack_one``
         # constants of its contact state (stack_constants.TWO), and the sides that its contacts open to
-        ("v1x", _F, LANES), ("v1y", _F, LANES), ("v2x", _F, LANES), ("v2y", _F, LANES),
-        ("m11", _F, LANES), ("m22", _F, LANES), ("e", _F, LANES), ("f", _F, LANES),
-        ("per_angle1", _F, LANES), ("per_angle2", _F, LANES),
-        ("per_speed1", _F, LANES), ("per_speed2", _F, LANES),
-        ("side1", _F, LANES), ("side2", _F, LANES),
-        ("factor", _F, LANES),  # scale of its motion
-        ("part", _F, LANES),  # the largest part of a sample that a step may take
-        # at the end of the sample: acceleration of the ground, and gravity over that of a ground that does not
-        # move vertically
-        ("ground_end", _F, LANES), ("weight_end", _F, LANES),
-        # the state; the acceleration of the ground, and the weight; the part of the sample that is left
-        ("theta1", _F, LANES), ("omega1", _F, LANES), ("theta2", _F, LANES), ("omega2", _F, LANES),
-        ("ground", _F, LANES), ("weight", _F, LANES), ("part_left", _F, LANES),
-        # extremes so far: of θ/θcritical, |θ2'|, and distance from balance squared
-        ("ratio1", _F, LANES), ("ratio2", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
-        ("flag", _F, LANES),
+        *fields("v1x v1y v2x v2y m11 m22 e f", LANES),
+        *fields("per_angle1 per_angle2 per_speed1 per_speed2 side1 side2", LANES),
+        # scale of its motion, the largest part of a sample that a step may take
+        *fields("factor part", LANES),
+        *fields("ground_end weight_end", LANES),  # as in ``stack_one``, and those below
+        *fields("theta1 omega1 theta2 omega2 ground weight part_left", LANES),
+        *fields("ratio1 ratio2 fast near", LANES),
+        *fields("flag", LANES),
         # time of its contact event in the step, whether ground and interface close then (numba has no rows of
         # booleans)
-        ("when", _F, LANES), ("closes1", np.int64, LANES), ("closes2", np.int64, LANES),
+        *fields("when", LANES),
+        *whole("closes1 closes2", LANES),
         # these where the step began
-        ("was_theta1", _F, LANES), ("was_omega1", _F, LANES),
-        ("was_theta2", _F, LANES), ("was_omega2", _F, LANES),
-        ("was_ground", _F, LANES), ("was_weight", _F, LANES), ("was_left", _F, LANES),
-        ("was_ratio1", _F, LANES), ("was_ratio2", _F, LANES), ("was_fast", _F, LANES), ("was_near", _F, LANES),
-        # Taylor coefficients 1 to 6
-        ("rates1", _F, (taylor.ORDER - 1, LANES)), ("rates2", _F, (taylor.ORDER - 1, LANES)),
+        *fields(
+            "was_theta1 was_omega1 was_theta2 was_omega2 was_ground was_weight was_left", LANES
+        ),
+        *fields("was_ratio1 was_ratio2 was_fast was_near", LANES),
+        *fields("rates1 rates2", taylor.ORDER - 1, LANES),  # Taylor coefficients 1 to 6
     ],
     align=True,
-)  # fmt: skip
+)
 """The lanes: a row of LANES numbers for each quantity."""
 
 REMNANT = 1e-12  # part of a sample that is not worth a step of its own
