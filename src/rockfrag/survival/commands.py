@@ -32,8 +32,8 @@ def add_survival_commands(commands: Any) -> None:
 
 # imported when it runs: `rockfrag --help` should not wait for pandas
 def _constrain(options: argparse.Namespace) -> int:
-    from rockfrag.survival.answer import constrain
     from rockfrag.survival.page import json_of, lines_of, write_constrained
+    from rockfrag.survival.reweight import constrain
     from rockfrag.survival.site import read_site
 
     found = constrain(read_site(options.file, options.records))
