@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.figure_style import figure_style, new_figure, save_figure
 from rockfrag.files import FORMULA, check_name, csv_text, file_name, write_table
-from rockfrag.fragility.curve_facts import identifiers
+from rockfrag.fragility.exports import identifiers
 from rockfrag.fragility.observations import observations_from_table
 from rockfrag.keywords import RENAMED, check_names
 from rockfrag.pedestal.paired_tests import check_tests

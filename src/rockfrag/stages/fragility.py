@@ -9,7 +9,7 @@ import pandas as pd
 
 from rockfrag.motions.intensity import declared, intensity_measures
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
-from rockfrag.shaketable.swept import Swept
+from rockfrag.shaketable.definitions import Swept
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
 from rockfrag.stages.ida import ida_curves_of
 from rockfrag.stages.job import Job, Results

@@ -4,8 +4,13 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import pandas as pd
 
+from rockfrag.shaketable.definitions import (
+    DEFINITION,
+    Swept,
+    mean_amplitudes,
+    tests_from_swept,
+)
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
-from rockfrag.shaketable.swept import Swept
 from rockfrag.stages.ida import ida_curves_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.stages.validity import sliding_table, validity_table
@@ -19,7 +24,6 @@ LIMITED = "step_protocol_shaker"  # the step protocol that stops at the shaker's
 
 def run(job: Job[Study]) -> Results:
     """Yield the tests in every definition, their means, the shaker's limits, bodies and forces."""
-    from rockfrag.shaketable.definitions import DEFINITION, mean_amplitudes, tests_from_swept
     from rockfrag.shaketable.shaker import shaker_table
 
     study = job.study
@@ -63,8 +67,6 @@ def limited_tests(
 
     Return tests of the definition ``LIMITED``; the remark of a test that the shaker ended says so.
     """
-    from rockfrag.shaketable.definitions import DEFINITION, tests_from_swept
-
     known = limits.set_index("motion").to_dict("index")
     largest = {str(motion): float(limit["limit_g"]) for motion, limit in known.items()}
     tests = tests_from_swept(ida_curves, protocol, definitions=[DEFINITION], limits_g=largest)
