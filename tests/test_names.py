@@ -35,11 +35,16 @@ HOSTILE = st.one_of(
 def usable(name: str) -> bool:
     try:
         check_name(name)
-    except InputError as error:
-        assert len(str(error)) <= LONGEST_MESSAGE
-        assert str(error).isprintable()
+    except InputError:
         return False
     return True
+
+
+@given(HOSTILE)
+def test_a_message_is_one_short_line_whatever_it_quotes(name: str):
+    said = str(InputError(f"begins {name * 40} ends."))
+    assert said.isprintable() and len(said) <= LONGEST_MESSAGE
+    assert said.startswith("begins ") and said.endswith(" ends.")
 
 
 @given(HOSTILE)
