@@ -7,19 +7,15 @@ import sys
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rockfrag import __version__
-from rockfrag.assess.app.commands import add_app_command
-from rockfrag.assess.commands import add_assess_commands
+from rockfrag.assess.commands import add_app_command, add_assess_commands, add_records_option
 from rockfrag.errors import InputError, errors_of
 from rockfrag.record_commands import add_record_commands, read_told
-from rockfrag.survival.commands import add_survival_commands
 from rockfrag.units import GRAVITY, STONE, check_density, peak_warning, quantity, size_warning
 
 if TYPE_CHECKING:
-    from rockfrag.engines.response import Response
-    from rockfrag.engines.spatial import SpatialResponse
     from rockfrag.records.motion import Motion
     from rockfrag.rocking.options import FrictionInput
     from rockfrag.system.blocks import Block, Body
@@ -56,7 +52,7 @@ def make_parser() -> argparse.ArgumentParser:
 
     add_assess_commands(commands)
     add_app_command(commands)
-    add_survival_commands(commands)
+    _add_constrain(commands)
     add_record_commands(commands)
 
     command = commands.add_parser("simulate", help="shake one body by one record")
@@ -111,92 +107,76 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--channel", help="channel, where the record has several")
 
 
+def _add_constrain(commands: Any) -> None:
+    parser = commands.add_parser(
+        "constrain",
+        help="reweight hazard branches by objects that still stand",
+        description="A site with the branches of its hazard, and objects that have stood there for "
+        "known times.",
+    )
+    parser.add_argument("file", help="the site, such as site.yaml")
+    words = "where page, JSON and tables are written"
+    parser.add_argument("--output", metavar="FOLDER", default="constrained", help=words)
+    add_records_option(parser, "folder of fetched records, for objects that are simulated")
+    parser.add_argument("--json", action="store_true", help="print the answer as JSON")
+    parser.set_defaults(run=_constrain)
+
+
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
-    from rockfrag.motions.processing import scale, scale_to_pga
+    from rockfrag.motions.processing import scale
+    from rockfrag.records.motion import GroundMotion
     from rockfrag.rocking import simulate
+    from rockfrag.sentences import environment
 
     if options.plot is not None and not options.plot.endswith((".png", ".svg")):
         raise InputError(f"--plot: expected a name that ends in .png or .svg, got {options.plot}.")
     body, motion = _case(options)
-    acceleration, factor = motion.acceleration, 1.0
-    if options.pga is not None:
-        if options.pga <= 0:
-            raise InputError(f"--pga: expected a number of g above 0, got {options.pga}.")
-        acceleration = scale_to_pga(motion, options.pga).acceleration
-        factor = options.pga * GRAVITY / motion.pga
-    _warn_of_unit(options.record, float(abs(acceleration).max()), body)
-    if options.second is not None:
-        return _simulate_in_space(options, body, motion, factor)
-    up = None
-    if options.vertical is not None:
-        up = scale(read_told(options.vertical, options, None), factor)
-    restitution = options.restitution
+    factor = _factor(options, motion)
+    scaled = scale(motion, factor)
+    _warn_of_unit(options.record, scaled.pga, body)
+    restitution: Any = options.restitution
     if restitution is not None and options.pedestal:
         restitution = (restitution,) * len(body.blocks)
-    told = {"restitution": restitution, "friction": _friction(options), "vertical": up}
-    with warnings.catch_warnings():
-        # what `simulate` doubts of the acceleration has been said
-        warnings.simplefilter("ignore", UserWarning)
-        response = simulate(body, acceleration, motion.dt, **told)
-    peak = abs(acceleration).max() / GRAVITY
-    print(
-        f"{options.record}: peak {peak:.4f} g, {motion.acceleration.size} samples of {motion.dt} s"
-    )
-    if response.overturned:
-        print(f"overturned: the {response.overturned_body}, at {response.overturning_time:.3f} s")
+    told = {"restitution": restitution, "friction": _friction(options)}
+    says: Any = environment("rockfrag").get_template("simulate.j2", globals={"math": math}).module
+    response: Any
+    if options.second is not None:
+        block, components = _case_in_space(options, body, motion, options.vertical)
+        components = [scale(component, factor) for component in components]
+        response = simulate(block, GroundMotion(*components), **told)
+        peaks = [component.pga / GRAVITY for component in components]
+        title, words = motion.name, says.in_space(options.record, peaks, response.outcome)
     else:
-        print("not overturned")
-    largest = abs(response.theta).max(axis=0)
-    print("largest rotation [rad]: " + ", ".join(f"{value:.5f}" for value in largest))
-    print(f"impacts: {response.impacts}")
-    for line in _contacts(response, options.friction is not None):
-        print(line)
-    print(_history(response.contact_events, options.all_contact_events))
-    return _drawn(response, f"{motion.name}, peak {peak:.3f} g", options.plot)
-
-
-def _simulate_in_space(
-    options: argparse.Namespace, body: "Body", motion: "Motion", factor: float
-) -> int:
-    """Shake one body by both horizontal components of a record, and the vertical one if it is told."""
-    from rockfrag.engines.spatial import SpatialResponse
-    from rockfrag.motions.processing import scale
-    from rockfrag.records.motion import GroundMotion
-    from rockfrag.rocking import simulate
-
-    block, components = _case_in_space(options, body, motion, options.vertical)
-    scaled = [scale(component, factor) for component in components]
-    settings = {"restitution": options.restitution, "friction": _friction(options)}
-    response = simulate(block, GroundMotion(*scaled), **settings)
-    assert isinstance(response, SpatialResponse)
-    found = response.outcome
-    print(
-        f"{options.record}: peaks {', '.join(f'{component.pga / GRAVITY:.4f}' for component in scaled)} g"
-    )
-    if found.overturned:
-        towards = math.degrees(found.fall_direction)
-        print(
-            f"overturned over {found.fell_over}, {towards:.0f}° from the first component towards the second, "
-            f"certain at {found.certain_time:.3f} s"
-        )
-    else:
-        print("not overturned")
-    print(f"largest tilt [rad]: {found.peak_tilt:.5f}")
-    print(f"turned about the vertical [°]: {math.degrees(found.turn):.2f}")
-    print(f"walked [mm]: {1000 * math.hypot(*found.walk):.1f}")
-    print(f"impacts: {found.impacts}")
-    return _drawn(response, motion.name, options.plot)
-
-
-def _drawn(response: "Response | SpatialResponse", title: str, path: str | None) -> int:
-    """Draw a response where that is asked for."""
-    if path:
+        up = None
+        if options.vertical is not None:
+            up = scale(read_told(options.vertical, options, None), factor)
+        with warnings.catch_warnings():
+            # what `simulate` doubts of the acceleration has been said
+            warnings.simplefilter("ignore", UserWarning)
+            response = simulate(body, scaled.acceleration, motion.dt, vertical=up, **told)
+        peak = scaled.pga / GRAVITY
+        most = sys.maxsize if options.all_contact_events else MOST_CONTACT_EVENTS
+        title, loose = f"{motion.name}, peak {peak:.3f} g", options.friction is not None
+        words = says.in_plane(options.record, motion, peak, response, loose, most)
+    print(words, end="")
+    if options.plot:
         from rockfrag.figure_style import save_figure
 
-        save_figure(response.plot(title), path)
-        print(f"drawn in {path}")
+        save_figure(response.plot(title), options.plot)
+        print(f"drawn in {options.plot}")
     return 0
+
+
+def _factor(options: argparse.Namespace, motion: "Motion") -> float:
+    """Return the factor that scales a record to the peak that the options tell [-]."""
+    from rockfrag.motions.processing import scale_to_pga
+
+    if options.pga is None:
+        return 1.0
+    if options.pga <= 0:
+        raise InputError(f"--pga: expected a number of g above 0, got {options.pga}.")
+    return float(scale_to_pga(motion, options.pga).provenance[-1]["factor"])
 
 
 def _friction(options: argparse.Namespace) -> "FrictionInput | None":
@@ -210,21 +190,6 @@ def _friction(options: argparse.Namespace) -> "FrictionInput | None":
             f"above a --pedestal, from below, got {len(given)}."
         )
     return {"ground": given[0], "interface": list(given[1:])}
-
-
-def _contacts(response: "Response", loose: bool) -> list[str]:
-    """Say how far contacts have slid; in pure rocking what friction they asked, and what that means."""
-    if loose:
-        slips = ", ".join(f"{1000 * value:.1f}" for value in abs(response.slip).max(axis=0))
-        return [f"largest slip [mm]: {slips}"]
-    needed = ", ".join(f"{value:.3f}" for value in response.friction_demand)
-    said = "on smoother ground it slides first; give --friction to let it"
-    if not math.isnan(response.lost_contact):
-        said = (
-            f"at {response.lost_contact:.3f} s a real body would have left the ground, and what follows is no "
-            "answer; give --friction to let it fly"
-        )
-    return [f"friction needed: {needed}", said]
 
 
 def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
@@ -303,16 +268,19 @@ def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
         print(f"warning: {record}: {quality_flag}", file=sys.stderr)
 
 
-def _history(contact_events, everything: bool) -> str:  # type: ignore[no-untyped-def]
-    if contact_events.empty:
-        return "it never rocked"
-    shown = contact_events if everything else contact_events.head(MOST_CONTACT_EVENTS)
-    lines = ["pattern history:"]
-    for row in shown.to_dict("records"):
-        lines.append(f"{row['time']:9.4f} s  {row['kind']:<10} {row['from']:>4} → {row['to']}")
-    if hidden := len(contact_events) - len(shown):
-        lines.append(f"… and {hidden} more (--all-contact-events)")
-    return "\n".join(lines)
+def _constrain(options: argparse.Namespace) -> int:
+    from rockfrag.survival.page import json_of, lines_of, write_constrained
+    from rockfrag.survival.reweight import constrain
+    from rockfrag.survival.site import read_site
+
+    found = constrain(read_site(options.file, options.records))
+    place = write_constrained(found, options.output)
+    if options.json:
+        print(json_of(found), end="")
+    else:
+        print("\n".join(lines_of(found)))
+    print(place, file=sys.stderr)
+    return 0
 
 
 def _check_config(options: argparse.Namespace) -> int:
