@@ -23,7 +23,7 @@ from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import amplitude_target, fraction_target
 from rockfrag.assess.scan import make_scan
 from rockfrag.assess.sources import SPACE
-from rockfrag.campaign.standing import Unknown, body_of, unknowns_of, ways_to_stand
+from rockfrag.campaign.standing import Quantile, body_of, unknowns_of, ways_to_stand
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions import scale_to_pga
 from rockfrag.motions.processing import bandpass
@@ -90,10 +90,10 @@ def _told_of(shape: Shape, objects: Objects) -> Objects:
     )
 
 
-def _stretched(unknown: Unknown, factor: float) -> Unknown:
-    """The same unknown with quantiles that lie further from the middle, in logarithm."""
-    middle = unknown.quantile(0.5)
-    return replace(unknown, quantile=lambda u: middle * (unknown.quantile(u) / middle) ** factor)
+def _stretched(quantile: Quantile, factor: float) -> Quantile:
+    """The same distribution with quantiles that lie further from the middle, in logarithm."""
+    middle = quantile(0.5)
+    return lambda u: middle * (quantile(u) / middle) ** factor
 
 
 def _true_scan(shape: Shape, told: Objects, seed: int, outside: float) -> Objects:

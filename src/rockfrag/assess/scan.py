@@ -19,7 +19,6 @@ from scipy.stats import norm
 from rockfrag.assess.assumed import Assumption, assume
 from rockfrag.campaign.standing import (
     LEAST_ANGLE_DEG,
-    Unknown,
     body_of,
     lognormal,
     unknowns_of,
@@ -102,12 +101,11 @@ def make_scan(
     given = mesh.get("contact_tolerance_m")
     if given is not None or contact_spread is not None:
         unknown = unknowns["contact_tolerance_mm"]
-        middle = unknown.quantile(0.5) if given is None else 1e3 * given
+        middle = unknown(0.5) if given is None else 1e3 * given
         spread = KNOWN_CONTACT_SPREAD if contact_spread is None else contact_spread
-        draw = partial(lognormal, middle, spread)
-        unknowns["contact_tolerance_mm"] = Unknown(unknown.words, unknown.source, draw)
+        unknowns["contact_tolerance_mm"] = partial(lognormal, middle, spread)
     # what is wrong with the mesh is said of its middle tolerance
-    shape.contact_polygon(unknowns["contact_tolerance_mm"].quantile(0.5) / 1e3)
+    shape.contact_polygon(unknowns["contact_tolerance_mm"](0.5) / 1e3)
     open_ones = {name: unknown for name, unknown in unknowns.items() if name not in exact}
     ways = ways_to_stand(shape, open_ones, WAYS, 1, exact).table
     ways["least_deg"] = [_least_angle_deg(shape, way) for way in ways.to_dict("records")]

@@ -37,6 +37,8 @@ to which points carry, distance by which edges lie further in, and in the plane 
 an impact (values above the one that conserves momentum stand for that); in space, and of blocks on each other, the
 coefficient of friction."""
 
+Quantile = Callable[[float], float]  # quantile function of something that nobody measured
+
 BATCH = 50  # motions whose outcomes are in memory at a time
 
 
@@ -60,7 +62,7 @@ def uniform(low: float, high: float, fraction: float) -> float:
 
 
 def even_guesses(
-    quantiles: Mapping[str, Callable[[float], float]], count: int, seed: int
+    quantiles: Mapping[str, Quantile], count: int, seed: int
 ) -> Iterator[dict[str, float]]:
     """Yield guesses that fill distributions evenly (scrambled Sobol points), most evenly by a power of two."""
     sobol = qmc.Sobol(len(quantiles), scramble=True, rng=np.random.default_rng(seed))
@@ -77,7 +79,7 @@ def sample_trials(
     A shape with ``friction`` is a body in space, beside the planar block if it has ``restitution`` as well; a
     block whose edges were measured has no direction and tolerance; blocks on each other have ``friction`` too.
     """
-    quantiles: dict[str, Callable[[float], float]] = {
+    quantiles: dict[str, Quantile] = {
         name: partial(uniform, *ranges[name]) for name in UNKNOWNS if name in ranges
     }
     if "contact_tolerance_mm" in ranges:
@@ -188,64 +190,36 @@ LEAST_ANGLE_DEG = 2.0
 floor out of level and a push reach."""
 
 
-@dataclass(frozen=True)
-class Unknown:
-    """Something about how an object stands that nobody measured."""
-
-    words: str  # What it is
-    source: str  # Where its distribution comes from
-    quantile: Callable[[float], float]  # Its quantile function
-
-
 def lognormal(median: float, spread: float, fraction: float) -> float:
     """Quantile of a lognormal distribution by its median and the standard deviation of the logarithm."""
     return median * math.exp(spread * float(norm.ppf(fraction)))
 
 
-def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, Unknown]:
-    """Distributions of what nobody measured of a ``cut block``, or of a ``scan`` of this accuracy [mm]."""
+def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, Quantile]:
+    """Distributions, of ours, of what nobody measured of a ``cut block`` or a ``scan`` of this accuracy [mm]."""
     if kind == CUT:
         return {
-            "edge_retreat_mm": Unknown(
-                "how far the edges carry further in",
-                "uniform from 0 to 2 mm, of ours: edges of cut stone are broken by a millimetre or two",
-                partial(uniform, 0.0, 2.0),
-            ),
-            "restitution_ratio": Unknown(
-                "the restitution over that of momentum",
-                "normal, 1 ± 0.05, of ours, about Housner (1963)",
-                lambda fraction: 1 + 0.05 * float(norm.ppf(fraction)),
-            ),
+            # edges of cut stone are broken by a millimetre or two
+            "edge_retreat_mm": partial(uniform, 0.0, 2.0),
+            # about Housner (1963)
+            "restitution_ratio": lambda fraction: 1 + 0.05 * float(norm.ppf(fraction)),
         }
     spread = 0.5 if scan_accuracy_mm is None else 0.3
+    # two standard deviations of a scanned height are what noise lowers the lowest of many points by
     median = 2 * (scan_accuracy_mm or SCAN_ACCURACY_MM)
     return {
-        "direction_deg": Unknown(
-            "the direction of shaking", "uniform: any direction", partial(uniform, 0.0, 360.0)
-        ),
-        "contact_tolerance_mm": Unknown(
-            "the height up to which points carry",
-            f"lognormal, median {median:g} mm (two standard deviations of a scanned height, which is as much as "
-            f"noise lowers the lowest of many points), ± {100 * spread:g} %, of ours",
-            partial(lognormal, median, spread),
-        ),
-        "edge_retreat_mm": Unknown(
-            "how far the edges carry further in",
-            "uniform from 0 to 10 mm, of ours: natural and worn edges are round",
-            partial(uniform, 0.0, 10.0),
-        ),
-        "restitution_ratio": Unknown(
-            "the restitution over that of momentum",
-            "uniform from 0.7 to 1, of ours: a body on few points takes more than momentum; 0.6 to 0.98 were "
-            "plausible for a granite rock",
-            partial(uniform, 0.7, 1.0),
-        ),
+        "direction_deg": partial(uniform, 0.0, 360.0),
+        "contact_tolerance_mm": partial(lognormal, median, spread),
+        # natural and worn edges are round
+        "edge_retreat_mm": partial(uniform, 0.0, 10.0),
+        # a body on few points takes more than momentum; 0.6 to 0.98 were plausible for a granite rock
+        "restitution_ratio": partial(uniform, 0.7, 1.0),
     }
 
 
 def ways_to_stand(
     thing: Shape | Block,
-    unknowns: Mapping[str, Unknown],
+    unknowns: Mapping[str, Quantile],
     count: int,
     seed: int,
     known: Mapping[str, float] | None = None,
@@ -257,8 +231,7 @@ def ways_to_stand(
     measured, by the name of the unknown; restitution conserves momentum if it is in neither.
     """
     rows, systems = [], []
-    quantiles = {name: unknown.quantile for name, unknown in unknowns.items()}
-    for guess in even_guesses(quantiles, count, seed):
+    for guess in even_guesses(unknowns, count, seed):
         way = dict(known or {}) | guess
         try:
             block = body_of(thing, way).blocks[-1]

@@ -16,8 +16,7 @@ from rockfrag.files import file_name, write_table, write_text
 from rockfrag.report.page import Column, Page, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.sentences import Macros
-from rockfrag.survival.answer import LIMITS, RULED_OUT, Constrained
-from rockfrag.survival.reweight import DECISION_RATE
+from rockfrag.survival.reweight import DECISION_RATE, LIMITS, RULED_OUT, Constrained
 
 BRANCHES = (
     Column("branch", "Branch"),
