@@ -14,7 +14,6 @@ from rockfrag.assess.app.commands import add_app_command
 from rockfrag.assess.commands import add_assess_commands
 from rockfrag.errors import InputError, errors_of
 from rockfrag.record_commands import add_record_commands, read_told
-from rockfrag.survival.commands import add_survival_commands
 from rockfrag.units import GRAVITY, STONE, check_density, peak_warning, quantity, size_warning
 
 if TYPE_CHECKING:
@@ -54,7 +53,7 @@ def make_parser() -> argparse.ArgumentParser:
 
     add_assess_commands(commands)
     add_app_command(commands)
-    add_survival_commands(commands)
+    _add_constrain(commands)
     add_record_commands(commands)
 
     command = commands.add_parser("simulate", help="shake one body by one record")
@@ -84,6 +83,21 @@ def make_parser() -> argparse.ArgumentParser:
     check.add_argument("--quiet", action="store_true", help="say only what is wrong or doubtful")
     check.set_defaults(run=_check_config)
     return parser
+
+
+def _add_constrain(commands: Any) -> None:
+    constrain = commands.add_parser(
+        "constrain",
+        help="reweight hazard branches by objects that still stand",
+        description="A site with the branches of its hazard, and objects that have stood there for known times.",
+    )
+    constrain.add_argument("file", help="the site, such as site.yaml")
+    words = "where page, JSON and tables are written"
+    constrain.add_argument("--output", metavar="FOLDER", default="constrained", help=words)
+    words = "folder of fetched records, for objects that are simulated"
+    constrain.add_argument("--records", metavar="FOLDER", default="resources/records", help=words)
+    constrain.add_argument("--json", action="store_true", help="print the answer as JSON")
+    constrain.set_defaults(run=_constrain)
 
 
 def _add_case(parser: argparse.ArgumentParser) -> None:
@@ -253,6 +267,21 @@ def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
 
     if quality_flag := peak_warning(peak, GRAVITY * min(uplift_ratios(body.system()))):
         print(f"warning: {record}: {quality_flag}", file=sys.stderr)
+
+
+def _constrain(options: argparse.Namespace) -> int:
+    from rockfrag.survival.answer import constrain
+    from rockfrag.survival.page import json_of, lines_of, write_constrained
+    from rockfrag.survival.site import read_site
+
+    found = constrain(read_site(options.file, options.records))
+    place = write_constrained(found, options.output)
+    if options.json:
+        print(json_of(found), end="")
+    else:
+        print("\n".join(lines_of(found)))
+    print(place, file=sys.stderr)
+    return 0
 
 
 def _check_config(options: argparse.Namespace) -> int:

@@ -45,32 +45,22 @@ def add_assess_commands(commands: Any) -> None:
         description="One object at one place. Lengths and masses are written with their unit: 35cm, 180kg. "
         "All but width and height has a default, which is stated.",
     )
-    parser.add_argument(
-        "file",
-        nargs="?",
-        help="statue.yaml that says all this, or inventory.csv with an object a row",
-    )
+    words = "statue.yaml that says all this, or inventory.csv with an object a row"
+    parser.add_argument("file", nargs="?", help=words)
     add_request_options(parser)
     out = parser.add_argument_group("the answer")
-    out.add_argument(
-        "--output", metavar="FOLDER", default="assessment", help="where page and JSON are written"
-    )
+    words = "where page and JSON are written"
+    out.add_argument("--output", metavar="FOLDER", default="assessment", help=words)
     out.add_argument("--pdf", action="store_true", help="print the page too, by Chromium or Chrome")
     out.add_argument("--json", action="store_true", help="print the answer as JSON")
     out.add_argument("--pages", action="store_true", help="of an inventory: write a page for each")
-    out.add_argument(
-        "--keep-going",
-        action="store_true",
-        help="of an inventory: rank the rows that are right, and list what is wrong with the others",
-    )
+    words = "of an inventory: rank the rows that are right, and list what is wrong with the others"
+    out.add_argument("--keep-going", action="store_true", help=words)
     parser.set_defaults(run=_assess)
-    rules = commands.add_parser(
-        "rules-of-thumb", help="hold engineers' rules against simulations of objects"
-    )
+    words = "hold engineers' rules against simulations of objects"
+    rules = commands.add_parser("rules-of-thumb", help=words)
     rules.add_argument("file", help="objects, such as config/rules-of-thumb.yaml")
-    rules.add_argument(
-        "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
-    )
+    _add_records(rules)
     rules.add_argument("--output", metavar="FILE", help="write the table as .csv or .parquet")
     rules.set_defaults(run=_rules)
 
@@ -120,9 +110,12 @@ def add_request_options(parser: argparse.ArgumentParser) -> None:
         group = parser.add_argument_group(title)
         for option in options:
             group.add_argument(f"--{option.name}", **{"action": _Once, **option.arguments})
-    group.add_argument(
-        "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
-    )
+    _add_records(group)
+
+
+def _add_records(parser: Any) -> None:
+    kept, words = "resources/records", "folder of fetched records"
+    parser.add_argument("--records", metavar="FOLDER", default=kept, help=words)
 
 
 # imported when it runs: `rockfrag --help` should not wait for numba
