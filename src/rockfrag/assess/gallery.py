@@ -13,8 +13,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, NullFormatter
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.inventory import Inventory, best_change, inventory_table, joint_lines
-from rockfrag.assess.joint import JointRisk
+from rockfrag.assess.inventory import (
+    Inventory,
+    JointRisk,
+    best_change,
+    inventory_table,
+    joint_lines,
+)
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words

@@ -19,8 +19,7 @@ from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Results, Section, says
 from rockfrag.report.sections.amplitudes import MOST_ROWS
 from rockfrag.sentences import label, number, shortened
-from rockfrag.stages.tests import LIMITED
-from rockfrag.stages.validity import MOST_TESTED
+from rockfrag.stages.tests import LIMITED, MOST_TESTED
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 _LEFT_OUT = (Column("motion", "Record"), Column("reason", "Why it could not be used"))
