@@ -4,11 +4,13 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
+import rockfrag
 from rockfrag.errors import InputError
 from rockfrag.motions import scale_to_pga
 from rockfrag.motions.processing import bandpass
@@ -18,6 +20,12 @@ from rockfrag.records.sources.wheel import fetch_wheel
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
+
+SUBPACKAGES = (
+    "",
+    *(f".{name}" for name in rockfrag.__all__ if isinstance(getattr(rockfrag, name), ModuleType)),
+)
+"""The package and its public subpackages, as they are written behind its name."""
 
 WHOLE_STUDIES = ("workflow", "end_to_end", "test_documentation.py")
 """What runs whole studies, in the tests' folder."""

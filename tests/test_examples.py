@@ -17,10 +17,8 @@ from rockfrag.rocking.inputs import UnitWarning
 from rockfrag.system.blocks import UnlikelyBlock
 from rockfrag.units import GRAVITY
 
-SUBPACKAGES = (
-    *("", ".assess", ".building", ".fragility", ".motions", ".pedestal", ".records"),
-    *(".rocking", ".shaketable"),
-)
+from .conftest import SUBPACKAGES
+
 SHOWN_FIRST = (
     *("Block", "Stack", "simulate", "overturns", "find_thresholds", "rocking_spectrum"),
     *("find_step_size_sensitive", "outcome_robustness"),
@@ -34,7 +32,7 @@ STACK = Stack(Block(0.6, 0.4, 300.0), STATUE)
 def public() -> dict[str, object]:
     """Functions and classes that the package and its subpackages export, by their full names."""
     found = {}
-    for subpackage in SUBPACKAGES:
+    for subpackage in set(SUBPACKAGES) - {".outcomes", ".system"}:
         package = importlib.import_module(f"rockfrag{subpackage}")
         for name in package.__all__:
             value = getattr(package, name)
@@ -88,11 +86,8 @@ def test_an_example_shows_what_it_says(name):
 
 
 @pytest.mark.parametrize("name", SHOWN_FIRST)
-def test_what_is_used_first_says_what_comes_back_and_shows_it(name):
-    value = getattr(rockfrag, name)
-    words = inspect.getdoc(value)
-    assert "Examples\n--------" in words
-    assert "Returns\n-------" in words or inspect.isclass(value)
+def test_what_is_used_first_shows_what_comes_back(name):
+    assert "Examples\n--------" in inspect.getdoc(getattr(rockfrag, name))
 
 
 @pytest.mark.parametrize("name", sorted(PUBLIC))
@@ -177,7 +172,7 @@ def test_accelerations_in_g_are_warned_of_by_what_they_would_lift(body, peak):
         lambda: simulate(STATUE, Motion(PULSE, 0.01)),
         lambda: overturns(STATUE, Motion(PULSE, 0.01)),
         # in g it would lift nothing either
-        lambda: simulate(STATUE, 0.2 * PULSE, 0.01),
+        *(lambda f=f: simulate(STATUE, f * PULSE, 0.01) for f in (0.2, 0.0)),
         lambda: find_thresholds(
             STATUE, PULSE, 0.01, 8.0, tolerance=0.01, narrowest_resurrection=0.5
         ),
@@ -192,6 +187,8 @@ def test_a_block_in_centimetres_or_millimetres_is_doubted():
         Block(42, 165, 410)
     with pytest.warns(UnlikelyBlock, match="lighter than air"):
         Block(200.0, 800.0, 50.0)
+    # a wall of 50 t: a planar block does not say how deep it is
+    assert Block(0.2, 0.8, 50_000.0).mass == 50_000.0
 
 
 @pytest.mark.parametrize("inertia", [1e9, 1e-9])

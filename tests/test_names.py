@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.figure_style import figure_style, new_figure, save_figure
 from rockfrag.files import FORMULA, check_name, csv_text, file_name, write_table
-from rockfrag.fragility.curve_facts import identifiers
+from rockfrag.fragility.exports import identifiers
 from rockfrag.fragility.observations import observations_from_table
 from rockfrag.keywords import RENAMED, check_names
 from rockfrag.pedestal.paired_tests import check_tests
@@ -35,11 +35,16 @@ HOSTILE = st.one_of(
 def usable(name: str) -> bool:
     try:
         check_name(name)
-    except InputError as error:
-        assert len(str(error)) <= LONGEST_MESSAGE
-        assert str(error).isprintable()
+    except InputError:
         return False
     return True
+
+
+@given(HOSTILE)
+def test_a_message_is_one_short_line_whatever_it_quotes(name: str):
+    said = str(InputError(f"begins {name * 40} ends."))
+    assert said.isprintable() and len(said) <= LONGEST_MESSAGE
+    assert said.startswith("begins ") and said.endswith(" ends.")
 
 
 @given(HOSTILE)

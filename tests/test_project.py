@@ -15,6 +15,8 @@ import yaml
 
 import rockfrag
 
+from .conftest import SUBPACKAGES
+
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PINNED = dict(
@@ -69,12 +71,6 @@ def test_pre_commit_has_the_pinned_versions():
             assert repo["rev"] == f"v{PINNED[name]}", name
             seen += 1
     assert seen == 3
-
-
-SUBPACKAGES = (
-    *("", ".assess", ".building", ".fragility", ".motions", ".pedestal", ".records"),
-    *(".rocking", ".shaketable", ".system"),
-)
 
 
 @pytest.mark.parametrize("package", SUBPACKAGES)

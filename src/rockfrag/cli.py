@@ -10,8 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rockfrag import __version__
-from rockfrag.assess.app.commands import add_app_command
-from rockfrag.assess.commands import add_assess_commands
+from rockfrag.assess.commands import add_app_command, add_assess_commands, add_records_option
 from rockfrag.errors import InputError, errors_of
 from rockfrag.record_commands import add_record_commands, read_told
 from rockfrag.units import GRAVITY, STONE, check_density, peak_warning, quantity, size_warning
@@ -85,21 +84,6 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_constrain(commands: Any) -> None:
-    constrain = commands.add_parser(
-        "constrain",
-        help="reweight hazard branches by objects that still stand",
-        description="A site with the branches of its hazard, and objects that have stood there for known times.",
-    )
-    constrain.add_argument("file", help="the site, such as site.yaml")
-    words = "where page, JSON and tables are written"
-    constrain.add_argument("--output", metavar="FOLDER", default="constrained", help=words)
-    words = "folder of fetched records, for objects that are simulated"
-    constrain.add_argument("--records", metavar="FOLDER", default="resources/records", help=words)
-    constrain.add_argument("--json", action="store_true", help="print the answer as JSON")
-    constrain.set_defaults(run=_constrain)
-
-
 def _add_case(parser: argparse.ArgumentParser) -> None:
     """Add what tells one body and one record."""
     parser.add_argument("record", help="file with the record")
@@ -121,6 +105,21 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--unit", help="unit of a record that does not state its own")
     parser.add_argument("--dt", type=float, help="sampling interval [s] of a record without one")
     parser.add_argument("--channel", help="channel, where the record has several")
+
+
+def _add_constrain(commands: Any) -> None:
+    parser = commands.add_parser(
+        "constrain",
+        help="reweight hazard branches by objects that still stand",
+        description="A site with the branches of its hazard, and objects that have stood there for "
+        "known times.",
+    )
+    parser.add_argument("file", help="the site, such as site.yaml")
+    words = "where page, JSON and tables are written"
+    parser.add_argument("--output", metavar="FOLDER", default="constrained", help=words)
+    add_records_option(parser, "folder of fetched records, for objects that are simulated")
+    parser.add_argument("--json", action="store_true", help="print the answer as JSON")
+    parser.set_defaults(run=_constrain)
 
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
@@ -270,8 +269,8 @@ def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
 
 
 def _constrain(options: argparse.Namespace) -> int:
-    from rockfrag.survival.answer import constrain
     from rockfrag.survival.page import json_of, lines_of, write_constrained
+    from rockfrag.survival.reweight import constrain
     from rockfrag.survival.site import read_site
 
     found = constrain(read_site(options.file, options.records))

@@ -9,7 +9,7 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag.rocking import overturns, simulate
 from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.shaketable.swept import fallen_names, labels_of
+from rockfrag.shaketable.definitions import fallen_names, labels_of
 from rockfrag.study.configurations import read_configurations, read_specimens
 from rockfrag.system import Block, Column, Stack
 

@@ -7,7 +7,6 @@ from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.errors import InputError
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.rocking.inputs import UnitWarning
-from rockfrag.system.blocks import UnlikelyBlock
 
 T = np.arange(0, 4, 0.01)
 SHAKE = 4 * np.sin(2 * np.pi * 1.5 * T) * np.sin(np.pi * T / 4)
@@ -83,8 +82,6 @@ def test_what_looks_like_components_or_other_units_is_not_taken_in_silence():
         simulate(B, SHAKE, 0.01, g=981.0)
     with pytest.warns(UnitWarning, match="too long for strong motion"):
         simulate(B, SHAKE[:20], 5.0)
-    # a number in an array without axes is a number
-    assert not simulate(B, SHAKE, 0.01, friction=np.array(0.2)).overturned
 
 
 def test_the_instant_of_a_fall_has_one_meaning():
@@ -98,11 +95,6 @@ def test_the_instant_of_a_fall_has_one_meaning():
     assert np.isnan(lying.certain_time.item())
     assert certain.certain_time.item() < lying.overturning_time.item()
     assert simulate(B, a, 0.01).overturning_time == lying.overturning_time.item()
-
-
-def test_forces_with_friction_are_refused_and_not_left_out():
-    with pytest.raises(InputError, match="forces cannot be had together with friction"):
-        overturns(B, SHAKE, 0.01, friction=0.4, forces=True)
 
 
 def near_jamming(seed):
@@ -149,22 +141,8 @@ def test_a_restitution_of_nothing_is_taken_as_it_is_said():
     assert len(impacts) and all(after == (0.0,) for after in impacts["omega_after"])
 
 
-def test_a_mass_without_a_depth_is_doubted_only_where_no_depth_explains_it():
-    with pytest.warns(UnlikelyBlock, match="lighter than air"):
-        Block(200.0, 800.0, 50.0)
-    with pytest.warns(UnlikelyBlock, match="radius of gyration"):
-        Block(0.2, 0.8, 50.0, inertia=1e9)
-    # a wall of 50 t: a planar block does not say how deep it is
-    assert Block(0.2, 0.8, 50_000.0).mass == 50_000.0
-
-
 def test_an_interval_that_no_instrument_has_is_refused_where_free_rocking_is_sampled():
     # an ensemble of lone blocks keeps no samples, and nothing moves in 4e-7 s
     assert not overturns(B, SHAKE, 1e-9).overturned.any()
     with pytest.raises(InputError, match="samples, more than"):
         simulate(B, SHAKE, 1e-9)
-
-
-def test_a_centre_of_gravity_above_the_top_is_refused():
-    with pytest.raises(InputError, match="above the top"):
-        Block(0.2, 0.8, 50.0, cg_height=1.5)

@@ -9,7 +9,7 @@ from rockfrag.fragility.empirical import TableIda, resurrections_of
 from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.ida_curves import outcome_bins, with_measures
 from rockfrag.fragility.measure_selection import area_under_curve
-from rockfrag.shaketable.swept import Swept
+from rockfrag.shaketable.definitions import Swept
 
 MOTIONS = 24
 AMPLITUDES = np.geomspace(0.05, 2.0, 120)

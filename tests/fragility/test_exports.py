@@ -9,6 +9,7 @@ import pytest
 from scipy import stats
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.exports import write_nrml, write_simcenter
 from rockfrag.fragility.ida_curves import (
     fragility_table,
     record_set_hash,
@@ -16,8 +17,6 @@ from rockfrag.fragility.ida_curves import (
     with_measures,
 )
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
-from rockfrag.fragility.nrml import write_nrml
-from rockfrag.fragility.simcenter import write_simcenter
 from rockfrag.records.motion import Motion
 
 from .made import ida_of

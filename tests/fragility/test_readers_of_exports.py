@@ -8,8 +8,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from rockfrag.fragility.nrml import write_nrml
-from rockfrag.fragility.simcenter import write_simcenter
+from rockfrag.fragility.exports import write_nrml, write_simcenter
 
 pytestmark = pytest.mark.peers
 

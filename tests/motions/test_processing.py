@@ -129,7 +129,6 @@ def test_impossible_parameters_are_refused_in_one_sentence(record, step, message
     text = str(refusal.value)
     assert text.startswith(f"step {step['step']}: ")
     assert text.endswith(".")
-    assert "\n" not in text
 
 
 PARAMETERS = {

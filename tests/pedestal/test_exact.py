@@ -45,10 +45,17 @@ def test_units_without_scatter_have_a_stated_result():
     assert np.isnan(t_estimate([0.2]).p)
 
 
-def test_four_earthquakes_never_give_a_sign_flip_p_below_an_eighth():
-    result = sign_flip_test([0.5, 0.6, 0.7, 0.8])
-    assert result.exact
-    assert result.p == result.smallest_p == 0.125
+@pytest.mark.parametrize(
+    ("values", "p", "smallest"),
+    [
+        ([0.5, 0.6, 0.7, 0.8], 0.125, 0.125),
+        # of the eight patterns four have sums of three or more
+        ([1.0, 2.0, 0.0], 0.5, 0.25),
+    ],
+)
+def test_flipped_signs_of_few_are_all_counted(values, p, smallest):
+    found = sign_flip_test(values)
+    assert (found.p, found.smallest_p, found.exact) == (p, smallest, True)
 
 
 def test_drawn_sign_flips_agree_with_enumerated_ones(monkeypatch):
@@ -68,14 +75,10 @@ def test_effect_is_mean_of_pairs_and_its_units_are_earthquakes(tests_table):
     assert effect.units == 4
     item = mean_effect(table[table["earthquake"] == "Kobe"])
     assert item.units == 3
-
-
-def test_earthquake_with_more_motions_counts_once(tests_table):
-    table = pair_tests(tests_table(3)).table
+    # one with more motions than another counts once
     fewer = table[~((table["earthquake"] == "Kobe") & (table["floor"] == "F5"))]
-    means = earthquake_means(fewer)
-    assert mean_effect(fewer).mean == pytest.approx(means.mean())
-    assert len(means) == 4
+    assert mean_effect(fewer).mean == pytest.approx(earthquake_means(fewer).mean())
+    assert len(earthquake_means(fewer)) == 4
 
 
 def test_slope_on_slenderness_is_recovered_without_noise(tests_table):
@@ -114,12 +117,6 @@ def test_flipped_signs_of_many_are_those_that_are_drawn(monkeypatch):
     drawn = sign_flip_test(values)
     monkeypatch.setattr(cluster_means, "MOST_DRAWN", 100)
     assert sign_flip_test(values).p == pytest.approx(drawn.p, abs=0.015)
-
-
-def test_flipped_signs_of_few_are_all_counted():
-    # of the eight patterns four have sums of three or more
-    found = sign_flip_test([1.0, 2.0, 0.0])
-    assert (found.p, found.exact) == (0.5, True)
 
 
 def test_clear_order_of_floors_is_found_with_certainty(tests_table):
@@ -161,9 +158,6 @@ def test_tests_that_could_not_be_made_do_not_count():
     with_nan = holm([*P, math.nan])
     assert np.isnan(with_nan[-1])
     assert with_nan[:-1] == pytest.approx(holm(P))
-
-
-def test_p_values_outside_0_to_1_are_refused():
     with pytest.raises(ValueError, match="outside 0 to 1"):
         holm([0.2, 1.2])
 

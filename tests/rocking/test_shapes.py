@@ -122,9 +122,8 @@ def test_a_mesh_inside_out_is_turned(tmp_path: Path):
     ],
 )
 def test_what_makes_no_sense_is_refused(box: Path, change: dict[str, float | None], sentence: str):
-    with pytest.raises(InputError, match=sentence) as caught:
+    with pytest.raises(InputError, match=sentence):
         read_shape(box, **{"mass": MASS * 10, **change})
-    assert "\n" not in str(caught.value)
 
 
 def test_a_mesh_with_a_hole_is_refused(tmp_path: Path):

@@ -94,36 +94,30 @@ def test_c29_and_c49_say_the_same_of_every_table(made, effect, noise):
         tests = made(everywhere(effect), noise=noise, seed=seed)
         found = findings((29, 49), tests)
         assert found[29] is found[49]
-
-
-def test_c29_and_c49_agree_when_most_pairs_rise_and_one_earthquake_falls(made):
     # the mean falls with Northridge, though 27 of 36 pairs rise
     tests = made(on_earthquake(Friuli=0.03, Kobe=0.03, LomaPrieta=0.03, Northridge=-0.6))
     assert finding(29, tests) is finding(49, tests) is OPEN
 
 
 @pytest.mark.parametrize("basis", ["simulated", "measured"])
-def test_without_an_effect_large_changes_are_excluded_and_small_ones_are_not(made, basis):
-    rows = hypothesis_table(Evidence(made(), basis)).set_index("number")
-    assert rows.loc[35, "finding"] == Finding.BOUNDED
-    assert rows.loc[35, "outcome"] == "a change of 10 % or more is excluded"
-    assert rows.loc[35, "p_of"] == "a change of 10 % or more" and rows.loc[35, "p"] < 0.05
-    assert "smaller change" in rows.loc[35, "remark"]
-    of_the_pedestal = [29, 33, 34, 35, 36, 37, 39, 40, 45, 46, 48, 49, 51]
-    assert not {"not reproduced", "rejected"} & set(rows.loc[of_the_pedestal, "outcome"])
-
-
-def test_equal_figures_get_equal_words_and_rules_say_what_excludes_a_change(made):
+def test_without_an_effect_large_changes_are_excluded_in_equal_words_and_small_ones_are_not(
+    made, basis
+):
     """Whatever a hypothesis calls its change: the row's interval decides."""
-    table = hypothesis_table(Evidence(made(), "simulated"))
-    assert (table.loc[table["p"].notna(), "p_of"] != "").all()
-    rows = table.set_index("number")
+    rows = hypothesis_table(Evidence(made(), basis)).set_index("number")
+    assert (rows.loc[rows["p"].notna(), "p_of"] != "").all()
     assert rows.loc[26, "p_of"] == "no change"
     single = rows.loc[[29, 33, 35, 36, 37, 46, 49, 51]]
     assert len(set(single["outcome"])) == 1
     assert ((single["lower"] < 1) & (single["upper"] > 1) & (single["upper"] < 1.1)).all()
     rules = rows.loc[[29, 33, 35, 36, 37, 45, 46, 50, 51], "rule"]
     assert rules.str.contains("10 %").all() and rules.str.contains("excluded").all()
+    assert rows.loc[35, "finding"] == Finding.BOUNDED
+    assert rows.loc[35, "outcome"] == "a change of 10 % or more is excluded"
+    assert rows.loc[35, "p_of"] == "a change of 10 % or more" and rows.loc[35, "p"] < 0.05
+    assert "smaller change" in rows.loc[35, "remark"]
+    of_the_pedestal = [29, 33, 34, 35, 36, 37, 39, 40, 45, 46, 48, 49, 51]
+    assert not {"not reproduced", "rejected"} & set(rows.loc[of_the_pedestal, "outcome"])
 
 
 def test_words_fit_what_the_evidence_can_show():
@@ -138,33 +132,20 @@ def test_words_fit_what_the_evidence_can_show():
         outcome(Kind.INFERENCE, "measured", Finding.SPECIMENS_ONLY)
 
 
-def equal_on_levels(made):
+def test_ties_are_known_to_a_step_lead_nowhere_and_exclude_no_slight_change(made):
     """Tests whose pedestal never matters, on a series of 5 %: every pair is tied."""
     tests = made(noise=0.0, step=0.05)
     assert (tests.groupby(["object", "motion"])["amplitude_g"].agg(np.ptp) == 0).all()
-    return tests
-
-
-def test_ties_have_an_interval_as_wide_as_the_step(made):
-    effect = result(35, equal_on_levels(made))
-    assert effect.estimate == 1.0
-    assert effect.lower == pytest.approx(1 / 1.05) and effect.upper == pytest.approx(1.05)
-
-
-@pytest.mark.parametrize("number", [32, 41, 47])
-def test_nothing_leads_in_a_tie(made, number):
-    assert finding(number, equal_on_levels(made)) is OPEN
-
-
-@pytest.mark.parametrize("number", [33, 36, 37, 38, 50])
-def test_a_slight_change_is_not_excluded_by_ties(made, number):
-    assert finding(number, equal_on_levels(made)) in (OPEN, Finding.BOUNDED)
-
-
-def test_no_interval_of_the_hypothesis_table_is_without_width(made):
-    rows = hypothesis_table(Evidence(equal_on_levels(made), "simulated"))
-    known = rows[rows["lower"].notna() & ~rows["number"].isin([55])]
+    measures = measures_of(tests, mean_period_s=np.linspace(0.1, 1, 12))
+    rows = hypothesis_table(Evidence(tests, "simulated", measures)).set_index("number")
+    found, limits = rows["finding"], ["estimate", "lower", "upper"]
+    assert rows.loc[35, limits].tolist() == pytest.approx([1.0, 1 / 1.05, 1.05])
+    assert (found[[32, 41, 47]] == OPEN).all()
+    assert found[[33, 36, 37, 38, 50]].isin([OPEN, Finding.BOUNDED]).all()
+    known = rows[rows["lower"].notna()].drop(index=55)
     assert (known["upper"] > known["lower"]).all()
+    # nor have tied effects an order to correlate
+    assert rows.loc[52, "outcome"] == "undecided" and "same effect" in rows.loc[52, "remark"]
 
 
 def test_exceptions_on_the_upper_floors_are_counted_beyond_their_steps(made):
@@ -263,13 +244,6 @@ def test_twelve_motions_cannot_show_that_there_is_no_correlation(made):
     tests = made(noise=0.1)
     measures = measures_of(tests, mean_period_s=np.random.default_rng(4).uniform(size=12))
     assert finding(52, tests, measures=measures) is OPEN
-
-
-def test_effects_that_are_tied_have_no_order_to_correlate(made):
-    tests = equal_on_levels(made)
-    measures = measures_of(tests, mean_period_s=np.linspace(0.1, 1, 12))
-    row = hypothesis_table(Evidence(tests, "simulated", measures)).set_index("number").loc[52]
-    assert row["outcome"] == "undecided" and "same effect" in row["remark"]
 
 
 def test_correlation_counts_earthquakes_and_not_their_motions():

@@ -1,4 +1,3 @@
-import itertools
 import math
 
 import numpy as np
@@ -13,18 +12,17 @@ from rockfrag_thesis.hypotheses.floors import FLOORS
 from rockfrag_thesis.sections.building import floor_amplitudes
 from rockfrag_thesis.sections.floor_order import floor_hypotheses, floor_order
 
-TOWERS = {"T1": 0.5, "T2": 0.4, "T3": 0.3}
+from .conftest import build
 
 
-def table_of(order=None, effect=None, objects=None):
-    """Tests of two earthquakes; amplitude = object × floor, times 1 + effect with the pedestal."""
-    objects, order = objects or TOWERS, order or {"GF": 1.2, "F3": 1.0, "F5": 1.1}
-    effect = effect or {"GF": 0.1, "F3": -0.05, "F5": -0.05}
-    sides = {"object": objects, "earthquake": "AB", "floor": FLOORS, "pedestal": ("P", "NP")}
-    table = pd.DataFrame(itertools.product(*sides.values()), columns=list(sides))
-    gain = 1 + table["floor"].map(effect).where(table["pedestal"] == "P", 0.0)
-    a = table["object"].map(objects) * table["floor"].map(order) * gain
-    return table.assign(amplitude_g=a, lower_g=0.0)
+def table_of(order=(1.2, 1.0, 1.1), gains=(0.1, -0.05, -0.05)):
+    """Tests of two earthquakes; amplitude = object × floor, times 1 + gain with the pedestal."""
+
+    def of_floor(values):
+        logs = dict(zip(FLOORS, np.log(values), strict=True))
+        return lambda name, earthquake, floor: logs[floor]
+
+    return build(of_floor(1 + np.array(gains)), of_floor(order), noise=0.0, earthquakes="AB")
 
 
 def test_margins_are_the_logarithms_they_are_said_to_be():
@@ -54,8 +52,7 @@ def test_margins_are_the_logarithms_they_are_said_to_be():
 )
 def test_the_thesis_contradicts_itself_on_floors(gain, loss, ground, third):
     # C43 with C35 and C37 puts P on the ground floor above P on the 5th, against C42
-    order = {"GF": ground, "F3": third, "F5": 1.0}
-    margins = floor_margins(table_of(order, {"GF": gain, "F3": 0.0, "F5": loss}))
+    margins = floor_margins(table_of((ground, third, 1.0), (gain, 0.0, loss)))
     assert min(margins["C35"], margins["C37"], margins["C43"]) > 0
     assert margins["C42"] < 0
 

@@ -101,16 +101,14 @@ def test_perturbed_copies_follow_from_the_seed_and_differ_on_the_two_sides():
 @pytest.mark.parametrize(
     ("levels", "words"),
     [
-        ({"statue_restitution": (1.2,)}, ["statue_restitution", "1.2", "between 0 and 1"]),
-        ({"statue_offset_mm": (150.0,)}, ["statue_offset_mm", "150", "centre of gravity"]),
-        ({"statue_cg_offset_mm": (70.0,)}, ["statue_cg_offset_mm", "cannot stand"]),
+        ({"statue_restitution": (1.2,)}, "statue_restitution, 1.2, T2.*between 0 and 1"),
+        ({"statue_offset_mm": (150.0,)}, "statue_offset_mm, 150, T2.*centre of gravity"),
+        ({"statue_cg_offset_mm": (70.0,)}, "statue_cg_offset_mm.*T2.*cannot stand"),
     ],
 )
 def test_a_level_that_cannot_be_is_named(levels, words):
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(InputError, match=rf"sensitivity_analysis\.{words}"):
         factor_cases("T2", STACK, levels)
-    for word in ("sensitivity_analysis.", "T2", *words):
-        assert word in str(caught.value)
 
 
 def test_restitution_is_varied_by_each_law_that_differs():

@@ -28,12 +28,11 @@ from .running import ROOT, finished, snakemake
 
 
 def refused(folder: Path, content: dict, words: list[str]) -> None:
-    """See that a study is refused with some words, in one line that begins with its folder."""
+    """See that a study is refused with some words, behind its folder."""
     path = write_study(folder, content)
     with pytest.raises(InputError) as caught:
         load_any(path)
     message = str(caught.value)
-    assert "\n" not in message
     assert message.startswith(str(folder))
     assert [word for word in words if word not in message] == []
 
@@ -294,9 +293,8 @@ def test_without_the_keys_nothing_slides_and_nothing_moves_up_and_down():
     ],
 )
 def test_what_cannot_be_is_refused_when_the_study_is_read(keys, message):
-    with pytest.raises(InputError, match=message) as caught:
+    with pytest.raises(InputError, match=message):
         smoke(**keys)
-    assert len(str(caught.value)) <= 500
 
 
 def test_measured_impacts_and_friction_may_be_given_together():

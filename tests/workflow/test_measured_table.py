@@ -18,11 +18,9 @@ from .running import ROOT, finished, snakemake
 def test_the_example_names_the_table_that_the_user_must_give():
     if (ROOT / "resources" / "measured" / "granite_rock_1.csv").exists():
         pytest.skip("somebody has put the table there")
-    with pytest.raises(InputError) as caught:
+    where = r"measured-example\.yaml: key table: .*resources/measured/granite_rock_1\.csv"
+    with pytest.raises(InputError, match=where):
         load_any(ROOT / "config" / "measured-example.yaml")
-    assert "\n" not in str(caught.value)
-    for word in ("measured-example.yaml", "key table", "resources/measured/granite_rock_1.csv"):
-        assert word in str(caught.value)
 
 
 def test_a_wrong_key_of_a_measured_table_is_named(tmp_path: Path):

@@ -8,9 +8,8 @@ from rockfrag import __version__
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.risk import LEVEL, Estimate
 from rockfrag.assess.words import assumptions, does_not_move, five_lines, quality_flags
-from rockfrag.fragility.curve_facts import identifiers
+from rockfrag.fragility.exports import identifiers, model_text
 from rockfrag.fragility.model_error import MODEL_ERRORS
-from rockfrag.fragility.nrml import model_text
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 
 

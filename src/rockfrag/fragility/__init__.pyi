@@ -19,12 +19,14 @@ from .measure_selection import (
     area_under_curve as area_under_curve,
     recommend_measure as recommend_measure,
 )
-from .nrml import write_nrml as write_nrml
 from .observations import (
     Observations as Observations,
     observations_from_table as observations_from_table,
 )
-from .simcenter import write_simcenter as write_simcenter
+from .exports import (
+    write_nrml as write_nrml,
+    write_simcenter as write_simcenter,
+)
 from .ida_curves import fragility_table as fragility_table
 from .user_table import (
     UserFragility as UserFragility,

@@ -17,7 +17,7 @@ from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.fragility.intervals import blocks_of
 from rockfrag.fragility.observations import Floats, Observations, name_and_unit, positive
 from rockfrag.machine_code import cached_njit
-from rockfrag.shaketable.swept import Swept
+from rockfrag.shaketable.definitions import Swept
 
 CELLS = 2000  # cells of equal width in the logarithm of a measure
 

@@ -17,7 +17,7 @@ from rockfrag.errors import InputError
 from rockfrag.fragility import observations
 from rockfrag.fragility.censored import Brackets, brackets_from_table
 from rockfrag.fragility.observations import Floats, Observations
-from rockfrag.shaketable.swept import Swept
+from rockfrag.shaketable.definitions import Swept
 
 
 def wilson_interval(

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
 from rockfrag.sentences import Macros
-from rockfrag.shaketable.definitions import DEFINITION
-from rockfrag.shaketable.swept import read_swept
+from rockfrag.shaketable.definitions import DEFINITION, read_swept
 from rockfrag.study.study import Study
 
 MOST_MOTIONS = 50

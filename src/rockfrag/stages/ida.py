@@ -16,7 +16,7 @@ from rockfrag.files import whole_file
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_state_named, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import Motion
-from rockfrag.shaketable.swept import Swept, fallen_names, labels_of, read_swept
+from rockfrag.shaketable.definitions import Swept, fallen_names, labels_of, read_swept
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 from rockfrag.system.system import System
@@ -77,7 +77,7 @@ def run_as_recorded(job: Job[Study]) -> Results:
 def ida_curves_of(
     job: Job[Study], configuration: System, *, state: str = OVERTURNS
 ) -> Iterator[Swept]:
-    """Yield the outcomes of a configuration, see :func:`rockfrag.shaketable.swept.read_swept`."""
+    """Yield the outcomes of a configuration, see :func:`rockfrag.shaketable.definitions.read_swept`."""
     parts = range(job.study.ida_jobs)
     files = (job.file(job.study.ida_file(configuration, part)) for part in parts)
     yield from read_swept(files, state=state)

@@ -1,3 +1,2 @@
-from .answer import Constrained as Constrained, constrain as constrain
-from .reweight import Reweighted as Reweighted
+from .reweight import Constrained as Constrained, Reweighted as Reweighted, constrain as constrain
 from .site import Site as Site, read_site as read_site

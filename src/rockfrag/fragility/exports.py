@@ -1,9 +1,14 @@
-"""Fragility curves for OpenQuake: NRML 0.5 with lognormal functions."""
+"""Fragility curves for other programs: NRML 0.5 of OpenQuake, and SimCenter's damage model (pelicun)."""
 
+import hashlib
+import json
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -11,13 +16,84 @@ import pandas as pd
 from scipy import constants, special
 
 from rockfrag.errors import InputError
-from rockfrag.files import write_text
+from rockfrag.files import write_table, write_text
 from rockfrag.fragility.checks import REJECTION
-from rockfrag.fragility.curve_facts import StateCurve, curve_facts, curves_by_name
+from rockfrag.fragility.curve_facts import curve_facts
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.intensity import declared, measure_labelled
-from rockfrag.outcomes.limit_states import limit_states
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
 from rockfrag.sentences import environment
+
+LONGEST = 75  # characters of an identifier that OpenQuake takes
+STEP = 0.01  # β with which an exact threshold, a step, is written [-]; the formats take no step
+
+
+def identifiers(names: Iterable[str], others: str = "") -> dict[str, str]:
+    """Return an identifier for each name: ASCII letters, digits and ``others``; all else becomes ``_``.
+
+    Where two would be equal, or one would be too long, a digest of the name follows.
+    """
+    plain = {
+        name: "".join(c if c.isascii() and (c.isalnum() or c in others) else "_" for c in name)
+        for name in dict.fromkeys(names)
+    }
+    count = Counter(plain.values())
+    for name, text in plain.items():
+        if count[text] > 1 or len(text) > LONGEST:
+            digest = hashlib.sha256(name.encode()).hexdigest()[:8]
+            plain[name] = f"{text[: LONGEST - 9]}_{digest}"
+    return plain
+
+
+@dataclass(frozen=True)
+class StateCurve:
+    """Curve of one limit state."""
+
+    row: Mapping[Hashable, Any]  # its row of the fragility table
+    theta: float
+    beta: float  # that of a step is ``STEP``
+    # points of the non-parametric fragility function; empty where the lognormal one stands
+    levels: Floats
+    fraction: Floats
+
+
+def curves_by_name(
+    export: str,
+    table: pd.DataFrame,
+    by: str,
+    others: str,
+    fractions: pd.DataFrame | None,
+    prefix: str = "",
+) -> dict[str, dict[str, StateCurve]]:
+    """Return the curves of a fragility table by the identifier of ``by`` and by limit state, the milder first."""
+    if table.empty:
+        raise InputError(f"{export}: there is no curve to write; give at least one row.")
+    known = identifiers(map(str, table[by]), others)
+    curves: dict[str, dict[str, StateCurve]] = {}
+    for row in table.to_dict("records"):
+        name = prefix + known[str(row[by])]
+        states = curves.setdefault(name, {})
+        state = limit_state_named(str(row.get("state", OVERTURNS))).name
+        if state in states:
+            raise InputError(
+                f"{export}: {name!r} has two curves; choose one estimator and one measure for each."
+            )
+        theta, beta = float(str(row["theta"])), float(str(row["beta"]))
+        if row.get("link", "probit") != "probit" or not (theta > 0 and 0 < beta < math.inf):
+            raise InputError(
+                f"{export}: {str(row[by])!r} has no lognormal curve; leave the row out."
+            )
+        points = np.empty((0, 2))
+        if fractions is not None:
+            own = (fractions[by].astype(str) == str(row[by])) & (fractions["state"] == state)
+            points = fractions.loc[own, ["x", "fraction"]].to_numpy(dtype=np.float64)
+        states[state] = StateCurve(row, theta, max(beta, STEP), points[:, 0], points[:, 1])
+    order = [state.name for state in limit_states()]
+    return {
+        name: {state: states[state] for state in order if state in states}
+        for name, states in curves.items()
+    }
+
 
 CROSSING = 1e-9
 """Levels are written where a state would be more probable than the state before it by more than rounding [-]."""
@@ -183,3 +259,120 @@ def _nested(
         before = np.minimum(chance, before)
         found[state] = before
     return levels, found, lowered
+
+
+_DEMAND_UNITS = {"g": {"g": "g", "m/s²": "mps2"}, "cm/s": {"cm/s": "cmps", "m/s": "mps"}}
+"""What SimCenter calls the units of measures in these."""
+
+BEYOND = 2.0
+"""Where a non-parametric fragility function that ends below 1 reaches it, as a multiple of its last level."""
+
+
+def _demands() -> dict[str, tuple[str, dict[str, str]]]:
+    """Name and units of each demand, by what curves call the measure at the ground and on a floor."""
+    known = [measure for measure in declared() if measure.demand]
+    return {
+        label: (f"Peak {place} {measure.demand}", _DEMAND_UNITS[measure.unit])
+        for measure in known
+        for label, place in ((measure.label, "Ground"), (measure.floor_label, "Floor"))
+        if label
+    }
+
+
+def write_simcenter(
+    table: pd.DataFrame,
+    csv_path: str | os.PathLike[str],
+    json_path: str | os.PathLike[str],
+    *,
+    by: str = "configuration",
+    fractions: pd.DataFrame | None = None,
+) -> None:
+    """Write rows of a fragility table as a damage model.
+
+    Parameters
+    ----------
+    table : as of :func:`write_nrml`
+        PGA and PGV are demands of the ground, PFA and PFV of the floor on which the object stands.
+    csv_path, json_path : files to write
+    by : column that names the curve; the ID is ``ROCKFRAG.`` and its letters and digits
+    fractions
+        As of :func:`write_nrml`; a state that has such points is written with the family
+        ``multilinear_CDF``.
+    """
+    rows = []
+    notes: dict[str, object] = {
+        "_GeneralInformation": {
+            "ShortName": "rockfrag",
+            "Description": "Overturning of free-standing blocks in earthquakes",
+            "Version": "1.0",
+        }
+    }
+    for name, states in curves_by_name("SimCenter", table, by, "_", fractions, "ROCKFRAG.").items():
+        line, notes[name] = _component(name, states, by)
+        rows.append(line)
+    write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
+    write_text(json.dumps(notes, indent=2, ensure_ascii=False, sort_keys=True) + "\n", json_path)
+
+
+def _component(
+    identifier: str, states: Mapping[str, StateCurve], by: str
+) -> tuple[dict[str, object], dict[str, object]]:
+    demands: set[tuple[str, str]] = set()
+    limit_states: dict[str, object] = {}
+    line: dict[str, object] = {}
+    said = []
+    known = _demands()
+    for number, (state, curve) in enumerate(states.items(), start=1):
+        row, levels, fraction = curve.row, curve.levels, curve.fraction
+        name, im, unit = str(row[by]), str(row["im"]), str(row["unit"])
+        if im not in known or unit not in known[im][1]:
+            raise InputError(
+                f"SimCenter: {im} in {unit or 'no unit'} is no demand of this export; choose PGA or PFA "
+                "in g, PGV or PFV in cm/s."
+            )
+        demand, units = known[im]
+        demands.add((demand, units[unit]))
+        parameters: tuple[object, ...] = "lognormal", curve.theta, curve.beta, ""
+        if levels.size:
+            parameters = "multilinear_CDF", _multilinear(levels, fraction), "", ""
+        keys = ("Family", "Theta_0", "Theta_1", "DamageStateWeights")
+        line |= {f"LS{number}-{key}": x for key, x in zip(keys, parameters, strict=True)}
+        reached = limit_state_named(state)
+        words = reached.damage or reached.label
+        damage = {"Description": words, "RepairAction": reached.repair}
+        limit_states[f"LS{number}"] = {f"DS{number}": damage}
+        facts = curve_facts(row)
+        if levels.size and fraction[-1] < 1.0:
+            facts += f" Beyond {levels[-1]:.4g} {unit} nothing was tried: all is put at {BEYOND:g} times it."
+        said.append(f"{words}: {facts}")
+    if len(demands) > 1:
+        raise InputError(
+            f"SimCenter: the limit states of {identifier} have two demands; choose one."
+        )
+    demand, demand_unit = demands.pop()
+    line = {
+        "ID": identifier,
+        "Incomplete": 0,
+        "Demand-Type": demand,
+        "Demand-Unit": demand_unit,
+        "Demand-Offset": 0,
+        # the curves are for one horizontal component; a block falls about either of its edges
+        "Demand-Directional": 1,
+        **line,
+    }
+    note: dict[str, object] = {
+        "Description": f"Free-standing {name}",
+        "Comments": " ".join(said),
+        "SuggestedComponentBlockSize": "1 EA",
+        "RoundUpToIntegerQuantity": "True",
+        "LimitStates": limit_states,
+    }
+    return line, note
+
+
+def _multilinear(levels: Floats, fraction: Floats) -> str:
+    """Points of a distribution from 0 to 1, as pelicun's ``multilinear_CDF`` takes them."""
+    if fraction[-1] < 1.0:
+        levels, fraction = np.append(levels, BEYOND * levels[-1]), np.append(fraction, 1.0)
+    texts = (",".join(repr(float(value)) for value in values) for values in (levels, fraction))
+    return "|".join(texts)
