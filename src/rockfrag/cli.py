@@ -10,11 +10,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rockfrag import __version__
-from rockfrag.assess.app.commands import add_app_command
-from rockfrag.assess.commands import add_assess_commands
+from rockfrag.assess.commands import add_app_command, add_assess_commands, add_records_option
 from rockfrag.errors import InputError, errors_of
 from rockfrag.record_commands import add_record_commands, read_told
-from rockfrag.survival.commands import add_survival_commands
 from rockfrag.units import GRAVITY, STONE, check_density, peak_warning, quantity, size_warning
 
 if TYPE_CHECKING:
@@ -54,7 +52,7 @@ def make_parser() -> argparse.ArgumentParser:
 
     add_assess_commands(commands)
     add_app_command(commands)
-    add_survival_commands(commands)
+    _add_constrain(commands)
     add_record_commands(commands)
 
     command = commands.add_parser("simulate", help="shake one body by one record")
@@ -107,6 +105,21 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--unit", help="unit of a record that does not state its own")
     parser.add_argument("--dt", type=float, help="sampling interval [s] of a record without one")
     parser.add_argument("--channel", help="channel, where the record has several")
+
+
+def _add_constrain(commands: Any) -> None:
+    parser = commands.add_parser(
+        "constrain",
+        help="reweight hazard branches by objects that still stand",
+        description="A site with the branches of its hazard, and objects that have stood there for "
+        "known times.",
+    )
+    parser.add_argument("file", help="the site, such as site.yaml")
+    words = "where page, JSON and tables are written"
+    parser.add_argument("--output", metavar="FOLDER", default="constrained", help=words)
+    add_records_option(parser, "folder of fetched records, for objects that are simulated")
+    parser.add_argument("--json", action="store_true", help="print the answer as JSON")
+    parser.set_defaults(run=_constrain)
 
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
@@ -253,6 +266,21 @@ def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
 
     if quality_flag := peak_warning(peak, GRAVITY * min(uplift_ratios(body.system()))):
         print(f"warning: {record}: {quality_flag}", file=sys.stderr)
+
+
+def _constrain(options: argparse.Namespace) -> int:
+    from rockfrag.survival.page import json_of, lines_of, write_constrained
+    from rockfrag.survival.reweight import constrain
+    from rockfrag.survival.site import read_site
+
+    found = constrain(read_site(options.file, options.records))
+    place = write_constrained(found, options.output)
+    if options.json:
+        print(json_of(found), end="")
+    else:
+        print("\n".join(lines_of(found)))
+    print(place, file=sys.stderr)
+    return 0
 
 
 def _check_config(options: argparse.Namespace) -> int:

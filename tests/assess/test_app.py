@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from rockfrag.assess.answer import Assessment, assess_with
-from rockfrag.assess.app.commands import form_of
 from rockfrag.assess.app.contents import computing, script
 from rockfrag.assess.app.writing import page_of, texts
+from rockfrag.assess.commands import form_of
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import make_request
 from rockfrag.assess.words import five_lines

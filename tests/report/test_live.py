@@ -12,8 +12,7 @@ import pytest
 from rockfrag import Block, Column, Stack, overturns
 from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.report.live import MOST_SAMPLES, carried, live_kernel, swept
-from rockfrag.report.live.frames import frames_svg, outlines
+from rockfrag.report.live import MOST_SAMPLES, carried, frames_svg, live_kernel, outlines, swept
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page

@@ -9,8 +9,8 @@ import pytest
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import with_measures
 from rockfrag.records.motion import Motion
-from rockfrag.stages import validity
-from rockfrag.stages.floor_curves import export_curves, floor_curves
+from rockfrag.stages import tests as tests_stage
+from rockfrag.stages.fragility import export_curves, floor_curves
 from rockfrag.stages.ida import as_recorded
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag.study.study import Amplitudes
@@ -81,11 +81,11 @@ def test_files_are_one_per_floor_and_measure(curves, tmp_path):
 
 
 def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch, noise):
-    monkeypatch.setattr(validity, "MOST_TESTED", 4)
+    monkeypatch.setattr(tests_stage, "MOST_TESTED", 4)
     known = {f"m{k}": noise(k, 300, 0.02, tapered=True) for k in range(10)}
     about = {"configuration": "T", "object": "T", "pedestal": "NP", "earthquake": "e", "floor": "g"}
     tests = pd.DataFrame({"motion": [*known], "test": [*known], **about, "amplitude_g": 0.4})
-    table = validity.validity_table(tests, [replace(STATUE.system(), name="T")], known)
+    table = tests_stage.validity_table(tests, [replace(STATUE.system(), name="T")], known)
     assert list(table["motion"]) == ["m0", "m2", "m5", "m7"]
 
 

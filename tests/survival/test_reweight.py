@@ -8,16 +8,16 @@ from scipy import special
 
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve, rate_weights
 from rockfrag.errors import InputError
-from rockfrag.survival.branches import Branch
-from rockfrag.survival.evidence import (
+from rockfrag.survival.reweight import SAMPLES, Reweighted, reweight, scaled
+from rockfrag.survival.site import (
     Age,
+    Branch,
+    Site,
     StandingObject,
     VelocityRatio,
     lognormal_coefficients,
     shaking_rates,
 )
-from rockfrag.survival.reweight import SAMPLES, Reweighted, reweight, scaled
-from rockfrag.survival.site import Site
 
 SLOPE = 2.5
 

@@ -1,4 +1,4 @@
-"""The commands ``rockfrag assess`` and ``rockfrag rules-of-thumb``."""
+"""The commands ``rockfrag assess``, ``rockfrag rules-of-thumb`` and ``rockfrag app``."""
 
 import argparse
 import re
@@ -9,11 +9,14 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rockfrag.errors import InputError, errors_of
 from rockfrag.schema import read_schema
 from rockfrag.units import convert, quantity
+
+if TYPE_CHECKING:
+    from rockfrag.assess.request import Request
 
 _INVENTORY = ".csv"
 _UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|s)$")
@@ -45,32 +48,22 @@ def add_assess_commands(commands: Any) -> None:
         description="One object at one place. Lengths and masses are written with their unit: 35cm, 180kg. "
         "All but width and height has a default, which is stated.",
     )
-    parser.add_argument(
-        "file",
-        nargs="?",
-        help="statue.yaml that says all this, or inventory.csv with an object a row",
-    )
+    words = "statue.yaml that says all this, or inventory.csv with an object a row"
+    parser.add_argument("file", nargs="?", help=words)
     add_request_options(parser)
     out = parser.add_argument_group("the answer")
-    out.add_argument(
-        "--output", metavar="FOLDER", default="assessment", help="where page and JSON are written"
-    )
+    words = "where page and JSON are written"
+    out.add_argument("--output", metavar="FOLDER", default="assessment", help=words)
     out.add_argument("--pdf", action="store_true", help="print the page too, by Chromium or Chrome")
     out.add_argument("--json", action="store_true", help="print the answer as JSON")
     out.add_argument("--pages", action="store_true", help="of an inventory: write a page for each")
-    out.add_argument(
-        "--keep-going",
-        action="store_true",
-        help="of an inventory: rank the rows that are right, and list what is wrong with the others",
-    )
+    words = "of an inventory: rank the rows that are right, and list what is wrong with the others"
+    out.add_argument("--keep-going", action="store_true", help=words)
     parser.set_defaults(run=_assess)
-    rules = commands.add_parser(
-        "rules-of-thumb", help="hold engineers' rules against simulations of objects"
-    )
+    words = "hold engineers' rules against simulations of objects"
+    rules = commands.add_parser("rules-of-thumb", help=words)
     rules.add_argument("file", help="objects, such as config/rules-of-thumb.yaml")
-    rules.add_argument(
-        "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
-    )
+    add_records_option(rules)
     rules.add_argument("--output", metavar="FILE", help="write the table as .csv or .parquet")
     rules.set_defaults(run=_rules)
 
@@ -120,9 +113,12 @@ def add_request_options(parser: argparse.ArgumentParser) -> None:
         group = parser.add_argument_group(title)
         for option in options:
             group.add_argument(f"--{option.name}", **{"action": _Once, **option.arguments})
-    group.add_argument(
-        "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
-    )
+    add_records_option(group)
+
+
+def add_records_option(parser: Any, words: str = "folder of fetched records") -> None:
+    """Add the option that names the folder of records."""
+    parser.add_argument("--records", metavar="FOLDER", default="resources/records", help=words)
 
 
 # imported when it runs: `rockfrag --help` should not wait for numba
@@ -311,3 +307,95 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
 
 
 _METRES_PER_UNIT = "key mesh.metres_per_unit (0.001 for millimetres, 0.3048 for feet)"
+
+_OBJECT = {"width": "35 cm", "height": "1.2 m"}
+_SHAKING = {"pga": "0.4 g", "return_period": "475"}
+"""What stands in the form where no object, and no shaking, is given."""
+
+_FORM = (
+    *("name", "width", "height", "mass", "cg_height", "cg_offset"),
+    *("restitution", "floor", "depth"),
+)
+_LEVELS = ("pga", "pgv", "sa")
+_KEYS = (
+    *(*_FORM, *_LEVELS, "round", "facing_deg", "pedestal", "building"),
+    *("return_period", "hazard", "records"),
+)
+"""Keys of ``statue.yaml`` that the page has a field for, or is written with."""
+
+
+def add_app_command(commands: Any) -> None:
+    """Add ``app`` to the parsers of a command line."""
+    parser = commands.add_parser(
+        "app",
+        help="write the assessment as one page that needs no installation",
+        description="One HTML file that computes what 'rockfrag assess' says of an object. "
+        "What is given stands in its form at first; records are those that it computes with.",
+    )
+    parser.add_argument("file", nargs="?", help="statue.yaml that says all this")
+    add_request_options(parser)
+    parser.add_argument("--output", metavar="FILE", default="assess.html", help="the page")
+    parser.set_defaults(run=_app)
+
+
+# imported when it runs: `rockfrag --help` should not wait for numba
+def _app(options: argparse.Namespace) -> int:
+    from rockfrag.assess.app.writing import write_app
+    from rockfrag.assess.motions import motion_set
+    from rockfrag.assess.place import Place
+    from rockfrag.assess.request import make_request
+    from rockfrag.yaml_file import read_yaml
+
+    given = settings_of(options)
+    if options.file:
+        given = read_yaml(options.file) | given
+    beyond = [key for key, value in given.items() if value and key not in _KEYS]
+    if beyond:
+        raise InputError(
+            f"key {beyond[0]}: the page does not compute with it; rockfrag assess does."
+        )
+    shaken = given.keys() & {*_LEVELS, "hazard"}
+    settings = _OBJECT | ({} if shaken else _SHAKING) | given
+    folder = Path(options.file).parent if options.file else Path()
+    request = make_request(settings, options.file or "rockfrag app", folder)
+    motions = motion_set(request.records, Place(), Path(options.records))
+    write_app(motions, form_of(settings, request), options.output, request=request)
+    print(options.output)
+    return 0
+
+
+def form_of(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
+    """What stands in the form at first."""
+    form = {key: str(settings[key]) for key in _FORM if key in settings}
+    form |= {"facing": str(settings["facing_deg"])} if "facing_deg" in settings else {}
+    form |= {"round": "true"} if settings.get("round") else {}
+    pedestal, building = settings.get("pedestal") or {}, settings.get("building") or {}
+    if isinstance(pedestal, list):
+        raise InputError("key pedestal: the page has one; rockfrag assess takes several.")
+    form |= {f"pedestal_{key}": str(value) for key, value in pedestal.items()}
+    if isinstance(building, Mapping):
+        told = ("storey_height", "material")
+        form |= {key: str(building[key]) for key in told if key in building}
+        if "first_period_s" in building:
+            form["period"] = f"{building['first_period_s']} s"
+    return form | _shaking(settings, request) | {"years": str(settings.get("return_period", ""))}
+
+
+def _shaking(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
+    """The level and the hazard curve as they stand in the form."""
+    given = [key for key in _LEVELS if key in settings]
+    if len(given) > 1:
+        raise InputError(f"key {given[1]}: the page takes one level; rockfrag assess takes both.")
+    level = settings[given[0]] if given else ""
+    form = {
+        "measure": request.level.measure.imt if request.level else "PGA",
+        "level": str(level[1] if given == ["sa"] else level),
+    }
+    if "hazard" not in settings:
+        return form
+    (curve, *others) = request.hazard
+    if others:
+        raise InputError("key hazard: the page takes one measure; leave the others out.")
+    rows = zip(curve.levels.tolist(), curve.rates.tolist(), strict=True)
+    lines = "\n".join(f"{x!r} {rate!r}" for x, rate in rows)
+    return form | {"measure": curve.measure.imt, "hazard": lines}

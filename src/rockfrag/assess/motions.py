@@ -16,7 +16,7 @@ from rockfrag.assess.request import Records
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.rotation import common_time, rotate
-from rockfrag.records.catalogue import load_motion, load_motions
+from rockfrag.records.catalogue import load_motion, load_motions, with_numbers
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.records.sources.fema_p695 import SETS, read_set
@@ -42,17 +42,15 @@ class MotionSet:
     pairs: tuple[tuple[int, int], ...]
     words: str  # What the set is, in a sentence
     warnings: tuple[str, ...] = ()  # Sentences that a reader must know
-    # Motions of floors that were needed before, by :attr:`Place.key`
-    floors: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
-    # Those of thinned sets, in the plane and in space, by how many motions are left
-    halves: dict[object, dict[object, tuple[Motion, ...]]] = field(default_factory=dict)
+    # Motions of floors that were needed before, by :attr:`Place.key` and the name of the ground motion
+    floors: dict[object, Motion] = field(default_factory=dict)
     # Whether both components of each record act at once: both stand for the record, and their level
     # is the geometric mean of theirs
     both: bool = False
     # Motions of the set among which these were chosen; empty where all were taken
     library: tuple[Motion, ...] = ()
-    # ln (PGV over a measure) of the library that were needed before
-    measured: dict[IntensityMeasure, Floats] = field(default_factory=dict)
+    # Measures of motions that were needed before, by the motion's name
+    known: dict[IntensityMeasure, dict[str, float]] = field(default_factory=dict)
 
     @property
     def about(self) -> list[Mapping[str, object]]:
@@ -61,14 +59,11 @@ class MotionSet:
 
     def log_ratios(self, measure: IntensityMeasure, *, of_all: bool = False) -> Floats:
         """Return ln (PGV over a measure [s]) of each ground motion, or of all among which these were chosen."""
-        if not (of_all and self.library):
-            return np.log(self.values(PGV) / self.values(measure) / VELOCITY_PER_G)
-        if measure not in self.measured:
-            ratios = np.array(
-                [PGV.of_motion(motion) / measure.of_motion(motion) for motion in self.library]
-            )
-            self.measured[measure] = np.log(ratios / VELOCITY_PER_G)
-        return self.measured[measure]
+        if of_all and self.library:
+            velocity, other = (self._measured(each, self.library) for each in (PGV, measure))
+        else:
+            velocity, other = self.values(PGV), self.values(measure)
+        return np.log(velocity / other / VELOCITY_PER_G)
 
     @cached_property
     def earthquakes(self) -> NDArray[np.object_]:
@@ -79,12 +74,17 @@ class MotionSet:
 
     def values(self, measure: IntensityMeasure) -> Floats:
         """Value of each ground motion in a measure, in its unit, shape (n,)."""
-        if measure not in self._values:
-            values = np.array([measure.of_motion(motion) for motion in self.ground])
-            for pair in self.pairs if self.both else ():
-                values[list(pair)] = np.sqrt(values[pair[0]] * values[pair[1]])
-            self._values[measure] = values
-        return self._values[measure]
+        values = self._measured(measure, self.ground)
+        for pair in self.pairs if self.both else ():
+            values[list(pair)] = np.sqrt(values[pair[0]] * values[pair[1]])
+        return values
+
+    def _measured(self, measure: IntensityMeasure, motions: Sequence[Motion]) -> Floats:
+        known = self.known.setdefault(measure, {})
+        for motion in motions:
+            if motion.name not in known:
+                known[motion.name] = measure.of_motion(motion)
+        return np.array([known[motion.name] for motion in motions])
 
     def median(self, measure: IntensityMeasure) -> float:
         """Median of the components in a measure, the same where both act at once."""
@@ -120,10 +120,6 @@ class MotionSet:
         first, *others = self.components(record)
         return [rotate(first, other, angle) for other in others for angle in angles] or [first]
 
-    @cached_property
-    def _values(self) -> dict[IntensityMeasure, Floats]:
-        return {}
-
     def thinned(self) -> "MotionSet":
         """Every second motion, one component of each record of the default set: enough to compare.
 
@@ -136,15 +132,14 @@ class MotionSet:
             kept += [i for (i,) in self.records[count:]]
             pairs = tuple((2 * n, 2 * n + 1) for n in range(len(self.pairs[::2])))
         ground, base = (tuple(motions[i] for i in kept) for motions in (self.ground, self.base))
-        floors = self.halves.setdefault((self.both, len(ground)), {})
-        return replace(self, ground=ground, base=base, pairs=pairs, floors=floors)
+        return replace(self, ground=ground, base=base, pairs=pairs)
 
     def at(self, place: Place) -> "MotionSet":
         """The same motions on another floor; known floors are not shaken again."""
-        key = place.key
-        if key not in self.floors:
-            self.floors[key] = tuple(place.shake(motion) for motion in self.ground)
-        return replace(self, base=self.floors[key])
+        for motion in self.ground:
+            if (place.key, motion.name) not in self.floors:
+                self.floors[place.key, motion.name] = place.shake(motion)
+        return replace(self, base=tuple(self.floors[place.key, m.name] for m in self.ground))
 
 
 def motion_set(records: Records, place: Place, folder: Path) -> MotionSet:
@@ -223,11 +218,8 @@ def _own(records: Records, folder: Path) -> MotionSet:
         if draft.errors:
             raise InputError(draft.errors[0])
         warnings += draft.warnings
-        for row in draft.table.to_dict("records"):
-            cells: dict[str, object] = {str(key): value for key, value in row.items()}
-            for key in ("dt", "magnitude", "distance_km", "scale_factor"):
-                text = str(cells.get(key, ""))
-                cells[key] = float(text) if text else math.nan
+        for row in with_numbers(draft.table).to_dict("records"):
+            cells = {str(key): value for key, value in row.items()}
             motions.append(load_motion(cells, Path(), folder))
     still = [motion.name for motion in motions if motion.pga == 0]
     if still:

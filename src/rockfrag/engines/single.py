@@ -8,12 +8,14 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.arrays import Floats
+from rockfrag.elementary import hypot
 from rockfrag.engines.contract import Case, Cases, Wish
 from rockfrag.engines.pure_rocking import PureRocking
 from rockfrag.engines.response import Response, contact_event_table, energy_table
 from rockfrag.engines.steps import MOST_SAMPLES, free_samples, step_count
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
+from rockfrag.system import geometry
 from rockfrag.system.system import System
 
 Records = NDArray[np.void]
@@ -62,41 +64,174 @@ class Single(PureRocking):
 
     def history(self, case: Case) -> Response:
         """Return the response of a case."""
-        found = _integrated(case, 4096)
-        needed = int(found[-1]["contact_events"])
-        if needed > 4096:
-            found = _integrated(case, needed)
-        return _response(case.system, *found)
+        return SingleRun(case).response()
 
 
-def samples_of(case: Case) -> tuple[Floats, Floats, Floats, NDArray[Any]]:
-    """Return times [s], (n,), and rotations, velocities and contact states of a case as of :class:`Response`."""
-    _, _, rows, _, _ = _integrated(case, 0)
-    time, count = np.arange(len(rows), dtype=np.float64) * case.motion.dt, case.system.count
-    return time, _of(rows, "theta", count), _of(rows, "omega", count), _of(rows, "c", count)
+class SingleRun:
+    """A case integrated by the kernel of single histories, with all its contact events, or none without room.
 
+    Forces follow from the absolute accelerations of the centres of gravity: N2 = m2 (g + y2''), T2 = m2 x2'', and
+    the sums over both blocks at the ground.
+    """
 
-def _of(rows: Records, name: str, count: int) -> NDArray[Any]:
-    """Return a number of each body, from below, in columns."""
-    return np.column_stack([rows[name + block] for block in BLOCKS[-count:]])
+    def __init__(self, case: Case, room: int = 4096) -> None:
+        from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
+        from rockfrag.engines.records import body_record
 
+        self.system, self.count = case.system, case.system.count
+        self.record = body_record(case.system, case.request.linear, case.request.g)
+        self.shaking = shaking_of(case, case.request.g)
+        most = self.shaking.samples.size + self.shaking.free_samples
+        if most > MOST_SAMPLES:
+            raise InputError(
+                f"motion: {most} samples, with the free rocking after it, are more than the "
+                f"{MOST_SAMPLES} allowed."
+            )
+        told = self.record, self.shaking, initial_state(case.system), np.zeros(most, SAMPLE)
+        while True:
+            found = np.zeros(room, CONTACT_EVENT)
+            done, self.summary = run_integration(*told, found)
+            count = int(self.summary["contact_events"])
+            if count <= room or not room:
+                break
+            room = count
+        self.history, self.contact_events = told[-1][:done], found[:count]
+        self.time = np.arange(done, dtype=np.float64) * case.motion.dt
 
-def _integrated(case: Case, capacity: int) -> tuple[np.void, Any, Records, Records, np.void]:
-    """Integrate a case: its record, its shaking, its samples, as many contact events as fit, and the summary."""
-    from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
-    from rockfrag.engines.records import body_record
+    def of(self, name: str, rows: Records | None = None) -> NDArray[Any]:
+        """Return a number of each body, from below, in columns, of the samples or of other rows."""
+        rows = self.history if rows is None else rows
+        return np.column_stack([rows[name + block] for block in BLOCKS[-self.count :]])
 
-    record = body_record(case.system, case.request.linear, case.request.g)
-    shaking = shaking_of(case, case.request.g)
-    most = case.motion.x.acceleration.size + shaking.free_samples
-    if most > MOST_SAMPLES:
-        raise InputError(
-            f"motion: {most} samples, with the free rocking after it, are more than the {MOST_SAMPLES} allowed."
+    def response(self) -> Response:
+        """Return the response that the kernel wrote."""
+        summary, demand, blocks = self.summary, self.summary["demand"], BLOCKS[-self.count :]
+        theta, state, n = self.of("theta"), self.of("c"), len(self.history)
+        fallen = int(summary["fallen"])
+        samples, ground = self.shaking.samples * self.shaking.scale, np.zeros(n)
+        ground[: samples.size] = samples[:n]
+        position, links = self._links(theta, state)
+        normal, friction = self._forces(ground, links)
+        return Response(
+            system=self.system,
+            time=self.time,
+            ground_acceleration=ground,
+            position=position,
+            theta=theta,
+            omega=self.of("omega"),
+            alpha=self.of("alpha"),
+            state=state,
+            slides=np.zeros_like(state),
+            slip=np.zeros_like(theta),
+            contact_events=self._contact_events(),
+            overturned=fallen > 0,
+            overturned_body=("", *self.system.names)[fallen - (2 - self.count) if fallen else 0],
+            overturning_time=float(summary["fall_time"]),
+            energy=self._energies(),
+            normal_force=normal,
+            friction_force=friction,
+            friction_demand=np.array([demand["friction" + block] for block in blocks]),
+            least_normal_force=np.array([demand["normal" + block] for block in blocks]),
+            lost_contact=float(summary["lost_contact"]),
+            unstable_distance=float(summary["unstable_distance"]),
+            paradoxes=0,
+            forced=0,
+            **{name: int(summary[name]) for name in ("impacts", "grazings", "given_way")},
         )
-    history, contact_events = np.zeros(most, SAMPLE), np.zeros(capacity, CONTACT_EVENT)
-    initial = initial_state(case.system)
-    done, summary = run_integration(record, shaking, initial, history, contact_events)
-    return record, shaking, history[:done], contact_events, summary
+
+    def _links(self, theta: Floats, state: NDArray[Any]) -> tuple[Floats, list[Floats]]:
+        """Centres of gravity relative to the ground [m], (n, blocks, 2), and the links between pivots and them.
+
+        Of each link x, y [m] and the acceleration of its tip [m/s²], (4, n): to the lower centre, to the foot
+        of the upper body, from there to its centre, and along the top of the pedestal.
+        """
+        from rockfrag.engines.kernels.jit import compiling_alone
+        from rockfrag.engines.kernels.record import fill_sines
+
+        sine, cosine = np.empty((2, *theta.shape))
+        with compiling_alone(fill_sines):
+            # the same on every processor
+            fill_sines(theta, sine, cosine)
+        omega, alpha = self.of("omega"), self.of("alpha")
+
+        def link(arms: Any, body: int) -> Floats:
+            (ax, ay), s, c = np.transpose(arms), sine[:, body], cosine[:, body]
+            x, y, w, q = ax * c + ay * s, -ax * s + ay * c, omega[:, body], alpha[:, body]
+            return np.array([x, y, q * y - w * w * x, -q * x - w * w * y])
+
+        lower, side, ways = self.system.shapes[0], (state < 0).astype(np.int64), (+1, -1)
+        arm = np.array([geometry.arm(lower, way) for way in ways])[side[:, 0]]
+        links = [link(arm, 0)]
+        centres = [links[0][:2]]
+        if self.count == 2:
+            pile = self.system.pile
+            feet = np.array([[geometry.reach(pile, a, b) for b in ways] for a in ways])
+            above = np.array([geometry.upper_arm(pile, way) for way in ways])
+            top = np.subtract(pile.right, pile.left)
+            links += [
+                link(feet[side[:, 0], side[:, 1]], 0),
+                link(above[side[:, 1]], 1),
+                link(top, 0),
+            ]
+            centres.append(links[1][:2] + links[2][:2])
+        position = np.stack([centre.T for centre in centres], axis=1)
+        position[..., 0] += lower.x - arm[:, :1]
+        return position, links
+
+    def _forces(self, ground: Floats, links: list[Floats]) -> tuple[Floats, Floats]:
+        """Normal and friction force of each interface, across and along the face that carries [N], (n, blocks)."""
+        gravity = np.full(ground.size, float(self.record["gravity"]))
+        up = self.shaking.scale * self.shaking.vertical[: ground.size]
+        gravity[: up.size] += gravity[: up.size] * up
+        mass, (_, _, ax, ay) = self.system.shapes[0].mass, links[0]
+        normal, friction = mass * (gravity + ay), mass * (ground + ax)
+        if self.count == 1:
+            return normal[:, np.newaxis], friction[:, np.newaxis]
+        pile, (foot, upper, top) = self.system.pile, links[1:]
+        level = pile.upper.mass * (ground + foot[2] + upper[2])
+        upright = pile.upper.mass * (gravity + foot[3] + upper[3])
+        # of the interface so far upright and level: the pedestal's top turns with it
+        tx, ty = top[:2] / hypot(*(float(x) for x in np.subtract(pile.right, pile.left)))
+        return (
+            np.column_stack([normal + upright, tx * upright - ty * level]),
+            np.column_stack([friction + level, tx * level + ty * upright]),
+        )
+
+    def _contact_events(self) -> pd.DataFrame:
+        """Make the table of contact events."""
+        from rockfrag.engines.kernels.record import CHATTER, CLOSING, LIFTING, OPENING
+
+        found = self.contact_events
+        before, after = found["before"], found["after"]
+        kinds = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter", LIFTING: "lift-off"}
+        return contact_event_table(
+            found["time"],
+            [kinds[kind] for kind in found["kind"].tolist()],
+            (self.of("c", before), self.of("c", after)),
+            (self.of("omega", before), self.of("omega", after)),
+            self.of("theta", after),
+            (found["energy_before"], found["energy_after"]),
+        )
+
+    def _energies(self) -> pd.DataFrame:
+        """Balance of energy by cause over time [J]."""
+        from rockfrag.engines.kernels.equations import STATE
+        from rockfrag.engines.kernels.jit import compiling_alone
+        from rockfrag.engines.kernels.record import OPENING, fill_energies
+
+        kinetic, potential = np.empty((2, len(self.history)))
+        with compiling_alone(fill_energies):
+            fill_energies(self.record, self.history, kinetic, potential, np.zeros(1, STATE)[0])
+        # an impact closes the ground if the lower body's contact changed, the interface otherwise
+        found = self.contact_events
+        before = found["before"]["c1"]
+        by_ground = (before != 0) & (before != found["after"]["c1"])
+        lost = found["energy_before"] - found["energy_after"]
+        # of a lone body, the kernels' second, the interface is the ground
+        closed = np.where(by_ground, 0, self.count - 1)
+        losses = found["time"], closed, np.where(found["kind"] == OPENING, 0.0, lost)
+        balance = kinetic, potential, self.history["work"], losses
+        return energy_table(self.time, *balance, contacts=self.count)
 
 
 def _write_summaries(into: Outcomes, rows: list[int], summaries: Records, forces: bool) -> None:
@@ -157,96 +292,6 @@ def run_integration(
     with compiling_alone(integrate):
         done = integrate(record, shaking, initial, history, contact_events, summary, scratch())
     return int(done), summary
-
-
-def _response(
-    system: System, record: np.void, shaking: Any, history: Records, found: Records, summary: Any
-) -> Response:
-    """Put the response of a system together, of whose contact events so many were found."""
-    from rockfrag.engines.forces import Turned
-
-    n, contact_events = len(history), found[: int(summary["contact_events"])]
-    count, demand = system.count, summary["demand"]
-    theta, omega, alpha, state = (
-        _of(history, name, count) for name in ("theta", "omega", "alpha", "c")
-    )
-    samples, dt = shaking.samples * shaking.scale, shaking.dt
-    ground, gravity = np.zeros(n), np.full(n, float(record["gravity"]))
-    ground[: min(n, samples.size)] = samples[:n]
-    up = shaking.scale * shaking.vertical[:n]
-    gravity[: up.size] += gravity[: up.size] * up
-    turned = Turned(system, state, theta)
-    normal, friction = turned.forces(ground, gravity, omega, alpha)
-    time = np.arange(n, dtype=np.float64) * dt
-    fallen = int(summary["fallen"])
-    which = fallen - (2 - system.count) if fallen else 0
-    return Response(
-        system=system,
-        time=time,
-        ground_acceleration=ground,
-        position=turned.centres(),
-        theta=theta,
-        omega=omega,
-        alpha=alpha,
-        state=state,
-        slides=np.zeros_like(state),
-        slip=np.zeros_like(theta),
-        contact_events=_contact_events(contact_events, count),
-        overturned=fallen > 0,
-        overturned_body=("", *system.names)[which],
-        overturning_time=float(summary["fall_time"]),
-        energy=_energies(record, time, history, contact_events, system.count),
-        normal_force=normal,
-        friction_force=friction,
-        impacts=int(summary["impacts"]),
-        grazings=int(summary["grazings"]),
-        paradoxes=0,
-        forced=0,
-        given_way=int(summary["given_way"]),
-        friction_demand=np.array([demand["friction" + block] for block in BLOCKS[-count:]]),
-        least_normal_force=np.array([demand["normal" + block] for block in BLOCKS[-count:]]),
-        lost_contact=float(summary["lost_contact"]),
-        unstable_distance=float(summary["unstable_distance"]),
-    )
-
-
-def _contact_events(contact_events: Records, count: int) -> pd.DataFrame:
-    """Make the table of contact events of a response."""
-    from rockfrag.engines.kernels.record import CHATTER, CLOSING, LIFTING, OPENING
-
-    before, after = contact_events["before"], contact_events["after"]
-    kinds = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter", LIFTING: "lift-off"}
-
-    return contact_event_table(
-        contact_events["time"],
-        [kinds[kind] for kind in contact_events["kind"].tolist()],
-        (_of(before, "c", count), _of(after, "c", count)),
-        (_of(before, "omega", count), _of(after, "omega", count)),
-        _of(after, "theta", count),
-        (contact_events["energy_before"], contact_events["energy_after"]),
-    )
-
-
-def _energies(
-    record: np.void, time: Floats, history: Records, contact_events: Records, contacts: int
-) -> pd.DataFrame:
-    """Balance of energy by cause over time [J]."""
-    from rockfrag.engines.kernels.equations import STATE
-    from rockfrag.engines.kernels.jit import compiling_alone
-    from rockfrag.engines.kernels.record import OPENING, fill_energies
-
-    kinetic, potential = np.empty(len(history)), np.empty(len(history))
-    with compiling_alone(fill_energies):
-        fill_energies(record, history, kinetic, potential, np.zeros(1, STATE)[0])
-    # an impact closes the ground if the lower body's contact changed, the interface otherwise
-    before = contact_events["before"]["c1"]
-    by_ground = (before != 0) & (before != contact_events["after"]["c1"])
-    lost = contact_events["energy_before"] - contact_events["energy_after"]
-    loss = np.where(contact_events["kind"] == OPENING, 0.0, lost)
-    # of a lone body, the kernels' second, the interface is the ground
-    closed = np.where(by_ground, 0, contacts - 1)
-    losses = contact_events["time"], closed, loss
-    return energy_table(time, kinetic, potential, history["work"], losses, contacts=contacts)
 
 
 ENGINE = Single()

@@ -102,9 +102,13 @@ def _checked(path: str | os.PathLike[str]) -> tuple[pd.DataFrame, list[int]]:
     if problems:
         raise InputError(f"{path}, {_listed(problems)}.")
     table = pd.DataFrame(list(rows.values()), columns=list(COLUMNS))
-    for column in _NUMBERS:
-        table[column] = pd.to_numeric(table[column].replace("", None)).astype(float)
-    return table, [line.line for line in lines]
+    return with_numbers(table), [line.line for line in lines]
+
+
+def with_numbers(table: pd.DataFrame) -> pd.DataFrame:
+    """Return a catalogue whose columns of numbers hold numbers, NaN where nothing is known."""
+    found = {name: pd.to_numeric(table[name].replace("", None)).astype(float) for name in _NUMBERS}
+    return table.assign(**found)
 
 
 def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from rockfrag.engines.contract import Case, engine_for
 from rockfrag.engines.single import ENGINE as SINGLE
-from rockfrag.engines.single import samples_of
+from rockfrag.engines.single import SingleRun
 from rockfrag.engines.steps import step_count
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
@@ -218,7 +218,8 @@ def _history_table(place: Place, case: Case) -> pa.Table:
     engine = engine_for(case.system, case.motion, case.request)
     if engine is SINGLE:
         # without its tables of contact events and energy, which take most of its time
-        time, theta, omega, state = samples_of(case)
+        run = SingleRun(case, room=0)
+        time, theta, omega, state = run.time, *map(run.of, ("theta", "omega", "c"))
     else:
         response = engine.history(case)
         time, theta, omega, state = response.time, response.theta, response.omega, response.state

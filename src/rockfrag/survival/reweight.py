@@ -18,14 +18,14 @@ from scipy import special
 
 from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
-from rockfrag.survival.evidence import (
+from rockfrag.survival.site import (
     ShakingRates,
+    Site,
     StandingObject,
     draw_errors,
     quantile_weights,
     shaking_rates,
 )
-from rockfrag.survival.site import Site
 
 SAMPLES = 1024  # Draws of ages and errors of fragilities
 DECISION_RATE = 1e-4  # Annual rate at which sensitivities are compared [1/year]

@@ -1,19 +1,354 @@
-"""A site with the branches of its hazard and the objects that stand there, as ``site.yaml`` describes it."""
+"""A site as ``site.yaml`` describes it: branches of its hazard, and what stands there, how fragile and how old.
+
+Branches are a logic tree's end branches, each with its weight and a hazard curve a measure. Two ways to give them:
+OpenQuake's exports (``realizations_….csv`` and a file of hazard curves for each realization,
+``hazard_curve-rlz-000-PGA_….csv``), or plain tables with the columns ``branch``, ``weight``, a level (``pga_g``,
+``pgv_cm_s``, ``sa_0_3s_g``) and how often it is exceeded (``annual_rate``, ``return_period_years`` or such as
+``poe_50_years``), a row a level; a second table may give another measure of the same branches.
+"""
 
 import math
 import os
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.hazard.curve import PGA, read_level, read_measure
+import numpy as np
+from scipy import special, stats
+
+from rockfrag.arrays import Floats
+from rockfrag.assess.hazard.curve import (
+    LARGEST_FILE,
+    PGA,
+    PGV,
+    VELOCITY_PER_G,
+    HazardCurve,
+    rate_weights,
+    read_level,
+    read_levels,
+    read_measure,
+    read_openquake,
+)
 from rockfrag.errors import InputError, errors_of
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.schema import checked
-from rockfrag.survival.branches import Branch, read_branches
-from rockfrag.survival.evidence import Age, StandingObject, VelocityRatio, lognormal_coefficients
+from rockfrag.tabular import Row, read_table, read_text
 from rockfrag.yaml_file import read_yaml
+
+MOST_BRANCHES = 10_000  # Branches of one site
+
+WEIGHT_ERROR = 1e-3
+"""By how much the sum of weights may differ from 1, which rounding to four digits explains."""
+
+
+@dataclass(frozen=True)
+class Branch:
+    """One end branch of a logic tree at a site: its weight, of sum 1, and its hazard curves by measure."""
+
+    name: str
+    weight: float
+    curves: dict[IntensityMeasure, HazardCurve] = field(default_factory=dict)
+
+
+def read_branches(
+    paths: Sequence[str | os.PathLike[str]], realizations: str | os.PathLike[str] | None = None
+) -> list[Branch]:
+    """Read the branches of a site in the order of the file, with weights of sum 1 to the last digit.
+
+    ``paths`` are tables of branches, one a measure; or, with OpenQuake's file of ``realizations``, its files of
+    hazard curves.
+    """
+    if not paths:
+        raise InputError("hazard: name at least one file with hazard curves of branches.")
+    found = _of_openquake(paths, realizations) if realizations else _of_tables(paths)
+    where = str(realizations or paths[0])
+    if len(found) > MOST_BRANCHES:
+        raise InputError(
+            f"{where}: {len(found)} branches are more than the {MOST_BRANCHES} allowed."
+        )
+    _check(found, where)
+    total = sum(branch.weight for branch in found)
+    return [Branch(b.name, b.weight / total, b.curves) for b in found]
+
+
+def _check(branches: Sequence[Branch], where: str) -> None:
+    for branch in branches:
+        if not (math.isfinite(branch.weight) and branch.weight > 0):
+            raise InputError(
+                f"{where}: branch {branch.name[:60]} has the weight {branch.weight:g}; a weight is above 0."
+            )
+    total = sum(branch.weight for branch in branches)
+    if abs(total - 1.0) > WEIGHT_ERROR:
+        raise InputError(
+            f"{where}: the weights of the {len(branches)} branches sum to {total:.6g} and not to 1; give every "
+            "end branch once."
+        )
+    for branch in branches[1:]:
+        if set(branch.curves) != set(branches[0].curves):
+            raise InputError(
+                f"{where}: branch {branch.name[:60]} has curves of {_names(branch)}, branch "
+                f"{branches[0].name[:60]} of {_names(branches[0])}; give the same measures for all."
+            )
+
+
+def _names(branch: Branch) -> str:
+    return " and ".join(sorted(measure.imt for measure in branch.curves)) or "nothing"
+
+
+def _of_tables(paths: Sequence[str | os.PathLike[str]]) -> list[Branch]:
+    """Branches of plain tables."""
+    found: dict[str, Branch] = {}
+    for path in paths:
+        for name, (weight, curve) in _table(path).items():
+            branch = found.setdefault(name, Branch(name, weight))
+            if branch.weight != weight:
+                raise InputError(
+                    f"{path}: branch {name[:60]} has the weight {weight:g}, and {branch.weight:g} elsewhere."
+                )
+            _add(curve, branch, f"branch {name[:60]}", path)
+    return list(found.values())
+
+
+def _add(curve: HazardCurve, branch: Branch, name: str, path: str | os.PathLike[str]) -> None:
+    if curve.measure in branch.curves:
+        raise InputError(f"{path}: {curve.measure.imt} of {name} is given twice.")
+    branch.curves[curve.measure] = curve
+
+
+def _table(path: str | os.PathLike[str]) -> dict[str, tuple[float, HazardCurve]]:
+    """Weight and curve of every branch of one table."""
+    every, curve = read_levels(path, labels=("branch", "weight"))
+    rows: dict[str, list[Row]] = {}
+    for row in every:
+        rows.setdefault(row.text("branch"), []).append(row)
+    found = {}
+    for name, mine in rows.items():
+        weight = mine[0].number("weight")
+        for row in mine:
+            if row.number("weight") != weight:
+                raise row.error(
+                    "weight", f"branch {name} has the weight {weight:g} in an earlier row"
+                )
+        found[name] = (weight, curve(mine, f"{path}, branch {name[:60]}"))
+    return found
+
+
+def _of_openquake(
+    paths: Sequence[str | os.PathLike[str]], realizations: str | os.PathLike[str]
+) -> list[Branch]:
+    """Branches of OpenQuake's exports."""
+    found = _realizations(realizations)
+    for path in paths:
+        number = _realization_of(path)
+        if number not in found:
+            raise InputError(f"{path}: realization {number} is not in {realizations}.")
+        curve, _ = read_openquake(read_text(path, LARGEST_FILE), str(path))
+        _add(curve, found[number], f"realization {number}", path)
+    return list(found.values())
+
+
+def _realizations(path: str | os.PathLike[str]) -> dict[int, Branch]:
+    """Branches without curves, by the number of the realization."""
+    table = read_table(path)
+    if not {"rlz_id", "weight"} <= set(table.titles):
+        raise InputError(
+            f"{path}: expected OpenQuake's realizations with the columns rlz_id, branch_path and weight; found "
+            f"{', '.join(table.titles)[:120] or 'nothing'}."
+        )
+    found: dict[int, Branch] = {}
+    for row in table.rows(table.titles):
+        try:
+            number = int(row.cells["rlz_id"])
+        except ValueError:
+            raise row.error("rlz_id", "expected a whole number") from None
+        if number in found:
+            raise InputError(f"{path}: realization {number} is given twice.")
+        name = f"rlz-{number:03d} {row.cells.get('branch_path', '')}".strip()
+        found[number] = Branch(name, row.number("weight"))
+    return found
+
+
+_RLZ = re.compile(r"rlz-(\d+)")
+
+
+def _realization_of(path: str | os.PathLike[str]) -> int:
+    """Which realization a file of hazard curves is of: its first line says so, or its name."""
+    head = read_text(path, LARGEST_FILE).partition("\n")[0]
+    found = _RLZ.search(head) or _RLZ.search(Path(path).name)
+    if found is None:
+        raise InputError(
+            f"{path}: neither its first line nor its name says which realization it is of (such as rlz-003); "
+            "export with individual_rlzs = true."
+        )
+    return int(found[1])
+
+
+GRID = 600  # Levels on which a hazard curve is integrated
+NODES = 15  # Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration
+
+
+@dataclass(frozen=True)
+class VelocityRatio:
+    """How fast the ground moves at a site when its peak acceleration is known: ln(PGV/PGA) is normal.
+
+    ``median_s`` is the median of PGV/PGA [s], ``sd_ln`` the standard deviation of its logarithm from one
+    earthquake to the next [-].
+    """
+
+    median_s: float
+    sd_ln: float
+
+
+@dataclass(frozen=True)
+class ShakingRates:
+    """Points of shaking with the annual rates that they stand for in each branch of the hazard."""
+
+    # Value of each measure at each point, in the measure's unit, shape (points,)
+    values: Mapping[IntensityMeasure, Floats]
+    # Annual rate of each point [1/year], shape (branches, points).  Their sum over points above a
+    # level is how often that level is exceeded
+    rates: Floats
+
+
+def shaking_rates(
+    branches: Sequence[Mapping[IntensityMeasure, HazardCurve]],
+    wanted: set[IntensityMeasure],
+    velocity: VelocityRatio | None,
+    reach: tuple[float, float],
+) -> ShakingRates:
+    """Points of shaking at a site in all measures that the objects are sensitive to, the same for all branches.
+
+    ``velocity`` is the PGV that comes with a PGA, where PGV is wanted and the branches have no curve of it, or
+    both are wanted; ``reach`` are the levels between which fragilities change, a range to be covered. The points
+    lie on a grid of levels of the one measure, and for PGA and PGV on nodes of the velocity at each.
+    """
+    measures = set(branches[0])
+    if len(wanted) == 1 and wanted <= measures:
+        (measure,) = wanted
+        levels, rates = _on_grid([curves[measure] for curves in branches], reach)
+        return ShakingRates({measure: levels}, rates)
+    if wanted <= {PGA, PGV} and PGA in measures and velocity is not None:
+        levels, rates = _on_grid([curves[PGA] for curves in branches], reach)
+        nodes, weight = np.polynomial.hermite_e.hermegauss(NODES)
+        ratio = velocity.median_s * np.exp(velocity.sd_ln * nodes)
+        pgv = VELOCITY_PER_G * (levels[:, np.newaxis] * ratio).ravel()
+        spread = rates[:, :, np.newaxis] * (weight / weight.sum())
+        return ShakingRates(
+            {PGA: np.repeat(levels, NODES), PGV: pgv}, spread.reshape(len(rates), -1)
+        )
+    missing = sorted(measure.imt for measure in wanted - measures) or ["PGV that comes with PGA"]
+    raise InputError(
+        f"hazard: an object's fragility needs {' and '.join(missing)}, but the branches give "
+        f"{', '.join(sorted(measure.imt for measure in measures))}; give velocity: {{median_s: …, sd_ln: …}}, "
+        "the PGV/PGA of the site, or a fragility in that measure."
+    )
+
+
+def _on_grid(curves: Sequence[HazardCurve], reach: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Levels over all curves and the reach of the fragilities, and the rates that they stand for in each curve."""
+    known = np.concatenate([curve.levels for curve in curves])
+    grid = np.geomspace(min(known.min(), reach[0]), max(known.max(), reach[1]), GRID)
+    # a few hundred branches with levels of their own would make the grid needlessly fine
+    levels = np.union1d(grid, np.unique(known)) if np.unique(known).size <= GRID else grid
+    return levels, np.array([rate_weights(curve, levels) for curve in curves])
+
+
+def quantile_weights(values: Floats, weights: Floats, quantiles: Floats) -> Floats:
+    """Weighted quantiles along the first axis, the cumulative weight interpolated, shape (quantiles, n).
+
+    Values have the shape (branches, n), their weights (branches,) and the sum 1.
+    """
+    order = np.argsort(values, axis=0)
+    cumulative = np.cumsum(weights[order], axis=0)
+    ordered = np.take_along_axis(values, order, axis=0)
+    columns = zip(cumulative.T, ordered.T, strict=True)
+    return np.array([np.interp(quantiles, c, v) for c, v in columns]).T
+
+
+TAIL = 6.0  # Standard deviations from the median beyond which a fragility no longer changes
+
+
+@dataclass(frozen=True)
+class Age:
+    """For how long an object has stood as fragile as it is today [year]: certain, a range, or lognormal."""
+
+    low: float  # ends of a range in which every value is equally probable; equal for a certain age
+    high: float
+    # standard deviation of the logarithm of a lognormal age with the median ``low``; 0 for the others
+    sd_ln: float = 0.0
+    # longest time for which it has been so fragile, which limits the age; infinite if none is given
+    fragile_for: float = math.inf
+
+    def exposure(self, uniform: Floats) -> Floats:
+        """Years of exposure at given probabilities, shape (n,)."""
+        if self.sd_ln > 0:
+            age = self.low * np.exp(self.sd_ln * special.ndtri(uniform))
+        else:
+            age = self.low + uniform * (self.high - self.low)
+        return np.asarray(np.minimum(age, self.fragile_for), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class StandingObject:
+    """An object that still stands, with its fragility in PGA, PGV, Sa(T), or PGA and PGV/PGA.
+
+    P(topples | x) = Φ(c0 + c1 ln x), or Φ(c0 + c1 ln PGA + c2 ln(PGV/PGA)) with PGA in g and PGV/PGA in s.
+    """
+
+    name: str
+    measure: IntensityMeasure  # intensity measure of c1
+    coefficients: tuple[float, ...]  # (c0, c1) or (c0, c1, c2)
+    # standard deviation of ln of the shaking that it withstands, for what is not known of it [-]
+    sd_ln: float
+    age: Age
+
+    @property
+    def measures(self) -> set[IntensityMeasure]:
+        """Measures that its fragility needs."""
+        return {PGA, PGV} if len(self.coefficients) == 3 else {self.measure}
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Lowest and highest level of ``measure`` between which its fragility changes."""
+        c0, c1, *others = self.coefficients
+        wide = TAIL * (1 / c1 + self.sd_ln)
+        # the second measure moves the median by as much as PGV/PGA of 0.02 to 0.5 s may
+        aside = [c * math.log(ratio) for c in others for ratio in (0.02, 0.5)] or [0.0]
+        middle = [-(c0 + shift) / c1 for shift in aside]
+        return math.exp(min(middle) - wide), math.exp(max(middle) + wide)
+
+    def index(self, shaking: ShakingRates) -> Floats:
+        """Normal score of toppling at points of shaking, the fragility as it is estimated, shape (points,)."""
+        c = self.coefficients
+        if len(c) == 2:
+            return np.asarray(c[0] + c[1] * np.log(shaking.values[self.measure]))
+        pga, pgv = shaking.values[PGA], shaking.values[PGV]
+        return np.asarray(c[0] + c[1] * np.log(pga) + c[2] * np.log(pgv / (VELOCITY_PER_G * pga)))
+
+    def probability(self, index: Floats, error: float) -> Floats:
+        """Probability of toppling where the object withstands exp(error) times the shaking estimated."""
+        return np.asarray(special.ndtr(index - self.coefficients[1] * error))
+
+
+def lognormal_coefficients(theta: float, beta: float) -> tuple[float, float]:
+    """Coefficients (c0, c1) of a lognormal fragility with median θ and logarithmic standard deviation β."""
+    return -math.log(theta) / beta, 1.0 / beta
+
+
+def draw_errors(objects: int, shared: float, samples: int, seed: int = 0) -> tuple[Floats, Floats]:
+    """Draw errors of fragilities and positions in ages, evenly spread (Sobol; a power of two).
+
+    Returns standard normal errors, correlated between objects as ``shared`` says [-], and independent uniform
+    numbers, each of shape (samples, objects).
+    """
+    sobol = stats.qmc.Sobol(2 * objects + 1, scramble=True, rng=np.random.default_rng(seed))
+    drawn = sobol.random(samples)
+    normal = special.ndtri(np.clip(drawn[:, : objects + 1], 1e-12, 1 - 1e-12))
+    common, own = normal[:, :1], normal[:, 1:]
+    return math.sqrt(shared) * common + math.sqrt(1.0 - shared) * own, drawn[:, objects + 1 :]
+
 
 RECORDS = "resources/records"  # Folder of fetched records
 

@@ -101,28 +101,19 @@ class ContactRun:
 
     def response(self) -> Response:
         """Return the response that the contact kernels wrote."""
-        system, history, told, blocks = (
-            self.case.system,
-            self.history,
-            self.work["told"],
-            self.count,
-        )
-        done = len(history)
-        values = self.case.scale * self.case.motion.x.acceleration
-        time = np.arange(done, dtype=np.float64) * self.case.motion.dt
-        kept = history[:, : 6 * blocks].reshape(done, 2, blocks, 3)
-        centres, speeds = kept.transpose(1, 0, 2, 3)
-        slips, normal, shear, alpha = (
-            history[:, 6 * blocks : 10 * blocks].reshape(done, 4, blocks).transpose(1, 0, 2)
-        )
+        case, told, history, blocks = self.case, self.work["told"], self.history, self.count
+        done, fallen = len(history), int(told["overturned_body"])
+        values, ground = case.scale * case.motion.x.acceleration, np.zeros(done)
+        ground[: values.size] = values[:done]
+        centres, speeds = history[:, : 6 * blocks].reshape(done, 2, blocks, 3).swapaxes(0, 1)
+        rest = history[:, 6 * blocks : 10 * blocks].reshape(done, 4, blocks)
+        slips, normal, shear, alpha = rest.swapaxes(0, 1)
         state, slides = _modes(history[:, -1], blocks)
-        fallen = int(told["overturned_body"])
         table = _contact_events(self.contact_events, blocks)
         meets = np.array([np.abs(np.diff([0.0, *w])).max() for w in table["omega_before"]])
-        ground = np.zeros(done)
-        ground[: min(done, values.size)] = values[:done]
+        time = np.arange(done, dtype=np.float64) * case.motion.dt
         return Response(
-            system=system,
+            system=case.system,
             time=time,
             ground_acceleration=ground,
             position=centres[:, :, :2],
@@ -134,7 +125,7 @@ class ContactRun:
             slip=slips,
             contact_events=table,
             overturned=fallen > 0,
-            overturned_body=("", *system.names)[fallen],
+            overturned_body=("", *case.system.names)[fallen],
             overturning_time=float(told["overturning_time"]),
             energy=self._energies(time),
             normal_force=normal,
@@ -150,28 +141,19 @@ class ContactRun:
 
     def _energies(self, time: Array) -> pd.DataFrame:
         """Balance of energy by cause over time [J]."""
-        p, history, contact_events, blocks = (
-            self.body,
-            self.history,
-            self.contact_events,
-            self.count,
-        )
-        inertia = 1.0 / p["inverse"][: 3 * blocks]
+        p, history, blocks = self.body, self.history, self.count
+        inertia, at = 1.0 / p["inverse"][: 3 * blocks], slice(1, 3 * blocks, 3)
         kinetic = (inertia * history[:, 3 * blocks : 6 * blocks] ** 2).sum(axis=1) / 2
-        potential = float(p["g"]) * (p["mass"][:blocks] * history[:, 1 : 3 * blocks : 3]).sum(
-            axis=1
-        )
-        struck = np.isin(contact_events[:, 1], (contact.IMPACT, contact.PARADOX))
-        loss = np.where(struck, contact_events[:, 4] - contact_events[:, 5], 0.0)
+        potential = float(p["g"]) * (p["mass"][:blocks] * history[:, at]).sum(axis=1)
+        when, kind, old, new, before, after = self.contact_events[:, :6].T
+        struck = np.isin(kind, (contact.IMPACT, contact.PARADOX))
         # the lowest contact whose mode changes as it comes down, or the uppermost
-        before, after = (_modes(contact_events[:, column], blocks)[0] for column in (2, 3))
-        closes = (before != 0) & (before != after)
+        opened, closed = (_modes(mode, blocks)[0] for mode in (old, new))
+        closes = (opened != 0) & (opened != closed)
         closes[:, -1] = True
-        losses = contact_events[:, 0], closes.argmax(axis=1), loss
-        work, rubbed = history[:, -4], history[:, -3]
-        return responses.energy_table(
-            time, kinetic, potential, work, losses, rubbed, contacts=blocks
-        )
+        losses = when, closes.argmax(axis=1), np.where(struck, before - after, 0.0)
+        balance = kinetic, potential, history[:, -4], losses, history[:, -3]
+        return responses.energy_table(time, *balance, contacts=blocks)
 
 
 def _modes(numbers: Array, blocks: int) -> tuple[Ints, Ints]:
