@@ -264,7 +264,11 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         fixed = _of_quantiles(now, hazard)
         probability = evidence.estimate(risk.risk_target(hazard, request.years), fixed)
     rocking, fraction = None, None
-    rocks_from = _rocks_from(request, counted, exact=exact)
+    rocks_from = objects.least_uplift
+    if not exact:
+        # the least level that was tried
+        rocked = np.flatnonzero(counted.fractions(state=ROCKS) > 0)
+        rocks_from = plan.shaking.levels[rocked[0]] if rocked.size else math.inf
     if level:
         rocking = evidence.rocking(level.value, exact=exact)
         fraction = evidence.estimate(risk.fraction_target(level.value))
@@ -285,7 +289,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         counted=counted,
         arrangements=arrangements,
         rocking=rocking,
-        rocks_from=rocks_from,
+        rocks_from=float(rocks_from),
         fraction=fraction,
         probability=probability,
         counts=_counts(counted, level) if now is counted else None,
@@ -363,14 +367,6 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
             )
         return request.level
     return Level(hazard.measure, hazard.level(1 / 475)) if hazard else None
-
-
-def _rocks_from(request: Request, now: ObjectOutcomes, *, exact: bool) -> float:
-    """Least level that makes the object rock: by statics where it decides, else the least that was tried."""
-    if exact:
-        return request.objects.least_uplift
-    rocked = np.flatnonzero(now.fractions(state=ROCKS) > 0)
-    return float(now.intensity_levels.levels[rocked[0]]) if rocked.size else math.inf
 
 
 def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | None:

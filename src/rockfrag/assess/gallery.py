@@ -73,7 +73,9 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
     says = gallery_says
     numbers = says.figure("numbers", lambda: numbers_figure(joint, years), years)
     losses = says.figure("losses", lambda: losses_figure(joint, years), years)
-    count = len(inventory.found)
+    drawn = says.figure("correlation", lambda: correlation_figure(joint))
+    apart = joint.correlation.to_numpy()[np.triu_indices(len(joint.correlation), 1)]
+    known, count = apart[np.isfinite(apart)], len(inventory.found)
     return Page(
         title=f"What {count} objects risk together",
         lead=f"{count} objects, shaken by the same {len(inventory.motions.ground)} motions.",
@@ -88,7 +90,7 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
         sections=[
             _ranking(inventory, joint, "loss" if valued else "number"),
             _numbers(joint, [losses] if valued and len(joint.losses) > 1 else []),
-            _correlation(joint),
+            says.section("correlation", [drawn], np.median(known) if known.size else None),
         ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
     ).html()
@@ -120,13 +122,6 @@ def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
     )
     table = table_html(shown, NUMBERS, "How many objects topple in one earthquake.")
     return gallery_says.section("numbers", [table, *figures], most, years)
-
-
-def _correlation(joint: JointRisk) -> Section:
-    apart = joint.correlation.to_numpy()[np.triu_indices(len(joint.correlation), 1)]
-    known = apart[np.isfinite(apart)]
-    figure = gallery_says.figure("correlation", lambda: correlation_figure(joint))
-    return gallery_says.section("correlation", [figure], np.median(known) if known.size else None)
 
 
 def numbers_figure(joint: JointRisk, years: float) -> Figure:

@@ -201,7 +201,15 @@ def assess_inventory(
     losses: dict[Any, float] = {}
     if joint is not None:
         losses = joint.objects.set_index("name")["annual_loss"].to_dict()
-    found.sort(key=lambda each: (losses.get(each.request.name, 0.0), *_risk(each)), reverse=True)
+
+    def risk(each: Assessment) -> tuple[float, ...]:
+        """Loss, probability, fraction, and how little topples half of the motions."""
+        known = [
+            estimate.value if estimate else 0.0 for estimate in (each.probability, each.fraction)
+        ]
+        return losses.get(each.request.name, 0.0), *known, -each.amplitudes[0.5].value
+
+    found.sort(key=risk, reverse=True)
     return Inventory(found, motions, joint, faults)
 
 
@@ -311,15 +319,6 @@ OTHERS: Mapping[str, Callable[[Row, str], Any]] = {
     "floor": Row.text, "restitution": Row.positive, "round": _yes, "value": Row.positive
 }  # fmt: skip
 """What else a column may say, and how it is read."""
-
-
-def _risk(found: Assessment) -> tuple[float, float, float]:
-    """What objects are sorted by: the probability, the fraction, and how little topples half of the motions."""
-    main = [
-        0.0 if estimate is None else estimate.value
-        for estimate in (found.probability, found.fraction)
-    ]
-    return main[0], main[1], -found.amplitudes[0.5].value
 
 
 def inventory_table(inventory: Inventory) -> pd.DataFrame:

@@ -50,11 +50,16 @@ def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
 
 def page_of(found: Assessment) -> str:
     """Return the page as HTML, which loads nothing from outside."""
+    pairs = [line.split(PART) for line in page_says("words_used", found)]
+    pairs.sort(key=lambda pair: pair[0].lower())
+    caption = "Words and abbreviations of this page."
     sections = [
-        *(_mitigations(found), _arrangements(found), _sure(found)),
+        *_compared(found),
+        _sure(found),
         page_says.section("assumed", [], found),
         *([_rules(found)] if found.rules else []),
-        *(_levels(found), _motions(found), _glossary(found)),
+        *(_levels(found), _motions(found)),
+        page_says.section("glossary", [text_table(("Word", "What it means here"), pairs, caption)]),
     ]
     provenance = {
         "Program": f"rockfrag {version('rockfrag')}",
@@ -82,7 +87,8 @@ def _answer(found: Assessment) -> Answer:
     )
 
 
-def _mitigations(found: Assessment) -> Section:
+def _compared(found: Assessment) -> list[Section]:
+    """What each change of the object does, and other ways in which it can stand."""
     rows = [
         (
             sentence(change.name),
@@ -95,15 +101,14 @@ def _mitigations(found: Assessment) -> Section:
     caption = (
         "Each change is simulated with the same motions and compared with the object as it stands."
     )
-    table = text_table(titles, rows, caption, titles[1:2])
-    return page_says.section("mitigations", [table], found)
-
-
-def _arrangements(found: Assessment) -> Section:
-    rows = [(name, value_words(found, value)) for name, value in found.by_arrangement.items()]
-    titles, caption = ("How it stands", "Estimate"), "The same object under the same motions."
-    table = text_table(titles, rows, caption, titles[1:])
-    return page_says.section("arrangements", [table], found)
+    changes = text_table(titles, rows, caption, titles[1:2])
+    ways = [(name, value_words(found, value)) for name, value in found.by_arrangement.items()]
+    heads, caption = ("How it stands", "Estimate"), "The same object under the same motions."
+    stands = text_table(heads, ways, caption, heads[1:])
+    return [
+        page_says.section("mitigations", [changes], found),
+        page_says.section("arrangements", [stands], found),
+    ]
 
 
 def _sure(found: Assessment) -> Section:
@@ -183,13 +188,6 @@ def _years(period: float) -> str:
     """A return period to two digits: 475 years stand for some 480."""
     rounded = float(f"{period:.2g}")
     return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
-
-
-def _glossary(found: Assessment) -> Section:
-    pairs = [line.split(PART) for line in page_says("words_used", found)]
-    pairs.sort(key=lambda pair: pair[0].lower())
-    titles, caption = ("Word", "What it means here"), "Words and abbreviations of this page."
-    return page_says.section("glossary", [text_table(titles, pairs, caption)])
 
 
 def _motions(found: Assessment) -> Section:

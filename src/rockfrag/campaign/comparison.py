@@ -210,23 +210,13 @@ def curves_of(measure: Floats, outcomes: Flags | Floats, weights: Floats) -> Flo
     return np.column_stack([np.exp(-coefficients[:, 0] / slope), 1 / slope])
 
 
-def judged_tests(tests: pd.DataFrame, votes: Floats) -> pd.DataFrame:
-    """Each test with its votes, its outcome, whether that is right, and whether it is near-critical."""
-    return tests.assign(
-        votes_to_overturn=votes,
-        simulated=votes >= HALF,
-        right=(votes >= HALF) == tests["overturned"],
-        near_critical=(votes > NEAR_CRITICAL[0]) & (votes < NEAR_CRITICAL[1]),
-    )
-
-
 def by_region(judged: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
     """Thirds of two measures, a row each: limits, ``tests``, ``overturned``, ``simulated``, ``right``."""
-    ends, third = {}, {}
-    for name in (first, second):
-        values = judged[name].to_numpy()
-        ends[name] = np.quantile(values, [0, 1 / 3, 2 / 3, 1])
-        third[name] = np.clip(np.searchsorted(ends[name], values, side="right") - 1, 0, 2)
+    ends = {name: np.quantile(judged[name], [0, 1 / 3, 2 / 3, 1]) for name in (first, second)}
+    third = {
+        name: np.clip(np.searchsorted(limits, judged[name], side="right") - 1, 0, 2)
+        for name, limits in ends.items()
+    }
     rows = []
     for i, j in product(range(3), repeat=2):
         inside = judged[(third[first] == i) & (third[second] == j)]

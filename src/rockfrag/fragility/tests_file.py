@@ -10,9 +10,11 @@ import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.fragility import observations
@@ -150,7 +152,8 @@ def read_columns(path: str | os.PathLike[str], kinds: Mapping[str, str]) -> pd.D
             column[name] = column[name].str.strip()
             if separator != ",":
                 column[name] = column[name].str.replace(",", ".")
-        found[name] = _READERS[kind](column, name, source, 2)
+        values = _READERS[kind](column, name, source, 2)
+        found[name] = [str(value).strip() for value in values] if kind == "label" else values
     return pd.DataFrame(found)
 
 
@@ -160,10 +163,6 @@ def product_of(raw: pd.DataFrame, recipe: Sequence[str | float]) -> Floats:
     for factor in recipe:
         result = result * (raw[factor].to_numpy() if isinstance(factor, str) else float(factor))
     return result
-
-
-def _labels(piece: pd.DataFrame, column: str, source: str, first: int) -> list[str]:
-    return [str(value).strip() for value in observations.labels(piece, column, source, first)]
 
 
 def _outcomes(piece: pd.DataFrame, column: str, source: str, first: int) -> Floats:
@@ -179,8 +178,8 @@ def _outcomes(piece: pd.DataFrame, column: str, source: str, first: int) -> Floa
     return np.asarray(text.isin(_YES), dtype=np.float64)
 
 
-_READERS: Mapping[str, Callable[[pd.DataFrame, str, str, int], list[str] | Floats]] = {
-    "label": _labels,
+_READERS: Mapping[str, Callable[[pd.DataFrame, str, str, int], NDArray[Any]]] = {
+    "label": observations.labels,
     "outcome": _outcomes,
     "number": observations.numbers,
     "positive": observations.positive,

@@ -197,7 +197,13 @@ def vector_tables(
                 fits.append({**about, "method": "none", "warnings": str(error)})
                 continue
             checks = check_vector(fit, used, motion=motion, seed=seed)
-            fits.append({**about, **_fit_row(fit, checks)})
+            values = (
+                *(*fit.coefficients, 0.0)[:4],
+                *(fit.aic, fit.n, fit.n_overturned, fit.n_earthquakes, fit.interaction.p),
+                *(fit.interaction.likelihood_ratio, checks.p_fit, fit.method),
+                " ".join(fit.warnings),
+            )
+            fits.append({**about, **dict(zip(FITS[2:], values, strict=True))})
             contours.append(_contours(fit, used).assign(**about))
             # measures are named alike for every pair, whose tables are joined
             surface = checks.surface.rename(columns=dict(zip(pair, CELLS[2:4], strict=True)))
@@ -213,16 +219,6 @@ def _joined(parts: list[pd.DataFrame], columns: list[str]) -> pd.DataFrame:
     if not parts:
         return pd.DataFrame(columns=columns)
     return pd.concat(parts, ignore_index=True)[columns]
-
-
-def _fit_row(fit: VectorFragility, checks: VectorChecks) -> dict[str, object]:
-    values = (
-        *(*fit.coefficients, 0.0)[:4],
-        *(fit.aic, fit.n, fit.n_overturned, fit.n_earthquakes),
-        *(fit.interaction.p, fit.interaction.likelihood_ratio, checks.p_fit, fit.method),
-        " ".join(fit.warnings),
-    )
-    return dict(zip(FITS[2:], values, strict=True))
 
 
 def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:

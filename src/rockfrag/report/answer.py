@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from rockfrag.figure_style import BLACK, COLUMN_WIDTH, one_panel, plain_log
 from rockfrag.report import findings
 from rockfrag.report.figures import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
-from rockfrag.report.part import Answer, FigureSpec, Finding, Results, Says
+from rockfrag.report.part import Answer, Finding, Results, Says
 from rockfrag.sentences import sentence, shortened
 
 FEW = 10
@@ -26,10 +26,15 @@ says = Says("rockfrag.report", "answer.j2", FEW=FEW, FRICTION=findings.FRICTION)
 
 def study_answer(results: Results) -> Answer:
     """Return what stands first on the page of a study, made of its tables alone."""
+    curves, found = _headline_curves(results), sentences(results)
+    # amplitudes are peaks of acceleration; a median in another measure has no place beside them
+    curves = curves[curves["unit"] == "g"]
+    names = [configuration.name for configuration in results.study.configurations]
+    draw, level = partial(strength_figure, results.tests, curves, names), results.level
     return Answer(
         asked=says("asked", results.objects, results.study, MOST_NAMED)[0],
-        sentences=sentences(results),
-        figure=_figure(results),
+        sentences=found,
+        figure=says.figure("answer", draw, found[0], level if len(curves) else ""),
         advice=advice(results),
         rests_on=rests_on(results),
         could_change=could_change(results),
@@ -98,15 +103,6 @@ def _earthquakes(results: Results) -> int:
     return int(results.study.catalogue["earthquake"].nunique())
 
 
-def _figure(results: Results) -> FigureSpec:
-    curves = _headline_curves(results)
-    # amplitudes are peaks of acceleration; a median in another measure has no place beside them
-    curves = curves[curves["unit"] == "g"]
-    names = [configuration.name for configuration in results.study.configurations]
-    draw, level = partial(strength_figure, results.tests, curves, names), results.level
-    return says.figure("answer", draw, sentences(results)[0], level if len(curves) else "")
-
-
 MOST_ROWS = 24
 """More configurations than this are not legible; the first are drawn."""
 
@@ -123,7 +119,12 @@ def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[s
             for own, marker, size in ((known, "|", 7), (rows["up"], 5, 5), (rows["down"], 4, 5)):
                 x = rows.loc[own, "a"].to_numpy(dtype=float)
                 axes.plot(x, np.full(x.size, y + 0.12), ls="", marker=marker, color=colour, ms=size)
-            _median(figure, curves[curves["configuration"] == name], y - 0.2)
+            below = y - 0.2
+            for row in curves[curves["configuration"] == name].to_dict("records"):
+                limits = [row["theta_lower"], row["theta_upper"]]
+                if np.isfinite(limits).all() and limits[0] < limits[1]:
+                    axes.plot(limits, [below, below], color=BLACK, lw=1.2)
+                axes.plot(row["theta"], below, "D", mec=BLACK, mfc="white", ms=4)
         axes.set_ylim(len(shown) - 0.4, -0.6)
         axes.set_yticks(range(len(shown)), [shortened(name, 20) for name in shown])
         axes.tick_params(axis="y", length=0)
@@ -144,16 +145,6 @@ def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[s
         if handles:
             figure.legend(handles=handles, loc="outside upper center", ncols=2, handlelength=1.4)
         return figure
-
-
-def _median(figure: Figure, curve: pd.DataFrame, y: float) -> None:
-    """Mark a median and its interval, where there are any."""
-    axes = figure.axes[0]
-    for row in curve.to_dict("records"):
-        limits = [row["theta_lower"], row["theta_upper"]]
-        if np.isfinite(limits).all() and limits[0] < limits[1]:
-            axes.plot(limits, [y, y], color=BLACK, lw=1.2)
-        axes.plot(row["theta"], y, "D", mec=BLACK, mfc="white", ms=4)
 
 
 def rests_on(results: Results) -> list[str]:

@@ -1,7 +1,6 @@
 """The report of a campaign on a shake table: how often the simulation is right, and where it is not."""
 
 import math
-from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -44,10 +43,22 @@ def run(job: Job[CampaignStudy]) -> Results:
     found, level = _findings(tables), f"{100 * study.confidence:g} %"
     sections = [_agreement(tables, found[0], level), _fragility(tables, level)]
     sections += [both] if both else []
-    sections += [part(study, tables) for part in (_tests, _object, _conditioning)]
+    sections += [_tests(study, tables), _object(study, tables)]
+    steps = [" ".join(str(value) for value in step.values()) for step in study.conditioning]
+    caption = "Outcomes predicted right, by conditioning."
+    table = table_html(tables["conditioning"], _CONDITIONING, caption)
+    sections.append(says.section("conditioning", [table], steps))
     tests = tables["tests"]
+    near = says("near_critical", int(tests["near_critical"].sum()), len(tests))
+    specs = [part for section in sections for part in section.parts if isinstance(part, FigureSpec)]
+    answer = Answer(
+        asked="How often does the simulation predict what happened on the shaking table?",
+        sentences=found[:3],
+        figure=next((spec for spec in specs if spec.name == "tests"), specs[0]),
+        rests_on=says("rests_on", tests, motion),
+        could_change=[*near, *(finding.headline + "." for finding in found[3:])],
+    )
     lead, about = says.line("lead", tests, motion), {"Tests": study.tests.name}
-    answer = _answer(found, tests, motion, sections)
     write_page(job, answer, sections, about, lead=lead, basis="measured")
     yield from ()
 
@@ -89,45 +100,23 @@ def _who(name: str) -> str:
     return name
 
 
-def _answer(
-    found: Sequence[Finding], tests: pd.DataFrame, motion: str, sections: Sequence[Section]
-) -> Answer:
-    """What stands first: how often the simulation is right, beside whom, and in which fragility."""
-    near = int(tests["near_critical"].sum())
-    specs = [part for section in sections for part in section.parts if isinstance(part, FigureSpec)]
-    return Answer(
-        asked="How often does the simulation predict what happened on the shaking table?",
-        sentences=found[:3],
-        figure=next((spec for spec in specs if spec.name == "tests"), specs[0]),
-        rests_on=says("rests_on", tests, motion),
-        could_change=[
-            *says("near_critical", near, len(tests)),
-            *(finding.headline + "." for finding in found[3:]),
-        ],
-    )
-
-
 def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
     ours, *others = tables["agreement"].to_dict("records")
     found = [says.finding("predicted", ours)]
     # whether three dimensions predict better than one plane
     found += [says.finding("beside_plane", ours, row) for row in others if row["who"] == IN_PLANE]
-    found += _against_rivals(others) + _fragility_found(tables["fragility"])
+    # what is read off the tests themselves is the ceiling of all models, not one of them
+    rivals = [row for row in others if row["who"] not in (REPEATS, IN_PLANE)]
+    if rivals:
+        best = max(rivals, key=lambda row: float(row["right"]))
+        found.append(says.finding("beside_rivals", best, _who(best["who"]), len(rivals)))
+    found += _fragility_found(tables["fragility"])
     tests = tables["tests"]
     near, wrong = tests["near_critical"], ~tests["right"]
     if wrong.any():
         counts = (int((wrong & near).sum()), int(wrong.sum()), int(near.sum()), len(tests))
         found.append(says.finding("wrong", *counts))
     return found
-
-
-def _against_rivals(others: Sequence[Row]) -> list[Finding]:
-    # what is read off the tests themselves is the ceiling of all models, not one of them
-    rivals = [row for row in others if row["who"] not in (REPEATS, IN_PLANE)]
-    if not rivals:
-        return []
-    best = max(rivals, key=lambda row: float(row["right"]))
-    return [says.finding("beside_rivals", best, _who(best["who"]), len(rivals))]
 
 
 def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
@@ -307,13 +296,6 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
 
 def _range(values: pd.Series) -> str:
     return f"{values.min():.3g} to {values.max():.3g}"
-
-
-def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
-    steps = [" ".join(str(value) for value in step.values()) for step in study.conditioning]
-    caption = "Outcomes predicted right, by conditioning."
-    table = table_html(tables["conditioning"], _CONDITIONING, caption)
-    return says.section("conditioning", [table], steps)
 
 
 _GREY = "#999999"

@@ -102,7 +102,11 @@ def _sides_panel(
     x = rows[by].map(place) + rows["pedestal"].map(shift)
     crowded = len(rows) > MOST_MARKS
     if both and not crowded:
-        _join_pairs(axes, rows.assign(x=x))
+        keys, placed = ["object", "motion"], rows.assign(x=x)
+        without = placed[placed["pedestal"] == "NP"].drop_duplicates(keys)
+        pairs = placed[placed["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
+        ends = pairs[["x_np", "a_np", "x_p", "a_p"]].to_numpy(dtype=float).reshape(-1, 2, 2)
+        axes.add_collection(LineCollection(list(ends), colors="#cccccc", linewidths=0.5, zorder=1))
     for side in SIDES:
         own = rows["pedestal"] == side
         if crowded and own.any():
@@ -118,14 +122,6 @@ def _sides_panel(
     if len(levels) > 4:
         axes.tick_params(axis="x", rotation=40)
     axes.set_xlim(-0.5, len(levels) - 0.5)
-
-
-def _join_pairs(axes: Axes, rows: pd.DataFrame) -> None:
-    keys = ["object", "motion"]
-    without = rows[rows["pedestal"] == "NP"].drop_duplicates(keys)
-    pairs = rows[rows["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
-    ends = pairs[["x_np", "a_np", "x_p", "a_p"]].to_numpy(dtype=float).reshape(-1, 2, 2)
-    axes.add_collection(LineCollection(list(ends), colors="#cccccc", linewidths=0.5, zorder=1))
 
 
 def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) -> None:
@@ -155,7 +151,18 @@ def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDEST
     objects = list(dict.fromkeys(pairs["object"]))
     upper = 1.08 * float(pairs[["a_p", "a_np"]].to_numpy(dtype=float).max())
     with style.one_panel(style.COLUMN_WIDTH, 0.6 + style.COLUMN_WIDTH) as (figure, axes):
-        _scatter_panel(axes, pairs, objects, upper)
+        line = np.array([0.0, upper])
+        # the line of equality with its band of ±10 %
+        axes.fill_between(line, line / 1.1, line * 1.1, color=BAND, lw=0)
+        axes.plot(line, line, color=GREY, lw=0.8)
+        for name, (marker, colour) in styles_of(objects).items():
+            own = pairs[pairs["object"] == name]
+            x, y = own["a_np"].to_numpy(dtype=float), own["a_p"].to_numpy(dtype=float)
+            axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, mew=1.0, ms=4.5)
+            for bound, arrow in (("up_p", _UP), ("up_np", _RIGHT)):
+                _plot_arrows(axes, x, y, own[bound], arrow, colour)
+        axes.set(xlim=(0, upper), ylim=(0, upper), aspect="equal")
+        axes.locator_params(nbins=5)
         # above the panel, where it hides no test
         axes.set_title(title, loc="left", pad=4)
         axes.set_xlabel(f"Overturning amplitude {sides.second} [g]")
@@ -179,21 +186,6 @@ def styles_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:
     if len(names) > len(MARKERS):
         return dict.fromkeys(names, ("o", style.BLUE))
     return dict(zip(names, zip(MARKERS, style.OKABE_ITO, strict=False), strict=False))
-
-
-def _scatter_panel(axes: Axes, part: pd.DataFrame, objects: Sequence[str], upper: float) -> None:
-    """Points on the line of equality with its band of ±10 %."""
-    line = np.array([0.0, upper])
-    axes.fill_between(line, line / 1.1, line * 1.1, color=BAND, lw=0)
-    axes.plot(line, line, color=GREY, lw=0.8)
-    for name, (marker, colour) in styles_of(objects).items():
-        own = part[part["object"] == name]
-        x, y = own["a_np"].to_numpy(dtype=float), own["a_p"].to_numpy(dtype=float)
-        axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, mew=1.0, ms=4.5)
-        for bound, arrow in (("up_p", _UP), ("up_np", _RIGHT)):
-            _plot_arrows(axes, x, y, own[bound], arrow, colour)
-    axes.set(xlim=(0, upper), ylim=(0, upper), aspect="equal")
-    axes.locator_params(nbins=5)
 
 
 def highest_box(rows: pd.DataFrame, by: str) -> float:

@@ -195,17 +195,14 @@ def pedestal_effect(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> list
     row = here.to_dict("records")[0]
     others = whole[whole["definition"] != DEFINITION].to_dict("records")
     floors = effects[(effects["scope"] == "floor") & (effects["definition"] == DEFINITION)]
-    return [says.finding("effect", row, about, others), *_by_floor(floors, about)]
-
-
-def _by_floor(rows: pd.DataFrame, about: Sides) -> list[Finding]:
-    if len(rows) < 2:
-        return []
-    limits = rows[["lower", "upper"]].to_numpy(dtype=float)
-    known = np.array([wording.has_interval(low, high, _RATIO_DECIMALS) for low, high in limits])
-    clear = known & ((rows["lower"] > 1) | (rows["upper"] < 1))
-    each = rows.to_dict("records")
-    return [says.finding("floors", each, known.any(), int(clear.sum()), about)]
+    found = [says.finding("effect", row, about, others)]
+    if len(floors) > 1:
+        limits = floors[["lower", "upper"]].to_numpy(dtype=float)
+        known = np.array([wording.has_interval(low, high, _RATIO_DECIMALS) for low, high in limits])
+        clear = known & ((floors["lower"] > 1) | (floors["upper"] < 1))
+        each = floors.to_dict("records")
+        found.append(says.finding("floors", each, known.any(), int(clear.sum()), about))
+    return found
 
 
 def model_allowed(validity: pd.DataFrame) -> Finding:

@@ -243,31 +243,31 @@ TERMS: Mapping[str, str] = {
 
 def terms_used(text: str) -> dict[str, str]:
     """Return the terms that the visible text of a page uses with their meanings, in alphabetical order."""
-    used = [name for name in TERMS if any(_occurs(part, text) for part in name.split(", "))]
+
+    def occurs(term: str) -> bool:
+        """Whether it is there as a word of its own, abbreviations as they are written."""
+        flags = re.NOFLAG if term.isupper() or len(term) < 3 else re.IGNORECASE
+        return re.search(rf"(?<![\w/&]){re.escape(term)}(?![\w/&])", text, flags) is not None
+
+    used = [name for name in TERMS if any(map(occurs, name.split(", ")))]
     return {name: TERMS[name] for name in sorted(used, key=str.lower)}
-
-
-def _occurs(term: str, text: str) -> bool:
-    """Whether a text has a term as a word of its own, abbreviations as they are written."""
-    flags = re.NOFLAG if term.isupper() or len(term) < 3 else re.IGNORECASE
-    return re.search(rf"(?<![\w/&]){re.escape(term)}(?![\w/&])", text, flags) is not None
 
 
 def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int = 1) -> dict[str, Picture]:
     """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def drawn(spec: FigureSpec) -> Path:
+        svg = folder / f"{spec.name}.svg"
+        save_figure(spec.draw(), svg, folder / f"{spec.name}.png")
+        return svg
+
     # what processes hand over should be small: the name of a file, and not what is in it
-    files = in_processes(lambda spec: _drawn(spec, folder), specs, processes)
+    files = in_processes(drawn, specs, processes)
     return {
         spec.name: Picture(spec, file.read_text(encoding="utf-8"))
         for spec, file in zip(specs, files, strict=True)
     }
-
-
-def _drawn(spec: FigureSpec, folder: Path) -> Path:
-    folder.mkdir(parents=True, exist_ok=True)
-    svg = folder / f"{spec.name}.svg"
-    save_figure(spec.draw(), svg, folder / f"{spec.name}.png")
-    return svg
 
 
 @dataclass(frozen=True)

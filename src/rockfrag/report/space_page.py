@@ -11,7 +11,7 @@ from rockfrag import figure_style as style
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Column, estimated, table_html
-from rockfrag.report.part import Answer, Finding, Says, Section
+from rockfrag.report.part import Answer, Says, Section
 from rockfrag.report.study_report import write_page
 from rockfrag.rocking.space_medians import LOSS, NO_LOSS, PLANAR, body_of
 from rockfrag.stages.job import Job, Results
@@ -25,7 +25,12 @@ def run(job: Job[SpaceStudy]) -> Results:
     study, medians, fractions = job.study, job.table("medians"), job.table("fractions")
     ratios = says.figure("ratios", lambda: ratios_figure(medians))
     levels = says.figure("fractions", lambda: fractions_figure(fractions))
-    findings = [_finding(base, medians) for base in study.bases]
+    findings = []
+    for base in study.bases:
+        # what the second component does to one base, as the range of its rows
+        rows = medians[(medians["base"] == base) & (medians["planar_impacts"] == LOSS)]
+        spans = {name: f"{rows[name].min():.2f} to {rows[name].max():.2f}" for name in PLANAR}
+        findings.append(says.finding("finding", base, spans))
     answer = Answer(
         asked="At which shaking does a body topple under both components, beside planar rocking under one?",
         sentences=findings[:3],
@@ -33,8 +38,10 @@ def run(job: Job[SpaceStudy]) -> Results:
         rests_on=says("rests_on"),
         could_change=says("could_change", medians["flip_rate"].max()),
     )
+    shown = medians.assign(body=_bases(medians))
+    table = table_html(shown, _MEDIANS, "Medians in space over planar ones, with 90 % intervals.")
     sections = [
-        Section("medians", "Medians", f"{findings[0].headline}.", [], [_table(medians), ratios]),
+        Section("medians", "Medians", f"{findings[0].headline}.", [], [table, ratios]),
         Section("fractions", "Fractions by level", "What the medians come from.", [], [levels]),
     ]
     live = _live(study, job.motions("motions/ground"))
@@ -55,31 +62,19 @@ def _live(study: SpaceStudy, ground: Sequence[Motion]) -> Markup:
     return live_in_space(bodies, list(map(GroundMotion, ground[::2], ground[1::2])))
 
 
-def _finding(base: str, medians: pd.DataFrame) -> Finding:
-    """What the second component does to one base, as the range of its rows."""
-    rows = medians[(medians["base"] == base) & (medians["planar_impacts"] == LOSS)]
-    spans = {name: f"{rows[name].min():.2f} to {rows[name].max():.2f}" for name in PLANAR}
-    return says.finding("finding", base, spans)
-
-
-def _table(medians: pd.DataFrame) -> Markup:
-    columns = [
-        Column("body", "Base"),
-        Column("slenderness", "Height over width", 1),
-        Column("height_m", "Height [m]", 1),
-        Column("space_g", "Median in space [g]", 2),
-        *(estimated(name, f"Over {WORDS[name]}", 2) for name in PLANAR),
-        Column("flip_rate", "Flip rate", 2),
-    ]
-    shown = medians.assign(body=_bases(medians))
-    return table_html(shown, columns, "Medians in space over planar ones, with 90 % intervals.")
-
-
 WORDS = {
     "one_component": "one component",
     "mean_direction": "mean of directions",
     "worst_direction": "worst direction",
 }
+_MEDIANS = (
+    Column("body", "Base"),
+    Column("slenderness", "Height over width", 1),
+    Column("height_m", "Height [m]", 1),
+    Column("space_g", "Median in space [g]", 2),
+    *(estimated(name, f"Over {WORDS[name]}", 2) for name in PLANAR),
+    Column("flip_rate", "Flip rate", 2),
+)
 COLOURS = dict(zip(PLANAR, (style.BLUE, style.ORANGE, style.GREEN), strict=True))
 
 

@@ -39,8 +39,12 @@ def run(job: Job[Study]) -> Results:
         f"{counted(len(results.records), 'record')} of {counted(earthquakes, 'earthquake')}"
         + (", on the floors of a building." if study.building else ".")
     )
+    live, systems = Markup(), {each.name: each for each in study.configurations}
+    # nothing where it could not give the outcomes of the study
+    if study.simulated_in_page:
+        live = live_kernel(systems, results.floors, results.outcomes)
     first, about = answer(results), _settings(results)
-    write_page(job, first, sections, about, lead, _LIBRARIES, live=_live(results))
+    write_page(job, first, sections, about, lead, _LIBRARIES, live=live)
     yield from ()
 
 
@@ -48,7 +52,8 @@ def _settings(results: StudyResults) -> dict[str, str]:
     """What the numbers of a simulated study depend on."""
     study, amplitudes = results.study, results.study.amplitudes
     shown = study.catalogue.head(MOST_TABLE_ROWS)
-    records = ", ".join(_record(row) for row in shown.to_dict("records"))
+    digests = shown["sha256"].map(lambda sha: f", SHA-256 {sha[:12]} checked" if sha else "")
+    records = ", ".join(shown["name"] + " (" + shown["source"] + digests + ")")
     if rest := len(study.catalogue) - len(shown):
         records += f" and {rest} more of {study.catalogue_file.name}"
     return {
@@ -59,20 +64,6 @@ def _settings(results: StudyResults) -> dict[str, str]:
         "Records": records,
         "Motions, SHA-256": ", ".join(sorted(set(results.table("fragility")["record_set_sha256"]))),
     }
-
-
-def _record(row: Mapping[Any, Any]) -> str:
-    checked = f", SHA-256 {row['sha256'][:12]} checked" if row["sha256"] else ""
-    return f"{row['name']} ({row['source']}{checked})"
-
-
-def _live(results: StudyResults) -> Markup:
-    """Return the simulation in the page; nothing where it could not give the outcomes of the study."""
-    study = results.study
-    if not study.simulated_in_page:
-        return Markup()
-    systems = {configuration.name: configuration for configuration in study.configurations}
-    return live_kernel(systems, results.floors, results.outcomes)
 
 
 def write_page(

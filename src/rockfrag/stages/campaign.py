@@ -10,7 +10,7 @@ import pandas as pd
 
 from rockfrag.arrays import Flags, Floats
 from rockfrag.campaign import comparison, laboratory
-from rockfrag.campaign.comparison import HALF, MeasuredTests
+from rockfrag.campaign.comparison import HALF, NEAR_CRITICAL, MeasuredTests
 from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
 from rockfrag.errors import InputError
@@ -54,10 +54,21 @@ def run(job: Job[CampaignStudy]) -> Results:
         len(campaign.tests), measured.groups.max() + 1,
         100 * ((votes >= HALF) == measured.overturned).mean(),
     )  # fmt: skip
-    judged = comparison.judged_tests(campaign.tests, votes.mean(axis=0))
+    mean = votes.mean(axis=0)
+    judged = campaign.tests.assign(
+        votes_to_overturn=mean,
+        simulated=mean >= HALF,
+        right=(mean >= HALF) == campaign.tests["overturned"],
+        near_critical=(mean > NEAR_CRITICAL[0]) & (mean < NEAR_CRITICAL[1]),
+    )
     found = _Simulated(job, campaign, motions, thing, trials, outcomes, rocked, measured, votes)
     yield "tests", judged
-    yield "trials", found.judged_trials()
+    right = (outcomes == measured.overturned).mean(axis=1)
+    table = trials.table.assign(right_in_sample=right, plausible=found.plausible)
+    yield (
+        "trials",
+        table.sort_values("right_in_sample", ascending=False, kind="stable", ignore_index=True),
+    )
     yield "agreement", found.agreement()
     yield "rocking", found.rocking()
     yield "fragility", found.fragility()
@@ -188,14 +199,6 @@ class _Simulated:
         """Trials that agree with all tests about as well as the best, in sample: shows where they lie only."""
         right = self.outcomes == self.measured.overturned
         return comparison.plausible_trials(right, self.measured.groups)
-
-    def judged_trials(self) -> pd.DataFrame:
-        """Trials with their agreement over all tests."""
-        right = (self.outcomes == self.measured.overturned).mean(axis=1)
-        table = self.trials.table.assign(right_in_sample=right, plausible=self.plausible)
-        return table.sort_values(
-            "right_in_sample", ascending=False, kind="stable", ignore_index=True
-        )
 
     def agreement(self) -> pd.DataFrame:
         """Who is right how often: simulations, thresholds on measures, other codes; each compared with ours."""

@@ -1,6 +1,6 @@
 """Fragility: curves of every configuration and floor, the measure that predicts overturning best, exports."""
 
-import math
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
@@ -274,13 +274,18 @@ def export_curves(
     for (floor, height, column), rows in curves.groupby(
         ["floor", "floor_level", "measure"], sort=False
     ):
-        usable = _usable(rows)
+        # rows of the configurations that have a curve for every state
+        found = rows[["theta", "beta"]].to_numpy(dtype=float)
+        whole = (np.isfinite(found) & (found > 0)).all(axis=1)
+        usable = rows[~rows["configuration"].isin(rows.loc[~whole, "configuration"])]
         if usable.empty:
             continue
         points = None
         if fractions is not None:
             points = fractions[(fractions["floor"] == floor) & (fractions["measure"] == column)]
-        stem = f"fragility_{_stem(str(usable['im'].iloc[0]))}"
+        # SA(0.3s) becomes sa_0_3s
+        name = re.sub(r"[\W_]", "_", str(usable["im"].iloc[0]).lower()).strip("_")
+        stem = f"fragility_{name}"
         if height != 0:
             stem += f"_{file_name(str(floor))}"
         if height == 0:
@@ -295,16 +300,3 @@ def export_curves(
             )
             written += [f"{stem}.csv", f"{stem}.json"]
     return written
-
-
-def _stem(name: str) -> str:
-    """File name of a measure: ``SA(0.3s)`` becomes ``sa_0_3s``."""
-    return "".join(c if c.isalnum() else "_" for c in name.lower()).strip("_")
-
-
-def _usable(rows: pd.DataFrame) -> pd.DataFrame:
-    """Rows of the configurations that have a curve for every state."""
-    found = rows[["theta", "beta"]].to_numpy(dtype=float)
-    whole = (np.isfinite(found) & (found > 0) & (found < math.inf)).all(axis=1)
-    bad = set(rows.loc[~whole, "configuration"])
-    return rows[~rows["configuration"].isin(bad)]

@@ -115,6 +115,11 @@ def page_of(found: Constrained) -> str:
     title, lead = _say("head", found, names)
     alt, below = _say("curves", hazard)
     curves = FigureSpec("curves", alt, below, lambda: curves_figure(found))
+    alt, below = _say("weights")
+    weights = FigureSpec("weights", alt, below, lambda: weights_figure(found))
+    file = f"{file_name(found.site.name)}-weights.csv"
+    caption = "Branches of the hazard with their weights."
+    branch_table = table_html(found.result.table(), BRANCHES, caption, file)
     caption = "What each object says by itself, and what is left without it."
     objects = table_html(found.by_object, OBJECTS, caption)
     caption = "One assumption at a time taken otherwise."
@@ -130,7 +135,7 @@ def page_of(found: Constrained) -> str:
         ),
         sections=[
             Section("hazard", "Mean hazard before and after", hazard, (), [_hazard(found)]),
-            Section("branches", "Branches", branches, (), _branches(found)),
+            Section("branches", "Branches", branches, (), [weights, branch_table]),
             Section("objects", "Which object decides", evidence, (), [objects]),
             Section("hangs-on", "What it hangs on", hangs_on, LIMITS, [assumed]),
         ],
@@ -149,14 +154,6 @@ def _hazard(found: Constrained) -> Markup:
         Column("rate_ratio", "Rate of the level before, after / before", 2),
     ]
     return table_html(table, shown, "Mean hazard at annual rates of 1e-2 to 1e-5.")
-
-
-def _branches(found: Constrained) -> list[Markup | FigureSpec]:
-    alt, below = _say("weights")
-    weights = FigureSpec("weights", alt, below, lambda: weights_figure(found))
-    caption = "Branches of the hazard with their weights."
-    file = f"{file_name(found.site.name)}-weights.csv"
-    return [weights, table_html(found.result.table(), BRANCHES, caption, file)]
 
 
 MOST_BRANCHES_SHOWN = 20  # Branches whose weights are drawn: those that matter most before or after

@@ -71,22 +71,17 @@ def amplitudes(results: Results) -> Section:
     shown = _wide(tests, texts, ("earthquake", "floor", "motion"))
     caption = "Overturning amplitude of every test (step protocol)."
     table = table_html(shown, columns, caption, "tests.csv")
-    found = findings.amplitudes_found(results.tests)
-    return says.section("amplitudes", [table, *_maps(results)], found, resurrections)
-
-
-def _maps(results: Results) -> list[FigureSpec]:
-    outcomes, resurrections = results.outcomes, results.table("resurrections")
-    specs = []
+    parts: list[Any] = [table]
     for name in results.objects:
-        own = outcomes[outcomes["object"] == name]
+        own = results.outcomes[results.outcomes["object"] == name]
         configurations = list(dict.fromkeys(own["configuration"]))
-        curves = resurrections[resurrections["configuration"].isin(configurations)]
+        curves = survived[survived["configuration"].isin(configurations)]
         fallen, motions = curves["first_upper"].count(), curves["motion"].nunique()
         draw = partial(outcome_map, own, configurations)
         about = (name, fallen, len(curves), motions, MOST_ROWS)
-        specs.append(says.figure(f"outcomes_{file_name(name)}", draw, *about, of="outcomes"))
-    return specs
+        parts.append(says.figure(f"outcomes_{file_name(name)}", draw, *about, of="outcomes"))
+    found = findings.amplitudes_found(results.tests)
+    return says.section("amplitudes", parts, found, resurrections)
 
 
 def comparisons(results: Results) -> Section | None:

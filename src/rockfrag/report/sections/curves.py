@@ -153,31 +153,21 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
     if found.empty:
         return None
     pairs = [describe_pair(a, b) for a, b in zip(found["first"], found["second"], strict=True)]
-    shown, caption = found.assign(pair=pairs), "Fits in two measures."
-    table = table_html(shown, _TWO_MEASURES, caption, "fragility_two_measures")
-    return says.section(
-        "two-measures",
-        [*_contours(tables, shown), table],
-        ", ".join(dict.fromkeys(pairs)),
-        len(found),
-        int((found["p_fit"] < REJECTED).sum()),
-        INTERACTION_LEVEL,
-        f"{100 * confidence:g} %",
-        list(dict.fromkeys(fits["warnings"])),
-    )
-
-
-def _contours(tables: VectorTables, found: pd.DataFrame) -> list[FigureSpec]:
-    keys = ["configuration", "first", "second"]
-    specs = []
-    for pair, row in zip(found["pair"], found[keys].to_dict("records"), strict=True):
+    keys, parts = ["configuration", "first", "second"], []
+    for pair, row in zip(pairs, found[keys].to_dict("records"), strict=True):
         own, tests = (
             t[(t[keys] == pd.Series(row)).all(axis=1)] for t in (tables.contours, tables.cells)
         )
         name = file_name(f"two_measures_{'_'.join(map(str, row.values()))}")
-        draw, about = partial(two_measures_figure, own, tests), (row["configuration"], pair)
-        specs.append(says.figure(name, draw, *about, of="two_measures"))
-    return specs
+        draw, of = partial(two_measures_figure, own, tests), row["configuration"]
+        parts.append(says.figure(name, draw, of, pair, of="two_measures"))
+    shown, caption = found.assign(pair=pairs), "Fits in two measures."
+    table = table_html(shown, _TWO_MEASURES, caption, "fragility_two_measures")
+    rejected, level = int((found["p_fit"] < REJECTED).sum()), f"{100 * confidence:g} %"
+    limits, notes = (INTERACTION_LEVEL, level), list(dict.fromkeys(fits["warnings"]))
+    named = ", ".join(dict.fromkeys(pairs))
+    about = (named, len(found), rejected, *limits, notes)
+    return says.section("two-measures", [*parts, table], *about)
 
 
 def floor_curves(results: Results) -> Section | None:

@@ -187,14 +187,6 @@ MOST_PANELS = 8
 """More motions than this do not fit one figure; the first are drawn."""
 
 
-def _title(motion: Motion, peak_g: float) -> str:
-    """Name of the earthquake and of the record, and the peak."""
-    name, earthquake = motion.name, str(motion.metadata.get("earthquake") or "")
-    if earthquake.casefold() not in name.casefold():
-        name = f"{earthquake}, {name}"
-    return f"{shortened(name, 44)}: {peak_g:.2f} g"
-
-
 def acceleration_histories(motions: Sequence[Motion]) -> Figure:
     """Draw the acceleration of ``MOST_PANELS`` motions over time with its peak, a panel a motion, on one scale."""
     shown = motions[:MOST_PANELS]
@@ -209,7 +201,10 @@ def acceleration_histories(motions: Sequence[Motion]) -> Figure:
             panel.plot(motion.time, values, color=style.BLUE, linewidth=0.5)
             panel.plot(motion.time[peak], values[peak], "o", color=style.RED, markersize=3)
             panel.set_ylim(-highest, highest)
-            panel.set_title(_title(motion, abs(values[peak])), loc="left")
+            name, earthquake = motion.name, str(motion.metadata.get("earthquake") or "")
+            if earthquake.casefold() not in name.casefold():
+                name = f"{earthquake}, {name}"
+            panel.set_title(f"{shortened(name, 44)}: {abs(values[peak]):.2f} g", loc="left")
         style.letter_panels(panels, size=6.5)
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1] for motion in shown))
