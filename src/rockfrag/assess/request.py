@@ -14,10 +14,10 @@ from rockfrag.assess.hazard.curve import (
     PGV,
     HazardCurve,
     curve_of_one_level,
+    read_hazard,
     read_level,
     read_measure,
 )
-from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
 from rockfrag.errors import InputError, errors_of
