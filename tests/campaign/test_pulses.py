@@ -105,7 +105,7 @@ def test_what_a_pulse_does_not_follow_from_is_said(study, old, new, sentence):
 
 def test_the_ceiling_is_no_rival():
     row = {"right": 0.9, "better": 0.1, "better_lower": 0.02, "better_upper": 0.2, "p": 0.001}
-    row |= {"lower": 0.8, "upper": 0.95, "tests": 60}
+    row |= {"lower": 0.8, "upper": 0.95, "tests": 60, "false_alarms": 3.0, "missed": 3.0}
     rivals = [row | {"who": "threshold on PGV"}, row | {"who": REPEATS, "right": 1.0}]
     tables = {
         "fragility": pd.DataFrame(
