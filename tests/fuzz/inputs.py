@@ -11,7 +11,7 @@ import numpy as np
 import yaml
 
 from rockfrag import Block, Stack, overturns, simulate
-from rockfrag.assess.hazard.reading import read_hazard
+from rockfrag.assess.hazard.curve import read_hazard
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.request import read_request
 from rockfrag.errors import InputError

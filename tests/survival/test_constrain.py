@@ -15,9 +15,8 @@ import pytest
 from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.cli import main
 from rockfrag.errors import InputError
-from rockfrag.survival.branches import read_branches
 from rockfrag.survival.reweight import constrain
-from rockfrag.survival.site import read_site
+from rockfrag.survival.site import read_branches, read_site
 
 from ..assess.samples import openquake_csv
 

@@ -8,10 +8,10 @@ from scipy import special
 
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve, rate_weights
 from rockfrag.errors import InputError
-from rockfrag.survival.branches import Branch
 from rockfrag.survival.reweight import SAMPLES, Reweighted, reweight, scaled
 from rockfrag.survival.site import (
     Age,
+    Branch,
     Site,
     StandingObject,
     VelocityRatio,

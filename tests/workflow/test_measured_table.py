@@ -8,7 +8,7 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.shaketable.tests_table import read_measured
-from rockfrag.stages.measured_tests import measured_tables
+from rockfrag.stages.pedestal import measured_tables
 from rockfrag.study.loading import load_any
 
 from .conftest import write_example, write_synthetic

@@ -96,7 +96,7 @@ rule measured_tests:
     conda:
         "../envs/rockfrag.yaml"
     params:
-        stage="rockfrag.stages.measured_tests:run",
+        stage="rockfrag.stages.pedestal:run_measured",
         study=STUDY_FILE,
         settings=settings("measured_tests", "fragility", "seed", "bodies"),
     script:

@@ -430,7 +430,8 @@ def _in_keys(words: str) -> str:
 
 def _pedestals(settings: Mapping[str, Any], assumed: list[Assumption]) -> tuple[Block, ...]:
     """What the object stands on, from below, in the plane in which it rocks."""
-    given, found = settings.get("pedestal", []), []
+    found, given = [], settings.get("pedestal", [])
+    given = [given] if isinstance(given, Mapping) else given
     across = settings.get("depth_m", math.inf) < settings.get("width_m", math.inf)
     for i, block in enumerate(given, start=1):
         width, height = float(block["width_m"]), float(block["height_m"])

@@ -14,10 +14,10 @@ from rockfrag.assess.hazard.curve import (
     PGV,
     HazardCurve,
     curve_of_one_level,
+    read_hazard,
     read_level,
     read_measure,
 )
-from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
 from rockfrag.errors import InputError, errors_of
@@ -105,7 +105,7 @@ def make_request(settings: Mapping[str, Any], source: str, folder: Path | None =
 
     ``source`` says in messages where they come from; paths are read from ``folder``, or the present one.
     """
-    known = _checked(settings, source)
+    known = checked(settings, "statue", source)
     where = folder or Path()
     with errors_of(source):
         return Request(
@@ -117,19 +117,6 @@ def make_request(settings: Mapping[str, Any], source: str, folder: Path | None =
             years=float(known.get("years", YEARS)),
             records=_records(known, where),
         )
-
-
-def _checked(settings: Mapping[str, Any], source: str) -> dict[str, Any]:
-    """Check the keys; one pedestal is a list of one, which messages do not say."""
-    given = dict(settings)
-    single = isinstance(given.get("pedestal"), Mapping)
-    if single:
-        given["pedestal"] = [given["pedestal"]]
-    try:
-        return checked(given, "statue", source)
-    except InputError as error:
-        words = str(error)
-        raise InputError(words.replace("pedestal[0]", "pedestal") if single else words) from None
 
 
 def _level(settings: Mapping[str, Any]) -> Level | None:

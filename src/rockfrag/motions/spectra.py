@@ -310,12 +310,13 @@ LANES = 16
 # Rows of a group's table, each of LANES numbers, in one flat array so that the compiler sees that they do not
 # overlap: the propagator over a step, the state before and after it, and the largest displacement so far; ζω,
 # 1/ωd and the most that a ground acceleration of one can do, for the free vibration and what may still come; what
-# a peak within a step can add, c = 2ζω and k = ω²
+# a peak within a step can add, c = 2ζω and k = ω²; and the displacement below which no step need be looked at
 _UU, _UV, _UA, _US, _VU, _VV, _VA, _VS = range(0, 8 * LANES, LANES)
 _U, _V, _U0, _V0, _LARGEST = range(8 * LANES, 13 * LANES, LANES)
 _RATE, _PER_TURN, _GAIN = range(13 * LANES, 16 * LANES, LANES)
 _KEPT, _ADDED, _C, _K = range(16 * LANES, 20 * LANES, LANES)
-_ROWS = 20
+_BOUND = 20 * LANES
+_ROWS = 21
 
 _Group = tuple[NDArray[np.intp], int, float, int, Floats]
 """Which oscillators take steps of one length, steps a sample, step [s], samples of quiet at the end, and table."""
@@ -375,7 +376,7 @@ def _column(period: float, damping: float, step: float) -> Floats:
         ahead = [damping * omega, 1 / turn, (1 + r) / (1 - r) / k]
     q = k * (step / 2) ** 2 / 2 / (1 - c * step)
     matrix = oscillator_matrix(omega, damping, step).ravel()
-    return np.array([*matrix, *[0.0] * 5, *ahead, 1 - q, q / k, c, k])
+    return np.array([*matrix, *[0.0] * 5, *ahead, 1 - q, q / k, c, k, 0.0])
 
 
 @cached_njit(error_model="numpy")
@@ -413,19 +414,18 @@ def _advance(x: Floats, a: float, s: float, step: float) -> bool:
         u0, v0 = x[_U + i], x[_V + i]
         u = x[_UU + i] * u0 + x[_UV + i] * v0 + x[_UA + i] * a + x[_US + i] * s
         v = x[_VU + i] * u0 + x[_VV + i] * v0 + x[_VA + i] * a + x[_VS + i] * s
-        # the zero keeps the compiler from storing under a condition, for which the next load would wait
-        x[_LARGEST + i] = max(x[_LARGEST + i], abs(u)) + 0.0
         x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i] = u0, v0, u, v
-        may |= max(abs(u0), abs(u)) + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]
+        may |= max(abs(u0), abs(u)) > x[_BOUND + i]
     return may
 
 
 @cached_njit(error_model="numpy")
 def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
-    """Let the peaks of lane i between the last two steps count, if they can be the largest."""
+    """Let the last step of lane i and a peak within it count, if they can be the largest."""
     u, v, u1, v1, c, k = x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i], x[_C + i], x[_K + i]
-    if max(abs(u), abs(u1)) + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
+    if max(abs(u), abs(u1)) > x[_BOUND + i]:
         first = u, v, -(c * v + k * u) - a
         last = u1, v1, -(c * v1 + k * u1) - (a + step * s)
         peak = peak_within(0, first, last, (u, v, a, s), c, k, step)
-        x[_LARGEST + i] = max(x[_LARGEST + i], peak)
+        x[_LARGEST + i] = max(x[_LARGEST + i], abs(u1), peak)
+        x[_BOUND + i] = x[_KEPT + i] * x[_LARGEST + i] - x[_ADDED + i]

@@ -29,7 +29,7 @@ from rockfrag.report.sections.curves import (
 from rockfrag.report.study_report import write_page
 from rockfrag.sentences import estimates
 from rockfrag.stages.job import Job, Results
-from rockfrag.study.measured_table import MeasuredTable
+from rockfrag.study.campaign import MeasuredTable
 
 says = Says("rockfrag.report", "measured_page.j2")
 

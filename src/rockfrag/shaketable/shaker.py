@@ -56,11 +56,9 @@ class Shaker:
     velocity: float | None = None  # largest velocity [m/s]; None where it is not limited
 
     def __post_init__(self) -> None:
-        limits = {"stroke": self.stroke, "force": self.force, "lowest_hz": self.lowest_hz}
-        if self.velocity is not None:
-            limits["velocity"] = self.velocity
-        for name, value in limits.items():
-            positive_number(f"shaker: {name}", value)
+        for name in ("stroke", "force", "lowest_hz", "velocity"):
+            if name != "velocity" or self.velocity is not None:
+                positive_number(f"shaker: {name}", getattr(self, name))
         if not self.lowest_hz < self.highest_hz:
             raise InputError(
                 f"shaker: the band from {self.lowest_hz} to {self.highest_hz} Hz is empty."

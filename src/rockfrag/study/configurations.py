@@ -125,13 +125,11 @@ def with_friction(system: System, content: float | Mapping[str, Any]) -> System:
     That is a coefficient [-] of all contacts, or a mapping with ``ground`` and ``interface``, each a coefficient
     or a mapping with ``static`` and ``kinetic``; a lone object has the friction of the ground.
     """
-    each = (
-        [content["ground"], content["interface"]] if isinstance(content, Mapping) else [content] * 2
-    )
-    ground, interface = (
-        (mu["static"], mu["kinetic"]) if isinstance(mu, Mapping) else mu for mu in each
-    )
-    friction: dict[str, Any] = {"ground": ground}
-    if system.count > 1:
-        friction["interface"] = interface
+    if not isinstance(content, Mapping):
+        return system_of(system, content)
+    friction = {
+        place: (mu["static"], mu["kinetic"]) if isinstance(mu, Mapping) else mu
+        for place, mu in content.items()
+        if place == "ground" or system.count > 1
+    }
     return system_of(system, friction)

@@ -15,8 +15,14 @@ from rockfrag.records.catalogue import own_records, read_catalogue, repeated_mot
 from rockfrag.schema import checked
 from rockfrag.shaketable.shaker import read_shaker
 from rockfrag.study import configurations as arrangements
-from rockfrag.study import measured_table
-from rockfrag.study.campaign import CAMPAIGN_KEY, CampaignStudy, campaign_from
+from rockfrag.study.campaign import (
+    CAMPAIGN_KEY,
+    TABLE_KEY,
+    CampaignStudy,
+    MeasuredTable,
+    campaign_from,
+    measured_table_from,
+)
 from rockfrag.study.heading import check_file, checked_steps, existing_file, heading_of
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
@@ -31,7 +37,7 @@ OF_ONE_COMPONENT = (
 )
 """Steps that choose a part or a factor by the component itself."""
 
-AnyStudy = Study | measured_table.MeasuredTable | CampaignStudy | SpaceStudy
+AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 
 
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
@@ -42,7 +48,7 @@ def load_any(path: str | os.PathLike[str]) -> AnyStudy:
 def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnyStudy:
     """Make a study of any kind of a configuration that was read from ``path``."""
     kinds: dict[str, tuple[str, Callable[..., AnyStudy]]] = {
-        measured_table.TABLE_KEY: ("measured_table", measured_table.measured_table_from),
+        TABLE_KEY: ("measured_table", measured_table_from),
         CAMPAIGN_KEY: ("campaign", campaign_from),
         SPACE_KEY: ("space", space_study_from),
     }

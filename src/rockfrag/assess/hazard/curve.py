@@ -1,9 +1,18 @@
-"""A hazard curve: how often each level of shaking is exceeded at a site."""
+"""A hazard curve: how often each level of shaking is exceeded at a site, and how files say so.
 
+Of a file it is told which kind it is; of several the mean with its quantiles is put together.
+"""
+
+import csv
+import io
+import json
 import math
+import os
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +21,7 @@ from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure, declared
 from rockfrag.short_repr import short_repr
+from rockfrag.tabular import Row, read_table, read_text
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 
 HIGHEST = {"PGA": 10.0, "SA": 30.0, "PGV": 2000.0}
@@ -194,3 +204,305 @@ def read_level(text: str, measure: IntensityMeasure) -> float:
     if measure.openquake == "PGV":
         return quantity(text, "m_s", None) * CENTIMETRES_PER_METRE
     return quantity(text, "m_s2", None) / GRAVITY
+
+
+LARGEST_FILE = 50_000_000  # Bytes of a hazard file; that of one site has some thousand
+
+Found = tuple[HazardCurve, str]
+"""A curve of a file and which statistic of the hazard model it is, as the file says it; empty for its only one."""
+
+
+def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
+    """Read the hazard curves of one site.
+
+    Parameters
+    ----------
+    paths : files: OpenQuake's CSV or NRML, EFEHR's or the USGS's answer, or tables of levels and rates; those of
+        a mean and of quantiles of one measure belong together, and one curve given twice is an InputError
+
+    Returns
+    -------
+    A curve for each measure, with its quantiles.
+    """
+    found: dict[str, dict[str, HazardCurve]] = {}
+    for path in map(str, paths):
+        text = read_text(path, LARGEST_FILE)
+        for curve, kind in _reader(text)(text, path):
+            named, statistic = found.setdefault(curve.measure.imt, {}), _statistic(kind, path)
+            if statistic in named:
+                raise InputError(
+                    f"{path}: {curve.measure.imt} ({statistic}) is given twice, in {named[statistic].source} "
+                    "too; leave one out."
+                )
+            named[statistic] = curve
+    return [_assembled(name, named) for name, named in found.items()]
+
+
+def _reader(text: str) -> Callable[[str, str], Sequence[Found]]:
+    """What reads the kind of file that a text is of; any may be a table, which says what it lacks."""
+    start = text.lstrip()
+    if start.startswith("<"):
+        return _read_nrml
+    if start.startswith(("{", "[")):
+        return _read_usgs
+    if "poe-" in text[:20_000] and start.startswith(("#", '"#', "lon", "custom_site_id")):
+        return lambda text, path: [read_openquake(text, path)]
+    return _read_levels
+
+
+def _statistic(kind: str, where: str) -> str:
+    """A statistic as ``mean`` or ``quantile-0.16``, which may be ``quantile_curve-0.5``; branches are refused."""
+    if kind in ("", "mean"):
+        return "mean"
+    quantile = re.fullmatch(r"quantile\D*?(0?\.\d+)", kind)
+    if quantile:
+        return f"quantile-{float(quantile[1]):g}"
+    raise InputError(
+        f"{where}: the curve is of the kind {kind[:40]!r}; give the mean and the quantiles of the hazard model, "
+        "not single branches or deviations."
+    )
+
+
+def _assembled(name: str, named: Mapping[str, HazardCurve]) -> HazardCurve:
+    """Put the quantiles of one measure to its mean; the median stands in for a mean that is not there."""
+    quantiles = {
+        float(statistic.removeprefix("quantile-")): curve
+        for statistic, curve in named.items()
+        if statistic != "mean"
+    }
+    main = named.get("mean", quantiles.get(0.5))
+    if main is None:
+        raise InputError(
+            f"{next(iter(named.values())).source}: only {', '.join(sorted(named))} of {name} is given; give the "
+            "mean or the median curve too."
+        )
+    return replace(main, quantiles={q: c for q, c in sorted(quantiles.items()) if q != 0.5})
+
+
+def read_openquake(text: str, path: str) -> Found:
+    """Read OpenQuake's export as CSV: the one curve of a file with one site, and its kind.
+
+    A comment with ``kind``, ``investigation_time`` and ``imt``, a header ``lon,lat,depth,poe-0.0050000,…``
+    whose names hold the levels (g; cm/s for PGV), and a row of probabilities of exceedance for each site.
+    """
+    try:
+        rows = [row for row in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        raise InputError(f"{path}: it is damaged as a table ({error}).") from None
+    comment = ",".join(rows[0]) if rows[0][0].lstrip().startswith("#") else ""
+    facts = dict(re.findall(r"(\w+)='?([^',\"]+)'?", comment))
+    missing = [name for name in ("investigation_time", "imt") if name not in facts]
+    if missing:
+        raise InputError(
+            f"{path}: the first line does not state {missing[0]}; give the file as OpenQuake exported it."
+        )
+    header, *sites = rows[1:] or [[]]
+    columns = {
+        i: found[1]
+        for i, name in enumerate(header)
+        if (found := re.fullmatch(r"poe-([0-9.eE+-]+)", name))
+    }
+    if len(sites) != 1 or not columns:
+        raise InputError(
+            f"{path}: found {len(sites)} sites with {len(columns)} levels; leave the row of one site."
+        )
+    if len(sites[0]) != len(header):
+        raise InputError(f"{path}: the row has {len(sites[0])} cells, its header {len(header)}.")
+    try:
+        levels = [float(level) for level in columns.values()]
+        poes = [float(sites[0][i]) for i in columns]
+        years = float(facts["investigation_time"])
+    except ValueError as error:
+        raise InputError(f"{path}: a level, probability or time is no number ({error}).") from None
+    measure = read_measure(facts["imt"], path)
+    return make_curve(measure, levels, rates_of(poes, years, path), path), facts.get("kind", "")
+
+
+def _read_usgs(text: str, path: str) -> list[Found]:
+    """Read the answer of the USGS's hazard web services (NSHM) as JSON: the curves of all measures.
+
+    ``response.hazardCurves`` is a list with ``imt`` and ``data``, of which the component ``Total`` has ``values``
+    with ``xs`` (levels [g]; PGV [cm/s]) and ``ys`` (annual rates of exceedance). Before 2021 ``response`` was a
+    list with ``metadata`` (``imt``, ``xvalues``) and ``data`` (``yvalues``).
+    """
+    try:
+        answer = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: is not whole JSON ({error}); ask the service again.") from None
+    try:
+        response = answer["response"]
+        is_old = isinstance(response, list)
+        found = []
+        for curve in response if is_old else response["hazardCurves"]:
+            total = {part["component"]: part for part in curve["data"]}["Total"]
+            about, values = (curve["metadata"], total) if is_old else (curve, total["values"])
+            x, y = (about["xvalues"], values["yvalues"]) if is_old else (values["xs"], values["ys"])
+            measure = read_measure(str(about["imt"]["value"]), path)
+            found.append((make_curve(measure, _numbers(x), _numbers(y), path), ""))
+    except (KeyError, TypeError, IndexError, OverflowError) as error:
+        raise InputError(
+            f"{path}: is not an answer of the USGS hazard service with hazard curves "
+            f"({type(error).__name__}: {str(error)[:80]})."
+        ) from None
+    if not found:
+        raise InputError(f"{path}: the answer holds no hazard curve.")
+    return found
+
+
+def _numbers(values: Any) -> list[float]:
+    if not isinstance(values, list) or any(
+        isinstance(value, bool) or not isinstance(value, int | float) for value in values
+    ):
+        raise TypeError("levels and rates are lists of numbers")
+    return [float(value) for value in values]
+
+
+_VERSIONS = (
+    ("hazardCurveField", "IML", "poE", "a hazardCurveField has no IML, the levels of the curve"),
+    ("hazardCurves", "IMLs", "poEs", "the hazardCurves have no IMLs, the levels"),
+)
+"""Elements of curves, of their levels and of probabilities, and what is said where levels are missing."""
+
+
+def _read_nrml(text: str, path: str) -> list[Found]:
+    """Read hazard curves in NRML: EFEHR's answers (version 0.3) and OpenQuake's export (0.4 and 0.5), of one site.
+
+    In 0.3 a ``hazardCurveField`` has the levels (``IML``) and a node with ``poE``, the time and the period of
+    SA stand at ``hazardProcessing``; later versions say it all at ``hazardCurves`` with ``IMLs`` and ``poEs``.
+    Levels are in g.
+    """
+    if "<!DOCTYPE" in text or "<!ENTITY" in text:
+        raise InputError(f"{path}: has a document type, which no hazard file needs; remove it.")
+    try:
+        root = ET.fromstring(text)
+    except (ET.ParseError, ValueError) as error:
+        raise InputError(f"{path}: is no well-formed XML ({error}).") from None
+    above = next((part.attrib for part in _named(root, "hazardProcessing")), {})
+    found = [
+        _of_element(curves, above, version, path)
+        for version in _VERSIONS
+        for curves in _named(root, version[0])
+    ]
+    if not found:
+        raise InputError(
+            f"{path}: holds no hazardCurves or hazardCurveField; ask the service for hazard curves, not "
+            f"maps or spectra."
+        )
+    return found
+
+
+def _of_element(
+    curves: ET.Element, above: Mapping[str, str], version: Sequence[str], path: str
+) -> Found:
+    _, level, poe, missing = version
+    levels = next(_named(curves, level), None)
+    if levels is None:
+        raise InputError(f"{path}: {missing}.")
+    poes = list(_named(curves, poe))
+    if len(poes) != 1:
+        raise InputError(f"{path}: found the curves of {len(poes)} sites; leave that of one.")
+    about = {**above, **curves.attrib, **levels.attrib}
+    years = about.get("investigationTimeSpan", about.get("investigationTime"))
+    if years is None:
+        raise InputError(f"{path}: the investigation time of the probabilities is not stated.")
+    imt = about.get("IMT", "")
+    # the period of SA stands elsewhere
+    measure = read_measure(f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt, path)
+    try:
+        values, fractions, times = (
+            [float(word) for word in words.split()]
+            for words in (levels.text or "", poes[0].text or "", years)
+        )
+    except ValueError as error:
+        raise InputError(f"{path}: a level or probability is no number ({error}).") from None
+    if len(times) != 1:
+        raise InputError(f"{path}: the investigation time is {len(times)} numbers; give one.")
+    kind = curves.get("statistics", "")
+    if kind == "quantile":
+        kind = f"quantile-{curves.get('quantileValue', '')}"
+    elif not kind and curves.get("sourceModelTreePath"):
+        kind = "branch of a logic tree"
+    return make_curve(measure, values, rates_of(fractions, times[0], path), path), kind
+
+
+def _named(root: ET.Element, name: str) -> Iterator[ET.Element]:
+    """Elements of a name in any namespace."""
+    return (element for element in root.iter() if element.tag.rpartition("}")[2] == name)
+
+
+_EXPECTED = (
+    "a column of levels (pga_g, pgv_cm_s or such as sa_0_3s_g) and one of annual_rate, return_period_years or "
+    "such as poe_50_years"
+)
+_POE = re.compile(r"poe_(\d+(?:\.\d+)?)_?y(?:ears)?")
+_RETURN_PERIOD = re.compile(r"(?:tr|return_period)(?:_(?:years?|yrs?|a|anni))?")
+_UNITS = {
+    "pgv": {"cm_s": 1.0, "m_s": 100.0},
+    "others": {"g": 1.0, "m_s2": 1 / GRAVITY, "cm_s2": 0.01 / GRAVITY},
+}
+_LEVEL = re.compile(r"(pga|pgv|sa_(\d+(?:_\d+)?)s)_(g|cm_s|m_s|m_s2|cm_s2)")
+
+
+def _read_levels(text: str, path: str) -> list[Found]:
+    rows, curve = read_levels(path, text)
+    return [(curve(rows, path), "")]
+
+
+def read_levels(
+    path: str | os.PathLike[str], text: str | None = None, labels: Sequence[str] = ()
+) -> tuple[list[Row], Callable[[Sequence[Row], str], HazardCurve]]:
+    """Read a table of levels and rates, as people write it by hand.
+
+    Beside the columns ``labels`` it has levels, as ``pga_g``, ``pgv_cm_s`` or ``sa_0_3s_g``, and how often they
+    are exceeded: ``annual_rate``, ``return_period_years`` or such as ``poe_50_years``. Returns the rows, and what
+    makes the curve of some of them, whose messages say where it stands.
+    """
+    table = read_table(path, text)
+    titles = [_plain(title) for title in table.titles]
+    levels = [title for title in titles if _LEVEL.fullmatch(title)]
+    others = [title for title in titles if title not in (*levels, *labels)]
+    if len(levels) != 1 or len(others) != 1 or not set(labels) <= set(titles):
+        raise InputError(
+            f"{path}: expected {', '.join([*labels, _EXPECTED])}; its header has "
+            f"{', '.join(titles)[:120] or 'nothing'}."
+        )
+    (level,), (often,) = levels, others
+    measure, factor = _measure_of(level, str(path))
+
+    def curve(rows: Sequence[Row], where: str) -> HazardCurve:
+        points = sorted((row.number(level) * factor, row.number(often)) for row in rows)
+        rates = _annual_rates(often, [value for _, value in points], where)
+        return make_curve(measure, [level for level, _ in points], rates, where)
+
+    return table.rows(titles), curve
+
+
+def _plain(title: str) -> str:
+    """A title as this table calls it: ``PGA (g)`` is ``pga_g``, ``Tr (anni)`` is ``return_period_years``."""
+    words = re.sub(r"[\s()\[\]/]+", "_", title.strip().lower().replace("²", "2")).strip("_")
+    return "return_period_years" if _RETURN_PERIOD.fullmatch(words) else words
+
+
+def _measure_of(title: str, path: str) -> tuple[IntensityMeasure, float]:
+    """Return measure and factor to its unit of a title such as ``pga_cm_s2``."""
+    found = _LEVEL.fullmatch(title)
+    assert found is not None
+    name, period, unit = found.groups()
+    units = _UNITS["pgv" if name == "pgv" else "others"]
+    if unit not in units:
+        raise InputError(f"{path}: {title} is no unit of {name.upper()}; use g or cm_s.")
+    return read_measure(f"SA({period.replace('_', '.')})" if period else name, path), units[unit]
+
+
+def _annual_rates(title: str, values: list[float], path: str) -> list[float]:
+    """Annual rates of a column whose title says how often levels are exceeded [1/year]."""
+    if title == "annual_rate":
+        return values
+    if title == "return_period_years":
+        if min(values, default=1) <= 0:
+            raise InputError(f"{path}: a return period must be above 0 years.")
+        return [1 / value for value in values]
+    poe = _POE.fullmatch(title)
+    if poe:
+        return list(rates_of(values, float(poe[1]), path))
+    raise InputError(f"{path}: column {title[:60]!r} is not known; expected {_EXPECTED}.")
